@@ -1,0 +1,63 @@
+# Build settings of this project: where things go, which flags our own code is compiled with, and the two functions that
+# every room uses. Nothing here reaches those who use the installed package.
+include(GNUInstallDirs)
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(Threads REQUIRED)
+
+add_library(veridyn_build INTERFACE)
+target_compile_features(veridyn_build INTERFACE cxx_std_20)
+target_compile_options(
+  veridyn_build
+  INTERFACE -Wall
+            -Wextra
+            -Wpedantic
+            -Wconversion
+            -Wshadow
+            $<$<BOOL:${VERIDYN_WERROR}>:-Werror>
+            $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all;-fno-omit-frame-pointer>
+            $<$<BOOL:${VERIDYN_FUZZ}>:-fsanitize=fuzzer-no-link,address,undefined>)
+target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
+                    $<$<BOOL:${VERIDYN_FUZZ}>:-fsanitize=address,undefined>)
+
+# veridyn_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS Veridyn::core ...] [PRIVATE lib ...])
+# A room: static library veridyn_NAME, alias Veridyn::NAME, headers installed with their folders.
+function(veridyn_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE" ${ARGN})
+  set(target veridyn_${name})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(Veridyn::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+  target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:veridyn_build> ${ARG_PRIVATE})
+  install(
+    TARGETS ${target}
+    EXPORT VeridynTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# veridyn_room_tests(NAME SOURCES a_test.cpp ... [DEPENDS ...])
+# One test binary a room: veridyn_NAME_tests, its cases registered with CTest. VERIDYN_SHARED_DIR is where recordings by
+# others may lie; tests that read them skip when it is missing.
+function(veridyn_room_tests name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  set(target veridyn_${name}_tests)
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE Veridyn::${name} ${ARG_DEPENDS} veridyn_build GTest::gtest GTest::gmock GTest::gtest_main)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${target} PRIVATE VERIDYN_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared"
+                                               VERIDYN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_precompile_headers(${target} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <string> <vector> <fmt/format.h>)
+  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+endfunction()

@@ -1,0 +1,68 @@
+#include "veridyn/core/files.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path.string(), "no such file");
+  if (fs::is_directory(status)) throw InputError(path.string(), "is a directory, expected a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)));
+  std::string content;
+  if (fs::is_regular_file(status)) {
+    content.resize(fs::file_size(path));
+    file.read(content.data(), static_cast<std::streamsize>(content.size()));
+    content.resize(static_cast<std::size_t>(file.gcount()));
+  } else {
+    content.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  if (file.bad()) throw InputError(path.string(), "cannot be read to its end");
+  return content;
+}
+
+void write_file(const fs::path& path, std::string_view content) {
+  const fs::path temporary = fmt::format("{}.{}.part", path.string(), ::getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    if (!file) throw InputError(path.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.close();
+    if (!file) {
+      const std::string why = std::strerror(errno);
+      std::error_code ignored;
+      fs::remove(temporary, ignored);
+      throw InputError(path.string(), fmt::format("cannot be written: {}", why));
+    }
+  }
+  std::error_code error;
+  fs::rename(temporary, path, error);
+  if (error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw InputError(path.string(), fmt::format("cannot be written: {}", error.message()));
+  }
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path)) {
+    throw InputError(path.string(),
+                     fmt::format("cannot be made a folder: {}", error ? error.message() : "it is a file"));
+  }
+}
+
+}  // namespace veridyn
