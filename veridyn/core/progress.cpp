@@ -1,0 +1,77 @@
+#include "veridyn/core/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+namespace veridyn {
+namespace {
+
+// Set by the signal handler, the one thing that it may do. Process-wide because signals are.
+std::atomic<bool> stop_requested{false};
+
+extern "C" void request_stop(int signal) {
+  stop_requested = true;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void Progress::stage(std::string_view) {}
+bool Progress::update(double) { return !interrupted(); }
+bool Progress::interrupted() const { return false; }
+
+TerminalProgress::TerminalProgress(bool quiet)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), begun_(Clock::now()), shown_(begun_) {}
+
+TerminalProgress::~TerminalProgress() { end_line(); }
+
+void TerminalProgress::stage(std::string_view name) {
+  end_line();
+  stage_ = name;
+  begun_ = shown_ = Clock::now();
+  if (!quiet_ && !terminal_) fmt::print(stderr, "{}\n", stage_);
+}
+
+bool TerminalProgress::update(double fraction) {
+  const auto now = Clock::now();
+  if (!quiet_ && terminal_ && now - shown_ >= std::chrono::milliseconds(100)) {
+    shown_ = now;
+    drawn_ = true;
+    const double done = std::clamp(fraction, 0.0, 1.0);
+    const double elapsed_s = std::chrono::duration<double>(now - begun_).count();
+    const int cells = static_cast<int>(std::lround(24.0 * done));
+    // A first guess of the remaining time from the very beginning would be noise.
+    const std::string remaining = done > 0.02 ? duration_text(elapsed_s * (1.0 - done) / done) + " left" : "";
+    fmt::print(stderr, "\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", stage_, "", cells, "", 24 - cells, 100.0 * done,
+               remaining);
+    std::fflush(stderr);
+  }
+  return !interrupted();
+}
+
+bool TerminalProgress::interrupted() const { return stop_requested; }
+
+void TerminalProgress::watch_signals() {
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+}
+
+void TerminalProgress::end_line() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+std::string duration_text(double seconds) {
+  const long total = std::lround(std::max(0.0, seconds));
+  if (total < 60) return fmt::format("{} s", total);
+  if (total < 3600) return fmt::format("{} min {:02} s", total / 60, total % 60);
+  return fmt::format("{} h {:02} min", total / 3600, (total % 3600) / 60);
+}
+
+}  // namespace veridyn
