@@ -1,1 +1,64 @@
+#include "veridyn/core/files.hpp"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("veridyn_files_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+template <typename Action>
+std::string message_of(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST_F(Files, ReadBackWhatWasWritten) {
+  const std::string content("a\0b\n", 4);
+  write_file(folder_ / "x", content);
+  EXPECT_EQ(read_file(folder_ / "x"), content);
+  write_file(folder_ / "x", "");
+  EXPECT_EQ(read_file(folder_ / "x"), "");
+}
+
+TEST_F(Files, LeaveNothingBesideTheFile) {
+  write_file(folder_ / "x", "1");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
+}
+
+TEST_F(Files, RefuseMissingFilesAndDirectories) {
+  EXPECT_EQ(message_of([&] { static_cast<void>(read_file("missing.bin")); }), "missing.bin: no such file");
+  EXPECT_EQ(message_of([&] { static_cast<void>(read_file(folder_)); }),
+            folder_.string() + ": is a directory, expected a file");
+}
+
+TEST_F(Files, RefuseAFolderThatIsNotThereOrAFile) {
+  EXPECT_THAT(message_of([&] { write_file(folder_ / "no" / "x", "1"); }),
+              testing::HasSubstr("cannot be written: No such file"));
+  write_file(folder_ / "x", "old");
+  EXPECT_THAT(message_of([&] { make_folder(folder_ / "x"); }), testing::HasSubstr("cannot be made a folder"));
+  fs::create_directory(folder_ / "d");
+  EXPECT_THAT(message_of([&] { write_file(folder_ / "d", "1"); }), testing::HasSubstr("cannot be written"));
+  EXPECT_EQ(read_file(folder_ / "x"), "old");
+}
+
+}  // namespace
+}  // namespace veridyn

@@ -1,1 +1,114 @@
+#include "veridyn/core/study.hpp"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Study study(std::string_view text, std::vector<std::string> overrides = {}) {
+  return Study::parse(text, "study.toml", "/data", overrides);
+}
+
+template <typename Action>
+std::string message_of(Action action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Study, ReadsNumbersInSiOrWithAnyUnitOfTheDimension) {
+  const StudyTable subject =
+      study("[subject]\nmass = 2\nspan = \"10 ft\"\nalpha0 = \"27 deg\"\n").root().table("subject");
+  EXPECT_DOUBLE_EQ(subject.number("mass", "kg"), 2.0);
+  EXPECT_DOUBLE_EQ(subject.number("span", "m"), 3.048);
+  EXPECT_DOUBLE_EQ(subject.number("alpha0", "rad"), 27.0 * std::numbers::pi / 180.0);
+  EXPECT_DOUBLE_EQ(subject.number_or("chord", "m", 0.3), 0.3);
+}
+
+TEST(Study, NamesFileLineAndKeyOfAWrongValue) {
+  const StudyTable root =
+      study("a = 1\n\n[subject]\nmass = 0\nspan = \"2 kg\"\nname = 5\nchord = \"wide\"\nbad = nan\n").root();
+  const StudyTable subject = root.table("subject");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.positive("mass", "kg")); }),
+            "study.toml:4: subject.mass: = 0 must be > 0");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("span", "m")); }),
+            "study.toml:5: subject.span: unit 'kg' is a mass [kg], expected a length [m]");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.text("name")); }),
+            "study.toml:6: subject.name: is a whole number, expected a text in quotes");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("chord", "m")); }),
+            "study.toml:7: subject.chord: 'wide' is not a number with a unit, such as \"1.5 m\"");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("bad", "m")); }),
+            "study.toml:8: subject.bad: is nan, expected a finite number [m]");
+  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("area", "m^2")); }),
+            "study.toml:3: subject.area: is missing");
+}
+
+TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
+  const Study misspelt = study("[subject]\nmass = 2\nspann = 3\n");
+  const StudyTable subject = misspelt.root().table("subject");
+  static_cast<void>(subject.number("mass", "kg"));
+  static_cast<void>(subject.number_or("span", "m", 1.0));
+  EXPECT_EQ(message_of([&] { misspelt.root().finish(); }),
+            "study.toml:3: subject.spann: unknown key (did you mean 'span'?)");
+}
+
+TEST(Study, AcceptsKeysReadThroughAnyOpeningOfATable) {
+  const Study twice = study("[subject]\nmass = 2\nspan = 3\n");
+  static_cast<void>(twice.root().table("subject").number("mass", "kg"));
+  static_cast<void>(twice.root().table("subject").number("span", "m"));
+  EXPECT_NO_THROW(twice.root().finish());
+}
+
+TEST(Study, ReadsArraysAndArraysOfTables) {
+  const Study plan =
+      study("rates = [\"1 deg/s\", 2]\none = 3\n[[manoeuvre]]\nkind = \"doublet\"\n[[manoeuvre]]\nkind = \"3211\"\n");
+  EXPECT_THAT(plan.root().numbers("rates", "rad/s"), ElementsAre(testing::DoubleEq(std::numbers::pi / 180.0), 2.0));
+  EXPECT_THAT(plan.root().numbers("one", "m"), ElementsAre(3.0));
+  const std::vector<StudyTable> manoeuvres = plan.root().tables("manoeuvre");
+  ASSERT_EQ(manoeuvres.size(), 2u);
+  EXPECT_EQ(manoeuvres[1].text("kind"), "3211");
+  EXPECT_THAT(manoeuvres[1].place("kind"), HasSubstr("study.toml:6: manoeuvre[1].kind"));
+}
+
+TEST(Study, OverridesKeysFromTheCommandLine) {
+  const Study changed = study("[data]\nrate = 50\n", {"data.rate=25", "data.file=log.bin", "new.table.key=[1, 2]"});
+  EXPECT_DOUBLE_EQ(changed.root().table("data").number("rate", "Hz"), 25.0);
+  EXPECT_EQ(changed.root().table("data").text("file"), "log.bin");
+  EXPECT_THAT(changed.root().table("new").table("table").numbers("key", "1"), ElementsAre(1.0, 2.0));
+  EXPECT_EQ(message_of([] { static_cast<void>(study("", {"rate"})); }), "--set rate: expected key=value");
+  EXPECT_EQ(message_of([] { static_cast<void>(study("a = 1", {"a.b=1"})); }), "--set a.b=1: 'a' is not a table");
+}
+
+TEST(Study, TakesRelativeFilesFromItsFolder) {
+  const Study files = study("log = \"flight.bin\"\nother = \"/abs/flight.bin\"\n");
+  EXPECT_EQ(files.root().file("log"), "/data/flight.bin");
+  EXPECT_EQ(files.root().file("other"), "/abs/flight.bin");
+}
+
+TEST(Study, SaysWhereTheTomlIsBroken) {
+  EXPECT_THAT(message_of([] { static_cast<void>(study("a = 1\nb = = 2\n")); }),
+              HasSubstr("study.toml:2:5: not TOML: "));
+  EXPECT_THAT(message_of([] { static_cast<void>(Study::load("missing.toml")); }),
+              HasSubstr("missing.toml: no such file"));
+}
+
+TEST(Study, ParsesWhatItPrints) {
+  const Study once = study("[data]\nrate = 50\nfiles = [\"a\", \"b\"]\n", {"data.rate=25"});
+  const Study again = study(once.to_toml());
+  EXPECT_DOUBLE_EQ(again.root().table("data").number("rate", "Hz"), 25.0);
+  EXPECT_EQ(again.to_toml(), once.to_toml());
+}
+
+}  // namespace
+}  // namespace veridyn
