@@ -1,0 +1,154 @@
+#include "veridyn/numerics/delay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::numerics {
+namespace {
+
+constexpr std::ptrdiff_t kSincHalfWidth = 12;
+
+struct Centred {
+  std::vector<double> value;  // zero where missing
+  std::vector<double> known;  // 1 or 0
+  double power = 0.0;
+};
+
+Centred centre(std::span<const double> x) {
+  double sum = 0.0, count = 0.0;
+  for (const double v : x) {
+    if (std::isfinite(v)) sum += v, count += 1.0;
+  }
+  Centred c{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0), 0.0};
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!std::isfinite(x[k])) continue;
+    c.value[k] = x[k] - sum / count;
+    c.known[k] = 1.0;
+    c.power += c.value[k] * c.value[k];
+  }
+  return c;
+}
+
+// sum a_k b_{k+lag} over the known pairs, normalised by their powers.
+double correlation_at(const Centred& a, const Centred& b, std::ptrdiff_t lag) {
+  const auto n = static_cast<std::ptrdiff_t>(a.value.size());
+  const std::ptrdiff_t begin = std::max<std::ptrdiff_t>(0, -lag);
+  const std::ptrdiff_t end = std::min(n, n - lag);
+  double ab = 0.0, aa = 0.0, bb = 0.0;
+  for (std::ptrdiff_t k = begin; k < end; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const auto j = static_cast<std::size_t>(k + lag);
+    ab += a.value[i] * b.value[j];
+    aa += a.value[i] * a.value[i] * b.known[j];
+    bb += b.value[j] * b.value[j] * a.known[i];
+  }
+  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+double interpolated(const std::vector<double>& c, double position) {
+  const auto centre_index = static_cast<std::ptrdiff_t>(std::floor(position));
+  double sum = 0.0;
+  for (std::ptrdiff_t j = centre_index - kSincHalfWidth + 1; j <= centre_index + kSincHalfWidth; ++j) {
+    const double u = position - static_cast<double>(j);
+    const double taper = std::cos(0.5 * std::numbers::pi * u / static_cast<double>(kSincHalfWidth));
+    const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(std::numbers::pi * u) / (std::numbers::pi * u);
+    sum += c[static_cast<std::size_t>(j)] * sinc * taper * taper;
+  }
+  return sum;
+}
+
+}  // namespace
+
+DelayEstimate estimate_delay(std::span<const double> reference, std::span<const double> delayed, double rate_Hz,
+                             const DelayOptions& options) {
+  if (reference.size() != delayed.size()) {
+    throw InputError("estimate_delay",
+                     fmt::format("signals have {} and {} samples; must be equal", reference.size(), delayed.size()));
+  }
+  if (!(rate_Hz > 0.0)) throw InputError("estimate_delay.rate_Hz", fmt::format("is {}; must be > 0", rate_Hz));
+  DelayEstimate result;
+  const auto n = static_cast<std::ptrdiff_t>(reference.size());
+  const auto max_lag = static_cast<std::ptrdiff_t>(std::ceil(options.max_delay_s * rate_Hz));
+  const std::ptrdiff_t span = max_lag + kSincHalfWidth;  // lags beyond the search serve the interpolation
+  if (n < 4 * span) {
+    result.reason = "the signals are shorter than eight times the largest delay";
+    return result;
+  }
+  const Centred a = centre(reference);
+  const Centred b = centre(delayed);
+  if (!(a.power > 0.0) || !(b.power > 0.0)) {
+    result.reason = "one of the signals is constant";
+    return result;
+  }
+  std::vector<double> c;
+  c.reserve(static_cast<std::size_t>(2 * span + 1));
+  for (std::ptrdiff_t lag = -span; lag <= span; ++lag) c.push_back(correlation_at(a, b, lag));
+  std::ptrdiff_t peak = 0;
+  for (std::ptrdiff_t lag = -max_lag; lag <= max_lag; ++lag) {
+    if (std::abs(c[static_cast<std::size_t>(lag + span)]) > std::abs(c[static_cast<std::size_t>(peak + span)]))
+      peak = lag;
+  }
+  const double sign = c[static_cast<std::size_t>(peak + span)] < 0.0 ? -1.0 : 1.0;
+  // Golden-section search one lag to either side of the peak.
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  double low = static_cast<double>(peak + span) - 1.0, high = low + 2.0;
+  low = std::max(low, static_cast<double>(kSincHalfWidth));
+  high = std::min(high, static_cast<double>(2 * span - kSincHalfWidth));
+  for (int i = 0; i < 60; ++i) {
+    const double left = high - ratio * (high - low), right = low + ratio * (high - low);
+    if (sign * interpolated(c, left) > sign * interpolated(c, right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  const double position = 0.5 * (low + high);
+  result.delay_s = (position - static_cast<double>(span)) / rate_Hz;
+  result.correlation = std::clamp(interpolated(c, position), -1.0, 1.0);
+  result.at_zero = c[static_cast<std::size_t>(span)];
+  for (std::ptrdiff_t i = span - max_lag; i <= span + max_lag; ++i) {
+    const double here = std::abs(c[static_cast<std::size_t>(i)]);
+    const bool maximum =
+        here >= std::abs(c[static_cast<std::size_t>(i - 1)]) && here >= std::abs(c[static_cast<std::size_t>(i + 1)]);
+    if (maximum && std::abs(static_cast<double>(i) - position) > 1.5) {
+      result.side_peak = std::max(result.side_peak, here / std::abs(result.correlation));
+    }
+  }
+  // Mean square bandwidth from the curvature of the reference's own autocorrelation.
+  double slope2 = 0.0;
+  for (std::size_t k = 1; k < a.value.size(); ++k) {
+    const double step = (a.value[k] - a.value[k - 1]) * a.known[k] * a.known[k - 1];
+    slope2 += step * step;
+  }
+  const double c2 = std::max(result.correlation * result.correlation, 1e-12);
+  const double bandwidth2 = slope2 * rate_Hz * rate_Hz / a.power;
+  const auto lag = static_cast<std::ptrdiff_t>(std::llround(result.delay_s * rate_Hz));
+  std::vector<double> mismatch;
+  for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag); k < std::min(n, n - lag); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const auto j = static_cast<std::size_t>(k + lag);
+    if (a.known[i] * b.known[j] > 0.0)
+      mismatch.push_back(b.value[j] / std::sqrt(b.power) - result.correlation * a.value[i] / std::sqrt(a.power));
+  }
+  const double samples = std::max(1.0, effective_sample_size_variance(mismatch));
+  result.sigma_s = std::sqrt((1.0 - std::min(c2, 1.0)) / (c2 * samples * bandwidth2));
+  if (std::abs(result.correlation) < options.min_correlation) {
+    result.reason = "the signals correlate too little";
+  } else if (std::abs(peak) == max_lag) {
+    result.reason = "the correlation still rises at the end of the search";
+  } else if (result.side_peak > options.max_side_peak) {
+    result.reason = "another delay fits as well (the signal repeats itself)";
+  } else {
+    result.determined = true;
+  }
+  return result;
+}
+
+}  // namespace veridyn::numerics

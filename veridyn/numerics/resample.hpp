@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace veridyn::numerics {
+
+/// Evenly spaced moments begin + k step.
+struct UniformGrid {
+  double begin = 0.0;  ///< [s]
+  double step = 0.01;  ///< [s]
+  std::size_t count = 0;
+
+  [[nodiscard]] double at(std::size_t k) const { return begin + static_cast<double>(k) * step; }
+  [[nodiscard]] double rate_Hz() const { return 1.0 / step; }
+  /// All moments of a grid through whole multiples of `step` that lie in [from, to].
+  [[nodiscard]] static UniformGrid covering(double from, double to, double step);
+};
+
+enum class Interpolation {
+  kLinear,
+  kPchip,  ///< piecewise cubic Hermite, Fritsch & Butland (1984) slopes: C1, third order, never overshoots the data
+  kHold    ///< last value: modes, counters, commands that are held
+};
+
+struct ResampleOptions {
+  Interpolation interpolation = Interpolation::kPchip;
+  /// Neighbouring samples further apart leave NaN between them [s]; 0 chooses 5 median intervals.
+  double gap_limit_s = 0.0;
+  /// Low-pass below 0.4 of the grid's rate before thinning out, when the grid is coarser than 0.8 of the median rate of
+  /// the samples. Never applied with kHold.
+  bool anti_alias = true;
+};
+
+/// Values at irregular stamps (never decreasing, [s]) on a grid; NaN before the first and after the last sample, in
+/// gaps, and never extrapolated. Samples that are NaN count as missing; samples of equal stamp are averaged (kHold: the
+/// last one counts).
+/// @throws InputError when sizes differ, a stamp is not finite or decreases, or the grid's step is not > 0.
+[[nodiscard]] std::vector<double> resample(std::span<const double> time, std::span<const double> value,
+                                           const UniformGrid& grid, const ResampleOptions& options = {});
+
+/// Every factor-th sample, after a zero-phase low-pass whose stop band begins at the new Nyquist frequency (pass band
+/// 0.8 of it, 60 dB).
+[[nodiscard]] std::vector<double> decimate(std::span<const double> x, std::size_t factor);
+
+/// Removes jumps of more than half a turn between neighbouring finite angles [rad], so that they can be interpolated.
+void unwrap_angles(std::span<double> angle);
+
+}  // namespace veridyn::numerics
