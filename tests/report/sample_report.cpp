@@ -1,0 +1,19 @@
+#include <cstdio>
+
+#include "tests/report/sample_document.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/report/html.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: veridyn_sample_report FILE.html\n");
+    return 2;
+  }
+  try {
+    veridyn::report::write_html(veridyn::report::sample_document(), argv[1]);
+  } catch (const veridyn::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,278 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+/// A report as data: what is shown, not how. No domain in here; a domain fills these plain structs, `write_html` makes
+/// the page. Texts are UTF-8 and always shown as they are, never interpreted as HTML: they may come from a log.
+/// Every field has a default, so designated initialisers may name the few that matter.
+/// A NaN or infinite number is a missing one (a gap in a line, a dash in a table). Units are texts in square-bracket
+/// style without the brackets ("m/s", "deg", "" for none) and numbers are in that unit: convert before filling in.
+namespace veridyn::report {
+
+/// What became of an estimate, shown as a coloured badge. The first five are those of `estimate.json`.
+enum class Status {
+  kNone,           ///< no badge
+  kIdentified,     ///< trust it
+  kInsignificant,  ///< not told apart from zero
+  kNotExcited,     ///< the data hold nothing about it
+  kRejected,       ///< estimated, but wrong by some check
+  kFixed,          ///< given, not estimated
+  kGood,           ///< a check passed
+  kCaution,        ///< a check passed with a reservation
+  kBad,            ///< a check failed
+};
+
+/// "identified", "not_excited", ...: the words of `estimate.json`; "" for `kNone`.
+[[nodiscard]] std::string_view status_name(Status status);
+/// The same in plain words: "not excited".
+[[nodiscard]] std::string_view status_label(Status status);
+/// The status of such a word; `kNone` for any other.
+[[nodiscard]] Status status_from_name(std::string_view name);
+
+enum class Level { kGood, kCaution, kBad };
+
+/// What a pilot reads before anything else.
+struct Verdict {
+  Level level = Level::kCaution;
+  /// One or two words; when empty "Usable", "Use with care" or "Do not use", by level.
+  std::string word = {};
+  std::string headline = {};            ///< one sentence
+  std::vector<std::string> lines = {};  ///< a few more, in plain words
+};
+
+/// The verdict's word, the level's own when none is given.
+[[nodiscard]] std::string_view verdict_word(const Verdict& verdict);
+
+/// "Aircraft: Skywalker X8".
+struct Fact {
+  std::string name = {};
+  std::string value = {};
+};
+
+enum class Tone { kPlain, kNote, kWarning };
+
+struct Paragraph {
+  std::string text = {};
+  Tone tone = Tone::kPlain;
+};
+
+/// Short items; with `kWarning` the place for a run's warnings.
+struct List {
+  std::vector<std::string> items = {};
+  Tone tone = Tone::kPlain;
+};
+
+/// Names and values, set in columns: options, versions, seeds.
+struct FactList {
+  std::vector<Fact> facts = {};
+};
+
+/// A cell of a table: a number, a text, or a badge (whose text, when given, replaces the status's label).
+struct Cell {
+  std::optional<double> number = {};
+  /// Decimals shown; when empty as many as the column's significant digits need.
+  std::optional<int> decimals = {};
+  std::string text = {};
+  Status status = Status::kNone;
+};
+
+[[nodiscard]] Cell text_cell(std::string text);
+[[nodiscard]] Cell number_cell(double value);
+[[nodiscard]] Cell number_cell(double value, int decimals);
+[[nodiscard]] Cell status_cell(Status status, std::string text = {});
+/// A value with as many decimals as its standard deviation has at two significant digits: 0.4231 with sigma 0.0123 is
+/// "0.423". Use it for the value, its sigma and the ends of its interval alike. Falls back to the column's digits when
+/// sigma is not a positive number.
+[[nodiscard]] Cell measured_cell(double value, double sigma);
+
+enum class Align {
+  kAuto,  ///< right when the column holds numbers, left otherwise
+  kLeft,
+  kRight,
+  kCenter,
+};
+
+struct Column {
+  std::string name = {};
+  std::string unit = {};
+  Align align = Align::kAuto;
+  int digits = 4;          ///< significant digits of numbers without `decimals`
+  std::string group = {};  ///< neighbours of one group stand under a common head ("OLS", "TLS")
+};
+
+struct Row {
+  std::vector<Cell> cells = {};  ///< as many as columns
+  /// Colours the row's margin and softens what should not be used; shows no badge by itself.
+  Status status = Status::kNone;
+};
+
+struct Table {
+  std::string title = {};
+  std::string caption = {};
+  std::vector<Column> columns = {};
+  std::vector<Row> rows = {};
+  bool sortable = true;
+};
+
+/// Label and unit of an axis or a panel.
+struct Quantity {
+  std::string label = {};
+  std::string unit = {};
+};
+
+enum class Role {
+  kEstimate,   ///< coloured
+  kMeasured,   ///< grey, thin
+  kReference,  ///< dashed: truth, a model line, a bound
+};
+
+enum class Style {
+  kLine,
+  kMarkers,
+  kStems,  ///< lines from zero (`XYPlot` only)
+};
+
+/// Lower and upper end of an uncertainty band, sample by sample of the line it belongs to.
+struct Band {
+  std::vector<double> low = {};
+  std::vector<double> high = {};
+};
+
+/// A line of a panel. Lines of the same name and role have the same colour in all panels of a figure.
+struct Line {
+  std::string name = {};
+  std::vector<double> y = {};
+  /// 95 % band; sizes as `y`. Empty for none.
+  std::optional<Band> band = {};
+  /// Own abscissae for a line that is sampled otherwise than the figure; empty: the figure's.
+  std::vector<double> x = {};
+  Role role = Role::kEstimate;
+  Style style = Style::kLine;
+};
+
+struct Panel {
+  std::string label = {};
+  std::string unit = {};
+  std::vector<Line> lines = {};
+  int height = 150;  ///< [CSS px]
+};
+
+enum class SpanTone { kPrimary, kSecondary, kMuted, kBad };
+
+/// A shaded piece of the abscissa: "identification", "hold-out", "no GNSS".
+struct Span {
+  double from = 0.0;
+  double to = 0.0;
+  std::string label = {};
+  SpanTone tone = SpanTone::kPrimary;
+};
+
+/// Panels stacked over one abscissa. Figures of equal `axis` zoom together and share the cursor.
+struct TimeSeries {
+  std::string title = {};
+  std::string caption = {};
+  Quantity x = {.label = "time", .unit = "s"};
+  std::vector<double> samples = {};  ///< abscissae, increasing
+  std::vector<Panel> panels = {};
+  std::vector<Span> spans = {};
+  std::string axis = "time";
+};
+
+struct XYSeries {
+  std::string name = {};
+  std::vector<double> x = {};
+  std::vector<double> y = {};
+  Role role = Role::kEstimate;
+  Style style = Style::kMarkers;
+};
+
+/// A dashed line across a plot, such as the bound of white noise.
+struct Guide {
+  enum class Direction { kHorizontal, kVertical };
+  Direction direction = Direction::kHorizontal;
+  double value = 0.0;
+  std::string label = {};
+};
+
+/// Points or lines over a free abscissa: normal probability plot, autocorrelation, fit against measured. Neighbours in
+/// a section stand side by side where there is room.
+struct XYPlot {
+  std::string title = {};
+  std::string caption = {};
+  Quantity x = {};
+  Quantity y = {};
+  std::vector<XYSeries> series = {};
+  std::vector<Guide> guides = {};
+  bool equal_axes = false;  ///< the same range on both axes
+  int height = 260;         ///< [CSS px]
+};
+
+/// An estimate with its 95 % interval; NaN ends: no interval; NaN value: none by this method.
+struct Interval {
+  double value = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+  Status status = Status::kNone;
+};
+
+struct IntervalRow {
+  std::string name = {};
+  std::string unit = {};
+  std::vector<Interval> estimates = {};  ///< in the order of the plot's methods
+  std::optional<double> reference = {};
+};
+
+/// Estimates of several methods side by side, a row per parameter.
+struct IntervalPlot {
+  std::string title = {};
+  std::string caption = {};
+  std::vector<std::string> methods = {};
+  std::string reference_name = "reference";
+  std::vector<IntervalRow> rows = {};
+  /// One scale for all rows; otherwise each has its own (parameters differ by orders of magnitude).
+  bool shared_scale = false;
+};
+
+/// A small matrix as a heat map, such as the correlation of parameters.
+struct Matrix {
+  std::string title = {};
+  std::string caption = {};
+  std::vector<std::string> row_names = {};
+  std::vector<std::string> column_names = {};
+  std::vector<std::vector<double>> values = {};  ///< by rows
+  double low = -1.0;                             ///< value of the full colour; below zero: two colours, meeting at zero
+  double high = 1.0;
+  int decimals = 2;
+};
+
+using Block = std::variant<Paragraph, List, FactList, Table, TimeSeries, XYPlot, IntervalPlot, Matrix>;
+
+struct Section {
+  std::string title = {};
+  /// Link target of the table of contents; made from the title when empty, made unique in any case.
+  std::string id = {};
+  std::vector<Block> blocks = {};
+  bool folded = false;  ///< shown on a click (and always on paper)
+};
+
+struct Document {
+  std::string title = {};
+  std::string subtitle = {};
+  Verdict verdict = {};
+  std::vector<Fact> facts = {};
+  std::vector<Section> sections = {};
+  std::string generator = "Made with Veridyn";  ///< last line of the page: program and version
+};
+
+/// Checks shapes: cells per row, samples per line and band, estimates per method, rows of a matrix.
+/// Our own mistake when violated: asserts, naming the block.
+void check(const Document& document);
+
+/// The sections' link targets: lower-case letters, digits and dashes, all different.
+[[nodiscard]] std::vector<std::string> section_ids(const Document& document);
+
+}  // namespace veridyn::report

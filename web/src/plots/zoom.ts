@@ -1,0 +1,106 @@
+import type uPlot from 'uplot';
+
+/** All plots over the same abscissa (by name), zoomed together: what happened at that moment in everything else? */
+export class ZoomGroup {
+  private readonly plots: uPlot[] = [];
+  private low = Infinity;
+  private high = -Infinity;
+  private zoomed = false;
+
+  constructor(
+    readonly key: string,
+    private readonly on_change: () => void,
+  ) {}
+
+  get is_zoomed(): boolean {
+    return this.zoomed;
+  }
+
+  /** The range that shows everything. */
+  extend(low: number, high: number): void {
+    this.low = Math.min(this.low, low);
+    this.high = Math.max(this.high, high);
+  }
+
+  full(): [number, number] {
+    return this.low < this.high ? [this.low, this.high] : [this.low - 0.5, this.low + 0.5];
+  }
+
+  add(plot: uPlot): void {
+    this.plots.push(plot);
+  }
+
+  zoom(from: number, to: number): void {
+    const [low, high] = this.full();
+    const min = Math.max(low, Math.min(from, to));
+    const max = Math.min(high, Math.max(from, to));
+    if (!(max - min > (high - low) * 1e-6)) return;
+    this.zoomed = min > low || max < high;
+    this.apply(min, max);
+  }
+
+  reset(): void {
+    this.zoomed = false;
+    this.apply(...this.full());
+  }
+
+  private apply(min: number, max: number): void {
+    for (const plot of this.plots) plot.setScale('x', { min, max });
+    this.on_change();
+  }
+}
+
+const groups = new Map<string, ZoomGroup>();
+const watchers = new Set<() => void>();
+
+function changed(): void {
+  for (const watcher of watchers) watcher();
+}
+
+export function zoom_group(key: string): ZoomGroup {
+  const found = groups.get(key) ?? new ZoomGroup(key, changed);
+  groups.set(key, found);
+  return found;
+}
+
+export function any_zoomed(): boolean {
+  return [...groups.values()].some((group) => group.is_zoomed);
+}
+
+export function reset_zoom(): void {
+  for (const group of groups.values()) if (group.is_zoomed) group.reset();
+}
+
+export function on_zoom_change(watcher: () => void): void {
+  watchers.add(watcher);
+}
+
+/** uPlot knows the mouse only: a finger drawn sideways selects, two taps reset; up and down still scrolls the page. */
+export function follow_touch(plot: uPlot): void {
+  const { over } = plot;
+  over.style.touchAction = 'pan-y';
+  let last_tap = 0;
+  const send = (type: string, event: PointerEvent) =>
+    (type === 'mouseup' ? document : over).dispatchEvent(
+      new MouseEvent(type, { clientX: event.clientX, clientY: event.clientY, button: 0, bubbles: true }),
+    );
+  over.addEventListener('pointerdown', (event) => {
+    if (event.pointerType !== 'touch' || !event.isPrimary) return;
+    over.setPointerCapture(event.pointerId);
+    send('mouseenter', event);
+    send('mousemove', event);
+    send('mousedown', event);
+  });
+  over.addEventListener('pointermove', (event) => {
+    if (event.pointerType === 'touch' && event.isPrimary) send('mousemove', event);
+  });
+  over.addEventListener('pointerup', (event) => {
+    if (event.pointerType !== 'touch' || !event.isPrimary) return;
+    send('mouseup', event);
+    if (event.timeStamp - last_tap < 350) send('dblclick', event);
+    last_tap = event.timeStamp;
+  });
+  over.addEventListener('pointercancel', (event) => {
+    if (event.pointerType === 'touch') send('mouseup', event);
+  });
+}
