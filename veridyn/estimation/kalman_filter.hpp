@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "veridyn/estimation/innovation.hpp"
+#include "veridyn/estimation/kalman_model.hpp"
+#include "veridyn/estimation/smoother_tape.hpp"
+
+namespace veridyn::estimation {
+
+/// Extended Kalman filter with sequential scalar updates: any subset of sensors, at any rate and time.
+///
+/// Between measurements the state is propagated by the model and its covariance by the Jacobian from automatic
+/// differentiation, P <- F P F' + Q; rows of random-walk states are skipped. A measurement z = h(x) + v with variance r
+/// enters as its innovation nu and the row H = dh/d(error):
+///     S = H P H' + r,  K = P H' / S,  P <- (I - K H) P (I - K H)' + K r K'   (Joseph form)
+/// evaluated as P + w K' + K w' with w = S K / 2 - P H': the same for any K, symmetric to the last bit, 2 N^2
+/// operations. Innovations pass a gate first (see InnovationMonitor). Several measurements at one time are entered one
+/// after the other, which
+/// equals the joint update when their noises are independent.
+///
+/// Never allocates or throws. Jazwinski (1970), chapter 8; Bierman (1977) for the sequential form. The reset of an
+/// attitude error after an update is taken as the identity, an error of second order in the correction.
+template <SystemModel Model>
+class ExtendedKalmanFilter {
+ public:
+  static constexpr int kStates = Model::kStates;
+  static constexpr int kDynamic = Model::kDynamic;
+  using State = typename Model::template State<double>;
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
+  ExtendedKalmanFilter() = default;
+  ExtendedKalmanFilter(const State& x, const Covariance& P) : x_(x), P_(P) {}
+
+  [[nodiscard]] const State& state() const noexcept { return x_; }
+  [[nodiscard]] const Covariance& covariance() const noexcept { return P_; }
+
+  /// Over `dt` > 0 [s] with constant input `u`.
+  void propagate(const Model& model, const typename Model::Input& u, double dt,
+                 SmootherTape<Model>* tape = nullptr) noexcept {
+    State after;
+    const auto F = transition(model, x_, u, dt, after);
+    x_ = after;
+    constexpr int D = kDynamic, R = kStates - kDynamic;
+    const Eigen::Matrix<double, D, kStates> FP = F * P_;
+    P_.template topLeftCorner<D, D>().noalias() = FP * F.transpose();
+    if constexpr (R > 0) {
+      P_.template topRightCorner<D, R>() = FP.template rightCols<R>();
+      P_.template bottomLeftCorner<R, D>() = FP.template rightCols<R>().transpose();
+    }
+    model.add_process_noise(x_, u, dt, P_);
+    P_ = (0.5 * (P_ + P_.transpose())).eval();
+    if (tape) tape->add_transition(F);
+  }
+
+  /// Enters the measurement of innovation `nu` = z - h(x), row `H` and variance `r` > 0, taken at time `t`, if the gate
+  /// of `monitor` lets it in. Returns whether it did.
+  bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
+              SmootherTape<Model>* tape = nullptr) noexcept {
+    const Vector PH = P_ * H;
+    double S = H.dot(PH) + r;
+    const auto verdict = monitor.judge(t, nu, S);
+    if (!verdict.accept) return false;
+    S += verdict.extra_variance;
+    r += verdict.extra_variance;
+    const Vector K = PH / S;
+    const Vector half = (0.5 * S) * K - PH;
+    P_ += half.lazyProduct(K.transpose()) + K.lazyProduct(half.transpose());
+    x_ = Model::template retract<double>(x_, K * nu);
+    if (tape) tape->add_update(H, K, S, nu);
+    return true;
+  }
+
+  /// Puts the present state on the tape: the smoother will deliver its smoothed form, under the number `mark`.
+  void mark(std::size_t number, SmootherTape<Model>* tape) const noexcept {
+    if (tape) tape->add_mark(number, x_, P_);
+  }
+
+ private:
+  State x_{};
+  Covariance P_ = Covariance::Zero();
+};
+
+}  // namespace veridyn::estimation
