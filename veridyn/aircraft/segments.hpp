@@ -26,7 +26,7 @@ struct SegmentOptions {
   double holdout = 1.0 / 3.0;     ///< `holdout`: share of each axis kept from identification, in [0, 0.8]
   double block_s = 10.0;  ///< `block`: segments are dealt to identification and hold-out in blocks of this length
   double guard_s = 0.5;   ///< `guard`: cut from both sides where blocks of different use meet
-  std::vector<TimeSpan> longitudinal;  ///< `longitudinal = [[10, 60], ...]`: given by the user instead of found
+  std::vector<TimeSpan> longitudinal;  ///< `longitudinal = [10, 60, 80, 95]`: begin and end of each, given by the user
   std::vector<TimeSpan> lateral;       ///< `lateral`
 
   /// @throws InputError for values that make no sense.

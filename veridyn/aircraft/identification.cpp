@@ -1,0 +1,467 @@
+#include "veridyn/aircraft/identification.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using estimation::Method;
+using estimation::ParameterStatus;
+using estimation::RegressionComparison;
+using estimation::RegressionData;
+using estimation::RegressionEstimate;
+using estimation::RegressionOptions;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Rows on which the error covariance is averaged: the Jacobian varies slowly.
+constexpr std::size_t kCovarianceRows = 2000;
+
+std::vector<FlightSignal> needed_signals(const CoefficientModel& model) {
+  std::vector<FlightSignal> needed{FlightSignal::kAirspeed};
+  const auto uses = [&](AeroVariable v) {
+    return std::any_of(model.terms.begin(), model.terms.end(), [&](const Term& t) { return t.uses(v); });
+  };
+  if (uses(AeroVariable::kAlpha)) needed.push_back(FlightSignal::kAlpha);
+  if (uses(AeroVariable::kBeta)) needed.push_back(FlightSignal::kBeta);
+  if (uses(AeroVariable::kDe)) needed.push_back(FlightSignal::kElevator);
+  if (uses(AeroVariable::kDa)) needed.push_back(FlightSignal::kAileron);
+  if (uses(AeroVariable::kDr)) needed.push_back(FlightSignal::kRudder);
+  if (uses(AeroVariable::kCT)) needed.push_back(FlightSignal::kThrust);
+  if (model.coefficient == Coefficient::kCL || model.coefficient == Coefficient::kCD)
+    needed.push_back(FlightSignal::kAlpha);
+  return needed;
+}
+
+bool is_moment(Coefficient c) { return c == Coefficient::kCl || c == Coefficient::kCm || c == Coefficient::kCn; }
+
+/// Why the coefficient cannot be computed at all, or empty.
+std::string obstacle(const CoefficientModel& model, const FlightSignals& signals, const Subject& subject) {
+  const std::string_view name = name_of(model.coefficient);
+  if (is_moment(model.coefficient) && !subject.inertia) {
+    return fmt::format("{} needs the inertia tensor (subject.inertia), which is not given", name);
+  }
+  if (model.coefficient == Coefficient::kCD && !signals[FlightSignal::kThrust].available()) {
+    return "CD needs the thrust: a channel, or throttle with a propulsion model in the subject";
+  }
+  for (const FlightSignal signal : needed_signals(model)) {
+    if (!signals[signal].available()) {
+      return fmt::format("{} needs {}, which the log does not have", name,
+                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
+    }
+  }
+  return {};
+}
+
+bool complete(const FlightSample<double>& sample, const std::vector<FlightSignal>& needed) {
+  return std::all_of(needed.begin(), needed.end(), [&](FlightSignal s) { return std::isfinite(sample[s]); });
+}
+
+/// Variance of z that neither the model nor the errors of the regressors explain: z'z/N - W_.. of the moment equations
+/// (Fuller 1987, sec. 2.2), or NaN where the regressors' errors leave no signal.
+double unexplained_variance(const RegressionData& data) {
+  const auto n = data.parameters();
+  const auto rows = static_cast<double>(data.rows());
+  const Eigen::MatrixXd W = data.error_covariance;
+  const Eigen::MatrixXd A = data.regressors.transpose() * data.regressors / rows - W.topLeftCorner(n, n);
+  const Eigen::VectorXd b = data.regressors.transpose() * data.regressand / rows - W.topRightCorner(n, 1);
+  // Columns of unlike size: scaled before the factorisation says whether A is positive definite.
+  const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose() / std::sqrt(rows);
+  if (!(scale.minCoeff() > 0.0)) return kNaN;
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * A * inverse.asDiagonal());
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-12)) return kNaN;
+  const Eigen::VectorXd y = factor.solve(inverse.asDiagonal() * b);
+  return data.regressand.squaredNorm() / rows - b.dot(inverse.asDiagonal() * y);
+}
+
+/// Predicted and measured coefficient over rows.
+numerics::FitMeasures fit_on(const RegressionData& data, const Eigen::VectorXd& theta) {
+  const Eigen::VectorXd model = data.regressors * theta;
+  return numerics::fit_measures({data.regressand.data(), static_cast<std::size_t>(data.regressand.size())},
+                                {model.data(), static_cast<std::size_t>(model.size())});
+}
+
+const RegressionEstimate* choose(const RegressionComparison& comparison, const std::string& method) {
+  if (method == "auto") {
+    if (const RegressionEstimate* best = comparison.best()) return best;
+    // What it would have been, so that the refusal can be seen beside it.
+    for (const Method fallback : {Method::kPcaGtls, Method::kGtls, Method::kOls}) {
+      const RegressionEstimate* estimate = comparison.find(fallback);
+      if (estimate != nullptr && estimate->usable()) return estimate;
+    }
+    return nullptr;
+  }
+  for (const RegressionEstimate& estimate : comparison.estimates) {
+    if (estimation::to_string(estimate.method) == method && estimate.usable()) return &estimate;
+  }
+  return nullptr;
+}
+
+/// p of the hypothesis that two independent estimates are of the same parameters.
+double contradiction_p(const RegressionEstimate& a, const RegressionEstimate& b) {
+  const Eigen::VectorXd difference = a.theta - b.theta;
+  const Eigen::MatrixXd covariance = a.covariance + b.covariance;
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > 0.0)) return 1.0;
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  const Eigen::VectorXd d = inverse.asDiagonal() * difference;
+  const double chi_square = d.dot(factor.solve(d));
+  return std::isfinite(chi_square)
+             ? numerics::chi_square_upper_p(std::max(0.0, chi_square), static_cast<double>(d.size()))
+             : 1.0;
+}
+
+class CoefficientIdentification {
+ public:
+  CoefficientIdentification(const FlightSignals& signals, const Segments& segments, const Subject& subject,
+                            const IdentifyOptions& options)
+      : signals_(signals), segments_(segments), subject_(subject), options_(options) {}
+
+  CoefficientResult run(const CoefficientModel& structure) {
+    CoefficientResult result;
+    result.coefficient = structure.coefficient;
+    result.axis = axis_of(structure.coefficient);
+    result.model = structure;
+    result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
+    result.reason = obstacle(structure, signals_, subject_);
+    if (!result.reason.empty()) return result;
+    estimate(result);
+    if (result.chosen && options_.refit_significant) refit(result);
+    judge(result);
+    series(result);
+    return result;
+  }
+
+ private:
+  RegressionOptions regression_options() const {
+    RegressionOptions options;
+    options.significance = options_.significance;
+    options.signal_to_noise = options_.signal_to_noise;
+    return options;
+  }
+
+  void estimate(CoefficientResult& result) const {
+    const AxisSegments& axis = segments_.of(result.axis);
+    result.data = coefficient_data(result.model, signals_, axis.identification, subject_);
+    const auto minimum = static_cast<Eigen::Index>(10 * result.model.size());
+    if (result.data.rows() < minimum) {
+      result.verdict = CoefficientVerdict::kNotExcited;
+      result.reason = axis.excited.empty()
+                          ? fmt::format("{} is not excited: {}", name_of(result.coefficient), axis.text)
+                          : fmt::format("{} has only {} usable samples on its segments, {} are needed",
+                                        name_of(result.coefficient), result.data.rows(), minimum);
+      return;
+    }
+    const double unexplained = unexplained_variance(result.data);
+    const auto n = result.data.parameters();
+    const double by_sensors = result.data.error_covariance(n, n);
+    result.error_ratio = unexplained / by_sensors;
+    if (unexplained > by_sensors) result.data.error_covariance(n, n) = unexplained;
+    result.comparison = estimation::compare(result.data, regression_options());
+    if (const RegressionEstimate* chosen = choose(result.comparison, options_.method)) {
+      result.chosen = *chosen;
+      for (std::size_t i = 0; i < result.model.size(); ++i)
+        result.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
+    }
+  }
+
+  /// Once more with the significant parameters only, the constant always kept.
+  void refit(CoefficientResult& result) const {
+    CoefficientModel kept{result.coefficient, {}, {}};
+    for (std::size_t i = 0; i < result.model.size(); ++i) {
+      const bool significant = result.chosen->parameters[i].status == ParameterStatus::kIdentified;
+      if (!significant && !result.model.terms[i].constant()) continue;
+      kept.terms.push_back(result.model.terms[i]);
+      kept.values.push_back(kUnknown);
+    }
+    if (kept.size() == result.model.size() || kept.size() == 0) return;
+    result.model = kept;
+    result.chosen.reset();
+    estimate(result);
+  }
+
+  void judge(CoefficientResult& result) const {
+    if (result.verdict == CoefficientVerdict::kNotExcited) return;
+    const std::string_view name = name_of(result.coefficient);
+    const auto reject = [&](std::string reason) {
+      result.verdict = CoefficientVerdict::kRejected;
+      result.reason = std::move(reason);
+      if (result.chosen) estimation::reject(*result.chosen);
+    };
+    if (!result.chosen) return reject(fmt::format("{}: {}", name, result.comparison.reason));
+    const RegressionEstimate& chosen = *result.chosen;
+    result.identification_fit = fit_on(result.data, chosen.theta);
+    residual_diagnostics(result);
+
+    const AxisSegments& axis = segments_.of(result.axis);
+    RegressionData unseen = coefficient_data(result.model, signals_, axis.holdout, subject_);
+    const bool has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * result.model.size());
+    if (has_holdout) {
+      result.holdout_fit = fit_on(unseen, chosen.theta);
+      const auto n = unseen.parameters();
+      unseen.error_covariance(n, n) = result.data.error_covariance(n, n);
+      const RegressionEstimate again = estimation::estimate(unseen, chosen.method, regression_options());
+      if (again.usable()) result.contradiction_p = contradiction_p(chosen, again);
+    }
+    if (options_.method == "auto" && !result.comparison.recommends) {
+      return reject(fmt::format("{} is rejected: {}", name, result.comparison.reason));
+    }
+    if (has_holdout && !(result.holdout_fit.r2 >= options_.min_holdout_r2)) {
+      return reject(fmt::format(
+          "{} is rejected: it explains {:.0f} % of the coefficient's variance on the hold-out, less than {:.0f} %",
+          name, 100.0 * std::max(0.0, result.holdout_fit.r2), 100.0 * options_.min_holdout_r2));
+    }
+    if (has_holdout && !(result.contradiction_p >= options_.contradiction_level)) {
+      return reject(fmt::format(
+          "{} is rejected: estimates from two parts of the flight contradict each other beyond their error bars "
+          "(p = {:.1e})",
+          name, result.contradiction_p));
+    }
+    const auto is = [&](ParameterStatus status) {
+      std::vector<std::string> names;
+      for (const auto& p : chosen.parameters) {
+        if (p.status == status) names.push_back(p.name);
+      }
+      return names;
+    };
+    const std::vector<std::string> identified = is(ParameterStatus::kIdentified);
+    const std::vector<std::string> unexcited = is(ParameterStatus::kNotExcited);
+    const std::vector<std::string> insignificant = is(ParameterStatus::kInsignificant);
+    if (identified.empty() && !unexcited.empty()) {
+      result.verdict = CoefficientVerdict::kNotExcited;
+      result.reason = fmt::format("{} is not excited: {}", name, chosen.message);
+      return;
+    }
+    result.verdict = CoefficientVerdict::kIdentified;
+    result.reason = has_holdout ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name,
+                                              estimation::to_string(chosen.method), 100.0 * result.holdout_fit.r2)
+                                : fmt::format("{} is identified by {}, but there was no hold-out to validate it on",
+                                              name, estimation::to_string(chosen.method));
+    if (!insignificant.empty())
+      result.reason += fmt::format("; not told apart from zero: {}", fmt::join(insignificant, ", "));
+    if (!unexcited.empty()) result.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
+  }
+
+  void residual_diagnostics(CoefficientResult& result) const {
+    const Eigen::VectorXd residual = result.data.regressand - result.data.regressors * result.chosen->theta;
+    const auto lags = static_cast<std::size_t>(std::clamp(3.0 / result.row_interval_s, 10.0, 200.0));
+    result.residual_autocorrelation = numerics::autocorrelation(
+        {residual.data(), static_cast<std::size_t>(residual.size())}, lags, result.data.segment);
+  }
+
+  void series(CoefficientResult& result) const {
+    const std::vector<FlightSignal> needed = needed_signals(result.model);
+    const bool estimated = result.chosen.has_value();
+    for (const TimeSpan& span : segments_.airborne) {
+      const auto [begin, end] = signals_.indices(span);
+      for (std::size_t k = begin; k < end; k += signals_.stride) {
+        const FlightSample<double> sample = signals_.sample(k);
+        result.time.push_back(signals_.grid.at(k));
+        if (!complete(sample, needed)) {
+          result.measured.push_back(kNaN);
+          result.modelled.push_back(kNaN);
+          continue;
+        }
+        const double torque = signals_.torque.empty() ? 0.0 : signals_.torque[k];
+        const double rho = signals_.air_density[k];
+        result.measured.push_back(select(measured_coefficients(sample, subject_, rho, torque), result.coefficient));
+        result.modelled.push_back(estimated ? result.model.linear(aero_variables(sample, subject_, rho)) : kNaN);
+      }
+    }
+  }
+
+  const FlightSignals& signals_;
+  const Segments& segments_;
+  const Subject& subject_;
+  const IdentifyOptions& options_;
+};
+
+}  // namespace
+
+const char* to_string(CoefficientVerdict verdict) {
+  switch (verdict) {
+    case CoefficientVerdict::kIdentified:
+      return "identified";
+    case CoefficientVerdict::kNotExcited:
+      return "not excited";
+    case CoefficientVerdict::kRejected:
+      return "rejected";
+    case CoefficientVerdict::kSkipped:
+      break;
+  }
+  return "skipped";
+}
+
+Axis axis_of(Coefficient coefficient) {
+  const bool longitudinal =
+      coefficient == Coefficient::kCL || coefficient == Coefficient::kCD || coefficient == Coefficient::kCm;
+  return longitudinal ? Axis::kLongitudinal : Axis::kLateral;
+}
+
+IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
+  IdentifyOptions options;
+  if (table.has("coefficients")) {
+    const std::vector<std::string> names(kCoefficientNames.begin(), kCoefficientNames.end());
+    for (const std::string& name : table.texts("coefficients")) {
+      const std::optional<Coefficient> c = find_coefficient(name);
+      if (!c) table.fail("coefficients", fmt::format("'{}' is not a coefficient{}", name, suggestion(name, names)));
+      options.coefficients.push_back(*c);
+    }
+  }
+  const std::vector<std::string> methods{"auto", "OLS", "TLS", "GTLS", "PCA-GTLS"};
+  options.method = table.choice_or("method", methods, options.method);
+  options.refit_significant = table.flag_or("refit_significant", options.refit_significant);
+  options.signal_to_noise = table.number_or("signal_to_noise", "1", options.signal_to_noise);
+  if (!(options.signal_to_noise >= 1.0 && options.signal_to_noise <= 10.0)) {
+    table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", options.signal_to_noise));
+  }
+  options.significance = table.number_or("significance", "1", options.significance);
+  if (!(options.significance > 0.0 && options.significance < 1.0)) {
+    table.fail("significance", fmt::format("= {} must be between 0 and 1", options.significance));
+  }
+  options.min_holdout_r2 = table.number_or("min_holdout_r2", "1", options.min_holdout_r2);
+  options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
+  return options;
+}
+
+RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
+                                std::span<const TimeSpan> spans, const Subject& subject) {
+  const std::vector<FlightSignal> needed = needed_signals(model);
+  const auto n = static_cast<Eigen::Index>(model.size());
+  std::vector<std::size_t> rows;
+  std::vector<int> segment;
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    const auto [begin, end] = signals.indices(spans[s]);
+    for (std::size_t k = begin; k < end; k += signals.stride) {
+      if (!complete(signals.sample(k), needed)) continue;
+      rows.push_back(k);
+      segment.push_back(static_cast<int>(s));
+    }
+  }
+  RegressionData data;
+  data.regressand_name = name_of(model.coefficient);
+  data.parameter_names = model.parameter_names();
+  for (const Term& term : model.terms) data.parameter_units.push_back(term.parameter_unit());
+  data.segment = std::move(segment);
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  data.regressors.resize(count, n);
+  data.regressand.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t k = rows[static_cast<std::size_t>(i)];
+    const FlightSample<double> sample = signals.sample(k);
+    const double rho = signals.air_density[k];
+    const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
+    data.regressors.row(i) = model.regressors(aero_variables(sample, subject, rho)).transpose();
+    data.regressand(i) = select(measured_coefficients(sample, subject, rho, torque), model.coefficient);
+  }
+  if (count == 0) return data;
+
+  // W = mean of J Sigma J'. Errors of Berkson kind are independent of the regressors and enter through z alone.
+  Eigen::VectorXd classical = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kFlightSignals));
+  Eigen::VectorXd berkson = classical;
+  for (std::size_t i = 0; i < kFlightSignals; ++i) {
+    const GridSignal& signal = signals.signals[i];
+    const double variance = signal.sigma * signal.sigma;
+    if (signal.error == ErrorKind::kClassical) classical(static_cast<Eigen::Index>(i)) = variance;
+    if (signal.error == ErrorKind::kBerkson) berkson(static_cast<Eigen::Index>(i)) = variance;
+  }
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  const std::size_t step = std::max<std::size_t>(1, rows.size() / kCovarianceRows);
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < rows.size(); i += step) {
+    const std::size_t k = rows[i];
+    const CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
+    W += row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
+    W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
+    ++used;
+  }
+  data.error_covariance = W / static_cast<double>(used);
+  return data;
+}
+
+std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals, const Segments& segments,
+                                                     const Subject& subject, const IdentifyOptions& options,
+                                                     Progress& progress) {
+  std::vector<CoefficientResult> results;
+  CoefficientIdentification identification(signals, segments, subject, options);
+  progress.stage("identifying coefficients");
+  for (std::size_t i = 0; i < kCoefficients; ++i) {
+    const auto c = static_cast<Coefficient>(i);
+    const CoefficientModel* model = subject.model.find(c);
+    const auto& wanted = options.coefficients;
+    if (model == nullptr || (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c) == wanted.end())) continue;
+    results.push_back(identification.run(*model));
+    if (!progress.update(static_cast<double>(i + 1) / static_cast<double>(kCoefficients))) break;
+  }
+  return results;
+}
+
+Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results) {
+  Subject identified = subject;
+  for (const CoefficientResult& result : results) {
+    if (result.verdict == CoefficientVerdict::kIdentified) identified.model.set(result.model);
+  }
+  return identified;
+}
+
+estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results) {
+  estimation::Estimate estimate;
+  estimate.subject = subject.name;
+  std::vector<std::string> methods;
+  Eigen::Index total = 0;
+  const auto listed = [](const CoefficientResult& result) {
+    return result.chosen || result.verdict == CoefficientVerdict::kNotExcited;
+  };
+  for (const CoefficientResult& result : results) {
+    if (listed(result)) total += static_cast<Eigen::Index>(result.model.size());
+  }
+  estimate.covariance = Eigen::MatrixXd::Zero(total, total);
+  Eigen::Index at = 0;
+  for (const CoefficientResult& result : results) {
+    const std::string name(name_of(result.coefficient));
+    if (!listed(result)) continue;
+    if (!result.chosen) {
+      // Nothing was estimated: the parameters are listed all the same, so that nobody takes silence for zero.
+      for (std::size_t i = 0; i < result.model.size(); ++i) {
+        estimate.parameters.push_back({parameter_name(result.coefficient, result.model.terms[i]), kNaN, kNaN, kNaN,
+                                       kNaN, result.model.terms[i].parameter_unit(), ParameterStatus::kNotExcited});
+        estimate.covariance(at, at) = kNaN;
+        ++at;
+      }
+      continue;
+    }
+    const RegressionEstimate& chosen = *result.chosen;
+    for (const auto& p : chosen.parameters) {
+      const bool out = result.verdict == CoefficientVerdict::kNotExcited;
+      estimate.parameters.push_back(
+          {p.name, p.value, p.sigma, p.low95, p.high95, p.unit, out ? ParameterStatus::kNotExcited : p.status});
+    }
+    estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
+    at += chosen.theta.size();
+    estimate.fit[name + ".r2"] = result.identification_fit.r2;
+    estimate.fit[name + ".residual_sd"] = chosen.residual_sd;
+    estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);
+    estimate.fit[name + ".error_ratio"] = result.error_ratio;
+    const std::string method(estimation::to_string(chosen.method));
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+    if (result.holdout_fit.count > 0) {
+      estimate.validation[name] = {result.holdout_fit.mae, result.holdout_fit.rmse, result.holdout_fit.r2,
+                                   result.holdout_fit.theil, "1"};
+    }
+  }
+  estimate.method = fmt::format("{}", fmt::join(methods, ", "));
+  return estimate;
+}
+
+}  // namespace veridyn::aircraft

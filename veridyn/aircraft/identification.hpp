@@ -1,0 +1,83 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/flight_signals.hpp"
+#include "veridyn/aircraft/segments.hpp"
+#include "veridyn/aircraft/subject.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/regression.hpp"
+
+namespace veridyn::aircraft {
+
+/// What identification may do and what it demands of its result. Study table `[identify]`.
+struct IdentifyOptions {
+  std::vector<Coefficient> coefficients;  ///< `coefficients = ["CL", "Cm"]`; empty: all that the subject models
+  /// `method`: "auto" takes what the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  std::string method = "auto";
+  bool refit_significant = false;  ///< `refit_significant`: drop what fails its t-test and estimate once more
+  double signal_to_noise = 1.0;    ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
+  double significance = 0.05;      ///< `significance`: level of the t-tests
+  /// `min_holdout_r2`: a coefficient that explains less of the hold-out's variance is rejected.
+  double min_holdout_r2 = 0.3;
+  /// `contradiction_level`: identification and hold-out data, estimated apart, must agree at this level (chi-square).
+  double contradiction_level = 1e-3;
+
+  /// @throws InputError for values that make no sense.
+  [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
+};
+
+/// What may be said of a coefficient as a whole.
+enum class CoefficientVerdict {
+  kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
+  kNotExcited,  ///< the flight does not move what the coefficient depends on
+  kRejected,    ///< an estimate exists and must not be used
+  kSkipped      ///< something that it needs is missing: inertia, thrust, a channel
+};
+[[nodiscard]] const char* to_string(CoefficientVerdict verdict);
+
+/// One coefficient: the estimates of all methods, what was chosen, and whether to believe it.
+struct CoefficientResult {
+  Coefficient coefficient = Coefficient::kCL;
+  Axis axis = Axis::kLongitudinal;
+  CoefficientVerdict verdict = CoefficientVerdict::kSkipped;
+  std::string reason;                           ///< one sentence
+  CoefficientModel model;                       ///< terms; values are the chosen estimate's where there is one
+  estimation::RegressionData data;              ///< identification rows, for further analysis
+  estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
+  std::optional<estimation::RegressionEstimate> chosen;
+  double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
+  numerics::FitMeasures identification_fit;
+  numerics::FitMeasures holdout_fit;
+  double contradiction_p = 1.0;  ///< of identification against hold-out estimates
+  /// Measured and modelled coefficient at every stride-th grid point in the air, for the report; NaN outside.
+  std::vector<double> time, measured, modelled;
+  numerics::Autocorrelation residual_autocorrelation;  ///< on the identification rows
+  double row_interval_s = 0.0;                         ///< between the rows of a segment
+};
+
+/// Estimates every coefficient of `subject.model` on its axis's segments. Regressor errors are propagated from the
+/// signals' noise by automatic differentiation; the variance of z that they leave unexplained is equation error.
+[[nodiscard]] std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals,
+                                                                   const Segments& segments, const Subject& subject,
+                                                                   const IdentifyOptions& options, Progress& progress);
+
+/// The axis on which a coefficient is identified: CL, CD, Cm longitudinal, the others lateral.
+[[nodiscard]] Axis axis_of(Coefficient coefficient);
+
+/// Regression rows of a coefficient in the given spans: stride-thinned, rows that miss a signal left out, one segment
+/// id a span, W from the signals' noise.
+[[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
+                                                          std::span<const TimeSpan> spans, const Subject& subject);
+
+/// The subject with the identified values in its model; rejected and unexcited coefficients keep what the subject had.
+[[nodiscard]] Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results);
+
+/// The parameters of all coefficients, for estimate.json.
+[[nodiscard]] estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "veridyn/aircraft/aero_model.hpp"
+#include "veridyn/aircraft/subject.hpp"
+
+namespace veridyn::aircraft {
+
+/// What the coefficients are computed from. All at the centre of gravity, body axes, SI.
+enum class FlightSignal {
+  kAlpha,
+  kBeta,
+  kAirspeed,
+  kAx,
+  kAy,
+  kAz,
+  kP,
+  kQ,
+  kR,
+  kPdot,
+  kQdot,
+  kRdot,
+  kElevator,
+  kAileron,
+  kRudder,
+  kThrust
+};
+inline constexpr std::size_t kFlightSignals = 16;
+inline constexpr std::array<std::string_view, kFlightSignals> kFlightSignalNames = {
+    "alpha", "beta",  "airspeed", "accel_x", "accel_y",  "accel_z", "p",      "q",
+    "r",     "p_dot", "q_dot",    "r_dot",   "elevator", "aileron", "rudder", "thrust"};
+
+/// One sample of the flight signals: rad, m/s, m/s^2 (specific force), rad/s, rad/s^2, N.
+template <typename Scalar>
+struct FlightSample {
+  std::array<Scalar, kFlightSignals> value{};
+  [[nodiscard]] const Scalar& operator[](FlightSignal s) const { return value[static_cast<std::size_t>(s)]; }
+  [[nodiscard]] Scalar& operator[](FlightSignal s) { return value[static_cast<std::size_t>(s)]; }
+};
+
+/// Variables of the aerodynamic model at a sample; `rho` is the air density [kg/m^3].
+template <typename Scalar>
+[[nodiscard]] AeroVariables<Scalar> aero_variables(const FlightSample<Scalar>& s, const Subject& subject, double rho) {
+  using F = FlightSignal;
+  AeroVariables<Scalar> v;
+  const Scalar& Va = s[F::kAirspeed];
+  v.alpha = s[F::kAlpha];
+  v.beta = s[F::kBeta];
+  v.p_n = s[F::kP] * Scalar(0.5 * subject.span) / Va;
+  v.q_n = s[F::kQ] * Scalar(0.5 * subject.chord) / Va;
+  v.r_n = s[F::kR] * Scalar(0.5 * subject.span) / Va;
+  v.de = s[F::kElevator];
+  v.da = s[F::kAileron];
+  v.dr = s[F::kRudder];
+  v.Va = Va;
+  v.CT = s[F::kThrust] / (Scalar(0.5 * rho * subject.wing_area) * Va * Va);
+  return v;
+}
+
+/// Coefficients from specific force, thrust, rates and rate derivatives: the rigid-body equations solved for the
+/// aerodynamics (docs/aircraft.md, "Coefficients"). Moments per unit inertia are not given: without `subject.inertia`
+/// the three moment coefficients are zero and must not be used. `torque` is the engine's reaction about x [N m]. The
+/// aerodynamic force is taken to act at the centre of gravity; `subject.force_point` moves the moments.
+template <typename Scalar>
+[[nodiscard]] AeroCoefficients<Scalar> measured_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
+                                                             double rho, const Scalar& torque = Scalar(0.0)) {
+  using F = FlightSignal;
+  using std::cos;
+  using std::sin;
+  const Scalar& Va = s[F::kAirspeed];
+  const Scalar qS = Scalar(0.5 * rho * subject.wing_area) * Va * Va;
+  const Scalar ca = cos(s[F::kAlpha]);
+  const Scalar sa = sin(s[F::kAlpha]);
+  const Scalar Fx = Scalar(subject.mass) * s[F::kAx] - s[F::kThrust];
+  const Scalar Fy = Scalar(subject.mass) * s[F::kAy];
+  const Scalar Fz = Scalar(subject.mass) * s[F::kAz];
+  AeroCoefficients<Scalar> c;
+  c.CL = (Fx * sa - Fz * ca) / qS;
+  c.CD = -(Fx * ca + Fz * sa) / qS;
+  c.CY = Fy / qS;
+  if (!subject.inertia) return c;
+  const Inertia& J = *subject.inertia;
+  const Scalar &p = s[F::kP], &q = s[F::kQ], &r = s[F::kR];
+  const Scalar &dp = s[F::kPdot], &dq = s[F::kQdot], &dr = s[F::kRdot];
+  Scalar l = Scalar(J.Jx) * dp - Scalar(J.Jxz) * dr + Scalar(J.Jz - J.Jy) * q * r - Scalar(J.Jxz) * p * q - torque;
+  Scalar m = Scalar(J.Jy) * dq + Scalar(J.Jx - J.Jz) * p * r + Scalar(J.Jxz) * (p * p - r * r);
+  Scalar n = Scalar(J.Jz) * dr - Scalar(J.Jxz) * dp + Scalar(J.Jy - J.Jx) * p * q + Scalar(J.Jxz) * q * r;
+  // Moments of thrust and of the aerodynamic force about the centre of gravity: r x F.
+  const auto& e = subject.propulsion.position;
+  m -= Scalar(e[2]) * s[F::kThrust];
+  n += Scalar(e[1]) * s[F::kThrust];
+  const auto& f = subject.force_point;
+  l -= Scalar(f[1]) * Fz - Scalar(f[2]) * Fy;
+  m -= Scalar(f[2]) * Fx - Scalar(f[0]) * Fz;
+  n -= Scalar(f[0]) * Fy - Scalar(f[1]) * Fx;
+  c.Cl = l / (qS * Scalar(subject.span));
+  c.Cm = m / (qS * Scalar(subject.chord));
+  c.Cn = n / (qS * Scalar(subject.span));
+  return c;
+}
+
+/// One of the six by its name.
+template <typename Scalar>
+[[nodiscard]] const Scalar& select(const AeroCoefficients<Scalar>& c, Coefficient which) {
+  const std::array<const Scalar*, kCoefficients> all = {&c.CL, &c.CD, &c.CY, &c.Cl, &c.Cm, &c.Cn};
+  return *all[static_cast<std::size_t>(which)];
+}
+
+/// A regression row [x, z] of one coefficient and how it reacts to errors of the flight signals.
+struct CoefficientRow {
+  Eigen::VectorXd row;       ///< n_p regressors, then the measured coefficient
+  Eigen::MatrixXd jacobian;  ///< (n_p + 1) x kFlightSignals, d row / d signal
+};
+
+/// The row of a coefficient's model with its Jacobian by automatic differentiation: the error covariance of [x, z] is
+/// J Sigma J' for signal errors of covariance Sigma.
+[[nodiscard]] CoefficientRow coefficient_row(const CoefficientModel& model, const FlightSample<double>& sample,
+                                             const Subject& subject, double rho);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/estimation/regression.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::estimation {
+
+/// One parameter of an estimate file.
+struct EstimatedParameter {
+  std::string name;  ///< as in the literature: `CL_alpha`
+  double value = 0.0;
+  double sigma = 0.0;
+  double low95 = 0.0;
+  double high95 = 0.0;
+  std::string unit = "1";
+  ParameterStatus status = ParameterStatus::kRejected;
+};
+
+/// How well a quantity was predicted on data that identification did not see.
+struct ValidationMeasure {
+  double mae = 0.0;
+  double rmse = 0.0;
+  double r2 = 0.0;
+  double theil = 0.0;
+  std::string unit = "1";
+};
+
+/// What identification delivers, whatever the domain: the content of `estimate.json`.
+struct Estimate {
+  std::string subject;
+  std::string method;
+  std::vector<EstimatedParameter> parameters;
+  Eigen::MatrixXd covariance;  ///< in parameter order; zero between separately estimated groups
+  std::map<std::string, double> fit;
+  std::map<std::string, ValidationMeasure> validation;
+  std::string verdict;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] const EstimatedParameter* find(std::string_view name) const;
+};
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "veridyn/estimation/estimate.hpp"
+
+namespace veridyn::io {
+
+/// An estimate as JSON, in the shape that docs/formats.md promises. Numbers that are not finite become null.
+[[nodiscard]] std::string to_json(const estimation::Estimate& estimate);
+
+/// Reads `estimate.json`.
+/// @throws InputError naming the file and the key that is missing or of the wrong kind.
+[[nodiscard]] estimation::Estimate read_estimate(const std::filesystem::path& path);
+
+}  // namespace veridyn::io

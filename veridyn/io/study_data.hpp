@@ -1,0 +1,25 @@
+#pragma once
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::io {
+
+/// The recording that a study's `[data]` names:
+///
+///     file  = "flight.bin"                    # one log of any known format, or
+///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
+///     from = 342, to = 850                    # [s] only this part, on the log's clock
+///     [data.time]                             # for tables that do not say where their stamps are
+///     GPS = { column = "T", unit = "ms" }
+///
+/// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
+/// is dropped, so that `vehicle_attitude_0.csv` gives `vehicle_attitude.q[0]` as the log itself would. Keys of other
+/// rooms in `[data]` are left for them.
+/// @throws InputError for unreadable files, or a part of the recording that holds nothing.
+[[nodiscard]] Recording read_study_data(const StudyTable& data);
+
+/// The samples with stamps in [from, to]. @throws InputError when no channel has one.
+[[nodiscard]] Recording cut(const Recording& recording, TimeSpan span);
+
+}  // namespace veridyn::io
