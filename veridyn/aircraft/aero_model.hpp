@@ -255,8 +255,9 @@ AeroCoefficients<Scalar> AeroModel::evaluate(const AeroVariables<Scalar>& v) con
   const auto& drag = coefficients[static_cast<std::size_t>(Coefficient::kCD)];
   const bool full = stall->form == StallForm::kFull;
   if (lift && stall->form == StallForm::kSeparation) {
-    // sqrt has no derivative at zero; beyond a share of 1 - 1e-12 the wing is as separated as it gets.
-    const Scalar attached = s < Scalar(1.0 - 1e-12) ? Scalar(sqrt(Scalar(1.0) - s)) : Scalar(0.0);
+    // The square root has no derivative at zero, which underflow could reach.
+    const Scalar share = attached_share(v.alpha, stall->M, stall->alpha0);
+    const Scalar attached = share > Scalar(1e-300) ? Scalar(sqrt(share)) : Scalar(0.0);
     const Scalar k = Scalar(0.25) * (Scalar(1.0) + attached) * (Scalar(1.0) + attached);
     out.CL += (k - Scalar(1.0)) * internal::affine_in_alpha(*lift, v.alpha);
     return out;

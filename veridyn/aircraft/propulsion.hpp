@@ -25,13 +25,21 @@ struct PropulsionLoad {
   Scalar torque{0.0};
 };
 
+/// One term value * throttle^throttle_power * Va^airspeed_power of a thrust polynomial [N, m/s].
+struct ThrustTerm {
+  int throttle_power = 0;
+  int airspeed_power = 0;
+  double value = 0.0;
+  friend bool operator==(const ThrustTerm&, const ThrustTerm&) = default;
+};
+
 /// The engine. Thrust acts along body x at `position`.
 struct Propulsion {
   PropulsionKind kind = PropulsionKind::kNone;
   std::array<double, 3> position = {0.0, 0.0, 0.0};  ///< from the centre of gravity, body axes [m]
 
-  /// kPolynomial: coefficient [i][j] of throttle^i Va^j [N (s/m)^j]; the sum is taken as 0 when negative.
-  std::vector<std::vector<double>> polynomial;
+  // kPolynomial
+  std::vector<ThrustTerm> polynomial;  ///< the sum is taken as 0 when negative
 
   // kMomentum
   double S_prop = 0.0;   ///< swept area [m^2]
@@ -64,7 +72,7 @@ struct Propulsion {
 ///
 ///     kind = "none" | "polynomial" | "momentum" | "propeller"
 ///     position = [-0.25, 0, 0]              # [m] from the centre of gravity
-///     polynomial = [[0, 0], [30, -0.5]]     # [i][j] of throttle^i Va^j
+///     polynomial = { throttle = 30, "throttle*Va" = -0.5, "Va^2" = -0.01 }   # [N, m/s]
 ///     S_prop, C_prop, k_motor, k_tp, k_omega                     # momentum
 ///     diameter, omega_max, time_constant, CT = [..], CP = [..], J_max, rotation   # propeller
 [[nodiscard]] Propulsion read_propulsion(const StudyTable& table, const Propulsion& base);
@@ -94,7 +102,12 @@ PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& Va
       break;
     case PropulsionKind::kPolynomial: {
       Scalar sum(0.0);
-      for (std::size_t i = polynomial.size(); i-- > 0;) sum = sum * throttle + horner(polynomial[i], Va);
+      for (const ThrustTerm& term : polynomial) {
+        Scalar product(term.value);
+        for (int i = 0; i < term.throttle_power; ++i) product *= throttle;
+        for (int i = 0; i < term.airspeed_power; ++i) product *= Va;
+        sum += product;
+      }
       if (sum > Scalar(0.0)) out.thrust = sum;
       break;
     }

@@ -29,6 +29,13 @@ template <typename Scalar>
   return a + b - a * b;
 }
 
+/// 1 - separated_share without cancellation where hardly any flow is attached.
+template <typename Scalar>
+[[nodiscard]] Scalar attached_share(const Scalar& alpha, double sharpness, double alpha0) {
+  return logistic(Scalar(Scalar(-sharpness) * (alpha - Scalar(alpha0)))) *
+         logistic(Scalar(Scalar(sharpness) * (alpha + Scalar(alpha0))));
+}
+
 /// Lift coefficient of a flat plate in separated flow: 2 sign(alpha) sin^2(alpha) cos(alpha).
 template <typename Scalar>
 [[nodiscard]] Scalar flat_plate_lift(const Scalar& alpha) {
