@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace veridyn::io {
+
+/// Texts of a log column, one after the other in one piece of memory.
+class TextColumn {
+ public:
+  void push_back(std::string_view text) {
+    characters_.append(text);
+    ends_.push_back(characters_.size());
+  }
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
+  [[nodiscard]] std::string_view operator[](std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
+    return std::string_view(characters_).substr(begin, ends_[i] - begin);
+  }
+  void resize(std::size_t count) {
+    if (count < ends_.size()) ends_.resize(count);
+  }
+
+ private:
+  std::string characters_;
+  std::vector<std::size_t> ends_;
+};
+
+/// One column of a log in the type in which the log holds it: a two-byte counter takes two bytes a sample.
+class Column {
+ public:
+  using Storage =
+      std::variant<std::vector<double>, std::vector<float>, std::vector<std::int8_t>, std::vector<std::uint8_t>,
+                   std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<std::int32_t>,
+                   std::vector<std::uint32_t>, std::vector<std::int64_t>, std::vector<std::uint64_t>, TextColumn>;
+
+  Column() = default;
+  template <typename Values>
+  explicit Column(Values values) : storage_(std::move(values)) {}
+
+  [[nodiscard]] bool is_text() const { return std::holds_alternative<TextColumn>(storage_); }
+  [[nodiscard]] std::size_t size() const {
+    return std::visit([](const auto& values) { return values.size(); }, storage_);
+  }
+  /// The number as logged, without any scale; NaN for a text.
+  [[nodiscard]] double number(std::size_t i) const {
+    return std::visit(
+        [i](const auto& values) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
+            return std::numeric_limits<double>::quiet_NaN();
+          } else {
+            return static_cast<double>(values[i]);
+          }
+        },
+        storage_);
+  }
+  /// The text; empty for a number.
+  [[nodiscard]] std::string_view text(std::size_t i) const {
+    const auto* texts = std::get_if<TextColumn>(&storage_);
+    return texts != nullptr ? (*texts)[i] : std::string_view();
+  }
+  /// scale * number + offset for every row. Empty for a text column.
+  [[nodiscard]] std::vector<double> numbers(double scale = 1.0, double offset = 0.0) const {
+    return std::visit(
+        [&](const auto& values) {
+          std::vector<double> result;
+          if constexpr (!std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
+            result.resize(values.size());
+            for (std::size_t i = 0; i < values.size(); ++i) {
+              result[i] = scale * static_cast<double>(values[i]) + offset;
+            }
+          }
+          return result;
+        },
+        storage_);
+  }
+  /// Keeps the first `count` rows.
+  void shorten(std::size_t count) {
+    std::visit([count](auto& values) { values.resize(count); }, storage_);
+  }
+  [[nodiscard]] const Storage& storage() const { return storage_; }
+  [[nodiscard]] Storage& storage() { return storage_; }
+
+ private:
+  Storage storage_;
+};
+
+}  // namespace veridyn::io

@@ -1,0 +1,115 @@
+#include "veridyn/io/read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/dataflash.hpp"
+#include "veridyn/io/dataflash_text.hpp"
+#include "veridyn/io/mapped_file.hpp"
+#include "veridyn/io/mat.hpp"
+#include "veridyn/io/ulog.hpp"
+
+namespace veridyn::io {
+namespace {
+
+enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kCsv };
+
+Format by_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".bin") return Format::kDataFlash;
+  if (extension == ".log") return Format::kDataFlashText;
+  if (extension == ".ulg" || extension == ".ulog") return Format::kULog;
+  if (extension == ".mat") return Format::kMat;
+  if (extension == ".csv" || extension == ".tsv" || extension == ".txt") return Format::kCsv;
+  return Format::kUnknown;
+}
+
+Format by_content(std::string_view bytes) {
+  if (is_ulog(bytes)) return Format::kULog;
+  if (is_mat(bytes)) return Format::kMat;
+  if (is_dataflash(bytes)) return Format::kDataFlash;
+  if (is_dataflash_text(bytes)) return Format::kDataFlashText;
+  return Format::kUnknown;
+}
+
+bool is_text(std::string_view bytes) {
+  const std::string_view start = bytes.substr(0, 4096);
+  return std::none_of(start.begin(), start.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 && c != '\n' && c != '\r' && c != '\t';
+  });
+}
+
+const char* name_of(Format format) {
+  switch (format) {
+    case Format::kDataFlash:
+      return "ArduPilot DataFlash";
+    case Format::kDataFlashText:
+      return "ArduPilot DataFlash text";
+    case Format::kULog:
+      return "PX4 ULog";
+    case Format::kMat:
+      return "MATLAB";
+    case Format::kCsv:
+      return "CSV";
+    case Format::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
+  const MappedFile file(path);
+  const std::string_view bytes = file.bytes();
+  const Format expected = by_extension(path);
+  Format format = by_content(bytes);
+  if (format == Format::kUnknown && is_text(bytes)) format = Format::kCsv;
+  if (format == Format::kUnknown ||
+      (format == Format::kCsv && expected != Format::kCsv && bytes.find('\n') == std::string_view::npos)) {
+    const std::string claim = expected == Format::kUnknown
+                                  ? ""
+                                  : fmt::format(" (its name promises {}, its content is not)", name_of(expected));
+    throw InputError(
+        path.string(),
+        fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
+                    "(.mat) and CSV with a header row",
+                    claim));
+  }
+  Log log;
+  switch (format) {
+    case Format::kDataFlash:
+      log = read_dataflash(bytes, path.string());
+      break;
+    case Format::kDataFlashText:
+      log = read_dataflash_text(bytes, path.string());
+      break;
+    case Format::kULog:
+      log = read_ulog(bytes, path.string());
+      break;
+    case Format::kMat:
+      log = read_mat_file(path);
+      break;
+    case Format::kCsv:
+    case Format::kUnknown:
+      log = read_csv(bytes, path.string(), options.csv);
+      break;
+  }
+  if (expected != Format::kUnknown && expected != format) {
+    log.damage.notes.push_back(fmt::format("the name promises {}, the content is {} and was read as such",
+                                           name_of(expected), name_of(format)));
+  }
+  return log;
+}
+
+Recording read_recording(const std::filesystem::path& path, const ReadOptions& options) {
+  return to_recording(read_log(path, options), options.recording);
+}
+
+}  // namespace veridyn::io

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/io/csv.hpp"
+#include "veridyn/io/log.hpp"
+
+namespace veridyn::io {
+
+/// What to do with a file of any format.
+struct ReadOptions {
+  CsvOptions csv;
+  RecordingOptions recording;
+};
+
+/// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), MATLAB
+/// (.mat), CSV. The content decides; the name's extension only where the content does not tell, and a name that
+/// promises another format than the content is noted in the damage.
+/// @throws InputError when the file is missing, a directory, empty, or of no known format.
+[[nodiscard]] Log read_log(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// As `read_log`, turned into channels.
+[[nodiscard]] Recording read_recording(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace veridyn::io
