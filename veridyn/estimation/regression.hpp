@@ -57,13 +57,13 @@ struct RegressionOptions {
   /// Prior theta_0 for what is not excited; empty means 0.
   Eigen::VectorXd prior;
   /// Weights of |W (theta - theta_0)| over what is not excited, one a parameter, > 0; infinity pins the parameter to
-  /// its prior (in every method but OLS and TLS, which ignore weights). Empty means 1.
+  /// its prior. PCA-GTLS only; the other methods have no prior. Empty means 1.
   Eigen::VectorXd prior_weight;
   /// B_0: 95 % bound on |W (theta - theta_0)| along a direction that was not excited. 0 chooses
   /// 10 max(1, largest |W (theta - theta_0)|_i of the estimate), but never below 1.96 sigma of GTLS in that direction.
   double unexcited_bound = 0.0;
   /// Longest lag of residual correlation that is looked for [samples].
-  Eigen::Index max_lag = 2000;
+  Eigen::Index max_lag = 500;
   /// Rows of the normal probability plot kept.
   std::size_t normal_plot_points = 200;
 
@@ -131,11 +131,11 @@ struct RegressionEstimate {
 
 /// A check on the comparison, with the sentence that a report prints.
 struct HonestyCheck {
-  std::string name;
+  std::string name = {};
   bool passed = true;
   double value = 0.0;
   double limit = 0.0;
-  std::string text;
+  std::string text = {};
 };
 
 /// All methods on the same data, from one pass over it, and what to believe.

@@ -109,6 +109,10 @@ void RegressionData::validate() const {
                          fmt::format("id {} comes back at row {}; rows of a segment must be contiguous", id, begin));
     }
   }
+  if (has_error_covariance() && !regressand_error_known && !error_scale_known) {
+    throw InputError("regression.regressand_error_known",
+                     "is false while the scale of the errors is not known either; one of them must be");
+  }
   if (has_error_covariance()) check_covariance(error_covariance, n + 1);
 }
 

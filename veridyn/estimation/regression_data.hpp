@@ -32,6 +32,10 @@ struct RegressionData {
   /// Is W known in absolute terms, or only up to a common factor? Thresholds and the scale test need absolute terms;
   /// without them the factor is estimated from the data. Ignored when W is empty.
   bool error_scale_known = true;
+  /// Is W_zz all the error of z? If not it is a lower bound, and GTLS and PCA-GTLS estimate the rest (error of the
+  /// equation itself: unmodelled terms, gusts) from the residual; W of the regressors must then be known in absolute
+  /// terms (see equation_error.hpp).
+  bool regressand_error_known = true;
   /// Standard deviation of the row's errors relative to W (N, > 0); rows are divided by it. Empty: all 1.
   Eigen::VectorXd row_scale;
 
