@@ -68,7 +68,7 @@ class Thinning {
   }
   [[nodiscard]] std::string footnote(std::string_view what) const {
     if (most_ == 0) return "";
-    return fmt::format("Drawn with at most {} of {} samples a line: {}.", kept_, most_, what);
+    return fmt::format("Drawn from at most {} of {} samples a line: {}.", kept_, most_, what);
   }
 
  private:
@@ -181,7 +181,7 @@ json block_json(const TimeSeries& figure, const JsonOptions& options) {
   return {{"kind", "time_series"},
           {"title", figure.title},
           {"caption", figure.caption},
-          {"footnote", thinning.footnote("the smallest and the largest of each short stretch, and the widest band")},
+          {"footnote", thinning.footnote("the smallest and the largest of every short stretch")},
           {"axis", figure.axis},
           {"x", quantity_json(figure.x)},
           {"xs", abscissae.list()},
@@ -214,7 +214,7 @@ json block_json(const XYPlot& plot, const JsonOptions& options) {
   return {{"kind", "xy"},
           {"title", plot.title},
           {"caption", plot.caption},
-          {"footnote", thinning.footnote("of points that cover each other one is left")},
+          {"footnote", thinning.footnote("where points cover each other, one is left")},
           {"x", quantity_json(plot.x)},
           {"y", quantity_json(plot.y)},
           {"height", plot.height},

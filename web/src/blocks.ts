@@ -55,7 +55,7 @@ function draw_block(block: Block): HTMLElement {
     case 'facts':
       return draw_facts(block.facts);
     case 'table':
-      return figure('table', block, draw_table(block), copy_button(block));
+      return figure(block.rows.length > 16 ? 'table' : 'table short', block, draw_table(block), copy_button(block));
     case 'time_series':
       return figure('series', block, draw_time_series(block));
     case 'xy':

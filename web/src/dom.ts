@@ -38,3 +38,13 @@ export function svg<K extends keyof SVGElementTagNameMap>(
 export function icon(path: string): SVGSVGElement {
   return svg('svg', { viewBox: '0 0 24 24', class: 'icon', 'aria-hidden': 'true' }, svg('path', { d: path }));
 }
+
+/** A frame in which something wide scrolls sideways; its right edge is shaded while there is more. */
+export function scroller(label: string, content: HTMLElement): HTMLElement {
+  const inner = h('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': label }, content);
+  const shell = h('div', { class: 'scroll-shell' }, inner);
+  const update = () => shell.classList.toggle('more', inner.scrollLeft + inner.clientWidth < inner.scrollWidth - 2);
+  inner.addEventListener('scroll', update, { passive: true });
+  new ResizeObserver(update).observe(inner);
+  return shell;
+}

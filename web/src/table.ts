@@ -1,5 +1,5 @@
 import type { Cell, Column, Table } from './document';
-import { h, icon } from './dom';
+import { h, icon, scroller } from './dom';
 import { badge, status_label, status_tone } from './status';
 
 const kCopyIcon = 'M9 9h11v11H9zM5 15H4V4h11v1';
@@ -120,5 +120,5 @@ export function draw_table(table: Table): HTMLElement {
   }
 
   const head = h('thead', {}, group_row(table.columns), h('tr', {}, ...heads));
-  return h('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': table.title || 'Table' }, h('table', { class: 'data' }, head, body));
+  return scroller(table.title || 'Table', h('table', { class: 'data' }, head, body));
 }

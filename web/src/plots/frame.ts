@@ -7,7 +7,8 @@ import type { Role } from '../document';
 export const kFont = '12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
 /** Width of the plots on paper: A4 and Letter between the margins of the print style sheet [CSS px]. */
-const kPaperWidth = 660;
+const kPaperWidth = 680;
+const kHalfPaperWidth = 328;
 
 export interface LineLook {
   colour: (colours: Palette) => string;
@@ -56,7 +57,9 @@ const observer = new ResizeObserver((entries) => {
 
 function fit(each: Mounted): void {
   const width = is_printing()
-    ? Math.min(kPaperWidth, Number(each.host.dataset.paperWidth ?? kPaperWidth))
+    ? each.host.closest('.grid')
+      ? kHalfPaperWidth
+      : kPaperWidth
     : Math.floor(each.host.clientWidth);
   const height = each.height(width);
   if (width > 0 && (width !== each.plot.width || height !== each.plot.height)) each.plot.setSize({ width, height });
@@ -79,14 +82,19 @@ on_theme_change(() => {
   for (const each of mounted) each.plot.redraw(false, true);
 });
 
+/** Room for the labels of an ordinate: every pixel counts on a phone. */
+export function y_axis_size(width: number): number {
+  return width < 420 ? 44 : 54;
+}
+
 /** An axis in the page's style; `labels` false keeps grid lines only. */
-export function axis(side: 'x' | 'y', options: { size: number; labels?: boolean; space?: number }): uPlot.Axis {
+export function axis(side: 'x' | 'y', options: { size: number; labels?: boolean }): uPlot.Axis {
   const labels = options.labels ?? true;
   return {
     side: side === 'x' ? 2 : 3,
     size: options.size,
     gap: 6,
-    space: options.space ?? (side === 'x' ? 70 : 32),
+    space: (plot) => (side === 'y' ? 30 : plot.width < 420 ? 48 : 70),
     font: kFont,
     stroke: () => palette().soft_ink,
     grid: { stroke: () => palette().grid, width: 1 },

@@ -1,5 +1,5 @@
 import type { Matrix } from '../document';
-import { h } from '../dom';
+import { h, scroller } from '../dom';
 
 const kMinus = '\u2212';
 
@@ -26,16 +26,17 @@ export function draw_matrix(matrix: Matrix): HTMLElement {
         return;
       }
       const { share, side } = shade(matrix, value);
-      const text = value.toFixed(matrix.decimals).replace('-', kMinus);
+      const rounded = value.toFixed(matrix.decimals);
+      const text = (Number(rounded) === 0 ? rounded.replace('-', '') : rounded).replace('-', kMinus);
       row.append(
         h(
           'td',
-          { class: `cell ${side}${share > 0.55 ? ' strong' : ''}`, style: `--share: ${(100 * share).toFixed(0)}%`, title: `${name}, ${column}: ${text}` },
+          { class: `cell ${side}`, style: `--share: ${share.toFixed(2)}`, title: `${name}, ${column}: ${text}` },
           text,
         ),
       );
     });
     body.append(row);
   });
-  return h('div', { class: 'scroll' }, h('table', { class: 'matrix' }, head, body));
+  return scroller(matrix.title, h('table', { class: 'matrix' }, head, body));
 }

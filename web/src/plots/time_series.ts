@@ -2,8 +2,11 @@ import type { Band, Line, Panel, Samples, TimeSeries } from '../document';
 import { h } from '../dom';
 import { format_number, with_unit } from '../numbers';
 import { palette } from '../theme';
-import { axis, clipped, Looks, mount, translucent, uPlot, type LineLook } from './frame';
+import { axis, clipped, Looks, mount, translucent, uPlot, y_axis_size, type LineLook } from './frame';
 import { follow_touch, zoom_group, type ZoomGroup } from './zoom';
+
+// In a joined table, a gap of one line stays a gap where only other lines have samples (uPlot's JoinNullMode.Expand).
+const kExpand = 2 as uPlot.JoinNullMode;
 
 interface Drawn {
   line: Line;
@@ -191,7 +194,7 @@ function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomG
     const same = drawn.every(({ x }) => x === drawn[0]?.x);
     const data = same
       ? ([drawn[0]?.x ?? [], ...drawn.map(({ line }) => line.y)] as uPlot.AlignedData)
-      : uPlot.join(tables);
+      : uPlot.join(tables, tables.map(() => [kExpand, kExpand]));
     const options = (width: number, height: number): uPlot.Options => ({
       width,
       height,
@@ -201,7 +204,7 @@ function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomG
         x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
         y: { range: (plot) => y_range(drawn, plot.scales.x?.min ?? group.full()[0], plot.scales.x?.max ?? group.full()[1]) },
       },
-      axes: [axis('x', { size: last ? 26 : 4, labels: last }), axis('y', { size: 54 })],
+      axes: [axis('x', { size: last ? 26 : 4, labels: last }), axis('y', { size: y_axis_size(width) })],
       series: [
         {},
         ...drawn.map(
@@ -237,7 +240,8 @@ function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomG
         setSelect: [
           (plot) => {
             const { left, width: selected } = plot.select;
-            if (selected > 4) group.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + selected, 'x'));
+            // The selection shows in all linked plots; only the one under the pointer zooms.
+            if (group.grasped === plot && selected > 4) group.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + selected, 'x'));
             plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
           },
         ],
@@ -257,6 +261,17 @@ function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomG
   return element;
 }
 
+/** What the shaded spans are, also where they are too narrow for their label. */
+function span_key(figure: TimeSeries): HTMLElement | null {
+  const tones = new Map(figure.spans.filter((span) => span.label !== '').map((span) => [span.label, span.tone]));
+  if (tones.size === 0) return null;
+  return h(
+    'ul',
+    { class: 'legend' },
+    ...[...tones].map(([label, tone]) => h('li', {}, h('span', { class: `patch ${tone}`, 'aria-hidden': 'true' }), h('span', { class: 'name' }, label))),
+  );
+}
+
 /** Panels above each other over one abscissa, with uncertainty bands, shaded spans, and zoom linked through the page. */
 export function draw_time_series(figure: TimeSeries): HTMLElement {
   const group = zoom_group(figure.axis);
@@ -266,9 +281,9 @@ export function draw_time_series(figure: TimeSeries): HTMLElement {
   const clock = h('span', { class: 'clock' });
   return h(
     'div',
-    { class: 'time-series', 'data-axis': figure.axis },
+    { class: figure.panels.length > 3 ? 'time-series tall' : 'time-series', 'data-axis': figure.axis },
     ...figure.panels.map((panel, k) => draw_panel(figure, panel, looks, group, k === figure.panels.length - 1, k === 0, clock)),
-    h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), clock),
+    h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), span_key(figure), clock),
   );
 }
 

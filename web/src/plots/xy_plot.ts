@@ -2,7 +2,7 @@ import type { XYPlot, XYSeries } from '../document';
 import { h } from '../dom';
 import { format_number, with_unit } from '../numbers';
 import { palette } from '../theme';
-import { axis, clipped, Looks, mount, translucent, uPlot, type LineLook } from './frame';
+import { axis, clipped, Looks, mount, translucent, uPlot, y_axis_size, type LineLook } from './frame';
 import { swatch } from './time_series';
 
 type Range = [number, number];
@@ -146,7 +146,7 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
           legend: { show: false },
           padding: [8, 12, 0, 0],
           scales: { x: { time: false, range: () => x_full }, y: { range: () => y_full } },
-          axes: [axis('x', { size: 26 }), axis('y', { size: 54 })],
+          axes: [axis('x', { size: 26 }), axis('y', { size: y_axis_size(width) })],
           series: [{}, { stroke: 'transparent', points: { show: false } }],
           cursor: { drag: { x: false, y: false }, points: { show: false }, bind: { dblclick: () => () => null } },
           hooks: {
@@ -170,6 +170,7 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
       ),
     );
     plot.over.style.touchAction = 'pan-y';
+    (host as HTMLElement & { uplot?: uPlot }).uplot = plot;
   });
   return h(
     'div',

@@ -6,6 +6,8 @@ export class ZoomGroup {
   private low = Infinity;
   private high = -Infinity;
   private zoomed = false;
+  /** The plot on which the button went down last. */
+  grasped: uPlot | null = null;
 
   constructor(
     readonly key: string,
@@ -28,6 +30,7 @@ export class ZoomGroup {
 
   add(plot: uPlot): void {
     this.plots.push(plot);
+    plot.over.addEventListener('mousedown', () => (this.grasped = plot), true);
   }
 
   zoom(from: number, to: number): void {
@@ -82,7 +85,8 @@ export function follow_touch(plot: uPlot): void {
   let last_tap = 0;
   const send = (type: string, event: PointerEvent) =>
     (type === 'mouseup' ? document : over).dispatchEvent(
-      new MouseEvent(type, { clientX: event.clientX, clientY: event.clientY, button: 0, bubbles: true }),
+      // uPlot takes a move without movement for a phantom.
+      new MouseEvent(type, { clientX: event.clientX, clientY: event.clientY, movementX: 1, button: 0, bubbles: true }),
     );
   over.addEventListener('pointerdown', (event) => {
     if (event.pointerType !== 'touch' || !event.isPrimary) return;
