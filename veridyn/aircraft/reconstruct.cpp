@@ -1,0 +1,393 @@
+#include "veridyn/aircraft/reconstruct.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "veridyn/aircraft/reconstruct_columns.hpp"
+#include "veridyn/aircraft/reconstruct_run.hpp"
+#include "veridyn/aircraft/reconstruct_streams.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/estimation/smoother.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using internal::FlightRun;
+using internal::FlightStreams;
+using internal::kSensors;
+using internal::ResultColumns;
+using internal::RunSetting;
+using internal::Segment;
+using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
+
+constexpr double kDeg = M_PI / 180.0;
+
+Monitors monitors_with(const estimation::InnovationGate& gate) {
+  Monitors monitors;
+  monitors.fill(estimation::InnovationMonitor(gate));
+  return monitors;
+}
+
+AirDataNoise noise_of(const FlightStreams& s, const ReconstructOptions& o) {
+  AirDataNoise noise;
+  noise.gyro = s.sigma.gyro * std::sqrt(s.gyro.interval);
+  noise.accelerometer = s.sigma.accelerometer * std::sqrt(s.accel.interval);
+  noise.wind_walk = o.wind_walk;
+  noise.wind_down_walk = o.wind_down_walk;
+  return noise;
+}
+
+std::vector<double> output_stamps(const FlightStreams& s, const Segment& segment, double rate_Hz) {
+  std::vector<double> t;
+  if (rate_Hz > 0.0) {
+    for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k) t.push_back(k / rate_Hz);
+    return t;
+  }
+  const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
+  const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
+  t.assign(first, last);
+  return t;
+}
+
+// --- Turbulence -----------------------------------------------------------------------------------------------------
+
+/// A stretch of at most `length` seconds in the fastest part of the longest segment: where the aircraft surely flies.
+Segment typical_part(const FlightStreams& s, std::span<const Segment> segments, double length) {
+  const Segment longest = *std::max_element(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) {
+    return a.end - a.begin < b.end - b.begin;
+  });
+  if (longest.end - longest.begin <= length) return longest;
+  Segment best = longest;
+  double fastest = -1.0;
+  constexpr int kParts = 16;
+  for (int i = 0; i < kParts; ++i) {
+    const double begin = longest.begin + (longest.end - longest.begin - length) * i / (kParts - 1);
+    const double north = internal::median_within(s.sensors[internal::kVelNorth], begin, length);
+    const double east = internal::median_within(s.sensors[internal::kVelEast], begin, length);
+    double speed = std::hypot(north, east);
+    if (!s.sensors[internal::kPitot].t.empty()) {
+      speed = internal::median_within(s.sensors[internal::kPitot], begin, length);
+    }
+    if (speed > fastest) {
+      fastest = speed;
+      best = {begin, begin + length};
+    }
+  }
+  // A segment begins where attitude and velocity are known.
+  for (const auto i : {internal::kRoll, internal::kPitch, internal::kYaw, internal::kVelNorth, internal::kVelEast,
+                       internal::kVelDown}) {
+    const auto& t = s.sensors[i].t;
+    const auto it = std::lower_bound(t.begin(), t.end(), best.begin);
+    if (it != t.end()) best.begin = std::max(best.begin, *it);
+  }
+  return best;
+}
+
+/// Log likelihood of the innovations over a stretch under a gust spectrum. What the gate refuses counts as an
+/// innovation on the gate, so that a spectrum does not win by refusing.
+double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const Segment& part,
+                      const GustSpectrum& spectrum) {
+  using Model = AirDataModel<false, false>;
+  const std::vector<double> no_output;
+  const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &no_output};
+  FlightRun<Model> run(setting, part, internal::start_of(setting, part), monitors_with(o.gate), 0);
+  while (run.advance(nullptr)) {
+  }
+  double sum = 0.0;
+  for (const auto& monitor : run.monitors()) {
+    const auto summary = monitor.summary();
+    sum += summary.log_likelihood -
+           0.5 * static_cast<double>(summary.rejected + summary.recovered) * o.gate.threshold * o.gate.threshold;
+  }
+  return sum;
+}
+
+void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
+                       Reconstruction& out) {
+  if (o.turbulence != "auto") {
+    out.turbulence = gust_spectrum(o.turbulence, o.turbulence_scale);
+    out.turbulence_origin = o.turbulence_scale == 1.0
+                                ? o.turbulence
+                                : fmt::format("{}, intensities times {:g}", o.turbulence, o.turbulence_scale);
+    return;
+  }
+  using namespace internal;
+  if (s.sensors[kPitot].t.empty() && s.sensors[kAlpha].t.empty() && s.sensors[kBeta].t.empty()) {
+    out.turbulence = gust_spectrum("low_moderate");
+    out.turbulence_origin = "low_moderate, assumed: no sensor feels the air";
+    return;
+  }
+  const Segment part = typical_part(s, segments, 60.0);
+  constexpr std::array<double, 7> kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0};
+  double best = -std::numeric_limits<double>::infinity();
+  for (const char* setting : {"low_light", "medium_light"}) {
+    for (const double scale : kScales) {
+      const GustSpectrum spectrum = gust_spectrum(setting, scale);
+      const double likelihood = log_likelihood(s, o, part, spectrum);
+      if (likelihood > best) {
+        best = likelihood;
+        out.turbulence = spectrum;
+        out.turbulence_origin = fmt::format("auto: {} times {:g}, by the innovations of {:.0f}..{:.0f} s", setting,
+                                            scale, part.begin, part.end);
+      }
+    }
+  }
+}
+
+// --- Filter and smoother --------------------------------------------------------------------------------------------
+
+std::array<bool, internal::kColumns.size()> wanted_columns(const ReconstructOptions& o) {
+  std::array<bool, internal::kColumns.size()> wanted{};
+  std::fill_n(wanted.begin(), internal::kFirstImuBias, true);
+  for (std::size_t k = 0; k < 3; ++k) {
+    wanted[internal::kFirstImuBias + k] = o.gyro_bias;
+    wanted[internal::kFirstImuBias + 3 + k] = o.accel_bias;
+  }
+  const std::array<bool, 5> errors{o.alpha_bias, o.beta_bias, o.alpha_scale, o.pitot_scale, o.pitot_bias};
+  std::copy(errors.begin(), errors.end(), wanted.begin() + internal::kFirstAirDataError);
+  return wanted;
+}
+
+struct Solution {
+  std::optional<ResultColumns> smoothed, filtered;
+  Monitors monitors;
+  std::size_t count = 0;  ///< samples that hold results
+};
+
+template <class Model>
+Solution solve(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
+               const std::vector<double>& stamps, std::span<const std::size_t> first_stamp,
+               const GustSpectrum& spectrum, Progress& progress) {
+  const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &stamps};
+  Solution solution{.smoothed = ResultColumns(stamps.size(), wanted_columns(o)),
+                    .filtered = {},
+                    .monitors = monitors_with(o.gate),
+                    .count = 0};
+  if (o.keep_filter) solution.filtered.emplace(stamps.size(), wanted_columns(o));
+
+  constexpr std::size_t kBlock = 512;
+  constexpr std::size_t kReport = 4096;
+  const double total = static_cast<double>(2 * stamps.size());
+  std::size_t done = 0;
+  bool going = true;
+  std::size_t cursor = 0;
+  for (std::size_t i = 0; i < segments.size() && going; ++i) {
+    FlightRun<Model> run(setting, segments[i], internal::start_of(setting, segments[i]), solution.monitors,
+                         first_stamp[i]);
+    const auto forward = [&](const FlightRun<Model>& now) {
+      if (!now.at_output()) return true;
+      if (solution.filtered) {
+        solution.filtered->write(now.output(), setting.model, now.filter().state(), now.filter().covariance(),
+                                 s.density_at(now.time(), cursor));
+      }
+      solution.count = now.output() + 1;
+      if (++done % kReport == 0) going = progress.update(static_cast<double>(done) / total);
+      return going;
+    };
+    const auto smoothed = [&](std::size_t number, const typename Model::template State<double>& x,
+                              const typename Model::Covariance& P) {
+      solution.smoothed->write(number, setting.model, x, P, s.density_at(stamps[number], cursor));
+      // Work that is stopped here ends what it has begun: it is a matter of seconds.
+      if (++done % kReport == 0) static_cast<void>(progress.update(static_cast<double>(done) / total));
+    };
+    solution.monitors = estimation::smooth_in_blocks<Model>(run, kBlock, forward, smoothed).monitors();
+  }
+  return solution;
+}
+
+// --- Report ---------------------------------------------------------------------------------------------------------
+
+double shown(double value, const std::string& unit) { return unit.starts_with("rad") ? value / kDeg : value; }
+std::string shown_unit(const std::string& unit) {
+  if (unit == "rad") return " deg";
+  if (unit == "rad/s") return " deg/s";
+  return unit == "1" ? "" : " " + unit;
+}
+
+void report_sensors(const FlightStreams& s, const Solution& solution, Reconstruction& out) {
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const internal::Stream& stream = s.sensors[i];
+    if (stream.t.empty()) continue;
+    const auto summary = solution.monitors[i].summary();
+    out.log_likelihood += summary.log_likelihood;
+    out.sensors.push_back({stream.channel, stream.unit, stream.sigma, stream.rate_Hz, summary});
+    if (summary.count == 0) continue;
+    const double refused = static_cast<double>(summary.rejected) / static_cast<double>(summary.count);
+    if (refused > 0.01) {
+      out.warnings.push_back(fmt::format("{}: {:.1f} % of the samples contradict the estimate and were dropped",
+                                         stream.channel, 100.0 * refused));
+    }
+    if (summary.recovered > 0) {
+      out.warnings.push_back(
+          fmt::format("{}: dropped for long and taken back, {} samples with inflated variance: the estimate or the "
+                      "sensor was wrong for a while",
+                      stream.channel, summary.recovered));
+    }
+    if (summary.count > 100 && summary.nis > 2.0) {
+      out.warnings.push_back(fmt::format(
+          "{}: innovations {:.1f} times the expected size: its error is larger than the assumed {:.3g}{}",
+          stream.channel, std::sqrt(summary.nis), shown(stream.sigma, stream.unit), shown_unit(stream.unit)));
+    }
+  }
+}
+
+void report_quantities(const FlightStreams& s, const ReconstructOptions& o, const ResultColumns& columns,
+                       std::size_t count, Reconstruction& out) {
+  const auto first = [count](const std::vector<double>& v) { return std::span<const double>(v.data(), count); };
+  const double speed = std::max(numerics::median(first(columns.value(0))), 1.0);
+  const GustSpectrum& g = out.turbulence;
+  const bool pitot = !s.sensors[internal::kPitot].t.empty();
+  const bool vane_a = !s.sensors[internal::kAlpha].t.empty();
+  const bool vane_b = !s.sensors[internal::kBeta].t.empty();
+  if (!pitot) out.warnings.emplace_back("no pitot tube: the size of the airspeed is known only through the wind");
+  if (!vane_a) {
+    out.warnings.emplace_back(
+        "no alpha vane: gusts along z stay unknown, so alpha is known only as far as they are small");
+  }
+  if (!vane_b) {
+    out.warnings.emplace_back(
+        "no beta vane: lateral gusts stay unknown, so beta is known only as far as they are small");
+  }
+  if (!pitot && !vane_a && !vane_b) {
+    out.warnings.emplace_back(
+        "neither pitot tube nor vanes: nothing in the recording feels the air; airspeed, alpha, "
+        "beta and wind are assumptions, not estimates");
+  }
+  const auto prior = [&](std::size_t c) -> double {
+    const double vertical = std::hypot(o.initial_wind_down, g.sigma_w);
+    switch (c) {
+      case 0:
+        return std::hypot(o.initial_wind, g.sigma_u);
+      case 1:
+        return std::min(vertical / speed, 1.0);
+      case 2:
+        return std::min(std::hypot(o.initial_wind, g.sigma_v) / speed, 1.0);
+      case 6:
+      case 7:
+        return o.initial_wind;
+      case 8:
+        return o.initial_wind_down;
+      case 18:
+      case 19:
+      case 20:
+        return kGyroBiasPrior;
+      case 21:
+      case 22:
+      case 23:
+        return kAccelBiasPrior;
+      case 24:
+      case 25:
+        return kVaneBiasPrior;
+      case 26:
+        return kAlphaScalePrior;
+      case 27:
+        return kPitotScalePrior;
+      case 28:
+        return kPitotBiasPrior;
+      default:
+        return 0.0;
+    }
+  };
+  for (std::size_t c = 0; c < internal::kColumns.size(); ++c) {
+    const double before = prior(c);
+    if (before == 0.0 || !columns.has(c)) continue;
+    QuantityReport q;
+    q.quantity = internal::kColumns[c].name;
+    q.unit = internal::kColumns[c].unit;
+    q.prior_sigma = before;
+    q.sigma = numerics::median(first(columns.sigma(c)));
+    const double ratio = q.sigma / before;
+    q.observability = ratio < 0.35  ? Observability::kObservable
+                      : ratio < 0.8 ? Observability::kWeak
+                                    : Observability::kNotObservable;
+    q.statement = fmt::format("{} is {}: sigma {:.3g}{} where {:.3g}{} was assumed beforehand", q.quantity,
+                              to_string(q.observability), shown(q.sigma, q.unit), shown_unit(q.unit),
+                              shown(before, q.unit), shown_unit(q.unit));
+    out.quantities.push_back(std::move(q));
+  }
+}
+
+}  // namespace
+
+const char* to_string(Observability observability) {
+  switch (observability) {
+    case Observability::kObservable:
+      return "observable";
+    case Observability::kWeak:
+      return "weakly observable";
+    case Observability::kNotObservable:
+      return "not observable";
+  }
+  return "";
+}
+
+Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress) {
+  if (mapped.frame == Frame::kFlu) {
+    throw InputError(mapped.source, "is in the frame flu; reconstruction of an aircraft needs frd, convert it first");
+  }
+  Reconstruction out;
+  const FlightStreams streams = internal::load_streams(mapped, options, out.warnings);
+  out.sigma = streams.sigma;
+  out.density_origin = streams.density_origin;
+
+  const std::vector<Segment> segments = internal::find_segments(streams, options.max_gap);
+  if (segments.empty()) {
+    throw InputError(
+        mapped.source,
+        fmt::format("holds no second of gyro, accelerometer, attitude and ground velocity together without "
+                    "a gap longer than {:g} s",
+                    options.max_gap));
+  }
+  if (segments.size() > 1) {
+    out.warnings.push_back(
+        fmt::format("gyro or accelerometer pause for more than {:g} s: estimated in {} parts, each "
+                    "with its own start",
+                    options.max_gap, segments.size()));
+  }
+  if (streams.gyro.interval > 0.05) {
+    out.warnings.push_back(
+        fmt::format("gyro at {:.1f} Hz: motion between its samples is not seen", 1.0 / streams.gyro.interval));
+  }
+  std::vector<double> stamps;
+  std::vector<std::size_t> first_stamp;
+  for (const Segment& segment : segments) {
+    out.segments.push_back({segment.begin, segment.end});
+    first_stamp.push_back(stamps.size());
+    const std::vector<double> t = output_stamps(streams, segment, options.rate_Hz);
+    stamps.insert(stamps.end(), t.begin(), t.end());
+  }
+  if (stamps.empty()) throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
+
+  choose_turbulence(streams, options, segments, out);
+  progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.back() - stamps.front()));
+  const auto run = [&]<class Model>(Model) {
+    return solve<Model>(streams, options, segments, stamps, first_stamp, out.turbulence, progress);
+  };
+  Solution solution;
+  if (options.wants_imu_biases()) {
+    solution = options.wants_air_data_errors() ? run(AirDataModel<true, true>{}) : run(AirDataModel<true, false>{});
+  } else {
+    solution = options.wants_air_data_errors() ? run(AirDataModel<false, true>{}) : run(AirDataModel<false, false>{});
+  }
+
+  out.interrupted = solution.count < stamps.size();
+  report_sensors(streams, solution, out);
+  report_quantities(streams, options, *solution.smoothed, solution.count, out);
+  stamps.resize(solution.count);
+  const TimeBase time = make_time_base(std::move(stamps));
+  const auto finish = [&](Recording& recording, ResultColumns& columns) {
+    recording.source = mapped.source;
+    recording.frame = Frame::kFrd;
+    columns.move_into(recording, time, solution.count);
+  };
+  finish(out.smoothed, *solution.smoothed);
+  if (solution.filtered) finish(out.filtered, *solution.filtered);
+  return out;
+}
+
+}  // namespace veridyn::aircraft
