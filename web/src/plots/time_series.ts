@@ -202,7 +202,7 @@ function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomG
       padding: [6, 10, last ? 0 : 4, 0],
       scales: {
         x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
-        y: { range: (plot) => y_range(drawn, plot.scales.x?.min ?? group.full()[0], plot.scales.x?.max ?? group.full()[1]) },
+        y: { range: () => y_range(drawn, ...group.window) },
       },
       axes: [axis('x', { size: last ? 26 : 4, labels: last }), axis('y', { size: y_axis_size(width) })],
       series: [

@@ -6,6 +6,7 @@ export class ZoomGroup {
   private low = Infinity;
   private high = -Infinity;
   private zoomed = false;
+  private shown: [number, number] | null = null;
   /** The plot on which the button went down last. */
   grasped: uPlot | null = null;
 
@@ -47,7 +48,13 @@ export class ZoomGroup {
     this.apply(...this.full());
   }
 
+  /** The range in sight. uPlot's own x scale is still the old one while it asks for the range of y. */
+  get window(): [number, number] {
+    return this.shown ?? this.full();
+  }
+
   private apply(min: number, max: number): void {
+    this.shown = [min, max];
     for (const plot of this.plots) plot.setScale('x', { min, max });
     this.on_change();
   }
