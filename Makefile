@@ -1,0 +1,62 @@
+# The two commands are `make demo` and `make test`; each sets the machine up, builds, and runs.
+# Plain CMake presets (see CMakePresets.json) do the same for those who have the packages.
+BUILD  := build/release
+JOBS   ?= $(shell nproc)
+SHELL  := /bin/bash
+
+.PHONY: help setup build demo test format format-check tidy asan bench fuzz soak install clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
+
+setup: ## install what is missing (apt; needs root or sudo)
+	@tools/setup.sh
+
+build: setup ## build/release/bin/veridyn, without tests
+	cmake --preset release -DVERIDYN_TESTS=OFF --log-level=WARNING
+	cmake --build $(BUILD) -j $(JOBS) --target veridyn
+
+demo: build ## a complete run on a built-in aircraft; report in out/demo
+	$(BUILD)/bin/veridyn demo --out out/demo
+
+test: setup format-check ## build and run the whole test suite
+	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
+	cmake --build $(BUILD) -j $(JOBS)
+	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS) -LE soak
+
+format: ## reformat the sources
+	git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format -i
+
+format-check: setup
+	@git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+
+tidy: setup ## clang-tidy on the library and the program
+	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
+	cmake --build $(BUILD) -j $(JOBS) --target veridyn
+	tools/tidy.sh $(BUILD) $(JOBS)
+
+asan: setup ## the tests under the address and undefined-behaviour sanitizers
+	cmake --preset asan --log-level=WARNING
+	cmake --build build/asan -j $(JOBS)
+	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE 'soak|web'
+
+bench: setup ## benchmarks; results in build/bench/*.json
+	cmake --preset bench --log-level=WARNING
+	cmake --build build/bench -j $(JOBS)
+	tools/bench.sh build/bench
+
+fuzz: setup ## each reader under libFuzzer for SECONDS (60)
+	cmake --preset fuzz --log-level=WARNING
+	cmake --build build/fuzz -j $(JOBS)
+	fuzz/run.sh $(or $(SECONDS_EACH),60) build/fuzz
+
+soak: setup ## the long forms of the tests
+	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
+	cmake --build $(BUILD) -j $(JOBS)
+	ctest --test-dir $(BUILD) --output-on-failure -L soak
+
+install: build ## into PREFIX (default /usr/local)
+	cmake --install $(BUILD) $(if $(PREFIX),--prefix $(PREFIX))
+
+clean: ## remove all that was built
+	rm -rf build out web/dist web/node_modules

@@ -1,0 +1,51 @@
+// veridyn identify STUDY: from recording to parameters, validation and report.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/veridyn/results.hpp"
+#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/core/progress.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string study;
+  CommonOptions common;
+};
+
+int identify(const Options& options) {
+  const Study study = load_study(options.study, options.common);
+  TerminalProgress progress(options.common.quiet);
+  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, progress);
+  if (analysis.interrupted) {
+    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
+    return kFailed;
+  }
+  const std::filesystem::path folder = options.common.out;
+  RunRecord run{"identify", study.name(), study.to_toml(), flight.seed, flight.inputs};
+  run.inputs.emplace_back(options.study);
+  progress.stage("writing the results");
+  write_identification(folder, flight, analysis, run, options.common);
+  tell_identification(analysis, folder, options.common);
+  print_summary(summary_of(analysis, folder), options.common);
+  return kDone;
+}
+
+}  // namespace
+
+void add_identify(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = program.add_subcommand("identify", "from recording to parameters, validation and report");
+  verb->add_option("STUDY", options->study, "study file (TOML); `veridyn init aircraft` writes one to start from")
+      ->required();
+  add_common(*verb, options->common, "out/identify",
+             "veridyn identify study.toml --out out/flight7 --set data.from=120");
+  verb->callback([options, &exit_code] { exit_code = identify(*options); });
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,136 @@
+// veridyn inspect FILE: what a log holds.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/veridyn/options.hpp"
+#include "apps/veridyn/output.hpp"
+#include "veridyn/aircraft/channel_map.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/read.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string file;
+  bool all = false;
+  bool events = false;
+  bool parameters = false;
+  CommonOptions common;
+};
+
+struct Range {
+  double low = NAN;
+  double high = NAN;
+  std::size_t missing = 0;
+};
+
+Range range_of(const Channel& channel) {
+  Range range;
+  for (const double v : channel.value) {
+    if (!std::isfinite(v)) {
+      ++range.missing;
+      continue;
+    }
+    range.low = std::fmin(range.low, v);
+    range.high = std::fmax(range.high, v);
+  }
+  return range;
+}
+
+double gap_time(const Channel& channel) {
+  double total = 0.0;
+  for (const TimeSpan& gap : channel.gaps()) total += gap.duration();
+  return total;
+}
+
+int inspect(const Options& options) {
+  io::Log log = io::read_log(options.file);
+  const std::string format = log.format;
+  const io::LogDamage damage = log.damage;
+  const std::size_t topics = log.topics.size();
+  const Recording recording = io::to_recording(std::move(log));
+  const aircraft::MappedRecording mapped = aircraft::map_channels(recording, StudyTable("data.map"), {});
+  const TimeSpan span = recording.span();
+
+  nlohmann::ordered_json summary;
+  summary["file"] = options.file;
+  summary["format"] = format;
+  summary["span"] = {span.begin, span.end};
+  summary["bytes_lost"] = damage.bytes_lost;
+  summary["records_lost"] = damage.records_lost;
+  summary["channels"] = nlohmann::ordered_json::array();
+  std::string text =
+      fmt::format("{}: {}, {} kinds of message, {} channels, {:.3f} s to {:.3f} s ({:.1f} s)\n", options.file, format,
+                  topics, recording.channels().size(), span.begin, span.end, span.duration());
+  if (damage.any()) {
+    text += fmt::format("lost: {} bytes, {} records, {} dropouts of {:.3f} s in all\n", damage.bytes_lost,
+                        damage.records_lost, damage.dropouts, damage.dropout_s);
+  } else {
+    text += "lost: nothing\n";
+  }
+  for (const std::string& warning : recording.warnings) text += fmt::format("note: {}\n", warning);
+  for (const auto& [key, value] : recording.information) text += fmt::format("{}: {}\n", key, value);
+
+  text += fmt::format("\n{:<44} {:<8} {:>8} {:>9} {:>5} {:>7} {:>8}  range\n", "channel", "unit", "samples",
+                      "rate [Hz]", "gaps", "gap [s]", "missing");
+  for (const Channel& channel : recording.channels()) {
+    const Range range = range_of(channel);
+    const auto gaps = channel.gaps();
+    summary["channels"].push_back({{"name", channel.name},
+                                   {"unit", channel.unit.name},
+                                   {"recorded_unit", channel.recorded_unit},
+                                   {"samples", channel.size()},
+                                   {"rate_Hz", channel.rate_Hz()},
+                                   {"gaps", gaps.size()},
+                                   {"missing", range.missing}});
+    text +=
+        fmt::format("{:<44} {:<8} {:>8} {:>9.2f} {:>5} {:>7.2f} {:>8}  {}\n", channel.name, channel.unit.name,
+                    channel.size(), channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
+                    std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numbers");
+  }
+  summary["mapping"] = nlohmann::ordered_json::object();
+  if (!mapped.origins.empty()) {
+    text += fmt::format("\nfor an aircraft study ({} log):\n", mapped.log_kind);
+    for (const aircraft::ChannelOrigin& origin : mapped.origins) {
+      summary["mapping"][origin.channel] = origin.source;
+      text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
+                          origin.note.empty() ? "" : ", " + origin.note);
+    }
+  }
+  for (const std::string& note : mapped.notes) text += fmt::format("  note: {}\n", note);
+  if (options.events) {
+    text += "\nevents:\n";
+    for (const Event& event : recording.events)
+      text += fmt::format("  {:12.3f} s  {:<10} {}\n", event.time, event.kind, event.text);
+  }
+  if (options.parameters) {
+    text += "\nparameters:\n";
+    for (const auto& [name, value] : recording.parameters) text += fmt::format("  {:<24} {}\n", name, value);
+  }
+  if (options.common.json) {
+    print_summary(summary, options.common);
+  } else {
+    fmt::print("{}", text);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      program.add_subcommand("inspect", "what a log file holds: channels, units, rates, gaps, span, damage");
+  verb->add_option("FILE", options->file, "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, CSV")->required();
+  verb->add_flag("--events", options->events, "list flight modes and messages");
+  verb->add_flag("--parameters", options->parameters, "list the autopilot's parameters");
+  add_common(*verb, options->common, "", "veridyn inspect flight.bin");
+  verb->callback([options, &exit_code] { exit_code = inspect(*options); });
+}
+
+}  // namespace veridyn::app

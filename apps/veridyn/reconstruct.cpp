@@ -1,0 +1,58 @@
+// veridyn reconstruct STUDY: airspeed, flow angles and wind only.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/veridyn/results.hpp"
+#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/core/progress.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string study;
+  CommonOptions common;
+};
+
+int reconstruct(const Options& options) {
+  const Study study = load_study(options.study, options.common);
+  TerminalProgress progress(options.common.quiet);
+  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::reconstruct_flight(flight, progress);
+  if (analysis.interrupted) {
+    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
+    return kFailed;
+  }
+  const std::filesystem::path folder = options.common.out;
+  RunRecord run{"reconstruct", study.name(), study.to_toml(), flight.seed, flight.inputs};
+  run.inputs.emplace_back(options.study);
+  write_reconstruction(folder, flight, analysis, run, options.common);
+  nlohmann::ordered_json summary;
+  summary["folder"] = folder.string();
+  for (const aircraft::QuantityReport& q : analysis.reconstruction.quantities) {
+    tell(options.common, fmt::format("  {:<16} {}", q.quantity, q.statement));
+    summary["quantities"][q.quantity] = {
+        {"sigma", q.sigma}, {"unit", q.unit}, {"observability", aircraft::to_string(q.observability)}};
+  }
+  for (const std::string& warning : analysis.reconstruction.warnings) tell(options.common, "warning: " + warning);
+  tell(options.common, fmt::format("report: {}", (folder / "report.html").string()));
+  print_summary(summary, options.common);
+  return kDone;
+}
+
+}  // namespace
+
+void add_reconstruct(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      program.add_subcommand("reconstruct", "state estimation only: airspeed, alpha, beta, wind, with 95 % bands");
+  verb->add_option("STUDY", options->study, "study file (TOML)")->required();
+  add_common(*verb, options->common, "out/reconstruct",
+             "veridyn reconstruct study.toml --set reconstruct.turbulence=low_light");
+  verb->callback([options, &exit_code] { exit_code = reconstruct(*options); });
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,110 @@
+#include "apps/veridyn/results.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "veridyn/core/files.hpp"
+#include "veridyn/io/csv.hpp"
+#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/report/aircraft_report.hpp"
+#include "veridyn/report/html.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::aircraft;
+
+const report::AircraftReportContext kIdentifyContext{.program = "veridyn " VERIDYN_VERSION};
+
+std::string parameters_csv(const estimation::Estimate& estimate) {
+  std::string text = "name,value,sigma,low95,high95,unit,status\n";
+  for (const auto& p : estimate.parameters) {
+    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
+                        estimation::to_string(p.status));
+  }
+  return text;
+}
+
+Recording coefficient_recording(const FlightAnalysis& analysis) {
+  Recording recording;
+  recording.source = "coefficients.csv";
+  recording.frame = Frame::kFrd;
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.time.empty()) continue;
+    const TimeBase time = make_time_base(r.time);
+    recording.add(make_channel(std::string(name_of(r.coefficient)), "1", time, r.measured));
+    if (r.verdict == CoefficientVerdict::kIdentified) {
+      recording.add(make_channel(fmt::format("{}_model", name_of(r.coefficient)), "1", time, r.modelled));
+    }
+  }
+  return recording;
+}
+
+Recording validation_recording(const Validation& validation) {
+  Recording recording;
+  recording.source = "validation.csv";
+  for (const PredictedQuantity& q : validation.quantities) {
+    const TimeBase time = make_time_base(q.time);
+    const char* unit = q.unit == "deg" ? "rad" : "m/s";
+    recording.add(make_channel(q.name, unit, time, q.measured));
+    recording.add(make_channel(q.name + "_model", unit, time, q.predicted));
+  }
+  return recording;
+}
+
+}  // namespace
+
+void write_identification(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
+                          const RunRecord& run, const CommonOptions& options) {
+  make_folder(folder);
+  report::AircraftReportContext context = kIdentifyContext;
+  context.verb = run.verb;
+  report::write_html(report::identification_report(study, analysis, context), folder / "report.html");
+  io::write_csv(analysis.reconstruction.smoothed, folder / "flight.csv");
+  io::write_csv(coefficient_recording(analysis), folder / "coefficients.csv");
+  if (analysis.validation.available())
+    io::write_csv(validation_recording(analysis.validation), folder / "validation.csv");
+  write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
+  write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
+  write_file(folder / "estimate.json", io::to_json(analysis.estimate));
+  write_run_record(folder, run, options);
+}
+
+void write_reconstruction(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
+                          const RunRecord& run, const CommonOptions& options) {
+  make_folder(folder);
+  report::write_html(report::reconstruction_report(study, analysis, kIdentifyContext), folder / "report.html");
+  io::write_csv(analysis.reconstruction.smoothed, folder / "flight.csv");
+  io::write_csv(analysis.reconstruction.filtered, folder / "filter.csv");
+  write_run_record(folder, run, options);
+}
+
+void tell_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
+                         const CommonOptions& options) {
+  tell(options, analysis.segments.longitudinal.text);
+  tell(options, analysis.segments.lateral.text);
+  for (const CoefficientResult& r : analysis.coefficients)
+    tell(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
+  for (const PredictedQuantity& q : analysis.validation.quantities) {
+    tell(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae, q.unit,
+                              q.fit.r2, q.fit.theil));
+  }
+  tell(options, fmt::format("report: {}", (folder / "report.html").string()));
+}
+
+nlohmann::ordered_json summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
+  nlohmann::ordered_json summary;
+  summary["verdict"] = analysis.estimate.verdict;
+  summary["folder"] = folder.string();
+  summary["coefficients"] = nlohmann::ordered_json::object();
+  for (const CoefficientResult& r : analysis.coefficients) {
+    summary["coefficients"][std::string(name_of(r.coefficient))] = {{"verdict", to_string(r.verdict)},
+                                                                    {"reason", r.reason}};
+  }
+  summary["parameters"] = analysis.estimate.parameters.size();
+  summary["warnings"] = analysis.estimate.warnings;
+  return summary;
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,56 @@
+// veridyn validate STUDY --estimate FILE: an estimate against other data.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/veridyn/results.hpp"
+#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/io/estimate_json.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string study;
+  std::string estimate;
+  CommonOptions common;
+};
+
+int validate(const Options& options) {
+  const estimation::Estimate estimate = io::read_estimate(options.estimate);
+  const Study study = load_study(options.study, options.common);
+  TerminalProgress progress(options.common.quiet);
+  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
+  aircraft::FlightAnalysis analysis = aircraft::validate_estimate(flight, estimate, progress);
+  if (analysis.interrupted) {
+    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
+    return kFailed;
+  }
+  const std::filesystem::path folder = options.common.out;
+  RunRecord run{"validate", study.name(), study.to_toml(), flight.seed, flight.inputs};
+  run.inputs.emplace_back(options.study);
+  run.inputs.emplace_back(options.estimate);
+  write_identification(folder, flight, analysis, run, options.common);
+  tell_identification(analysis, folder, options.common);
+  print_summary(summary_of(analysis, folder), options.common);
+  return kDone;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = program.add_subcommand("validate", "an estimate tried on a flight that it has not seen");
+  verb->add_option("STUDY", options->study, "study file of the other flight")->required();
+  verb->add_option("--estimate", options->estimate, "estimate.json of an identification")
+      ->required()
+      ->type_name("FILE");
+  add_common(*verb, options->common, "out/validate",
+             "veridyn validate flight8.toml --estimate out/flight7/estimate.json");
+  verb->callback([options, &exit_code] { exit_code = validate(*options); });
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,509 @@
+#include "veridyn/report/aircraft_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "veridyn/report/aircraft_figures.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::aircraft;
+using estimation::Method;
+using estimation::RegressionEstimate;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+Status status_of(CoefficientVerdict verdict) {
+  switch (verdict) {
+    case CoefficientVerdict::kIdentified:
+      return Status::kIdentified;
+    case CoefficientVerdict::kNotExcited:
+      return Status::kNotExcited;
+    case CoefficientVerdict::kRejected:
+      return Status::kRejected;
+    case CoefficientVerdict::kSkipped:
+      break;
+  }
+  return Status::kNone;
+}
+
+Status status_of(estimation::ParameterStatus status) { return status_from_name(estimation::to_string(status)); }
+
+/// What a coefficient is to someone who flies.
+std::string_view meaning(Coefficient c) {
+  switch (c) {
+    case Coefficient::kCL:
+      return "lift";
+    case Coefficient::kCD:
+      return "drag";
+    case Coefficient::kCY:
+      return "side force";
+    case Coefficient::kCl:
+      return "rolling moment";
+    case Coefficient::kCm:
+      return "pitching moment";
+    case Coefficient::kCn:
+      return "yawing moment";
+  }
+  return "";
+}
+
+std::vector<std::string> meanings(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
+  std::vector<std::string> names;
+  for (const CoefficientResult& r : results) {
+    if (r.verdict == verdict) names.push_back(fmt::format("{} ({})", meaning(r.coefficient), name_of(r.coefficient)));
+  }
+  return names;
+}
+
+Verdict verdict_of(const FlightAnalysis& analysis) {
+  Verdict verdict;
+  const auto good = meanings(analysis.coefficients, CoefficientVerdict::kIdentified);
+  const auto bad = meanings(analysis.coefficients, CoefficientVerdict::kRejected);
+  const auto calm = meanings(analysis.coefficients, CoefficientVerdict::kNotExcited);
+  const auto skipped = meanings(analysis.coefficients, CoefficientVerdict::kSkipped);
+  if (good.empty()) {
+    verdict.level = Level::kBad;
+    verdict.word = bad.empty() ? "Not excited" : "Rejected";
+    verdict.headline = "No aerodynamic coefficient can be trusted from this flight: do not use a model from it.";
+  } else if (bad.empty() && calm.empty() && skipped.empty()) {
+    verdict.level = Level::kGood;
+    verdict.word = "Identified";
+    verdict.headline =
+        "All aerodynamic coefficients were identified and predict a part of the flight that they had not seen.";
+  } else {
+    verdict.level = Level::kCaution;
+    verdict.word = "Partly identified";
+    verdict.headline = fmt::format("{} of {} aerodynamic coefficients were identified; the others must not be used.",
+                                   good.size(), analysis.coefficients.size());
+  }
+  const auto line = [&](const char* word, const std::vector<std::string>& names) {
+    if (!names.empty()) verdict.lines.push_back(fmt::format("{}: {}", word, fmt::join(names, ", ")));
+  };
+  line("Identified", good);
+  line("Rejected", bad);
+  line("Not excited by this flight", calm);
+  line("Not attempted", skipped);
+  for (const PredictedQuantity& q : analysis.validation.quantities) {
+    verdict.lines.push_back(
+        fmt::format("Flown over unseen data for {:.0f} s at a time, the model misses {} by {:.2g} {} on average",
+                    analysis.validation.period_s, q.name == "airspeed" ? "airspeed" : q.name, q.fit.mae, q.unit));
+  }
+  return verdict;
+}
+
+std::vector<Fact> facts_of(const FlightStudy& study, const FlightAnalysis& analysis) {
+  std::vector<Fact> facts{
+      {"Aircraft", study.subject.name},
+      {"Recording", study.truth ? "simulated from the study"
+                                : std::filesystem::path(study.mapped.recording.source).filename().string()},
+      {"Log", study.mapped.log_kind},
+      {"Mass", fmt::format("{:.4g} kg", study.subject.mass)}};
+  const TimeSpan span = study.mapped.recording.span();
+  facts.push_back({"Recorded", fmt::format("{:.0f} s", span.duration())});
+  double airborne = 0.0;
+  for (const TimeSpan& s : analysis.segments.airborne) airborne += s.duration();
+  if (airborne > 0.0) {
+    facts.push_back({"In the air", fmt::format("{:.0f} s", airborne)});
+    facts.push_back(
+        {"Excited", fmt::format("{:.0f} s longitudinal, {:.0f} s lateral", analysis.segments.longitudinal.excited_s(),
+                                analysis.segments.lateral.excited_s())});
+  }
+  if (!study.subject.sign_convention.empty()) facts.push_back({"Signs", study.subject.sign_convention});
+  return facts;
+}
+
+Section coefficients_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Coefficients", .id = "coefficients"};
+  Table table{
+      .title = "Verdict per coefficient",
+      .caption =
+          "Explained: share of the coefficient's variance on the hold-out that the model accounts for (R squared). "
+          "Theil: inequality coefficient, 0 perfect, below 0.3 good. Equation error: residual variance over what "
+          "sensor "
+          "noise alone would leave; 1 when the model is complete.",
+      .columns = {{.name = "Coefficient"},
+                  {.name = "Verdict"},
+                  {.name = "Method"},
+                  {.name = "Explained, identification", .unit = "%"},
+                  {.name = "Explained, hold-out", .unit = "%"},
+                  {.name = "Theil"},
+                  {.name = "Equation error", .digits = 3},
+                  {.name = "Why"}}};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    const bool has = r.chosen.has_value();
+    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", name_of(r.coefficient), meaning(r.coefficient))),
+                                    status_cell(status_of(r.verdict), to_string(r.verdict)),
+                                    text_cell(has ? std::string(estimation::to_string(r.chosen->method)) : ""),
+                                    number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
+                                    number_cell(r.holdout_fit.count > 0 ? 100.0 * r.holdout_fit.r2 : kNaN, 1),
+                                    number_cell(r.holdout_fit.count > 0 ? r.holdout_fit.theil : kNaN, 3),
+                                    number_cell(has ? r.error_ratio : kNaN), text_cell(r.reason)},
+                          .status = status_of(r.verdict)});
+  }
+  section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
+bool shown(const CoefficientResult& r) { return r.chosen && r.verdict == CoefficientVerdict::kIdentified; }
+
+Table parameter_table(const FlightStudy& study, std::span<const CoefficientResult* const> results) {
+  Table table{.title = "Parameters",
+              .caption =
+                  "95 % intervals from the covariance that allows for coloured residuals. A parameter whose interval "
+                  "holds zero is "
+                  "marked insignificant, not set to zero.",
+              .columns = {{.name = "Parameter"},
+                          {.name = "Value"},
+                          {.name = "Sigma"},
+                          {.name = "95 % low", .group = "interval"},
+                          {.name = "95 % high", .group = "interval"},
+                          {.name = "Unit"},
+                          {.name = "t", .digits = 3},
+                          {.name = "Status"}}};
+  if (study.true_subject) table.columns.insert(table.columns.begin() + 5, {.name = "Truth"});
+  for (const CoefficientResult* r : results) {
+    for (std::size_t i = 0; i < r->chosen->parameters.size(); ++i) {
+      const auto& p = r->chosen->parameters[i];
+      Row row{.cells = {text_cell(p.name), measured_cell(p.value, p.sigma), measured_cell(p.sigma, p.sigma),
+                        measured_cell(p.low95, p.sigma), measured_cell(p.high95, p.sigma), text_cell(p.unit),
+                        number_cell(p.t), status_cell(status_of(p.status))},
+              .status = status_of(p.status)};
+      if (study.true_subject) {
+        const CoefficientModel* truth = study.true_subject->model.find(r->coefficient);
+        const std::optional<double> value = truth ? truth->value_of(r->model.terms[i].expression) : std::nullopt;
+        row.cells.insert(row.cells.begin() + 5, measured_cell(value.value_or(kNaN), p.sigma));
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+IntervalPlot interval_plot(const FlightStudy& study, const CoefficientResult& r) {
+  IntervalPlot plot{.title = fmt::format("{}: estimates of all methods", name_of(r.coefficient)),
+                    .reference_name = "truth"};
+  for (const RegressionEstimate& e : r.comparison.estimates) plot.methods.emplace_back(estimation::to_string(e.method));
+  for (std::size_t i = 0; i < r.model.size(); ++i) {
+    IntervalRow row{.name = parameter_name(r.coefficient, r.model.terms[i]), .unit = r.model.terms[i].parameter_unit()};
+    for (const RegressionEstimate& e : r.comparison.estimates) {
+      if (e.usable()) {
+        const auto& p = e.parameters[i];
+        row.estimates.push_back({p.value, p.low95, p.high95, status_of(p.status)});
+      } else {
+        row.estimates.push_back({kNaN, kNaN, kNaN, Status::kNone});
+      }
+    }
+    if (study.true_subject) {
+      if (const CoefficientModel* truth = study.true_subject->model.find(r.coefficient)) {
+        row.reference = truth->value_of(r.model.terms[i].expression);
+      }
+    }
+    plot.rows.push_back(std::move(row));
+  }
+  return plot;
+}
+
+Section parameters_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Parameters", .id = "parameters"};
+  std::vector<const CoefficientResult*> usable;
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (shown(r)) usable.push_back(&r);
+  }
+  if (usable.empty()) {
+    section.blocks.emplace_back(
+        Paragraph{"No coefficient was identified, so there is no table of derivatives.", Tone::kNote});
+    return section;
+  }
+  section.blocks.emplace_back(parameter_table(study, usable));
+  for (const CoefficientResult* r : usable) section.blocks.emplace_back(interval_plot(study, *r));
+  return section;
+}
+
+std::string unexcited_text(const RegressionEstimate& e) {
+  std::vector<std::string> texts;
+  for (const estimation::Direction& d : e.unexcited) texts.push_back(d.text);
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, "; "));
+}
+
+Section excitation_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Excitation", .id = "excitation"};
+  section.blocks.emplace_back(List{.items = {analysis.segments.longitudinal.text, analysis.segments.lateral.text}});
+  Table table{.title = "Excited directions",
+              .caption =
+                  "Singular values of the regressors in units of their noise; a direction counts as excited above the "
+                  "threshold "
+                  "(S/n + 1) sqrt(N - n). Combinations of parameters that are not excited keep a wide error bar.",
+              .columns = {{.name = "Coefficient"},
+                          {.name = "Samples"},
+                          {.name = "Threshold", .digits = 3},
+                          {.name = "Singular values"},
+                          {.name = "Not excited"},
+                          {.name = "Condition", .digits = 3}}};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    const RegressionEstimate* e = r.comparison.find(Method::kPcaGtls);
+    if (e == nullptr) continue;
+    std::vector<std::string> values;
+    for (const double s : e->singular_values) values.push_back(fmt::format("{:.3g}", s));
+    table.rows.push_back(
+        {.cells = {text_cell(std::string(name_of(r.coefficient))), number_cell(static_cast<double>(e->rows), 0),
+                   number_cell(e->threshold), text_cell(fmt::format("{}", fmt::join(values, ", "))),
+                   text_cell(unexcited_text(*e)), number_cell(e->condition_number)}});
+  }
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!shown(r)) continue;
+    const Eigen::MatrixXd& P = r.chosen->covariance;
+    Matrix matrix{.title = fmt::format("{}: correlation of the parameters", name_of(r.coefficient))};
+    for (const auto& p : r.chosen->parameters) matrix.row_names.push_back(p.name);
+    matrix.column_names = matrix.row_names;
+    for (Eigen::Index i = 0; i < P.rows(); ++i) {
+      std::vector<double> row;
+      for (Eigen::Index j = 0; j < P.cols(); ++j) row.push_back(P(i, j) / std::sqrt(P(i, i) * P(j, j)));
+      matrix.values.push_back(std::move(row));
+    }
+    section.blocks.emplace_back(std::move(matrix));
+  }
+  return section;
+}
+
+Section residual_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Residuals", .id = "residuals"};
+  Table table{
+      .title = "Honesty checks",
+      .caption =
+          "What would make an estimate look better than it is. A coefficient whose check fails is not recommended.",
+      .columns = {{.name = "Coefficient"}, {.name = "Check"}, {.name = "Result"}, {.name = "Finding"}}};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    for (const estimation::HonestyCheck& check : r.comparison.checks) {
+      table.rows.push_back(
+          {.cells = {text_cell(std::string(name_of(r.coefficient))), text_cell(check.name),
+                     status_cell(check.passed ? Status::kGood : Status::kCaution), text_cell(check.text)}});
+    }
+  }
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.chosen || r.residual_autocorrelation.value.empty()) continue;
+    section.blocks.emplace_back(residual_autocorrelation_plot(r));
+    section.blocks.emplace_back(residual_normal_plot(r));
+  }
+  return section;
+}
+
+Section validation_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Validation on unseen data", .id = "validation"};
+  const Validation& v = analysis.validation;
+  section.blocks.emplace_back(Paragraph{v.text, v.available() ? Tone::kPlain : Tone::kNote});
+  Table table{
+      .title = "Prediction",
+      .caption =
+          "MAE: mean absolute error, RMSE: root mean square error, R2: share of the variance explained, Theil: "
+          "inequality "
+          "coefficient (0 perfect). Coefficients are compared sample by sample; airspeed, alpha and beta are flown.",
+      .columns = {{.name = "Quantity"},
+                  {.name = "MAE", .digits = 3},
+                  {.name = "RMSE", .digits = 3},
+                  {.name = "R2", .digits = 3},
+                  {.name = "Theil", .digits = 3},
+                  {.name = "Unit"},
+                  {.name = "Samples"}}};
+  const auto row = [&](std::string name, const numerics::FitMeasures& fit, const std::string& unit, Status status) {
+    table.rows.push_back(
+        {.cells = {text_cell(std::move(name)), number_cell(fit.mae), number_cell(fit.rmse), number_cell(fit.r2),
+                   number_cell(fit.theil), text_cell(unit), number_cell(static_cast<double>(fit.count), 0)},
+         .status = status});
+  };
+  for (const PredictedQuantity& q : v.quantities) row(q.name, q.fit, q.unit, Status::kNone);
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.holdout_fit.count > 0) row(std::string(name_of(r.coefficient)), r.holdout_fit, "1", status_of(r.verdict));
+  }
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  for (TimeSeries& figure : validation_figures(v)) section.blocks.emplace_back(std::move(figure));
+  return section;
+}
+
+Section rejected_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Rejected estimates (do not use)", .id = "rejected", .folded = true};
+  section.blocks.emplace_back(
+      Paragraph{"For those who want to see what went wrong. These numbers are not the aircraft's.", Tone::kWarning});
+  std::size_t count = 0;
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.verdict != CoefficientVerdict::kRejected || !r.chosen) continue;
+    section.blocks.emplace_back(Paragraph{r.reason});
+    section.blocks.emplace_back(interval_plot(study, r));
+    ++count;
+  }
+  if (count == 0) section.blocks.clear();
+  return section;
+}
+
+Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Sensors and state estimation", .id = "sensors"};
+  const Reconstruction& rec = analysis.reconstruction;
+  section.blocks.emplace_back(
+      FactList{{{"Turbulence assumed", rec.turbulence_origin}, {"Air density from", rec.density_origin}}});
+  Table channels{
+      .title = "Channels",
+      .columns = {
+          {.name = "Channel"}, {.name = "From"}, {.name = "Rate", .unit = "Hz", .digits = 3}, {.name = "Note"}}};
+  for (const ChannelOrigin& o : study.mapped.origins) {
+    channels.rows.push_back(
+        {.cells = {text_cell(o.channel), text_cell(o.source), number_cell(o.rate_Hz), text_cell(o.note)}});
+  }
+  section.blocks.emplace_back(std::move(channels));
+  if (!analysis.delays.empty()) {
+    Table delays{.title = "Delays",
+                 .caption = "Positive: the sensor reports late.",
+                 .columns = {{.name = "Group"},
+                             {.name = "Compared with"},
+                             {.name = "Delay", .unit = "ms"},
+                             {.name = "Sigma", .unit = "ms"},
+                             {.name = "Correlation", .digits = 2},
+                             {.name = "Result"}}};
+    for (const DelayReport& d : analysis.delays) {
+      delays.rows.push_back(
+          {.cells = {text_cell(d.group), text_cell(d.reference), number_cell(1e3 * d.delay_s, 1),
+                     number_cell(1e3 * d.sigma_s, 1), number_cell(d.correlation), text_cell(d.text)}});
+    }
+    section.blocks.emplace_back(std::move(delays));
+  }
+  Table sensors{.title = "Innovations",
+                .caption =
+                    "NIS: mean square of the innovations in units of what the filter expected; 1 when the assumed "
+                    "noise is right, above when "
+                    "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white.",
+                .columns = {{.name = "Sensor"},
+                            {.name = "Assumed sigma", .digits = 3},
+                            {.name = "Unit"},
+                            {.name = "Samples"},
+                            {.name = "Refused"},
+                            {.name = "NIS", .digits = 3},
+                            {.name = "Lag 1", .digits = 2}}};
+  for (const SensorReport& s : rec.sensors) {
+    const double scale = s.unit == "rad" ? 1.0 / kDegree : 1.0;
+    sensors.rows.push_back(
+        {.cells = {text_cell(s.channel), number_cell(s.sigma * scale), text_cell(s.unit == "rad" ? "deg" : s.unit),
+                   number_cell(static_cast<double>(s.innovations.count), 0),
+                   number_cell(static_cast<double>(s.innovations.rejected), 0), number_cell(s.innovations.nis),
+                   number_cell(s.innovations.lag1)}});
+  }
+  section.blocks.emplace_back(std::move(sensors));
+  Table quantities{.title = "What the sensors can tell",
+                   .columns = {{.name = "Quantity"},
+                               {.name = "Sigma", .digits = 3},
+                               {.name = "Assumed beforehand", .digits = 3},
+                               {.name = "Unit"},
+                               {.name = "Verdict"},
+                               {.name = "In words"}}};
+  for (const QuantityReport& q : rec.quantities) {
+    const double scale = q.unit == "rad" ? 1.0 / kDegree : 1.0;
+    const Status status = q.observability == Observability::kObservable ? Status::kGood
+                          : q.observability == Observability::kWeak     ? Status::kCaution
+                                                                        : Status::kBad;
+    quantities.rows.push_back(
+        {.cells = {text_cell(q.quantity), number_cell(q.sigma * scale), number_cell(q.prior_sigma * scale),
+                   text_cell(q.unit == "rad" ? "deg" : q.unit), status_cell(status, to_string(q.observability)),
+                   text_cell(q.statement)}});
+  }
+  section.blocks.emplace_back(std::move(quantities));
+  return section;
+}
+
+void add_warnings(Document& document, const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return;
+  Section section{.title = "Warnings", .id = "warnings"};
+  section.blocks.emplace_back(List{.items = warnings, .tone = Tone::kWarning});
+  document.sections.push_back(std::move(section));
+}
+
+Section method_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "How it was done", .id = "method"};
+  const FlightSignals& s = analysis.signals;
+  std::vector<Fact> facts{
+      {"Study", study.name},
+      {"Seed", std::to_string(study.seed)},
+      {"Common grid", fmt::format("{:.0f} Hz, every {}. sample regressed on", s.grid.rate_Hz(), s.stride)},
+      {"Pass band", fmt::format("0 to {:.1f} Hz, zero phase", s.filter.pass_Hz)},
+      {"Hold-out", fmt::format("{:.0f} % of the excited time, in blocks of {:.0f} s", 100.0 * study.segments.holdout,
+                               study.segments.block_s)},
+      {"Estimator", study.identify.method}};
+  for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
+    const GridSignal& signal = s[which];
+    const bool angle = which != FlightSignal::kAz;
+    facts.push_back({fmt::format("{} regressed on", kFlightSignalNames[static_cast<std::size_t>(which)]),
+                     fmt::format("{}, error {:.3g} {}", signal.origin, angle ? signal.sigma / kDegree : signal.sigma,
+                                 which == FlightSignal::kP ? "deg/s" : (angle ? "deg" : "m/s^2"))});
+  }
+  section.blocks.emplace_back(FactList{std::move(facts)});
+  section.blocks.emplace_back(
+      Paragraph{"Sensors are brought onto one clock; a model-free extended Kalman filter with Dryden gust states and "
+                "its fixed-interval smoother give "
+                "airspeed, flow angles and wind; all signals pass one zero-phase filter; coefficients follow from the "
+                "rigid-body equations; each is "
+                "estimated by ordinary, total and generalised total least squares on the same samples, with the "
+                "regressors' errors propagated from "
+                "the sensors; what is recommended has passed the checks above and predicts the hold-out."});
+  return section;
+}
+
+}  // namespace
+
+Document identification_report(const FlightStudy& study, const FlightAnalysis& analysis,
+                               const AircraftReportContext& context) {
+  Document document;
+  document.title = fmt::format("{}: aerodynamic model", study.subject.name);
+  document.subtitle = context.verb == "validate" ? "A given estimate tried on this flight" : "Identified from flight";
+  document.verdict = verdict_of(analysis);
+  document.facts = facts_of(study, analysis);
+  document.generator = fmt::format("Made with {}", context.program);
+  document.sections.push_back(coefficients_section(analysis));
+  if (context.verb != "validate") document.sections.push_back(parameters_section(study, analysis));
+  document.sections.push_back(validation_section(analysis));
+  document.sections.push_back(flight_section(study, analysis));
+  document.sections.push_back(coefficient_series_section(analysis));
+  if (context.verb != "validate") {
+    document.sections.push_back(excitation_section(analysis));
+    document.sections.push_back(residual_section(analysis));
+  }
+  document.sections.push_back(sensors_section(study, analysis));
+  add_warnings(document, analysis.estimate.warnings);
+  if (Section rejected = rejected_section(study, analysis); !rejected.blocks.empty())
+    document.sections.push_back(std::move(rejected));
+  document.sections.push_back(method_section(study, analysis));
+  return document;
+}
+
+Document reconstruction_report(const FlightStudy& study, const FlightAnalysis& analysis,
+                               const AircraftReportContext& context) {
+  Document document;
+  document.title = fmt::format("{}: motion through the air", study.subject.name);
+  document.subtitle = "Airspeed, flow angles and wind from the recording";
+  document.facts = facts_of(study, analysis);
+  document.generator = fmt::format("Made with {}", context.program);
+  std::vector<std::string> weak;
+  for (const QuantityReport& q : analysis.reconstruction.quantities) {
+    const bool air_data =
+        q.quantity == "airspeed" || q.quantity == "alpha" || q.quantity == "beta" || q.quantity.starts_with("wind");
+    if (air_data && q.observability != Observability::kObservable) weak.push_back(q.quantity);
+  }
+  document.verdict.level = weak.empty() ? Level::kGood : Level::kCaution;
+  document.verdict.word = weak.empty() ? "Observable" : "Partly observable";
+  document.verdict.headline =
+      weak.empty()
+          ? "Airspeed, flow angles and wind are determined by the sensors of this flight."
+          : fmt::format("The sensors of this flight do not determine {}: mind the bands.", fmt::join(weak, ", "));
+  document.sections.push_back(flight_section(study, analysis));
+  document.sections.push_back(sensors_section(study, analysis));
+  add_warnings(document, analysis.reconstruction.warnings);
+  return document;
+}
+
+}  // namespace veridyn::report
