@@ -146,18 +146,18 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   Recording log;
   if (!root.has("data")) {
     if (!root.has("flight")) root.fail("data", "is missing: the study names no recording, and no [flight] to simulate");
-    const SimulationStudy simulation = read_simulation_study(root);
+    const SimulationOptions simulation = read_simulation(root);
     root.finish();
     progress.stage("simulating the flight");
     SimulatedFlight flight = simulate(simulation, progress);
-    if (!flight.completed) throw InputError(study.name(), flight.message);
+    if (!flight.usable()) throw InputError(study.name(), flight.message());
     log = std::move(flight.measured);
     log.source = study.name();
     result.truth = std::move(flight.truth);
     result.true_subject = result.subject;
   } else {
     // A study may carry the flight that its recording was simulated from.
-    if (root.has("flight")) static_cast<void>(read_simulation_study(root));
+    if (root.has("flight")) static_cast<void>(read_simulation(root));
     progress.stage("reading the recording");
     log = io::read_study_data(data);
     result.inputs = data.files(data.has("file") ? "file" : "files");

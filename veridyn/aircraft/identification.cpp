@@ -143,6 +143,39 @@ class CoefficientIdentification {
     return result;
   }
 
+  /// A given estimate instead of an own one.
+  CoefficientResult evaluate(const CoefficientModel& model) {
+    CoefficientResult result;
+    result.coefficient = model.coefficient;
+    result.axis = axis_of(model.coefficient);
+    result.model = model;
+    result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
+    result.reason = obstacle(model, signals_, subject_);
+    if (!result.reason.empty()) return result;
+    const std::string_view name = name_of(model.coefficient);
+    const AxisSegments& axis = segments_.of(result.axis);
+    const RegressionData data = coefficient_data(model, signals_, axis.excited, subject_);
+    if (data.rows() < static_cast<Eigen::Index>(10 * model.size())) {
+      result.verdict = CoefficientVerdict::kNotExcited;
+      result.reason = fmt::format("{} cannot be judged: {}", name, axis.text);
+      return result;
+    }
+    const Eigen::VectorXd theta =
+        Eigen::Map<const Eigen::VectorXd>(model.values.data(), static_cast<Eigen::Index>(model.size()));
+    result.holdout_fit = fit_on(data, theta);
+    const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
+    const bool holds = result.holdout_fit.r2 >= options_.min_holdout_r2;
+    result.verdict = holds ? CoefficientVerdict::kIdentified : CoefficientVerdict::kRejected;
+    result.reason =
+        holds ? fmt::format("{} holds: it explains {:.0f} % of this flight", name, explained)
+              : fmt::format(
+                    "{} does not hold: it explains {:.0f} % of the coefficient's variance in this flight, less than "
+                    "{:.0f} %",
+                    name, explained, 100.0 * options_.min_holdout_r2);
+    series(result);
+    return result;
+  }
+
  private:
   RegressionOptions regression_options() const {
     RegressionOptions options;
@@ -262,7 +295,7 @@ class CoefficientIdentification {
 
   void series(CoefficientResult& result) const {
     const std::vector<FlightSignal> needed = needed_signals(result.model);
-    const bool estimated = result.chosen.has_value();
+    const bool estimated = result.model.known();
     for (const TimeSpan& span : segments_.airborne) {
       const auto [begin, end] = signals_.indices(span);
       for (std::size_t k = begin; k < end; k += signals_.stride) {
@@ -407,8 +440,44 @@ std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signal
   return results;
 }
 
+std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results) {
+  std::vector<Coefficient> found;
+  for (const CoefficientResult& result : results) {
+    if (result.verdict == CoefficientVerdict::kIdentified) found.push_back(result.coefficient);
+  }
+  return found;
+}
+
+std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
+                                                 const Subject& subject, const IdentifyOptions& options,
+                                                 const estimation::Estimate& estimate) {
+  std::vector<CoefficientResult> results;
+  CoefficientIdentification identification(signals, segments, subject, options);
+  for (std::size_t i = 0; i < kCoefficients; ++i) {
+    const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
+    if (structure == nullptr) continue;
+    // Terms that the estimate dropped (refit_significant) are absent there; a coefficient of which it knows nothing is
+    // left out.
+    CoefficientModel model{structure->coefficient, {}, {}};
+    for (const Term& term : structure->terms) {
+      const estimation::EstimatedParameter* p = estimate.find(parameter_name(structure->coefficient, term));
+      if (p == nullptr || p->status == ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+      model.terms.push_back(term);
+      model.values.push_back(p->value);
+    }
+    if (model.size() > 0) results.push_back(identification.evaluate(model));
+  }
+  if (results.empty()) {
+    throw InputError(estimate.subject, "the estimate holds no usable parameter of the study's model");
+  }
+  return results;
+}
+
 Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results) {
   Subject identified = subject;
+  for (auto& coefficient : identified.model.coefficients) {
+    if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
+  }
   for (const CoefficientResult& result : results) {
     if (result.verdict == CoefficientVerdict::kIdentified) identified.model.set(result.model);
   }

@@ -74,8 +74,20 @@ struct CoefficientResult {
 [[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
                                                           std::span<const TimeSpan> spans, const Subject& subject);
 
-/// The subject with the identified values in its model; rejected and unexcited coefficients keep what the subject had.
+/// The subject with the identified values in its model; parameters of all other coefficients are unknown, so that
+/// nothing can be simulated with what this flight does not support.
 [[nodiscard]] Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results);
+
+/// The coefficients that may be used.
+[[nodiscard]] std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results);
+
+/// An estimate from elsewhere against all excited segments of this flight: a coefficient is identified when it explains
+/// at least `min_holdout_r2` of the measured one there, else rejected. Parameters that the estimate rejected are not
+/// tried.
+/// @throws InputError when the estimate holds nothing that the subject's model names.
+[[nodiscard]] std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
+                                                               const Subject& subject, const IdentifyOptions& options,
+                                                               const estimation::Estimate& estimate);
 
 /// The parameters of all coefficients, for estimate.json.
 [[nodiscard]] estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results);

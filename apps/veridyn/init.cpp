@@ -1,0 +1,135 @@
+// veridyn init aircraft: a commented study file to start from.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "apps/veridyn/options.hpp"
+#include "apps/veridyn/output.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string log;
+  bool force = false;
+  CommonOptions common;
+};
+
+// {} stands for the [data] table.
+constexpr const char* kAircraftStudy = R"(# A study of one flight: who flew, what was recorded, what to find out.
+#   veridyn inspect flight.bin          what the log holds and how it would be mapped
+#   veridyn identify study.toml         from log to model, with a report
+# Numbers are SI and radians; a text may carry any unit of the same kind: "27 lb", "12 deg". Keys with a leading # show
+# their defaults. Misspelt keys are refused, with the nearest known one.
+
+seed = 1
+
+[subject]
+name = "my aircraft"
+# builtin = "thor"               # start from a built-in aircraft instead; every key below then overrides it
+mass = "2.0 kg"                  # as flown
+wing_area = "0.31 m^2"
+span = "1.27 m"
+chord = "0.25 m"                 # mean aerodynamic chord
+sign_convention = "positive elevator: trailing edge down"
+# Without the inertia the forces are identified and the moments are not.
+inertia = {{ Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }}    # kg m^2
+# imu_position = [0, 0, 0]       # m from the centre of gravity: forward, right, down
+
+# What each coefficient depends on: alpha beta p_n q_n r_n de da dr CT Va, products ("alpha*q_n"), powers ("alpha^2"),
+# "abs(de)" and splines ("spline(alpha, 8 deg, 2)").
+[subject.model]
+CL = ["1", "alpha", "q_n", "de"]
+CD = ["1", "alpha", "alpha^2"]
+CY = ["1", "beta", "p_n", "r_n", "da", "dr"]
+Cl = ["1", "beta", "p_n", "r_n", "da", "dr"]
+Cm = ["1", "alpha", "q_n", "de"]
+Cn = ["1", "beta", "p_n", "r_n", "da", "dr"]
+#Drag needs thrust : a channel `thrust`, or a model of throttle(0..1) and airspeed.
+[subject.propulsion]
+kind = "none"
+#kind = "polynomial" #thrust[N] = sum c[i][j] throttle ^ i Va ^ j
+#polynomial = [[0, 0], [20, -0.6]]
+
+#Full throws, to turn servo positions into deflections.
+[subject.actuators.elevator]
+upper = "20 deg"                 # symmetric unless `lower` says otherwise
+[subject.actuators.aileron]
+upper = "20 deg"
+[subject.actuators.rudder]
+upper = "20 deg"
+
+[data]
+file = "{}"
+#files = ["IMU.csv", "GPS.csv"] #the tables of one flight instead
+#from = 120 #s, only this part of the log
+#to = 600
+
+#ArduPilot and PX4 logs are mapped automatically; what is named here wins. `veridyn inspect` lists the channels.
+[data.map]
+#airspeed = "ARSP.Airspeed"
+#alpha = {{channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" } }
+#aileron = {{channels = ["left", "right"], weights = [0.5, -0.5], unit = "deg" } }
+#beta = "none" #do not use it
+
+[delays]
+#automatic = true #find out how late each sensor is and take it off
+#gps = "0.12 s" # or say so
+
+[reconstruct]
+#turbulence = "auto" #low_light, low_moderate, medium_light, medium_moderate, or what fits best
+#estimate = [] #"alpha_bias", "beta_bias", "pitot_scale", "gyro_bias", "accel_bias", ...
+#airspeed_is = "true" #"equivalent" where the log's airspeed is indicated
+
+[signals]
+#pass_band = "10 Hz" #kept; engine vibration is above, the aircraft's motion below
+#flow_angles = "auto" #"vane", "smoothed"
+#noise = {{alpha = "0.6 deg" } } #standard deviation per sample; measured from the log where it is not given
+
+[segments]
+#holdout = 0.33 #share of the excited time that identification never sees
+#longitudinal = [120, 150] #s, begin and end of each, instead of searching for excitation
+#lateral = [160, 200]
+
+[identify]
+#method = "auto" #"OLS", "TLS", "GTLS", "PCA-GTLS"
+#refit_significant = false #once more with the significant parameters only
+
+[validate]
+#period = "5 s" #the model is started anew this often
+)";
+
+int init_aircraft(const Options& options) {
+  const std::filesystem::path folder = options.common.out.empty() ? "." : options.common.out;
+  make_folder(folder);
+  const std::filesystem::path path = folder / "study.toml";
+  if (std::filesystem::exists(path) && !options.force) {
+    throw InputError(path.string(), "is there already; --force replaces it");
+  }
+  write_file(path, fmt::format(fmt::runtime(kAircraftStudy), options.log));
+  tell(options.common,
+       fmt::format("wrote {}: fill in the subject, then `veridyn identify {}`", path.string(), path.string()));
+  return kDone;
+}
+
+}  // namespace
+
+void add_init(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = program.add_subcommand("init", "write a commented study file to start from");
+  CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");
+  verb->require_subcommand(1);
+  aircraft->add_option("--log", options->log, "the log that the study is about")
+      ->default_str("flight.bin")
+      ->type_name("FILE");
+  options->log = "flight.bin";
+  aircraft->add_flag("--force", options->force, "replace an existing study.toml");
+  add_common(*aircraft, options->common, ".", "veridyn init aircraft --log flight.bin --out my_aircraft");
+  aircraft->callback([options, &exit_code] { exit_code = init_aircraft(*options); });
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,71 @@
+// veridyn simulate STUDY: fly the model, write a recording with sensors and noise, and the truth.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "apps/veridyn/output.hpp"
+#include "veridyn/aircraft/simulate_study.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/io/csv.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::string study;
+  CommonOptions common;
+};
+
+int simulate(const Options& options) {
+  const Study study = load_study(options.study, options.common);
+  const aircraft::SimulationOptions simulation = aircraft::read_simulation(study.root());
+  // Tables that only the analysis of the flight reads; misspelt keys in them are found by `identify`.
+  for (const char* table : {"title", "data", "delays", "reconstruct", "signals", "segments", "identify", "validate"}) {
+    static_cast<void>(study.root().has(table));
+  }
+  TerminalProgress progress(options.common.quiet);
+  progress.stage(fmt::format("simulating {:.0f} s of {}", simulation.duration, simulation.subject.name));
+  const aircraft::SimulatedFlight flight = aircraft::simulate(simulation, progress);
+  if (flight.end == aircraft::SimulationEnd::kInterrupted) {
+    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
+    return kFailed;
+  }
+  if (!flight.usable()) {
+    fmt::print(stderr, "veridyn: {}\n", flight.message());
+    return kFailed;
+  }
+  const std::filesystem::path folder = options.common.out;
+  make_folder(folder);
+  io::write_csv(flight.truth, folder / "truth.csv");
+  io::write_csv(flight.measured, folder / "recording.csv");
+  write_file(folder / "subject.toml", aircraft::write_subject_toml(simulation.subject));
+  RunRecord run{"simulate", study.name(), study.to_toml(), simulation.seed, {options.study}};
+  write_run_record(folder, run, options.common);
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  tell(options.common, fmt::format("{:.0f} s flown, alpha from {:.1f} to {:.1f} deg with gusts; wrote {} and {}",
+                                   flight.end_time, flight.alpha_min / kDegree, flight.alpha_max / kDegree,
+                                   (folder / "recording.csv").string(), (folder / "truth.csv").string()));
+  nlohmann::ordered_json summary;
+  summary["folder"] = folder.string();
+  summary["duration_s"] = flight.end_time;
+  summary["channels"] = flight.measured.names();
+  print_summary(summary, options.common);
+  return kDone;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      program.add_subcommand("simulate", "fly a known aircraft; write what its sensors record and the truth");
+  verb->add_option("STUDY", options->study, "study file (TOML) with [subject], [flight] and [sensors]")->required();
+  add_common(*verb, options->common, "out/simulate", "veridyn simulate simulated_flight.toml --seed 7");
+  verb->callback([options, &exit_code] { exit_code = simulate(*options); });
+}
+
+}  // namespace veridyn::app
