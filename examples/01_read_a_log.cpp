@@ -1,0 +1,59 @@
+// Hello, my data: what does a log hold?
+//
+//   example_01_read_a_log [FILE]      ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, CSV
+//
+// Without a file it writes a small CSV first and reads that.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/io/csv.hpp"
+#include "veridyn/io/read.hpp"
+
+namespace {
+
+// A recording has channels; each has a unit and its own time base. Here a fast gyro and a slow barometer.
+std::filesystem::path write_small_recording() {
+  using namespace veridyn;
+  std::vector<double> fast, rate, slow, height;
+  for (int k = 0; k < 500; ++k) {
+    fast.push_back(0.01 * k);
+    rate.push_back(0.2 * std::sin(3.0 * fast.back()));
+    if (k % 10 == 0) {
+      slow.push_back(fast.back());
+      height.push_back(100.0 + 2.0 * slow.back());
+    }
+  }
+  Recording recording;
+  recording.frame = Frame::kFrd;
+  recording.add(make_channel("gyro_y", "rad/s", make_time_base(fast), rate));
+  recording.add(make_channel("alt", "m", make_time_base(slow), height));
+  const auto path = std::filesystem::temp_directory_path() / "veridyn_example_01.csv";
+  io::write_csv(recording, path);
+  return path;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::filesystem::path path = argc > 1 ? std::filesystem::path(argv[1]) : write_small_recording();
+  // The content decides about the format. Whatever the log's units are, values come in SI and radians.
+  const veridyn::Recording recording = veridyn::io::read_recording(path);
+
+  const veridyn::TimeSpan span = recording.span();
+  std::printf("%s: %zu channels, %.2f s to %.2f s\n", path.string().c_str(), recording.channels().size(), span.begin,
+              span.end);
+  for (const veridyn::Channel& channel : recording.channels()) {
+    std::printf("  %-24s [%-6s] %7zu samples, %8.2f Hz, %zu gaps\n", channel.name.c_str(), channel.unit.name.c_str(),
+                channel.size(), channel.rate_Hz(), channel.gaps().size());
+  }
+  for (const std::string& warning : recording.warnings) std::printf("  note: %s\n", warning.c_str());
+  return recording.channels().empty() ? 1 : 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}
