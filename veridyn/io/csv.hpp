@@ -11,8 +11,8 @@ namespace veridyn::io {
 
 /// How to read a CSV file that is not written as this project writes it.
 struct CsvOptions {
-  std::string time_column;  ///< name of the column with the stamps; empty: found by its name
-  std::string time_unit;    ///< unit of the stamps ("ms"); empty: from the header or the name
+  std::string time_column{};  ///< name of the column with the stamps; empty: found by its name
+  std::string time_unit{};    ///< unit of the stamps ("ms"); empty: from the header or the name
   char delimiter = '\0';    ///< '\0': comma, semicolon or tabulator, whichever the header holds most of
 };
 

@@ -20,7 +20,8 @@ namespace {
 
 std::string_view trim(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return {};
+  // Still inside of the line: cells are joined again by their places.
+  if (begin == std::string_view::npos) return text.substr(0, 0);
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 

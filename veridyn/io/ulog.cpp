@@ -133,10 +133,10 @@ class Walker {
         return std::memchr(body, ':', std::min<std::size_t>(size, 256)) != nullptr;
       case 'I':
       case 'P':
-        return static_cast<unsigned char>(body[0]) > 2 && size > 1U + static_cast<unsigned char>(body[0]);
+        return static_cast<unsigned char>(body[0]) > 2 && size >= 1U + static_cast<unsigned char>(body[0]);
       case 'M':
       case 'Q':
-        return size > 2 && static_cast<unsigned char>(body[1]) > 2 && size > 2U + static_cast<unsigned char>(body[1]);
+        return size > 2 && static_cast<unsigned char>(body[1]) > 2 && size >= 2U + static_cast<unsigned char>(body[1]);
       case 'A':
         return size > 3 && size < 512 && body[3] > ' ' && body[3] < 127;
       case 'R':

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "veridyn/core/assert.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/log.hpp"
+
+namespace veridyn::fuzz {
+
+/// Reads the bytes and checks what must hold of every log; an InputError is a proper answer.
+template <typename Read>
+int one_input(const unsigned char* data, std::size_t size, Read read) {
+  try {
+    const io::Log log = read(std::string_view(reinterpret_cast<const char*>(data), size));
+    VERIDYN_ASSERT(log.damage.bytes_lost <= size);
+    for (const io::LogTopic& topic : log.topics) {
+      if (!topic.time) continue;
+      for (std::size_t i = 1; i < topic.size(); ++i) VERIDYN_ASSERT((*topic.time)[i - 1] <= (*topic.time)[i]);
+      for (const io::LogField& field : topic.fields) VERIDYN_ASSERT(field.values.size() == topic.size());
+    }
+    (void)io::to_recording(log);
+  } catch (const InputError&) {
+  }
+  return 0;
+}
+
+}  // namespace veridyn::fuzz

@@ -1,0 +1,20 @@
+#!/bin/sh
+# fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]: runs every fuzz target (or those named) for so many seconds each, starting
+# from its seeds. Corpora and what was found stay under BUILD_DIR/fuzz-corpus and BUILD_DIR/fuzz-findings.
+set -eu
+seconds=${1:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
+build=${2:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
+shift 2
+[ $# -gt 0 ] || set -- dataflash dataflash_text ulog csv mat
+"$build/bin/fuzz_seeds" "$build/fuzz-corpus"
+failed=0
+for format in "$@"; do
+  mkdir -p "$build/fuzz-findings/$format"
+  echo "== $format, $seconds s"
+  if ! "$build/bin/fuzz_$format" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536 \
+    -print_final_stats=1 -verbosity=0 -artifact_prefix="$build/fuzz-findings/$format/" "$build/fuzz-corpus/$format"; then
+    echo "FOUND: see $build/fuzz-findings/$format" >&2
+    failed=1
+  fi
+done
+exit $failed

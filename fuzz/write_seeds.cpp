@@ -1,0 +1,31 @@
+// fuzz_seeds FOLDER: writes FOLDER/<format>/small, a valid log of each format to start from.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "tests/support/synthetic_logs.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: fuzz_seeds FOLDER\n");
+    return 2;
+  }
+  try {
+    const std::filesystem::path folder = arguments[1];
+    const auto write = [&](const char* format, const std::string& bytes) {
+      veridyn::make_folder(folder / format);
+      veridyn::write_file(folder / format / "small", bytes);
+    };
+    write("dataflash", veridyn::testing::small_dataflash());
+    write("dataflash_text", veridyn::testing::small_dataflash_text());
+    write("ulog", veridyn::testing::small_ulog());
+    write("csv", veridyn::testing::small_csv());
+    write("mat", veridyn::testing::small_mat());
+  } catch (const veridyn::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
