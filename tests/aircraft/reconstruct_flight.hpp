@@ -10,15 +10,15 @@
 #include "veridyn/numerics/rotation.hpp"
 
 /// A flight made of formulas, for the tests and benchmarks of reconstruction: attitude and ground velocity are analytic
-/// functions of time, so gyro and accelerometer are exact; the air is a constant wind plus Dryden gusts; the sensors are
-/// the reference set. It knows nothing of aerodynamics and shares no code with the filter.
+/// functions of time, so gyro and accelerometer are exact; the air is a constant wind plus Dryden gusts; the sensors
+/// are the reference set. It knows nothing of aerodynamics and shares no code with the filter.
 namespace veridyn::aircraft::testing {
 
 struct FlightCase {
   double speed = 15.0;
   double duration = 120.0;
   std::uint64_t seed = 1;
-  GustSpectrum spectrum;
+  DrydenSettings spectrum{200.0, 200.0, 50.0, 2.12, 2.12, 1.4};
   Eigen::Vector3d wind{4.0, -3.0, 0.0};
   bool noise = true;
 };
@@ -32,7 +32,7 @@ struct MadeFlight {
 /// realisation and another discretisation than the filter's.
 class MadeGusts {
  public:
-  MadeGusts(const GustSpectrum& s, std::uint64_t seed) : s_(s), random_(seed, "gusts") {}
+  MadeGusts(const DrydenSettings& s, std::uint64_t seed) : s_(s), random_(seed, "gusts") {}
   Eigen::Vector3d step(double V, double dt) {
     constexpr int kSub = 10;
     const double h = dt / kSub;
@@ -58,7 +58,7 @@ class MadeGusts {
     x += h * rate;
     x(1) += std::sqrt(h) * random_.normal();
   }
-  GustSpectrum s_;
+  DrydenSettings s_;
   numerics::RandomStream random_;
   double u_ = 0.0;
   Eigen::Vector2d v_ = Eigen::Vector2d::Zero(), w_ = Eigen::Vector2d::Zero();
@@ -82,12 +82,12 @@ inline MadeFlight make_flight(const FlightCase& c) {
   gusts.settle(c.speed);
   MadeFlight f;
   const auto n = static_cast<std::size_t>(std::lround(c.duration / kDt)) + 1;
-  std::vector<std::string> names{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z", "roll",
-                                 "pitch",   "yaw",     "alpha",   "beta",   "dynamic_pressure"};
+  std::vector<std::string> names{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z",
+                                 "roll",    "pitch",   "yaw",     "alpha",  "beta",   "dynamic_pressure"};
   std::vector<std::string> units{"m/s^2", "m/s^2", "m/s^2", "rad/s", "rad/s", "rad/s",
                                  "rad",   "rad",   "rad",   "rad",   "rad",   "Pa"};
-  std::vector<double> sigma{0.05, 0.05, 0.05, 0.35 * kDeg, 0.35 * kDeg, 0.35 * kDeg, 0.75 * kDeg,
-                            0.75 * kDeg, 0.75 * kDeg, 0.6 * kDeg, 0.6 * kDeg, 10.0};
+  std::vector<double> sigma{0.05,        0.05,        0.05,        0.35 * kDeg, 0.35 * kDeg, 0.35 * kDeg,
+                            0.75 * kDeg, 0.75 * kDeg, 0.75 * kDeg, 0.6 * kDeg,  0.6 * kDeg,  10.0};
   std::vector<std::vector<double>> y(names.size());
   std::vector<double> gps_t, gps[3];
   std::vector<numerics::RandomStream> random;
@@ -99,8 +99,8 @@ inline MadeFlight make_flight(const FlightCase& c) {
     const Eigen::Matrix3d R_BN = numerics::R_body_from_ned(e.phi, e.theta, e.psi);
     const Vector3d v = velocity(t);
     constexpr double h = 1e-4;
-    const Vector3d acceleration = (velocity(t - 2 * h) - 8.0 * velocity(t - h) + 8.0 * velocity(t + h) -
-                                   velocity(t + 2 * h)) / (12.0 * h);
+    const Vector3d acceleration =
+        (velocity(t - 2 * h) - 8.0 * velocity(t - h) + 8.0 * velocity(t + h) - velocity(t + 2 * h)) / (12.0 * h);
     const Vector3d force = R_BN * (acceleration - Vector3d(0.0, 0.0, 9.80665));
     const auto em = attitude(t - h), ep = attitude(t + h);
     const Vector3d omega = numerics::body_rates(
@@ -117,7 +117,7 @@ inline MadeFlight make_flight(const FlightCase& c) {
     f.wind_north.push_back(total.x());
     f.wind_east.push_back(total.y());
     f.wind_down.push_back(total.z());
-    const double truth[] = {force.x(), force.y(), force.z(), omega.x(),       omega.y(),      omega.z(),
+    const double truth[] = {force.x(), force.y(), force.z(), omega.x(),      omega.y(),     omega.z(),
                             e.phi,     e.theta,   e.psi,     f.alpha.back(), f.beta.back(), 0.5 * kRho * V * V};
     for (std::size_t k = 0; k < y.size(); ++k) {
       y[k].push_back(truth[k] + (c.noise ? sigma[k] * random[k].normal() : 0.0));

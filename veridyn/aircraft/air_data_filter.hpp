@@ -5,16 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/dryden.hpp"
 #include "veridyn/estimation/kalman_model.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft {
-
-/// Lengths [m] and intensities [m/s] of the Dryden spectrum (MIL-F-8785C) along the body axes.
-struct GustSpectrum {
-  double Lu = 200.0, Lv = 200.0, Lw = 50.0;
-  double sigma_u = 2.12, sigma_v = 2.12, sigma_w = 1.4;
-};
 
 /// Power of what drives the model: each is the square root of a power spectral density, so that white noise of standard
 /// deviation sigma sampled every T seconds has sigma sqrt(T).
@@ -87,7 +82,7 @@ struct AirDataModel {
   static constexpr double kLead = 1.0 - 0.57735026918962576;  // 1 - 1/sqrt(3)
   static constexpr double kSqrt3 = 1.7320508075688773;
 
-  GustSpectrum spectrum;
+  DrydenSettings spectrum;
   AirDataNoise noise;
 
   /// Gust along the body axes [m/s].
@@ -135,7 +130,8 @@ struct AirDataModel {
     moved.gust = x.gust.template cast<S>() + e.template segment<5>(kGust);
     moved.wind = x.wind.template cast<S>() + e.template segment<3>(kWind);
     if constexpr (kImuBiases) moved.imu_bias = x.imu_bias.template cast<S>() + e.template segment<6>(kImuBias);
-    if constexpr (kAirDataErrors) moved.air_error = x.air_error.template cast<S>() + e.template segment<5>(kAirDataError);
+    if constexpr (kAirDataErrors)
+      moved.air_error = x.air_error.template cast<S>() + e.template segment<5>(kAirDataError);
     return moved;
   }
 
@@ -149,8 +145,41 @@ struct AirDataModel {
     e.template segment<5>(kGust) = to.gust - from.gust.template cast<S>();
     e.template segment<3>(kWind) = to.wind - from.wind.template cast<S>();
     if constexpr (kImuBiases) e.template segment<6>(kImuBias) = to.imu_bias - from.imu_bias.template cast<S>();
-    if constexpr (kAirDataErrors) e.template segment<5>(kAirDataError) = to.air_error - from.air_error.template cast<S>();
+    if constexpr (kAirDataErrors)
+      e.template segment<5>(kAirDataError) = to.air_error - from.air_error.template cast<S>();
     return e;
+  }
+
+  /// Jacobian of `propagate`, dynamic rows, in closed form: the attitude error turns with the body, tilts the specific
+  /// force, and the biases act through the right Jacobian of the rotation group.
+  [[nodiscard]] Eigen::Matrix<double, kDynamic, kStates> transition_rows(const State<double>& x, const Input& u,
+                                                                         double dt, State<double>& after) const {
+    after = propagate<double>(x, u, dt);
+    Eigen::Vector3d omega = u.gyro;
+    Eigen::Vector3d force = u.specific_force;
+    if constexpr (kImuBiases) {
+      omega -= x.imu_bias.template head<3>();
+      force -= x.imu_bias.template tail<3>();
+    }
+    const Eigen::Matrix3d R_half = rotation<double>(omega * (0.5 * dt)).toRotationMatrix();
+    const Eigen::Matrix3d R_NB = x.attitude.toRotationMatrix();
+    Eigen::Matrix<double, kDynamic, kStates> F = Eigen::Matrix<double, kDynamic, kStates>::Zero();
+    F.template block<3, 3>(kAttitude, kAttitude) = R_half.transpose() * R_half.transpose();
+    F.template block<3, 3>(kVelocity, kAttitude) = R_NB * cross_matrix(R_half * force) * -dt;
+    F.template block<3, 3>(kVelocity, kVelocity).setIdentity();
+    if constexpr (kImuBiases) {
+      F.template block<3, 3>(kAttitude, kImuBias) = right_jacobian(omega * dt) * -dt;
+      F.template block<3, 3>(kVelocity, kImuBias) =
+          R_NB * R_half * cross_matrix(force) * right_jacobian(omega * (0.5 * dt)) * (0.5 * dt * dt);
+      F.template block<3, 3>(kVelocity, kImuBias + 3) = R_NB * R_half * -dt;
+    }
+    const Decay d = decay(u.airspeed, dt);
+    F(kGust, kGust) = d.u;
+    F(kGust + 1, kGust + 1) = F(kGust + 2, kGust + 2) = d.v;
+    F(kGust + 2, kGust + 1) = d.v * d.step_v;
+    F(kGust + 3, kGust + 3) = F(kGust + 4, kGust + 4) = d.w;
+    F(kGust + 4, kGust + 3) = d.w * d.step_w;
+    return F;
   }
 
   void add_process_noise(const State<double>&, const Input& u, double dt, Covariance& P) const {
@@ -193,7 +222,7 @@ struct AirDataModel {
   /// d(v_r) / d(error), of which only the columns of attitude, velocity, gust and wind are not zero.
   [[nodiscard]] Eigen::Matrix<double, 3, kStates> air_velocity_jacobian(const State<double>& x) const {
     Eigen::Matrix<double, 3, kStates> J = Eigen::Matrix<double, 3, kStates>::Zero();
-    const Eigen::Matrix3d R_BN = x.attitude.toRotationMatrix().transpose();
+    const Eigen::Matrix3d R_BN = x.attitude.conjugate().toRotationMatrix();
     const Eigen::Vector3d v = R_BN * (x.velocity - x.wind);
     J(0, kAttitude + 1) = -v.z();
     J(0, kAttitude + 2) = v.y();
@@ -221,6 +250,26 @@ struct AirDataModel {
     const double w = spectrum.Lw == spectrum.Lv ? v : std::exp(-path / spectrum.Lw);
     const double u = spectrum.Lu == spectrum.Lv ? v : std::exp(-path / spectrum.Lu);
     return {u, v, w, path / spectrum.Lv, path / spectrum.Lw};
+  }
+
+  [[nodiscard]] static Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+    return m;
+  }
+
+  /// exp(phi + d) = exp(phi) exp(J d) to first order.
+  [[nodiscard]] static Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& phi) {
+    const double square = phi.squaredNorm();
+    double a = 0.5 - square * (1.0 / 24.0 - square / 720.0);
+    double b = 1.0 / 6.0 - square * (1.0 / 120.0 - square / 5040.0);
+    if (square > 1e-2) {
+      const double angle = std::sqrt(square);
+      a = (1.0 - std::cos(angle)) / square;
+      b = (angle - std::sin(angle)) / (square * angle);
+    }
+    const Eigen::Matrix3d X = cross_matrix(phi);
+    return Eigen::Matrix3d::Identity() - a * X + b * X * X;
   }
 
   static void add_pair(Covariance& P, int i, double e, double step) {

@@ -39,7 +39,7 @@ AngleBound bound(double length, double intensity, double airspeed, double vane_s
 
 }  // namespace
 
-InformationBound information_bound(const GustSpectrum& spectrum, double airspeed, double vane_sigma, double rate_Hz) {
+InformationBound information_bound(const DrydenSettings& spectrum, double airspeed, double vane_sigma, double rate_Hz) {
   return {bound(spectrum.Lw, spectrum.sigma_w, airspeed, vane_sigma, rate_Hz),
           bound(spectrum.Lv, spectrum.sigma_v, airspeed, vane_sigma, rate_Hz)};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "veridyn/aircraft/air_data_filter.hpp"
+#include "veridyn/aircraft/dryden.hpp"
 
 namespace veridyn::aircraft {
 
@@ -26,7 +26,7 @@ struct InformationBound {
 ///
 /// Reproduces the specification's values with the reference vanes (2 sigma = 1.2 deg, 100 Hz): low altitude, moderate,
 /// 15 m/s: alpha 0.4485 / 0.3744 deg, beta 0.4099 / 0.3313 deg.
-[[nodiscard]] InformationBound information_bound(const GustSpectrum& spectrum, double airspeed, double vane_sigma,
+[[nodiscard]] InformationBound information_bound(const DrydenSettings& spectrum, double airspeed, double vane_sigma,
                                                  double rate_Hz);
 
 }  // namespace veridyn::aircraft

@@ -91,7 +91,7 @@ Segment typical_part(const FlightStreams& s, std::span<const Segment> segments, 
 /// Log likelihood of the innovations over a stretch under a gust spectrum. What the gate refuses counts as an
 /// innovation on the gate, so that a spectrum does not win by refusing.
 double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const Segment& part,
-                      const GustSpectrum& spectrum) {
+                      const DrydenSettings& spectrum) {
   using Model = AirDataModel<false, false>;
   const std::vector<double> no_output;
   const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &no_output};
@@ -110,7 +110,10 @@ double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const
 void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
                        Reconstruction& out) {
   if (o.turbulence != "auto") {
-    out.turbulence = gust_spectrum(o.turbulence, o.turbulence_scale);
+    out.turbulence = o.turbulence == "study" ? o.own_turbulence : gust_spectrum(o.turbulence);
+    for (double* sigma : {&out.turbulence.sigma_u, &out.turbulence.sigma_v, &out.turbulence.sigma_w}) {
+      *sigma *= o.turbulence_scale;
+    }
     out.turbulence_origin = o.turbulence_scale == 1.0
                                 ? o.turbulence
                                 : fmt::format("{}, intensities times {:g}", o.turbulence, o.turbulence_scale);
@@ -127,7 +130,7 @@ void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std:
   double best = -std::numeric_limits<double>::infinity();
   for (const char* setting : {"low_light", "medium_light"}) {
     for (const double scale : kScales) {
-      const GustSpectrum spectrum = gust_spectrum(setting, scale);
+      const DrydenSettings spectrum = gust_spectrum(setting, scale);
       const double likelihood = log_likelihood(s, o, part, spectrum);
       if (likelihood > best) {
         best = likelihood;
@@ -162,7 +165,7 @@ struct Solution {
 template <class Model>
 Solution solve(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
                const std::vector<double>& stamps, std::span<const std::size_t> first_stamp,
-               const GustSpectrum& spectrum, Progress& progress) {
+               const DrydenSettings& spectrum, Progress& progress) {
   const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &stamps};
   Solution solution{.smoothed = ResultColumns(stamps.size(), wanted_columns(o)),
                     .filtered = {},
@@ -240,7 +243,7 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
                        std::size_t count, Reconstruction& out) {
   const auto first = [count](const std::vector<double>& v) { return std::span<const double>(v.data(), count); };
   const double speed = std::max(numerics::median(first(columns.value(0))), 1.0);
-  const GustSpectrum& g = out.turbulence;
+  const DrydenSettings& g = out.turbulence;
   const bool pitot = !s.sensors[internal::kPitot].t.empty();
   const bool vane_a = !s.sensors[internal::kAlpha].t.empty();
   const bool vane_b = !s.sensors[internal::kBeta].t.empty();

@@ -56,7 +56,7 @@ struct Reconstruction {
   std::vector<SensorReport> sensors;
   std::vector<QuantityReport> quantities;
   SensorSigma sigma;              ///< as used
-  GustSpectrum turbulence;        ///< as used
+  DrydenSettings turbulence;      ///< as used
   std::string turbulence_origin;  ///< "low_moderate", "auto: low altitude, 1.4 x light"
   std::string density_origin;     ///< "static pressure and temperature"
   double log_likelihood = 0.0;    ///< of all accepted innovations

@@ -78,7 +78,8 @@ class ResultColumns {
     const Eigen::Matrix3d R = x.attitude.toRotationMatrix();
     using Rows = Eigen::Matrix<double, 3, Model::kStates>;
     const Rows J = model.air_velocity_jacobian(x);
-    const Eigen::Matrix3d C = Rows(J * P) * J.transpose();
+    const Eigen::Matrix<double, Model::kStates, 3> PJ = P.lazyProduct(J.transpose());
+    const Eigen::Matrix3d C = J.lazyProduct(PJ);
 
     const double speed = std::max(v.norm(), 1e-6);
     const double plane = std::max(std::hypot(v.x(), v.z()), 1e-6);
@@ -102,8 +103,8 @@ class ResultColumns {
     T.template middleCols<3>(Model::kAttitude) = -R * cross;
     T.template middleCols<5>(Model::kGust) = -R * J.template middleCols<5>(Model::kGust);
     T.template middleCols<3>(Model::kWind).setIdentity();
-    const Rows TP = T * P;
-    for (int k = 0; k < 3; ++k) put(9 + static_cast<std::size_t>(k), i, total(k), TP.row(k).dot(T.row(k)));
+    const Eigen::Matrix<double, Model::kStates, 3> PT = P.lazyProduct(T.transpose());
+    for (int k = 0; k < 3; ++k) put(9 + static_cast<std::size_t>(k), i, total(k), PT.col(k).dot(T.row(k)));
 
     const auto euler = numerics::euler_from_quaternion(x.attitude);
     const double cf = std::cos(euler.phi), sf = std::sin(euler.phi);

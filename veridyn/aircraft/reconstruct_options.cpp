@@ -5,9 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "veridyn/core/assert.hpp"
-#include "veridyn/core/nearest.hpp"
-
 namespace veridyn::aircraft {
 namespace {
 
@@ -44,8 +41,14 @@ ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
   if (table.has("rate")) o.rate_Hz = table.positive("rate", "1/s");
   const std::array<std::string, 2> sensors{"auto", "reference"};
   o.sensors = table.choice_or("sensors", sensors, o.sensors);
-  const std::array<std::string, 5> settings{"auto", "low_light", "low_moderate", "medium_light", "medium_moderate"};
-  o.turbulence = table.choice_or("turbulence", settings, o.turbulence);
+  const std::array<std::string, 6> settings{"auto",         "none",         "low_light",
+                                            "low_moderate", "medium_light", "medium_moderate"};
+  if (table.is_table("turbulence")) {
+    o.turbulence = "study";
+    o.own_turbulence = read_dryden(table, "turbulence");
+  } else {
+    o.turbulence = table.choice_or("turbulence", settings, o.turbulence);
+  }
   o.turbulence_scale = table.positive_or("turbulence_scale", "1", o.turbulence_scale);
   const std::array<std::pair<std::string, bool*>, 7> errors{{{"gyro_bias", &o.gyro_bias},
                                                              {"accel_bias", &o.accel_bias},
@@ -111,12 +114,12 @@ SensorSigma autopilot_floor() {
           .beta = 0.4 * kDeg};
 }
 
-GustSpectrum gust_spectrum(const std::string& setting, double scale) {
-  if (setting == "low_light") return {200.0, 200.0, 50.0, 1.06 * scale, 1.06 * scale, 0.7 * scale};
-  if (setting == "low_moderate") return {200.0, 200.0, 50.0, 2.12 * scale, 2.12 * scale, 1.4 * scale};
-  if (setting == "medium_light") return {533.0, 533.0, 533.0, 1.5 * scale, 1.5 * scale, 1.5 * scale};
-  VERIDYN_ASSERT(setting == "medium_moderate");
-  return {533.0, 533.0, 533.0, 3.0 * scale, 3.0 * scale, 3.0 * scale};
+DrydenSettings gust_spectrum(const std::string& setting, double scale) {
+  DrydenSettings settings = dryden_settings(setting, "reconstruct.turbulence");
+  settings.sigma_u *= scale;
+  settings.sigma_v *= scale;
+  settings.sigma_w *= scale;
+  return settings;
 }
 
 }  // namespace veridyn::aircraft

@@ -32,9 +32,10 @@ struct SensorSigma {
 ///     sensors = "auto"         # "reference": the specification's reference set, right for simulated recordings;
 ///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
 ///                              # autopilot's errors that are not white amount to (values in `autopilot_floor()`)
-///     turbulence = "auto"      # "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |
-///                              # "auto": spectrum and intensity of the largest innovation likelihood
-///     turbulence_scale = 1.0   # on the intensities of the four named settings
+///     turbulence = "auto"      # "none" | "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |
+///                              # "auto": spectrum and intensity of the largest innovation likelihood; or a table
+///                              # { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } as in a simulation
+///     turbulence_scale = 1.0   # on the intensities, where they are given
 ///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "alpha_bias", "beta_bias",
 ///                              # "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
 ///     without = []             # sensors not to use: "alpha", "beta", "pitot"
@@ -58,6 +59,7 @@ struct ReconstructOptions {
   std::string sensors = "auto";
   std::string turbulence = "auto";
   double turbulence_scale = 1.0;
+  DrydenSettings own_turbulence;  ///< where `turbulence` is "study"
   bool gyro_bias = false;
   bool accel_bias = false;
   bool alpha_bias = false;
@@ -113,7 +115,7 @@ inline constexpr double kPitotScalePrior = 0.2;
 inline constexpr double kPitotBiasPrior = 20.0;
 
 /// A named setting of the specification's table, with its intensities times `scale`: "low_light", "low_moderate",
-/// "medium_light", "medium_moderate".
-[[nodiscard]] GustSpectrum gust_spectrum(const std::string& setting, double scale = 1.0);
+/// "medium_light", "medium_moderate", "none".
+[[nodiscard]] DrydenSettings gust_spectrum(const std::string& setting, double scale = 1.0);
 
 }  // namespace veridyn::aircraft

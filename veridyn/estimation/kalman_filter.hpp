@@ -43,15 +43,27 @@ class ExtendedKalmanFilter {
     State after;
     const auto F = transition(model, x_, u, dt, after);
     x_ = after;
-    constexpr int D = kDynamic, R = kStates - kDynamic;
-    const Eigen::Matrix<double, D, kStates> FP = F * P_;
-    P_.template topLeftCorner<D, D>().noalias() = FP * F.transpose();
-    if constexpr (R > 0) {
-      P_.template topRightCorner<D, R>() = FP.template rightCols<R>();
-      P_.template bottomLeftCorner<R, D>() = FP.template rightCols<R>().transpose();
+    // P F' by the entries of F that are not zero, which are few; P is symmetric, so its columns serve as rows.
+    constexpr int D = kDynamic, N = kStates;
+    Eigen::Matrix<double, N, D> PF = Eigen::Matrix<double, N, D>::Zero();
+    for (int k = 0; k < N; ++k) {
+      for (int i = 0; i < D; ++i) {
+        if (F(i, k) != 0.0) PF.col(i) += F(i, k) * P_.col(k);
+      }
+    }
+    Eigen::Matrix<double, D, D> FPF = Eigen::Matrix<double, D, D>::Zero();
+    const Eigen::Matrix<double, D, N> FP = internal::transposed(PF);
+    for (int k = 0; k < N; ++k) {
+      for (int i = 0; i < D; ++i) {
+        if (F(i, k) != 0.0) FPF.col(i) += F(i, k) * FP.col(k);
+      }
+    }
+    P_.template topLeftCorner<D, D>() = 0.5 * (FPF + FPF.transpose());
+    if constexpr (N > D) {
+      P_.template bottomLeftCorner<N - D, D>() = PF.template bottomRows<N - D>();
+      P_.template topRightCorner<D, N - D>() = FP.template rightCols<N - D>();
     }
     model.add_process_noise(x_, u, dt, P_);
-    P_ = (0.5 * (P_ + P_.transpose())).eval();
     if (tape) tape->add_transition(F);
   }
 
@@ -59,7 +71,7 @@ class ExtendedKalmanFilter {
   /// of `monitor` lets it in. Returns whether it did.
   bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
               SmootherTape<Model>* tape = nullptr) noexcept {
-    const Vector PH = P_ * H;
+    const Vector PH = P_.lazyProduct(H);
     double S = H.dot(PH) + r;
     const auto verdict = monitor.judge(t, nu, S);
     if (!verdict.accept) return false;

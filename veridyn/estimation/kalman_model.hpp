@@ -7,6 +7,20 @@
 
 namespace veridyn::estimation {
 
+namespace internal {
+
+/// The transpose as a value. (Eigen's own assignment of a transpose warns falsely in g++ 12 with assertions on.)
+template <int R, int C>
+[[nodiscard]] Eigen::Matrix<double, C, R> transposed(const Eigen::Matrix<double, R, C>& m) {
+  Eigen::Matrix<double, C, R> t;
+  for (int j = 0; j < C; ++j) {
+    for (int i = 0; i < R; ++i) t(j, i) = m(i, j);
+  }
+  return t;
+}
+
+}  // namespace internal
+
 /// What the filter has to know of a system.
 ///
 /// The state may live on a manifold (an attitude, say): `State<Scalar>` is its value, and its error is a vector of
@@ -34,7 +48,7 @@ concept SystemModel = requires {
 /// The rows of the transition matrix d(error after) / d(error before) of the first `kDynamic` components, by automatic
 /// differentiation; the remaining rows are those of the identity. `after` receives the propagated state.
 template <SystemModel Model>
-[[nodiscard]] Eigen::Matrix<double, Model::kDynamic, Model::kStates> transition(
+[[nodiscard]] Eigen::Matrix<double, Model::kDynamic, Model::kStates> automatic_transition(
     const Model& model, const typename Model::template State<double>& x, const typename Model::Input& u, double dt,
     typename Model::template State<double>& after) {
   constexpr int N = Model::kStates;
@@ -47,6 +61,19 @@ template <SystemModel Model>
   Eigen::Matrix<double, Model::kDynamic, N> F;
   for (int i = 0; i < Model::kDynamic; ++i) F.row(i) = change(i).v.transpose();
   return F;
+}
+
+/// As `automatic_transition`; a model may offer the same rows in closed form, for speed, as
+/// `transition_rows(x, u, dt, after)`, and then proves them against automatic differentiation in its tests.
+template <SystemModel Model>
+[[nodiscard]] Eigen::Matrix<double, Model::kDynamic, Model::kStates> transition(
+    const Model& model, const typename Model::template State<double>& x, const typename Model::Input& u, double dt,
+    typename Model::template State<double>& after) {
+  if constexpr (requires { model.transition_rows(x, u, dt, after); }) {
+    return model.transition_rows(x, u, dt, after);
+  } else {
+    return automatic_transition(model, x, u, dt, after);
+  }
 }
 
 }  // namespace veridyn::estimation

@@ -38,16 +38,10 @@ class FixedIntervalSmoother {
     for (auto kind = tape.order_.rbegin(); kind != tape.order_.rend(); ++kind) {
       switch (*kind) {
         case Tape::Kind::kTransition: {
-          Eigen::Matrix<double, D, Model::kStates> LF = Lambda_.template topLeftCorner<D, D>() * *F;
-          Covariance L;
-          if constexpr (R > 0) {
-            LF.template rightCols<R>() += Lambda_.template topRightCorner<D, R>();
-            L.noalias() = F->transpose() * LF;
-            L.template bottomRows<R>().noalias() += Lambda_.template bottomLeftCorner<R, D>() * *F;
-            L.template bottomRightCorner<R, R>() += Lambda_.template bottomRightCorner<R, R>();
-          } else {
-            L.noalias() = F->transpose() * LF;
-          }
+          // Lambda F, then F' (Lambda F), by the entries of F that are not zero; below its first D rows F is the
+          // identity. Lambda is symmetric, so its columns serve as rows.
+          const Covariance first = internal::transposed(times_transition(Lambda_, *F));
+          const Covariance L = times_transition(first, *F);
           Lambda_ = 0.5 * (L + L.transpose());
           Vector l = F->transpose() * lambda_.template head<D>();
           if constexpr (R > 0) l.template tail<R>() += lambda_.template tail<R>();
@@ -58,19 +52,19 @@ class FixedIntervalSmoother {
         case Tape::Kind::kUpdate: {
           const Vector& H = update->H;
           const Vector& K = update->K;
-          const Vector LK = Lambda_ * K;
+          const Vector LK = Lambda_.lazyProduct(K);
           const double weight = 1.0 / update->S + K.dot(LK);
-          Lambda_.noalias() += (weight * H - LK) * H.transpose();
-          Lambda_.noalias() -= H * LK.transpose();
+          const Vector half = (0.5 * weight) * H - LK;
+          Lambda_ += half.lazyProduct(H.transpose()) + H.lazyProduct(half.transpose());
           lambda_ -= H * (update->nu / update->S + K.dot(lambda_));
           ++update;
           break;
         }
         case Tape::Kind::kMark: {
-          const Covariance PL = mark->P * Lambda_;
+          const Covariance PL = mark->P.lazyProduct(Lambda_);
           Covariance P = mark->P;
-          P.noalias() -= PL * mark->P;
-          const Vector correction = -(mark->P * lambda_);
+          P -= PL.lazyProduct(mark->P);
+          const Vector correction = -mark->P.lazyProduct(lambda_);
           emit(mark->number, Model::template retract<double>(mark->x, correction), P);
           ++mark;
           break;
@@ -80,6 +74,22 @@ class FixedIntervalSmoother {
   }
 
  private:
+  [[nodiscard]] static Covariance times_transition(const Covariance& M, const typename Tape::TransitionRows& F) {
+    constexpr int D = Model::kDynamic, N = Model::kStates;
+    Covariance product;
+    for (int j = 0; j < N; ++j) {
+      if (j < D) {
+        product.col(j).setZero();
+      } else {
+        product.col(j) = M.col(j);
+      }
+      for (int k = 0; k < D; ++k) {
+        if (F(k, j) != 0.0) product.col(j) += F(k, j) * M.col(k);
+      }
+    }
+    return product;
+  }
+
   Vector lambda_ = Vector::Zero();
   Covariance Lambda_ = Covariance::Zero();
 };
