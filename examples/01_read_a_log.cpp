@@ -16,22 +16,20 @@
 
 namespace {
 
-// A recording has channels; each has a unit and its own time base. Here a fast gyro and a slow barometer.
+// A recording has channels; each has a unit and a time base, which channels that were measured together share.
 std::filesystem::path write_small_recording() {
   using namespace veridyn;
-  std::vector<double> fast, rate, slow, height;
+  std::vector<double> time, rate, deflection;
   for (int k = 0; k < 500; ++k) {
-    fast.push_back(0.01 * k);
-    rate.push_back(0.2 * std::sin(3.0 * fast.back()));
-    if (k % 10 == 0) {
-      slow.push_back(fast.back());
-      height.push_back(100.0 + 2.0 * slow.back());
-    }
+    time.push_back(0.01 * k);
+    rate.push_back(0.2 * std::sin(3.0 * time.back()));
+    deflection.push_back(0.05 * std::cos(3.0 * time.back()));
   }
+  const TimeBase stamps = make_time_base(time);
   Recording recording;
   recording.frame = Frame::kFrd;
-  recording.add(make_channel("gyro_y", "rad/s", make_time_base(fast), rate));
-  recording.add(make_channel("alt", "m", make_time_base(slow), height));
+  recording.add(make_channel("gyro_y", "rad/s", stamps, rate));
+  recording.add(make_channel("elevator", "rad", stamps, deflection));
   const auto path = std::filesystem::temp_directory_path() / "veridyn_example_01.csv";
   io::write_csv(recording, path);
   return path;

@@ -12,7 +12,7 @@ int main() {
   using namespace veridyn;
   constexpr Eigen::Index kRows = 5000;
   const Eigen::Vector3d truth(0.0, 0.25, -1.0);
-  const double sigma_beta = 0.02, sigma_r = 0.004, sigma_z = 0.0005;
+  const double sigma_beta = 0.012, sigma_r = 0.0025, sigma_z = 0.0005;
 
   numerics::RandomStream noise(1, "example");  // same seed and name, same numbers everywhere
   estimation::RegressionData data;
