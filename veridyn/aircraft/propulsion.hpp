@@ -60,9 +60,10 @@ struct Propulsion {
   /// Rotor speed in the steady state [rad/s]; 0 for kinds without a rotor.
   template <typename Scalar>
   [[nodiscard]] Scalar steady_rotor_speed(const Scalar& throttle) const;
-  /// Thrust and torque. `rotor_speed` [rad/s] is used by kPropeller only. Does not throw or allocate.
+  /// Thrust and torque at an airspeed along body x [m/s] (Va cos(alpha) cos(beta)), called Va in the formulas above.
+  /// `rotor_speed` [rad/s] is used by kPropeller only. Does not throw or allocate.
   template <typename Scalar>
-  [[nodiscard]] PropulsionLoad<Scalar> load(const Scalar& throttle, const Scalar& Va, const Scalar& rho,
+  [[nodiscard]] PropulsionLoad<Scalar> load(const Scalar& throttle, const Scalar& axial_speed, const Scalar& rho,
                                             const Scalar& rotor_speed) const;
 
   friend bool operator==(const Propulsion&, const Propulsion&) = default;
@@ -89,7 +90,7 @@ Scalar Propulsion::steady_rotor_speed(const Scalar& throttle) const {
 }
 
 template <typename Scalar>
-PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& Va, const Scalar& rho,
+PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& axial_speed, const Scalar& rho,
                                         const Scalar& rotor_speed) const {
   const auto horner = [](const std::vector<double>& c, const Scalar& x) {
     Scalar sum(0.0);
@@ -105,7 +106,7 @@ PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& Va
       for (const ThrustTerm& term : polynomial) {
         Scalar product(term.value);
         for (int i = 0; i < term.throttle_power; ++i) product *= throttle;
-        for (int i = 0; i < term.airspeed_power; ++i) product *= Va;
+        for (int i = 0; i < term.airspeed_power; ++i) product *= axial_speed;
         sum += product;
       }
       if (sum > Scalar(0.0)) out.thrust = sum;
@@ -113,7 +114,7 @@ PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& Va
     }
     case PropulsionKind::kMomentum: {
       const Scalar exit = Scalar(k_motor) * throttle;
-      const Scalar thrust = Scalar(0.5 * S_prop * C_prop) * rho * (exit * exit - Va * Va);
+      const Scalar thrust = Scalar(0.5 * S_prop * C_prop) * rho * (exit * exit - axial_speed * axial_speed);
       if (thrust > Scalar(0.0)) out.thrust = thrust;
       const Scalar omega = Scalar(k_omega) * throttle;
       out.torque = Scalar(-k_tp) * omega * omega;
@@ -122,7 +123,7 @@ PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& Va
     case PropulsionKind::kPropeller: {
       const Scalar n = rotor_speed / Scalar(2.0 * M_PI);
       if (!(n > Scalar(1e-6))) break;  // a stopped rotor: J is undefined and n^2 CT(J_max) has no meaning
-      Scalar J = Va / (n * Scalar(diameter));
+      Scalar J = axial_speed / (n * Scalar(diameter));
       if (J > Scalar(J_max)) J = Scalar(J_max);
       const double D2 = diameter * diameter;
       out.thrust = rho * n * n * Scalar(D2 * D2) * horner(CT, J);
