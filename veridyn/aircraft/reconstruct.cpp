@@ -367,6 +367,11 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   if (stamps.empty()) throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
 
   choose_turbulence(streams, options, segments, out);
+  if (options.wants_air_data_errors()) {
+    out.warnings.emplace_back(
+        "errors of vanes and pitot tube are estimated: their sigmas are optimistic (in two minutes of moderate "
+        "turbulence four times too small), because the filter's linearisation points scatter; take a long record");
+  }
   progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.back() - stamps.front()));
   const auto run = [&]<class Model>(Model) {
     return solve<Model>(streams, options, segments, stamps, first_stamp, out.turbulence, progress);

@@ -38,6 +38,7 @@ struct SensorSigma {
 ///     turbulence_scale = 1.0   # on the intensities, where they are given
 ///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "alpha_bias", "beta_bias",
 ///                              # "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
+///                              # (sigmas of vane and pitot errors are optimistic, see Reconstruction::warnings)
 ///     without = []             # sensors not to use: "alpha", "beta", "pitot"
 ///     airspeed_is = "true"     # of a channel `airspeed`: "true" or "equivalent" (indicated by a calibrated tube)
 ///     beta_vane = "sideslip"   # what the channel `beta` is: "sideslip" asin(v/Va) or "flank" atan2(v, u)
