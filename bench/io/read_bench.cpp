@@ -30,7 +30,7 @@ const std::string& ulog() {
 const std::string& csv() {
   static const std::string bytes = [] {
     std::string text = "time[s],p[rad/s],q[rad/s],r[rad/s],ax[m/s^2],ay[m/s^2],az[m/s^2],airspeed[m/s]\n";
-    for (int i = 0; text.size() < kMegabytes * 1e6; ++i) {
+    for (int i = 0; text.size() < static_cast<std::size_t>(kMegabytes * 1e6); ++i) {
       text += std::to_string(0.01 * i);
       for (int k = 0; k < 7; ++k) text += ',' + std::to_string(1e-3 * ((i * 37 + k * 11) % 20011) - 10.0);
       text += '\n';

@@ -50,12 +50,17 @@ std::string readable_unit(std::string_view label) {
                                                                      {"RPM", "rpm"},
                                                                      {"km/h", "km/h"},
                                                                      {"mm/s", "mm/s"},
-                                                                     {"kg/m/m/m", "kg/m^3"}};
+                                                                     {"kg/m/m/m", "kg/m^3"},
+                                                                     {"UNKNOWN", "1"},
+                                                                     {"instance", "1"},
+                                                                     {"satellites", "1"},
+                                                                     {"B", "1"},
+                                                                     {"ppm", "1"}};
   if (const auto found = words.find(label); found != words.end()) return found->second;
   try {
     return parse_unit(label).name;
   } catch (const InputError&) {
-    return "1";  // UNKNOWN, instance, satellites, B, ppm, ...
+    return "1";
   }
 }
 

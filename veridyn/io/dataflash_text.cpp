@@ -100,7 +100,8 @@ class TextReader {
     table.format.name = internal::printable(cells[3]);
     table.format.characters = cells.size() > 4 ? internal::printable(cells[4]) : "";
     for (std::size_t i = 5; i < cells.size(); ++i) {
-      table.format.labels += (i > 5 ? "," : "") + internal::printable(cells[i]);
+      if (i > 5) table.format.labels += ',';
+      table.format.labels += internal::printable(cells[i]);
     }
     if (const auto known = index_.find(table.format.name); known != index_.end()) {
       if (tables_[known->second].format == table.format) return true;

@@ -99,7 +99,8 @@ class Builder {
     DataFlashFormat format;
     format.name = value.name;
     for (const std::string& label : labels) {
-      format.labels += (format.labels.empty() ? "" : ",") + label;
+      if (!format.labels.empty()) format.labels += ',';
+      format.labels += label;
       format.characters += 'd';
     }
     std::vector<DataFlashColumn> columns = dataflash_columns(format, false);

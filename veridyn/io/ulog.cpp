@@ -290,7 +290,8 @@ class Walker {
     if (!multiple || value.empty()) {
       value = std::move(text);
     } else {
-      value += (continued ? "" : "\n") + text;
+      if (!continued) value += '\n';
+      value += text;
     }
   }
 
