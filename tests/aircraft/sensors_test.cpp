@@ -98,7 +98,9 @@ TEST(Sensor, LosesTheShareOfSamplesThatWasAsked) {
                       }).at("gyro_x");
     // Runs of 50 samples leave about 200000 * 0.2 / 50 = 800 losses: relative standard error of the share 4 %.
     EXPECT_NEAR(1.0 - static_cast<double>(c.size()) / 200001.0, 0.2, length > 0.0 ? 4 * 0.04 * 0.2 : 0.005);
-    if (length > 0.0) EXPECT_GT(c.gaps(1.0).size(), 50u);
+    if (length > 0.0) {
+      EXPECT_GT(c.gaps(1.0).size(), 50u);
+    }
   }
 }
 

@@ -44,8 +44,29 @@ struct AeroVariables {
   Scalar Va{0.0};
 
   [[nodiscard]] const Scalar& operator[](AeroVariable v) const {
-    const std::array<const Scalar*, kAeroVariables> fields = {&alpha, &beta, &p_n, &q_n, &r_n, &de, &da, &dr, &CT, &Va};
-    return *fields[static_cast<std::size_t>(v)];
+    switch (v) {
+      case AeroVariable::kAlpha:
+        return alpha;
+      case AeroVariable::kBeta:
+        return beta;
+      case AeroVariable::kPn:
+        return p_n;
+      case AeroVariable::kQn:
+        return q_n;
+      case AeroVariable::kRn:
+        return r_n;
+      case AeroVariable::kDe:
+        return de;
+      case AeroVariable::kDa:
+        return da;
+      case AeroVariable::kDr:
+        return dr;
+      case AeroVariable::kCT:
+        return CT;
+      case AeroVariable::kVa:
+        break;
+    }
+    return Va;
   }
 };
 

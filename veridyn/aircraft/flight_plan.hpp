@@ -25,12 +25,12 @@ enum class ManoeuvreKind {
 /// Something that the pilot does on purpose. In all but turns, the surfaces get a deflection on top of the pilot's own.
 struct Manoeuvre {
   ManoeuvreKind kind = ManoeuvreKind::kDoublet;
-  double start = 0.0;             ///< [s]
-  double duration = 0.0;          ///< [s]; multisines and turns
-  std::vector<Surface> surfaces;  ///< in doublets and 3-2-1-1 one after another, with two seconds between
-  std::vector<double> amplitude;  ///< largest deflection [rad] (throttle [-]), one a surface
-  double pulse = 0.5;             ///< length of one unit of a doublet or 3-2-1-1 [s]
-  double f_min = 0.1;             ///< multisine band [Hz]
+  double start = 0.0;                  ///< [s]
+  double duration = 0.0;               ///< [s]; multisines and turns
+  std::vector<Surface> surfaces = {};  ///< in doublets and 3-2-1-1 one after another, with two seconds between
+  std::vector<double> amplitude = {};  ///< largest deflection [rad] (throttle [-]), one a surface
+  double pulse = 0.5;                  ///< length of one unit of a doublet or 3-2-1-1 [s]
+  double f_min = 0.1;                  ///< multisine band [Hz]
   double f_max = 2.0;
   double bank = 0.0;  ///< of a turn [rad]; positive to the right
 
