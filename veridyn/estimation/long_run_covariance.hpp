@@ -18,7 +18,7 @@ struct LongRunCovariance {
 using SegmentRanges = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 
 /// Lag after which a sequence is not distinguishably correlated: the smallest m such that |r(m+1..m+K)| all stay below
-/// 2 sqrt(log10 N / N), K = max(5, sqrt(log10 N)) (Politis 2003, Econometric Theory 19:1019); 0 for a white one.
+/// 2 sqrt(log10 N / N), K = max(5, sqrt(log10 N)) (Politis 2003); 0 for a white one.
 [[nodiscard]] Eigen::Index correlation_length(const Eigen::Ref<const Eigen::VectorXd>& x, const SegmentRanges& segments,
                                               Eigen::Index max_lag);
 
@@ -31,7 +31,7 @@ using SegmentRanges = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 [[nodiscard]] LongRunCovariance long_run_covariance(const RowMatrix& scores, const SegmentRanges& segments,
                                                     Eigen::Index window);
 
-/// Morelli & Klein (1997), J. Aircraft 34:4: sum over i, j of x_i R(i - j) x_j', with R the autocovariance of the
+/// Morelli & Klein (1997): sum over i, j of x_i R(i - j) x_j', with R the autocovariance of the
 /// residual under the same lag window. Needs the residual independent of X; steadier than the sandwich since R is one
 /// function.
 [[nodiscard]] LongRunCovariance coloured_normal_matrix(const RowMatrix& regressors,

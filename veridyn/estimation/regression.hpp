@@ -50,15 +50,15 @@ struct RegressionOptions {
   CovarianceKind covariance = CovarianceKind::kColoured;
   /// Two-sided level of the t-tests; intervals `low95`, `high95` are always 95 %.
   double significance = 0.05;
-  /// S/n of the threshold (S/n + 1) sqrt(N - n_p) on the singular values of D C^-1, in [1, 10]. At 1 a direction counts
-  /// as excited once signal and noise are equal in it. Default 1: the covariance, not the threshold, says how good an
-  /// excited direction is.
+  /// S/n of the threshold (S/n + 1) sqrt(N - n_p) on the singular values of D C^-1, in [1, 10]. Since s_j^2 is signal
+  /// plus noise power, the default 1 asks for three times as much signal as noise power in a direction (10: 120 times).
+  /// Below it GTLS may still be accurate when there are many rows: its error bars say so; PCA-GTLS does not rely on it.
   double signal_to_noise = 1.0;
   /// Prior theta_0 for what is not excited; empty means 0.
-  Eigen::VectorXd prior;
+  Eigen::VectorXd prior = {};
   /// Weights of |W (theta - theta_0)| over what is not excited, one a parameter, > 0; infinity pins the parameter to
   /// its prior. PCA-GTLS only; the other methods have no prior. Empty means 1.
-  Eigen::VectorXd prior_weight;
+  Eigen::VectorXd prior_weight = {};
   /// B_0: 95 % bound on |W (theta - theta_0)| along a direction that was not excited. 0 chooses
   /// 10 max(1, largest |W (theta - theta_0)|_i of the estimate), but never below 1.96 sigma of GTLS in that direction.
   double unexcited_bound = 0.0;

@@ -125,23 +125,34 @@ FirKernel low_pass(const LowPassDesign& design) {
 FirKernel low_pass_differentiator(const LowPassDesign& design) {
   const FirKernel smoother = low_pass(design);
   const auto m = static_cast<std::ptrdiff_t>(smoother.half_width());
+  const std::ptrdiff_t wide = m + (m + 1) / 2;
   FirKernel kernel;
   kernel.rate_Hz = design.rate_Hz;
-  kernel.taps.assign(smoother.taps.size(), 0.0);
-  double slope = 0.0;
-  for (std::ptrdiff_t k = 1; k <= m; ++k) {
-    double tap = 0.0;
+  kernel.taps.assign(static_cast<std::size_t>(2 * wide + 1), 0.0);
+  std::vector<double> tap(static_cast<std::size_t>(wide + 1), 0.0), correction(tap);
+  double slope = 0.0, correction_slope = 0.0;
+  for (std::ptrdiff_t k = 1; k <= wide; ++k) {
+    const auto index = static_cast<std::size_t>(k);
     for (std::ptrdiff_t j = -m; j <= m; ++j) {
       const std::ptrdiff_t n = k - j;
       if (n == 0) continue;
       // y_k = sum taps x_{k+j}: the ideal differentiator weights x_{k+n} by -(-1)^n/n.
-      tap -= smoother.taps[static_cast<std::size_t>(j + m)] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
+      tap[index] -=
+          smoother.taps[static_cast<std::size_t>(j + m)] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
     }
-    kernel.taps[static_cast<std::size_t>(m + k)] = tap;
-    kernel.taps[static_cast<std::size_t>(m - k)] = -tap;
-    slope += 2.0 * tap * static_cast<double>(k);
+    const double u = static_cast<double>(k) / static_cast<double>(wide);
+    correction[index] = static_cast<double>(k) * (1.0 - u * u) * (1.0 - u * u);
+    slope += 2.0 * static_cast<double>(k) * tap[index];
+    correction_slope += 2.0 * static_cast<double>(k) * correction[index];
   }
-  for (double& tap : kernel.taps) tap *= design.rate_Hz / slope;
+  // What was cut off is missing at 0 Hz: added by a short pulse of low frequency instead of by scaling all frequencies.
+  const double missing = (1.0 - slope) / correction_slope;
+  for (std::ptrdiff_t k = 1; k <= wide; ++k) {
+    const auto index = static_cast<std::size_t>(k);
+    const double value = design.rate_Hz * (tap[index] + missing * correction[index]);
+    kernel.taps[static_cast<std::size_t>(wide + k)] = value;
+    kernel.taps[static_cast<std::size_t>(wide - k)] = -value;
+  }
   return kernel;
 }
 

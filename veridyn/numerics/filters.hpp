@@ -48,8 +48,9 @@ struct FirKernel {
 [[nodiscard]] FirKernel low_pass(const LowPassDesign& design);
 
 /// d/dt of what `low_pass(design)` gives, with the same pass band: the taps of the low-pass convolved with the ideal
-/// differentiator (-1)^n/n, cut to the same half width and scaled to the exact slope at 0 Hz. A regressor smoothed by
-/// one and a regressand differentiated by the other have gone through the same filter.
+/// differentiator (-1)^n/n, cut to 1.5 times the low-pass's half width, and corrected to the exact slope at 0 Hz. Its
+/// gain is 2 pi f times that of the low-pass to about 0.02 % (10 and 15 of 100 Hz, 60 dB). A regressor smoothed by one
+/// and a regressand differentiated by the other have gone through the same filter.
 [[nodiscard]] FirKernel low_pass_differentiator(const LowPassDesign& design);
 
 /// Filters every stretch between NaNs on its own; stretches shorter than half a kernel + 1 (kReflect) or a kernel
