@@ -1,5 +1,6 @@
 #include "veridyn/numerics/statistics.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -45,7 +46,10 @@ double lagged_product(const std::vector<double>& x, const std::vector<std::pair<
                       std::size_t lag) {
   double sum = 0.0;
   for (const auto& [begin, end] : bounds) {
-    for (std::size_t k = begin; k + lag < end; ++k) sum += x[k] * x[k + lag];
+    if (begin + lag >= end) continue;
+    const auto count = static_cast<Eigen::Index>(end - begin - lag);
+    sum += Eigen::Map<const Eigen::VectorXd>(x.data() + begin, count)
+               .dot(Eigen::Map<const Eigen::VectorXd>(x.data() + begin + lag, count));
   }
   return sum;
 }
@@ -91,26 +95,22 @@ NormalPlot normal_probability_plot(std::span<const double> x, std::size_t max_po
   const auto count = static_cast<double>(n);
   plot.mean = mean_of(sorted);
   double sum_ss = 0.0, sum_qq = 0.0, sum_sq = 0.0;
-  std::vector<double> quantile(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    quantile[i] = normal_quantile((static_cast<double>(i) + 0.625) / (count + 0.25));
-    const double s = sorted[i] - plot.mean;
-    sum_ss += s * s;
-    sum_qq += quantile[i] * quantile[i];
-    sum_sq += s * quantile[i];
-  }
+  for (const double v : sorted) sum_ss += (v - plot.mean) * (v - plot.mean);
   plot.sd = n > 1 ? std::sqrt(sum_ss / (count - 1.0)) : 0.0;
-  plot.correlation = sum_ss > 0.0 && sum_qq > 0.0 ? sum_sq / std::sqrt(sum_ss * sum_qq) : 0.0;
-  if (max_points == 0 || max_points >= n || max_points < 2) {
-    plot.quantile = std::move(quantile);
-    plot.sample = std::move(sorted);
-    return plot;
-  }
-  for (std::size_t j = 0; j < max_points; ++j) {
-    const std::size_t i = j * (n - 1) / (max_points - 1);
-    plot.quantile.push_back(quantile[i]);
+  const bool thin = max_points >= 2 && max_points < n;
+  const std::size_t points = thin ? max_points : n;
+  sum_ss = 0.0;
+  for (std::size_t j = 0; j < points; ++j) {
+    const std::size_t i = thin ? j * (n - 1) / (points - 1) : j;
+    const double q = normal_quantile((static_cast<double>(i) + 0.625) / (count + 0.25));
+    const double s = sorted[i] - plot.mean;
+    plot.quantile.push_back(q);
     plot.sample.push_back(sorted[i]);
+    sum_ss += s * s;
+    sum_qq += q * q;
+    sum_sq += s * q;
   }
+  plot.correlation = sum_ss > 0.0 && sum_qq > 0.0 ? sum_sq / std::sqrt(sum_ss * sum_qq) : 0.0;
   return plot;
 }
 

@@ -31,7 +31,7 @@ struct NormalPlot {
   std::vector<double> sample;    ///< the samples in ascending order
   double mean = 0.0;             ///< of all samples: the line's value at quantile 0
   double sd = 0.0;               ///< of all samples: the line's slope
-  double correlation = 0.0;      ///< between the two columns, of all samples: near 1 when normal
+  double correlation = 0.0;      ///< between the two columns: near 1 when normal
 };
 
 /// Normal probability plot of the finite values of `x`, thinned evenly in rank to at most `max_points` (0: all).
