@@ -19,8 +19,7 @@ struct Options {
   CommonOptions common;
 };
 
-// {} stands for the [data] table.
-constexpr const char* kAircraftStudy = R"(# A study of one flight: who flew, what was recorded, what to find out.
+constexpr const char* kAircraftStudy = R"toml(# A study of one flight: who flew, what was recorded, what to find out.
 #   veridyn inspect flight.bin          what the log holds and how it would be mapped
 #   veridyn identify study.toml         from log to model, with a report
 # Numbers are SI and radians; a text may carry any unit of the same kind: "27 lb", "12 deg". Keys with a leading # show
@@ -37,7 +36,7 @@ span = "1.27 m"
 chord = "0.25 m"                 # mean aerodynamic chord
 sign_convention = "positive elevator: trailing edge down"
 # Without the inertia the forces are identified and the moments are not.
-inertia = {{ Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }}    # kg m^2
+inertia = { Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }    # kg m^2
 # imu_position = [0, 0, 0]       # m from the centre of gravity: forward, right, down
 
 # What each coefficient depends on: alpha beta p_n q_n r_n de da dr CT Va, products ("alpha*q_n"), powers ("alpha^2"),
@@ -49,13 +48,12 @@ CY = ["1", "beta", "p_n", "r_n", "da", "dr"]
 Cl = ["1", "beta", "p_n", "r_n", "da", "dr"]
 Cm = ["1", "alpha", "q_n", "de"]
 Cn = ["1", "beta", "p_n", "r_n", "da", "dr"]
-#Drag needs thrust : a channel `thrust`, or a model of throttle(0..1) and airspeed.
+
+# Drag needs thrust: a channel `thrust`, or a model of throttle (0..1) and airspeed (see docs/aircraft.md).
 [subject.propulsion]
 kind = "none"
-#kind = "polynomial" #thrust[N] = sum c[i][j] throttle ^ i Va ^ j
-#polynomial = [[0, 0], [20, -0.6]]
 
-#Full throws, to turn servo positions into deflections.
+# Full throws, to turn servo positions into deflections.
 [subject.actuators.elevator]
 upper = "20 deg"                 # symmetric unless `lower` says otherwise
 [subject.actuators.aileron]
@@ -64,44 +62,63 @@ upper = "20 deg"
 upper = "20 deg"
 
 [data]
-file = "{}"
-#files = ["IMU.csv", "GPS.csv"] #the tables of one flight instead
-#from = 120 #s, only this part of the log
-#to = 600
+file = @LOG@
+# files = ["IMU.csv", "GPS.csv"] # the tables of one flight instead
+# from = 120                     # s, only this part of the log
+# to = 600
 
-#ArduPilot and PX4 logs are mapped automatically; what is named here wins. `veridyn inspect` lists the channels.
+# ArduPilot and PX4 logs are mapped automatically; what is named here wins. `veridyn inspect` lists the channels.
 [data.map]
-#airspeed = "ARSP.Airspeed"
-#alpha = {{channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" } }
-#aileron = {{channels = ["left", "right"], weights = [0.5, -0.5], unit = "deg" } }
-#beta = "none" #do not use it
+# airspeed = "ARSP.Airspeed"
+# alpha    = { channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" }
+# aileron  = { channels = ["left", "right"], weights = [0.5, -0.5], unit = "deg" }
+# beta     = "none"              # do not use it
 
 [delays]
-#automatic = true #find out how late each sensor is and take it off
-#gps = "0.12 s" # or say so
+# automatic = true               # find out how late each sensor is and take it off
+# gps = "0.12 s"                 # or say so
 
 [reconstruct]
-#turbulence = "auto" #low_light, low_moderate, medium_light, medium_moderate, or what fits best
-#estimate = [] #"alpha_bias", "beta_bias", "pitot_scale", "gyro_bias", "accel_bias", ...
-#airspeed_is = "true" #"equivalent" where the log's airspeed is indicated
+# turbulence = "auto"            # low_light, low_moderate, medium_light, medium_moderate, or what fits best
+# airspeed_is = "true"           # "equivalent" where the log's airspeed is indicated
 
 [signals]
-#pass_band = "10 Hz" #kept; engine vibration is above, the aircraft's motion below
-#flow_angles = "auto" #"vane", "smoothed"
-#noise = {{alpha = "0.6 deg" } } #standard deviation per sample; measured from the log where it is not given
+# pass_band = "10 Hz"            # kept; engine vibration is above, the aircraft's motion below
+# flow_angles = "auto"           # "vane", "smoothed"
+# noise = { alpha = "0.6 deg" }  # standard deviation per sample; measured from the log where it is not given
 
 [segments]
-#holdout = 0.33 #share of the excited time that identification never sees
-#longitudinal = [120, 150] #s, begin and end of each, instead of searching for excitation
-#lateral = [160, 200]
+# holdout = 0.33                 # share of the excited time that identification never sees
+# longitudinal = [120, 150]      # s, begin and end of each, instead of searching for excitation
+# lateral = [160, 200]
 
 [identify]
-#method = "auto" #"OLS", "TLS", "GTLS", "PCA-GTLS"
-#refit_significant = false #once more with the significant parameters only
+# method = "auto"                # "OLS", "TLS", "GTLS", "PCA-GTLS"
+# refit_significant = false      # once more with the significant parameters only
 
 [validate]
-#period = "5 s" #the model is started anew this often
-)";
+# period = "5 s"                 # the model is started anew this often
+)toml";
+
+/// The template with the log's path as TOML text, so that it is found from the study's folder.
+std::string study_text(const std::string& log, const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path path = log;
+  // A log that is there is named from the study's folder; a name to be filled in stays as it is.
+  if (path.is_relative() && fs::exists(path, error))
+    path = fs::proximate(fs::absolute(path), fs::absolute(folder), error);
+  std::string quoted = "\"";
+  for (const char c : path.string()) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  quoted += '"';
+  std::string text = kAircraftStudy;
+  const std::string mark = "@LOG@";
+  text.replace(text.find(mark), mark.size(), quoted);
+  return text;
+}
 
 int init_aircraft(const Options& options) {
   const std::filesystem::path folder = options.common.out.empty() ? "." : options.common.out;
@@ -110,7 +127,7 @@ int init_aircraft(const Options& options) {
   if (std::filesystem::exists(path) && !options.force) {
     throw InputError(path.string(), "is there already; --force replaces it");
   }
-  write_file(path, fmt::format(fmt::runtime(kAircraftStudy), options.log));
+  write_file(path, study_text(options.log, folder));
   tell(options.common,
        fmt::format("wrote {}: fill in the subject, then `veridyn identify {}`", path.string(), path.string()));
   return kDone;

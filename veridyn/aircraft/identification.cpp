@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,6 +83,13 @@ double unexplained_variance(const RegressionData& data) {
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-12)) return kNaN;
   const Eigen::VectorXd y = factor.solve(inverse.asDiagonal() * b);
   return data.regressand.squaredNorm() / rows - b.dot(inverse.asDiagonal() * y);
+}
+
+/// The smallest W_zz with which W is still a covariance: what the errors that z shares with the regressors amount to.
+double least_response_variance(const Eigen::MatrixXd& W) {
+  const auto n = W.rows() - 1;
+  const Eigen::VectorXd shared = W.topRightCorner(n, 1);
+  return 1.001 * shared.dot(W.topLeftCorner(n, n).completeOrthogonalDecomposition().solve(shared));
 }
 
 /// Predicted and measured coefficient over rows.
@@ -196,11 +204,13 @@ class CoefficientIdentification {
                                         name_of(result.coefficient), result.data.rows(), minimum);
       return;
     }
+    // The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the sensors
+    // were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more (equation error).
     const double unexplained = unexplained_variance(result.data);
     const auto n = result.data.parameters();
     const double by_sensors = result.data.error_covariance(n, n);
     result.error_ratio = unexplained / by_sensors;
-    if (unexplained > by_sensors) result.data.error_covariance(n, n) = unexplained;
+    if (unexplained > least_response_variance(result.data.error_covariance)) result.data.error_covariance(n, n) = unexplained;
     result.comparison = estimation::compare(result.data, regression_options());
     if (const RegressionEstimate* chosen = choose(result.comparison, options_.method)) {
       result.chosen = *chosen;
