@@ -27,6 +27,7 @@ int simulate(const Options& options) {
   for (const char* table : {"title", "data", "delays", "reconstruct", "signals", "segments", "identify", "validate"}) {
     static_cast<void>(study.root().has(table));
   }
+  study.root().finish();
   TerminalProgress progress(options.common.quiet);
   progress.stage(fmt::format("simulating {:.0f} s of {}", simulation.duration, simulation.subject.name));
   const aircraft::SimulatedFlight flight = aircraft::simulate(simulation, progress);

@@ -94,10 +94,12 @@ void map_servo(MapBuilder& builder, const std::string& channel, int function, in
   const bool reversed =
       modern ? parameter(log, prefix + "REVERSED", 0.0) > 0.5 : parameter(log, prefix + "REV", 1.0) < 0.0;
   const double sign = reversed ? -1.0 : 1.0;
+  // Logs that know their units give pulse lengths in seconds here, parameters are in microseconds.
+  const double to_us = raw->unit.same_dimension(parse_unit("s")) ? 1e6 : 1.0;
   std::vector<double> value(raw->size());
   const bool throttle = channel == "throttle";
   for (std::size_t i = 0; i < value.size(); ++i) {
-    const double pulse = raw->value[i];
+    const double pulse = to_us * raw->value[i];
     if (throttle) {
       value[i] = reversed ? (high - pulse) / (high - low) : (pulse - low) / (high - low);
     } else {

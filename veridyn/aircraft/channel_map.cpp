@@ -30,15 +30,16 @@ const StandardChannel& standard(std::string_view name) {
   return *found;
 }
 
-/// Numbers as the log has them, in SI: by the log's unit when it has one, else by `unit`.
+/// Numbers as the log has them, in SI. Where the log's unit is of another kind than `unit` (volts of a vane,
+/// microseconds of a servo) the recorded numbers are scaled and then are in `unit`.
 std::vector<double> in_si(const Channel& raw, double zero, double scale, std::string_view unit) {
-  const Unit plain;
   const Unit given = parse_unit(unit);
-  const bool has_unit = !raw.unit.same_dimension(plain) || unit.empty();
+  const bool keeps_unit = unit.empty() || (!raw.unit.same_dimension(Unit{}) && raw.unit.same_dimension(given));
+  const Unit recorded = keeps_unit || raw.unit.same_dimension(Unit{}) ? Unit{} : parse_unit(raw.recorded_unit);
   std::vector<double> values(raw.value.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double number = scale * (raw.value[i] - zero);
-    values[i] = has_unit ? number : given.to_si(number);
+    values[i] =
+        keeps_unit ? scale * (raw.value[i] - zero) : given.to_si(scale * (recorded.from_si(raw.value[i]) - zero));
   }
   return values;
 }
@@ -64,9 +65,9 @@ void map_from_study(const Recording& log, const StudyTable& map, const std::stri
   };
   const auto check_dimension = [&](const StudyTable& table, std::string_view key, const Channel& raw,
                                    std::string_view unit) {
-    const Unit actual = raw.unit.same_dimension(Unit{}) && !unit.empty() ? parse_unit(unit) : raw.unit;
+    const Unit actual = unit.empty() ? raw.unit : parse_unit(unit);
     const Unit expected = parse_unit(target.unit);
-    if (actual.same_dimension(expected) || (actual.same_dimension(Unit{}) && unit.empty())) return;
+    if (actual.same_dimension(expected)) return;
     table.fail(
         key, fmt::format("channel '{}' is in [{}], but {} is in [{}]", raw.name, actual.si_name(), name, target.unit));
   };
@@ -205,6 +206,11 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     const Channel* channel = log.find(target.name);
     if (channel == nullptr || map.has(target.name)) continue;
     const Unit expected = parse_unit(target.unit);
+    if (!channel->unit.same_dimension(expected) && channel->unit.same_dimension(Unit{})) {
+      mapped.notes.push_back(fmt::format("{} has no unit: write {}[{}] in the header, or map it with its unit",
+                                         target.name, target.name, target.unit));
+      continue;
+    }
     if (!channel->unit.same_dimension(expected)) {
       throw InputError(log.source, fmt::format("channel '{}' is in [{}], expected [{}]", target.name,
                                                channel->unit.si_name(), target.unit));
@@ -272,8 +278,8 @@ void MapBuilder::apply(std::span<const ChannelRule> rules) {
     if (mapped(rule.channel)) continue;
     const Channel* raw = alive(rule.source);
     if (raw == nullptr) continue;
-    put(rule.channel, standard(rule.channel).unit, raw->time, in_si(*raw, 0.0, rule.scale, rule.unit), rule.source,
-        rule.note);
+    put(rule.channel, standard(rule.channel).unit, raw->time,
+        in_si(*raw, 0.0, raw->unit.same_dimension(Unit{}) ? rule.scale : 1.0, rule.unit), rule.source, rule.note);
   }
 }
 

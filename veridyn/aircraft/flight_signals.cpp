@@ -40,8 +40,8 @@ std::vector<double> angle_on_grid(const Channel& channel, const UniformGrid& gri
 class Preparation {
  public:
   Preparation(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
-              const SignalOptions& options)
-      : mapped_(mapped), smoothed_(smoothed), subject_(subject), options_(options) {}
+              const SignalOptions& options, const SensorSigma* known)
+      : mapped_(mapped), smoothed_(smoothed), subject_(subject), options_(options), known_(known) {}
 
   FlightSignals run() {
     choose_grid();
@@ -74,13 +74,29 @@ class Preparation {
     out_.stride = std::max<std::size_t>(1, static_cast<std::size_t>(rate / (2.0 * out_.filter.stop_Hz)));
   }
 
+  /// White noise apart from the tail of the signal itself, which in turbulence falls with the square of the frequency:
+  /// the mean of A / f^2 from f to the Nyquist frequency N is A / (f N), so that levels above two frequencies, one
+  /// twice the other, tell the floor, 2 S(2f) - S(f).
+  static double floor_of(const std::vector<double>& values, double rate) {
+    const double low = numerics::measurement_noise(values, rate, 0.2 * rate).sd;
+    const double high = numerics::measurement_noise(values, rate, 0.4 * rate).sd;
+    const double variance = 2.0 * high * high - low * low;
+    // Noise that is not white but falls towards high frequencies would come out negative: then the higher level it is.
+    return variance > 0.25 * high * high && low > high ? std::sqrt(variance) : std::min(low, high);
+  }
+
   /// Standard deviation of the white noise of a channel, as the user says or as its content above the pass band shows.
   double noise_of(const std::string& name, const std::vector<double>& raw) const {
     for (const auto& [channel, sd] : options_.noise) {
       if (channel == name) return sd;
     }
+    if (known_ != nullptr) {
+      if (name.starts_with("gyro")) return known_->gyro;
+      if (name.starts_with("accel")) return known_->accelerometer;
+      if (name == "alpha") return known_->alpha;
+      if (name == "beta") return known_->beta;
+    }
     const double rate = out_.filter.rate_Hz;
-    const double above = std::max(out_.filter.stop_Hz, 0.3 * rate);
     // A channel that is slower than the grid was interpolated: its noise is not white there and is measured at its own
     // rate.
     const Channel& channel = mapped_.recording.at(name);
@@ -90,9 +106,9 @@ class Preparation {
       numerics::ResampleOptions nearest;
       nearest.interpolation = numerics::Interpolation::kLinear;
       const auto values = numerics::resample(channel.times(), channel.value, grid, nearest);
-      return numerics::measurement_noise(values, own, 0.3 * own).sd;
+      return floor_of(values, own);
     }
-    return numerics::measurement_noise(raw, rate, std::min(above, 0.45 * rate)).sd;
+    return floor_of(raw, rate);
   }
 
   void put(FlightSignal which, std::vector<double> value, double sigma, ErrorKind kind, std::string origin) {
@@ -241,7 +257,9 @@ class Preparation {
       const double steady = subject_.propulsion.steady_rotor_speed(command[k]);
       const bool lags = subject_.propulsion.kind == PropulsionKind::kPropeller && std::isfinite(rotor);
       rotor = lags ? steady + (rotor - steady) * std::exp(-out_.grid.step / subject_.propulsion.time_constant) : steady;
-      const auto load = subject_.propulsion.load(command[k], airspeed[k], out_.air_density[k], rotor);
+      // The propeller sees the airspeed along its axis.
+      const double axial = airspeed[k] * std::cos(out_.alpha_smoothed[k]) * std::cos(out_.beta_smoothed[k]);
+      const auto load = subject_.propulsion.load(command[k], axial, out_.air_density[k], rotor);
       force[k] = load.thrust;
       out_.torque[k] = load.torque;
     }
@@ -268,6 +286,7 @@ class Preparation {
   const Recording& smoothed_;
   const Subject& subject_;
   const SignalOptions& options_;
+  const SensorSigma* known_;
   FirKernel smooth_;
   FirKernel differentiate_;
   FlightSignals out_;
@@ -303,8 +322,8 @@ std::pair<std::size_t, std::size_t> FlightSignals::indices(const TimeSpan& span)
 }
 
 FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
-                              const SignalOptions& options) {
-  return Preparation(mapped, smoothed, subject, options).run();
+                              const SignalOptions& options, const SensorSigma* known) {
+  return Preparation(mapped, smoothed, subject, options, known).run();
 }
 
 }  // namespace veridyn::aircraft

@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/channel_map.hpp"
 #include "veridyn/aircraft/measured_coefficients.hpp"
+#include "veridyn/aircraft/reconstruct_options.hpp"
 #include "veridyn/aircraft/subject.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/filters.hpp"
@@ -73,8 +74,10 @@ struct FlightSignals {
 /// vane) flow angles from the reconstruction `smoothed` (channels `airspeed`, `alpha`, `sigma_airspeed`, ...). The
 /// accelerometer is moved to the centre of gravity. Thrust is the channel `thrust` or, with `throttle`, the subject's
 /// propulsion model.
+/// `known` gives the sensors' noise where their data sheet is known; otherwise it is measured.
 /// @throws InputError when accelerometer, gyro or smoothed airspeed are missing.
 [[nodiscard]] FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed,
-                                            const Subject& subject, const SignalOptions& options);
+                                            const Subject& subject, const SignalOptions& options,
+                                            const SensorSigma* known = nullptr);
 
 }  // namespace veridyn::aircraft

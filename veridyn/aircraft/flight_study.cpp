@@ -73,7 +73,9 @@ void align_and_reconstruct(FlightStudy& study, FlightAnalysis& analysis, Progres
 }
 
 void find_flight(FlightStudy& study, FlightAnalysis& analysis) {
-  analysis.signals = prepare_signals(study.mapped, analysis.reconstruction.smoothed, study.subject, study.signals);
+  const bool data_sheet = study.reconstruct.sensors == "reference";
+  analysis.signals = prepare_signals(study.mapped, analysis.reconstruction.smoothed, study.subject, study.signals,
+                                     data_sheet ? &analysis.reconstruction.sigma : nullptr);
   const FlightSignals& s = analysis.signals;
   SegmentSignals signals;
   signals.begin = s.grid.begin;

@@ -204,13 +204,15 @@ class CoefficientIdentification {
                                         name_of(result.coefficient), result.data.rows(), minimum);
       return;
     }
-    // The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the sensors
-    // were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more (equation error).
+    // The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than
+    // the sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
+    // (equation error).
     const double unexplained = unexplained_variance(result.data);
     const auto n = result.data.parameters();
     const double by_sensors = result.data.error_covariance(n, n);
     result.error_ratio = unexplained / by_sensors;
-    if (unexplained > least_response_variance(result.data.error_covariance)) result.data.error_covariance(n, n) = unexplained;
+    if (unexplained > least_response_variance(result.data.error_covariance))
+      result.data.error_covariance(n, n) = unexplained;
     result.comparison = estimation::compare(result.data, regression_options());
     if (const RegressionEstimate* chosen = choose(result.comparison, options_.method)) {
       result.chosen = *chosen;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -38,6 +39,28 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
     whole.warnings.push_back(prefix.empty() ? warning : fmt::format("{}: {}", prefix, warning));
   }
   if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
+}
+
+/// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
+/// they have, so that their rate and gaps are theirs.
+Recording without_missing(const Recording& recording) {
+  Recording result = recording;
+  for (const Channel& channel : recording.channels()) {
+    const auto missing =
+        std::count_if(channel.value.begin(), channel.value.end(), [](double v) { return !std::isfinite(v); });
+    if (missing == 0 || static_cast<std::size_t>(missing) == channel.size()) continue;
+    Channel kept = channel;
+    kept.value.clear();
+    std::vector<double> stamps;
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      if (!std::isfinite(channel.value[i])) continue;
+      stamps.push_back(channel.times()[i]);
+      kept.value.push_back(channel.value[i]);
+    }
+    kept.time = make_time_base(std::move(stamps));
+    result.set(std::move(kept));
+  }
+  return result;
 }
 
 }  // namespace
@@ -104,6 +127,7 @@ Recording read_study_data(const StudyTable& data) {
     }
   }
   const bool bounded = data.has("from") || data.has("to");
+  whole = without_missing(whole);
   if (!bounded) return whole;
   const double from = data.number_or("from", "s", -std::numeric_limits<double>::infinity());
   const double to = data.number_or("to", "s", std::numeric_limits<double>::infinity());
