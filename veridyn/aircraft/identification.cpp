@@ -247,6 +247,8 @@ class CoefficientIdentification {
     if (!result.chosen) return reject(fmt::format("{}: {}", name, result.comparison.reason));
     const RegressionEstimate& chosen = *result.chosen;
     result.identification_fit = fit_on(result.data, chosen.theta);
+    result.unmodelled_share =
+        result.error_ratio > 1.0 ? (1.0 - result.identification_fit.r2) * (1.0 - 1.0 / result.error_ratio) : 0.0;
     residual_diagnostics(result);
 
     const AxisSegments& axis = segments_.of(result.axis);
@@ -261,6 +263,13 @@ class CoefficientIdentification {
     }
     if (options_.method == "auto" && !result.comparison.recommends) {
       return reject(fmt::format("{} is rejected: {}", name, result.comparison.reason));
+    }
+    if (!(result.unmodelled_share <= options_.max_unmodelled)) {
+      return reject(fmt::format(
+          "{} is rejected: {:.0f} % of its variance is neither modelled nor sensor noise (residual {:.1f} times what "
+          "the "
+          "sensors leave), so something that moves the aircraft is not among the regressors and biases them",
+          name, 100.0 * result.unmodelled_share, std::sqrt(result.error_ratio)));
     }
     if (has_holdout && !(result.holdout_fit.r2 >= options_.min_holdout_r2)) {
       return reject(fmt::format(
@@ -376,6 +385,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
     table.fail("significance", fmt::format("= {} must be between 0 and 1", options.significance));
   }
   options.min_holdout_r2 = table.number_or("min_holdout_r2", "1", options.min_holdout_r2);
+  options.max_unmodelled = table.number_or("max_unmodelled", "1", options.max_unmodelled);
   options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
   return options;
 }
@@ -534,6 +544,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     estimate.fit[name + ".residual_sd"] = chosen.residual_sd;
     estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);
     estimate.fit[name + ".error_ratio"] = result.error_ratio;
+    estimate.fit[name + ".unmodelled_share"] = result.unmodelled_share;
     const std::string method(estimation::to_string(chosen.method));
     if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
     if (result.holdout_fit.count > 0) {

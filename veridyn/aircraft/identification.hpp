@@ -24,6 +24,9 @@ struct IdentifyOptions {
   double significance = 0.05;      ///< `significance`: level of the t-tests
   /// `min_holdout_r2`: a coefficient that explains less of the hold-out's variance is rejected.
   double min_holdout_r2 = 0.3;
+  /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
+  /// sensors.
+  double max_unmodelled = 0.1;
   /// `contradiction_level`: identification and hold-out data, estimated apart, must agree at this level (chi-square).
   double contradiction_level = 1e-3;
 
@@ -51,6 +54,9 @@ struct CoefficientResult {
   estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
   std::optional<estimation::RegressionEstimate> chosen;
   double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
+  /// Share of the coefficient's variance that is neither modelled nor explained by the sensors' noise: (1 - R^2)(1 -
+  /// 1/ratio).
+  double unmodelled_share = 0.0;
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
   double contradiction_p = 1.0;  ///< of identification against hold-out estimates
