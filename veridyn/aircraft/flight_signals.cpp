@@ -119,11 +119,12 @@ class Preparation {
     signal.origin = std::move(origin);
   }
 
-  /// Noise that is left when white noise sampled at the channel's own rate has passed the filter.
+  /// Noise that is left when white noise sampled at the channel's own rate has passed the filter. A channel slower than
+  /// the grid was interpolated, so that more of its noise lies in the pass band.
   double left_by(const FirKernel& kernel, const std::string& name, double sd) const {
     const double own = mapped_.recording.at(name).rate_Hz();
     const double per_grid_sample = std::max(1.0, out_.filter.rate_Hz / own);
-    return sd * std::sqrt(std::min(1.0, kernel.noise_gain() * per_grid_sample));
+    return sd * std::sqrt(kernel.noise_gain() * per_grid_sample);
   }
 
   void inertial() {

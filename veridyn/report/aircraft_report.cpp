@@ -133,11 +133,10 @@ Section coefficients_section(const FlightAnalysis& analysis) {
       .columns = {{.name = "Coefficient"},
                   {.name = "Verdict"},
                   {.name = "Method"},
-                  {.name = "Explained, identification", .unit = "%"},
-                  {.name = "Explained, hold-out", .unit = "%"},
+                  {.name = "identification", .unit = "%", .group = "explained"},
+                  {.name = "hold-out", .unit = "%", .group = "explained"},
                   {.name = "Theil"},
-                  {.name = "Equation error", .digits = 3},
-                  {.name = "Why"}}};
+                  {.name = "Equation error", .digits = 3}}};
   for (const CoefficientResult& r : analysis.coefficients) {
     const bool has = r.chosen.has_value();
     table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", name_of(r.coefficient), meaning(r.coefficient))),
@@ -146,10 +145,13 @@ Section coefficients_section(const FlightAnalysis& analysis) {
                                     number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
                                     number_cell(r.holdout_fit.count > 0 ? 100.0 * r.holdout_fit.r2 : kNaN, 1),
                                     number_cell(r.holdout_fit.count > 0 ? r.holdout_fit.theil : kNaN, 3),
-                                    number_cell(has ? r.error_ratio : kNaN), text_cell(r.reason)},
+                                    number_cell(has ? r.error_ratio : kNaN)},
                           .status = status_of(r.verdict)});
   }
   section.blocks.emplace_back(std::move(table));
+  List reasons;
+  for (const CoefficientResult& r : analysis.coefficients) reasons.items.push_back(r.reason);
+  section.blocks.emplace_back(std::move(reasons));
   return section;
 }
 
@@ -162,25 +164,25 @@ Table parameter_table(const FlightStudy& study, std::span<const CoefficientResul
                   "holds zero is "
                   "marked insignificant, not set to zero.",
               .columns = {{.name = "Parameter"},
+                          {.name = "Status"},
                           {.name = "Value"},
                           {.name = "Sigma"},
                           {.name = "95 % low", .group = "interval"},
                           {.name = "95 % high", .group = "interval"},
                           {.name = "Unit"},
-                          {.name = "t", .digits = 3},
-                          {.name = "Status"}}};
-  if (study.true_subject) table.columns.insert(table.columns.begin() + 5, {.name = "Truth"});
+                          {.name = "t", .digits = 3}}};
+  if (study.true_subject) table.columns.insert(table.columns.begin() + 6, {.name = "Truth"});
   for (const CoefficientResult* r : results) {
     for (std::size_t i = 0; i < r->chosen->parameters.size(); ++i) {
       const auto& p = r->chosen->parameters[i];
-      Row row{.cells = {text_cell(p.name), measured_cell(p.value, p.sigma), measured_cell(p.sigma, p.sigma),
-                        measured_cell(p.low95, p.sigma), measured_cell(p.high95, p.sigma), text_cell(p.unit),
-                        number_cell(p.t), status_cell(status_of(p.status))},
+      Row row{.cells = {text_cell(p.name), status_cell(status_of(p.status)), measured_cell(p.value, p.sigma),
+                        measured_cell(p.sigma, p.sigma), measured_cell(p.low95, p.sigma),
+                        measured_cell(p.high95, p.sigma), text_cell(p.unit), number_cell(p.t)},
               .status = status_of(p.status)};
       if (study.true_subject) {
         const CoefficientModel* truth = study.true_subject->model.find(r->coefficient);
         const std::optional<double> value = truth ? truth->value_of(r->model.terms[i].expression) : std::nullopt;
-        row.cells.insert(row.cells.begin() + 5, measured_cell(value.value_or(kNaN), p.sigma));
+        row.cells.insert(row.cells.begin() + 6, measured_cell(value.value_or(kNaN), p.sigma));
       }
       table.rows.push_back(std::move(row));
     }
