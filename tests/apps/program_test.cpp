@@ -151,7 +151,7 @@ TEST_F(Program, RefusesWhatIsNoStudyOrNoRecording) {
   expect_refusal("inspect " + file("empty.bin", ""), "empty.bin: ");
   expect_refusal("inspect " + (folder_ / "missing.bin").string(), "missing.bin: no such file");
   expect_refusal("inspect " + folder_.string(), "is a directory");
-  expect_refusal("inspect " + file("text.bin", "this is no log at all\n"), "text.bin: ");
+  expect_refusal("inspect " + file("text.bin", "this is no log at all\n"), "text.bin:");
 }
 
 TEST_F(Program, NamesFileLineAndKeyOfAWrongStudy) {
