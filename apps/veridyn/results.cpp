@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "veridyn/core/files.hpp"
@@ -25,6 +28,29 @@ std::string parameters_csv(const estimation::Estimate& estimate) {
   }
   return text;
 }
+
+/// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
+Recording thinned(const Recording& recording, double rate_Hz) {
+  Recording result;
+  result.source = recording.source;
+  result.frame = recording.frame;
+  std::map<const std::vector<double>*, TimeBase> bases;
+  for (const Channel& channel : recording.channels()) {
+    const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(channel.rate_Hz() / rate_Hz)));
+    TimeBase& base = bases[channel.time.get()];
+    if (!base) {
+      std::vector<double> stamps;
+      for (std::size_t i = 0; i < channel.size(); i += stride) stamps.push_back(channel.times()[i]);
+      base = make_time_base(std::move(stamps));
+    }
+    Channel part{channel.name, channel.unit, channel.recorded_unit, base, {}};
+    for (std::size_t i = 0; i < channel.size(); i += stride) part.value.push_back(channel.value[i]);
+    result.add(std::move(part));
+  }
+  return result;
+}
+
+constexpr double kFlightCsvRate_Hz = 20.0;
 
 Recording coefficient_recording(const FlightAnalysis& analysis) {
   Recording recording;
@@ -61,7 +87,7 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   report::AircraftReportContext context = kIdentifyContext;
   context.verb = run.verb;
   report::write_html(report::identification_report(study, analysis, context), folder / "report.html");
-  io::write_csv(analysis.reconstruction.smoothed, folder / "flight.csv");
+  io::write_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz), folder / "flight.csv");
   io::write_csv(coefficient_recording(analysis), folder / "coefficients.csv");
   if (analysis.validation.available())
     io::write_csv(validation_recording(analysis.validation), folder / "validation.csv");

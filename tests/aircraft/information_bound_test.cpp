@@ -23,11 +23,11 @@ TEST(InformationBound, ReproducesTheSpecificationsValues) {
     DrydenSettings spectrum;
     double speed, alpha_filter, alpha_smoother, beta_filter, beta_smoother;
   };
-  for (const Printed& p : {Printed{kModerate, 15.0, 0.45, 0.37, 0.41, 0.33},
-                           Printed{kModerate, 25.0, 0.41, 0.34, 0.37, 0.29},
-                           Printed{kLight, 15.0, 0.35, 0.27, 0.31, 0.24}}) {
+  for (const Printed& p :
+       {Printed{kModerate, 15.0, 0.45, 0.37, 0.41, 0.33}, Printed{kModerate, 25.0, 0.41, 0.34, 0.37, 0.29},
+        Printed{kLight, 15.0, 0.35, 0.27, 0.31, 0.24}}) {
     const auto b = information_bound(p.spectrum, p.speed, 0.6 * kDeg, 100.0);
-      // Half of the last printed digit. One value rounds otherwise: alpha, smoother, 25 m/s is 0.3347, printed 0.34.
+    // Half of the last printed digit. One value rounds otherwise: alpha, smoother, 25 m/s is 0.3347, printed 0.34.
     EXPECT_NEAR(b.alpha.filter / kDeg, p.alpha_filter, 0.0055);
     EXPECT_NEAR(b.alpha.smoother / kDeg, p.alpha_smoother, 0.0055);
     EXPECT_NEAR(b.beta.filter / kDeg, p.beta_filter, 0.0055);
@@ -97,8 +97,7 @@ TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
   model.F << e * (1.0 + theta), e * 0.01, -e * b * b * 0.01, e * (1.0 - theta);
   const Eigen::Matrix2d Pi = Eigen::Vector2d(1.0 / (4.0 * b * b * b), 1.0 / (4.0 * b)).asDiagonal();
   model.Q = Pi - model.F * Pi * model.F.transpose();
-  const Eigen::Vector2d H =
-      kModerate.sigma_w / kSpeed * std::sqrt(3.0 * b) * Eigen::Vector2d(b / std::sqrt(3.0), 1.0);
+  const Eigen::Vector2d H = kModerate.sigma_w / kSpeed * std::sqrt(3.0 * b) * Eigen::Vector2d(b / std::sqrt(3.0), 1.0);
   ASSERT_NEAR(H.dot(Pi * H), std::pow(kModerate.sigma_w / kSpeed, 2), 1e-12);
 
   numerics::RandomStream random(5, "gust");

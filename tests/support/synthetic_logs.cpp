@@ -398,8 +398,8 @@ std::string small_ulog() {
     const std::uint64_t t = 1000000 + 4000ULL * static_cast<std::uint64_t>(i);
     const auto x = static_cast<float>(i);
     log.data(0, pack(t, 0.5F * x, -0.25F, 0.125F, static_cast<std::uint8_t>(i)));
-    log.data(
-        1, pack(t, t, std::int32_t{5000 + i}, std::uint8_t{0}, t, std::int32_t{-7}, std::uint8_t{0}, true) + std::string("ab\0\0", 4));
+    log.data(1, pack(t, t, std::int32_t{5000 + i}, std::uint8_t{0}, t, std::int32_t{-7}, std::uint8_t{0}, true) +
+                    std::string("ab\0\0", 4));
     log.data(2, pack(t, -1000.0F));
     if (i % 3 == 0) log.data(3, pack(t, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i == 0 ? 1 : 2)));
     if (i == 3) log.sync();

@@ -177,6 +177,8 @@ FlightAnalysis reconstruct_flight(FlightStudy& study, Progress& progress) {
 
 FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
   FlightAnalysis analysis;
+  // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
+  study.reconstruct.keep_filter = study.truth.has_value();
   align_and_reconstruct(study, analysis, progress);
   if (analysis.interrupted) return analysis;
   find_flight(study, analysis);

@@ -13,7 +13,7 @@ namespace veridyn::io {
 struct CsvOptions {
   std::string time_column{};  ///< name of the column with the stamps; empty: found by its name
   std::string time_unit{};    ///< unit of the stamps ("ms"); empty: from the header or the name
-  char delimiter = '\0';    ///< '\0': comma, semicolon or tabulator, whichever the header holds most of
+  char delimiter = '\0';      ///< '\0': comma, semicolon or tabulator, whichever the header holds most of
 };
 
 /// Reads numbers in columns.
