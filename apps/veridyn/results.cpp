@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -86,11 +87,18 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   make_folder(folder);
   report::AircraftReportContext context = kIdentifyContext;
   context.verb = run.verb;
-  report::write_html(report::identification_report(study, analysis, context), folder / "report.html");
-  io::write_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz), folder / "flight.csv");
+  // The large files are written side by side; an error in one is thrown by `get` once the others are done.
+  std::future<void> page = std::async(std::launch::async, [&] {
+    report::write_html(report::identification_report(study, analysis, context), folder / "report.html");
+  });
+  std::future<void> flight = std::async(std::launch::async, [&] {
+    io::write_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz), folder / "flight.csv");
+  });
   io::write_csv(coefficient_recording(analysis), folder / "coefficients.csv");
   if (analysis.validation.available())
     io::write_csv(validation_recording(analysis.validation), folder / "validation.csv");
+  page.get();
+  flight.get();
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
   write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
   write_file(folder / "estimate.json", io::to_json(analysis.estimate));

@@ -22,6 +22,9 @@ constexpr double kMaxRate_Hz = 100.0;
 /// Samples of the longest stretch that the deflection search looks at: five minutes at 100 Hz are plenty.
 constexpr std::size_t kMaxRows = 30000;
 
+/// A delay is one number: the middle quarter of an hour of a longer flight determines it.
+constexpr double kLongestSearch_s = 900.0;
+
 using Series = std::vector<double>;
 
 class Alignment {
@@ -33,7 +36,10 @@ class Alignment {
     const Channel& gyro = mapped_.recording.at("gyro_x");
     const double rate = std::min(kMaxRate_Hz, std::round(gyro.rate_Hz()));
     if (!(rate >= 4.0 * options_.band_Hz) || gyro.span().duration() < 10.0) return finish_with_given();
-    grid_ = numerics::UniformGrid::covering(gyro.span().begin, gyro.span().end, 1.0 / rate);
+    const TimeSpan whole = gyro.span();
+    const double middle = 0.5 * (whole.begin + whole.end);
+    const double half = 0.5 * std::min(whole.duration(), kLongestSearch_s);
+    grid_ = numerics::UniformGrid::covering(middle - half, middle + half, 1.0 / rate);
     const numerics::LowPassDesign band{.rate_Hz = rate, .pass_Hz = options_.band_Hz, .stop_Hz = 1.5 * options_.band_Hz};
     smooth_ = numerics::low_pass(band);
     differentiate_ = numerics::low_pass_differentiator(band);
