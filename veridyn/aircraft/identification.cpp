@@ -26,6 +26,8 @@ using estimation::RegressionOptions;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Rows on which the error covariance is averaged: the Jacobian varies slowly.
 constexpr std::size_t kCovarianceRows = 2000;
+/// Factor within which the noise of the sensors is known.
+constexpr double kNoiseDoubt = 2.0;
 
 std::vector<FlightSignal> needed_signals(const CoefficientModel& model) {
   std::vector<FlightSignal> needed{FlightSignal::kAirspeed};
@@ -247,8 +249,9 @@ class CoefficientIdentification {
     if (!result.chosen) return reject(fmt::format("{}: {}", name, result.comparison.reason));
     const RegressionEstimate& chosen = *result.chosen;
     result.identification_fit = fit_on(result.data, chosen.theta);
-    result.unmodelled_share =
-        result.error_ratio > 1.0 ? (1.0 - result.identification_fit.r2) * (1.0 - 1.0 / result.error_ratio) : 0.0;
+    // What sensors leave is trusted within a factor of two in standard deviation.
+    const double beyond_sensors = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt / result.error_ratio);
+    result.unmodelled_share = (1.0 - result.identification_fit.r2) * beyond_sensors;
     residual_diagnostics(result);
 
     const AxisSegments& axis = segments_.of(result.axis);

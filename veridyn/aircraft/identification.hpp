@@ -54,8 +54,8 @@ struct CoefficientResult {
   estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
   std::optional<estimation::RegressionEstimate> chosen;
   double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
-  /// Share of the coefficient's variance that is neither modelled nor explained by the sensors' noise: (1 - R^2)(1 -
-  /// 1/ratio).
+  /// Share of the coefficient's variance that is neither modelled nor explained by twice the sensors' noise:
+  /// (1 - R^2) (1 - 4 / error_ratio).
   double unmodelled_share = 0.0;
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
