@@ -44,7 +44,7 @@ ASAN_TARGETS ?= veridyn_core_tests veridyn_numerics_tests veridyn_io_tests
 asan: setup ## tests of the readers under the address and undefined-behaviour sanitizers
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_TARGETS)
-	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -L 'core|numerics|io'
+	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -L '^(core|numerics|io)$$'
 
 bench: setup ## benchmarks; results in build/bench/*.json
 	cmake --preset bench --log-level=WARNING
