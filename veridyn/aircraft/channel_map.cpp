@@ -30,6 +30,18 @@ const StandardChannel& standard(std::string_view name) {
   return *found;
 }
 
+/// What came with a recording, without its channels.
+Recording without_channels(const Recording& recording) {
+  Recording result;
+  result.source = recording.source;
+  result.frame = recording.frame;
+  result.events = recording.events;
+  result.parameters = recording.parameters;
+  result.information = recording.information;
+  result.warnings = recording.warnings;
+  return result;
+}
+
 /// Numbers as the log has them, in SI. Where the log's unit is of another kind than `unit` (volts of a vane,
 /// microseconds of a servo) the recorded numbers are scaled and then are in `unit`.
 std::vector<double> in_si(const Channel& raw, double zero, double scale, std::string_view unit) {
@@ -192,12 +204,8 @@ std::span<const StandardChannel> standard_channels() {
 
 MappedRecording map_channels(const Recording& log, const StudyTable& map, const SurfaceThrows& throws) {
   MappedRecording mapped;
-  mapped.recording.source = log.source;
+  mapped.recording = without_channels(log);
   mapped.recording.frame = Frame::kFrd;
-  mapped.recording.events = log.events;
-  mapped.recording.parameters = log.parameters;
-  mapped.recording.information = log.information;
-  mapped.recording.warnings = log.warnings;
   if (log.frame == Frame::kFlu) {
     throw InputError(log.source, "its frame is flu (z up), an aircraft recording is frd (z down): convert it first");
   }
@@ -228,31 +236,24 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     internal::map_px4(builder, throws);
   }
   const std::vector<std::string> known = standard_names();
-  Recording kept;
+  std::vector<std::string> withdrawn;
   for (const std::string& name : map.keys()) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       map.fail(name, fmt::format("is not a standard channel{}", suggestion(name, known, known.size())));
     }
     if (map.is_text(name) && map.text(name) == "none") {
       std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });
+      withdrawn.push_back(name);
       continue;
     }
     map_from_study(log, map, name, mapped);
   }
-  // Channels taken away by "none".
-  kept = mapped.recording;
-  Recording result;
-  result.source = kept.source;
-  result.frame = kept.frame;
-  result.events = kept.events;
-  result.parameters = kept.parameters;
-  result.information = kept.information;
-  result.warnings = kept.warnings;
-  for (const Channel& channel : kept.channels()) {
-    if (map.is_text(channel.name) && map.text(channel.name) == "none") continue;
-    result.add(channel);
+  if (withdrawn.empty()) return mapped;
+  Recording kept = without_channels(mapped.recording);
+  for (const Channel& channel : mapped.recording.channels()) {
+    if (std::find(withdrawn.begin(), withdrawn.end(), channel.name) == withdrawn.end()) kept.add(channel);
   }
-  mapped.recording = std::move(result);
+  mapped.recording = std::move(kept);
   return mapped;
 }
 

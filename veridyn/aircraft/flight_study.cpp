@@ -124,6 +124,26 @@ void summarise(const FlightStudy& study, FlightAnalysis& analysis) {
   }
 }
 
+/// The part that identification and validation share: from recording to signals and segments.
+FlightAnalysis analyse_motion(FlightStudy& study, Progress& progress) {
+  FlightAnalysis analysis;
+  // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
+  study.reconstruct.keep_filter = study.truth.has_value();
+  align_and_reconstruct(study, analysis, progress);
+  if (!analysis.interrupted) find_flight(study, analysis);
+  return analysis;
+}
+
+/// And the end that they share: the model of what may be used, flown over the spans, and the verdict.
+void judge(const FlightStudy& study, FlightAnalysis& analysis, std::span<const TimeSpan> longitudinal,
+           std::span<const TimeSpan> lateral, const Progress& progress) {
+  analysis.identified = identified_subject(study.subject, analysis.coefficients);
+  analysis.validation = validate_flight(analysis.signals, longitudinal, lateral, analysis.identified,
+                                        identified_coefficients(analysis.coefficients), study.validate);
+  summarise(study, analysis);
+  analysis.interrupted = progress.interrupted();
+}
+
 }  // namespace
 
 FlightStudy read_flight_study(const Study& study, Progress& progress) {
@@ -176,42 +196,26 @@ FlightAnalysis reconstruct_flight(FlightStudy& study, Progress& progress) {
 }
 
 FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
-  FlightAnalysis analysis;
-  // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
-  study.reconstruct.keep_filter = study.truth.has_value();
-  align_and_reconstruct(study, analysis, progress);
+  FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
-  find_flight(study, analysis);
   analysis.coefficients =
       identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
-  analysis.identified = identified_subject(study.subject, analysis.coefficients);
   progress.stage("validating on the hold-out");
-  analysis.validation =
-      validate_flight(analysis.signals, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout,
-                      analysis.identified, identified_coefficients(analysis.coefficients), study.validate);
-  summarise(study, analysis);
-  analysis.interrupted = progress.interrupted();
+  judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);
   return analysis;
 }
 
 FlightAnalysis validate_estimate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
-  FlightAnalysis analysis;
-  align_and_reconstruct(study, analysis, progress);
+  FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
-  find_flight(study, analysis);
   analysis.coefficients =
       evaluate_estimate(analysis.signals, analysis.segments, study.subject, study.identify, estimate);
-  analysis.identified = identified_subject(study.subject, analysis.coefficients);
   progress.stage("validating");
-  analysis.validation =
-      validate_flight(analysis.signals, analysis.segments.longitudinal.excited, analysis.segments.lateral.excited,
-                      analysis.identified, identified_coefficients(analysis.coefficients), study.validate);
-  summarise(study, analysis);
+  judge(study, analysis, analysis.segments.longitudinal.excited, analysis.segments.lateral.excited, progress);
   // The parameters are those that were given; only the judgement is new.
   analysis.estimate.parameters = estimate.parameters;
   analysis.estimate.covariance = estimate.covariance;
   analysis.estimate.method = estimate.method;
-  analysis.interrupted = progress.interrupted();
   return analysis;
 }
 
