@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   app::add_reconstruct(program, exit_code);
   app::add_identify(program, exit_code);
   app::add_validate(program, exit_code);
+  app::add_export(program, exit_code);
   TerminalProgress::watch_signals();
   try {
     program.parse(argc, argv);

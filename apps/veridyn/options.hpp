@@ -29,6 +29,7 @@ void add_common(CLI::App& verb, CommonOptions& options, const std::string& defau
 
 /// Each verb adds itself to the program and runs when chosen; its exit code goes to `exit_code`.
 void add_demo(CLI::App& program, int& exit_code);
+void add_export(CLI::App& program, int& exit_code);
 void add_identify(CLI::App& program, int& exit_code);
 void add_init(CLI::App& program, int& exit_code);
 void add_inspect(CLI::App& program, int& exit_code);

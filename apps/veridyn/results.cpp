@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "veridyn/aircraft/jsbsim.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/io/csv.hpp"
 #include "veridyn/io/estimate_json.hpp"
@@ -101,6 +102,9 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   flight.get();
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
   write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
+  // JSBSim flies a complete model only; `veridyn export` says what is missing.
+  if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
+    write_file(folder / "jsbsim.xml", write_jsbsim(analysis.identified));
   write_file(folder / "estimate.json", io::to_json(analysis.estimate));
   write_run_record(folder, run, options);
 }

@@ -9,7 +9,7 @@
 namespace veridyn::app {
 
 /// The files of an identification or validation: estimate.json, subject.toml, parameters.csv, flight.csv,
-/// coefficients.csv, validation.csv, report.html, run.json.
+/// coefficients.csv, validation.csv, report.html, run.json; jsbsim.xml where every coefficient was identified.
 void write_identification(const std::filesystem::path& folder, const aircraft::FlightStudy& study,
                           const aircraft::FlightAnalysis& analysis, const RunRecord& run, const CommonOptions& options);
 

@@ -69,14 +69,15 @@ class Program : public testing::Test {
 TEST_F(Program, ShowsItsVerbsAndNoOthers) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* verb : {"demo", "init", "inspect", "simulate", "reconstruct", "identify", "validate"})
+  for (const char* verb : {"demo", "init", "inspect", "simulate", "reconstruct", "identify", "validate", "export"})
     EXPECT_THAT(help.text, HasSubstr(verb));
   for (const char* verb : {"track", "sensitivity", "cue", "rig", "serve"})
     EXPECT_THAT(help.text, testing::Not(HasSubstr(verb)));
 }
 
 TEST_F(Program, HelpsEveryVerbWithAnExample) {
-  for (const char* verb : {"demo", "inspect", "simulate", "reconstruct", "identify", "validate", "init aircraft"}) {
+  for (const char* verb :
+       {"demo", "inspect", "simulate", "reconstruct", "identify", "validate", "export", "init aircraft"}) {
     const Outcome help = run(std::string(verb) + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.text, HasSubstr("Example:\n  veridyn ")) << verb;
@@ -118,6 +119,19 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
           " --json --quiet --out " + (folder_ / "other").string());
   EXPECT_EQ(validated.exit_code, 0) << validated.text;
   EXPECT_THAT(validated.text, HasSubstr("\"Cm\": {\n      \"verdict\": \"identified\""));
+}
+
+TEST_F(Program, ExportsABuiltInSubjectForOtherPrograms) {
+  const std::string study = file("study.toml", "[subject]\nbuiltin = \"aerosonde\"\n");
+  ASSERT_EQ(run("export " + study + out()).exit_code, 0);
+  EXPECT_THAT(read_file(folder_ / "out" / "jsbsim.xml"), HasSubstr("aero/coefficient/CL_alpha"));
+  EXPECT_THAT(read_file(folder_ / "out" / "model.json"), HasSubstr("\"name\": \"Cm_alpha\""));
+  EXPECT_THAT(read_file(folder_ / "out" / "model.csv"), HasSubstr("CL,\"alpha\",CL_alpha,1/rad,"));
+  // The exported subject is one that the program reads.
+  EXPECT_EQ(run("export " + (folder_ / "out" / "subject.toml").string() + " --format csv" + out()).exit_code, 0);
+  expect_refusal(
+      "export " + file("unknown.toml", "[subject]\nbuiltin = \"aerosonde\"\nmodel = { CL = [\"1\"] }\n") + out(),
+      "these have no value: CL_0");
 }
 
 TEST_F(Program, GivesTheSameBytesForTheSameSeed) {

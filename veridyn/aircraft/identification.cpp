@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/aircraft/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -481,15 +482,7 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
     if (structure == nullptr) continue;
-    // Terms that the estimate dropped (refit_significant) are absent there; a coefficient of which it knows nothing is
-    // left out.
-    CoefficientModel model{structure->coefficient, {}, {}};
-    for (const Term& term : structure->terms) {
-      const estimation::EstimatedParameter* p = estimate.find(parameter_name(structure->coefficient, term));
-      if (p == nullptr || p->status == ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
-      model.terms.push_back(term);
-      model.values.push_back(p->value);
-    }
+    const CoefficientModel model = estimated_coefficient(*structure, estimate);
     if (model.size() > 0) results.push_back(identification.evaluate(model));
   }
   if (results.empty()) {
