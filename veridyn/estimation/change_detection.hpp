@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace veridyn::estimation {
+
+/// Average number of samples until a two-sided CUSUM on white N(mean, 1) samples crosses `threshold`, from zero.
+///
+/// Each side is Page's S_k = max(0, S_{k-1} +- u_k - reference). Its run length solves a Fredholm equation (Page 1954),
+/// discretised by Gauss-Legendre; sides combine as 1/L = 1/L_up + 1/L_down (Kemp 1961, exact where one must be zero for
+/// the other to alarm). Check: reference 0.5, threshold 4 gives 168; threshold 5 gives 465 (Lucas & Crosier 1982).
+[[nodiscard]] double cusum_run_length(double reference, double threshold, double mean = 0.0);
+/// The threshold with that average run length on unchanged samples. @throws InputError when it would need more than 1e12.
+[[nodiscard]] double cusum_threshold(double reference, double run_length);
+
+struct ChangeDetectionOptions {
+  double rate_Hz = 100.0;  ///< of the innovations
+  /// Stated rate: mean time between false alarms on unchanged data [s]. Default one per 10 hours.
+  double false_alarm_interval_s = 36000.0;
+  /// Innovations are averaged over blocks of this length [s]; a block is one sample of the CUSUM. Long enough that a
+  /// first-order model covers what correlation is left between blocks, short against the changes looked for.
+  double block_s = 0.2;
+  /// Change of the mean to be found fastest [standard deviations of a block]; its half is the CUSUM's reference value.
+  double mean_shift = 1.0;
+  /// Factor on the standard deviation to be found fastest, > 1; a change of a derivative shows as more variance, since
+  /// regressors swing about zero. 0 watches the mean only.
+  double spread_factor = 1.5;
+  /// Blocks over which mean, variance and correlation of unchanged innovations are learned before watching starts [s].
+  double learn_s = 60.0;
+  /// They are followed with this memory afterwards [s].
+  double memory_s = 300.0;
+
+  /// @throws InputError naming the option, its value and its rule.
+  void validate() const;
+};
+
+enum class ChangeKind {
+  kMean,   ///< the innovation has a mean: a bias, a jump of the constant term
+  kSpread  ///< the innovation has grown: other derivatives, more noise
+};
+
+struct Change {
+  ChangeKind kind = ChangeKind::kMean;
+  double detected_s = 0.0;  ///< time of the alarm
+  double began_s = 0.0;     ///< estimated time of the change: when the sum that raised it last left zero
+  double shift = 0.0;       ///< mean of the whitened block innovations since then [sd] (kMean), their rms (kSpread)
+};
+
+/// Watches normalised innovations for a change, with a stated rate of false alarms.
+///
+/// Innovations of real flight are coloured, so they are averaged over blocks, and block means b_i are whitened by a
+/// running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
+/// slowly, from blocks that raise no suspicion. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
+/// u^2 for the spread; thresholds give each half of the stated rate (normal u; average run lengths from integral
+/// equations, the error of the learned s included). After an alarm sums start again and the model is learned anew.
+class ChangeDetector {
+ public:
+  explicit ChangeDetector(const ChangeDetectionOptions& options);
+
+  /// One innovation over its standard deviation, at `time_s`. Numbers that are not finite are left out. Does not
+  /// allocate. @return the change when this sample raises the alarm
+  std::optional<Change> update(double time_s, double normalised_innovation);
+
+  [[nodiscard]] bool watching() const;       ///< false while learning
+  [[nodiscard]] double correlation() const;  ///< a, between neighbouring blocks
+  [[nodiscard]] double mean_threshold() const { return mean_threshold_; }
+  [[nodiscard]] double spread_threshold() const { return spread_threshold_; }
+  /// Largest of the sums over their thresholds: 1 is an alarm.
+  [[nodiscard]] double suspicion() const;
+  [[nodiscard]] std::uint64_t alarms() const { return alarms_; }
+
+ private:
+  ChangeDetectionOptions options_;
+  double mean_threshold_ = 0.0;
+  double spread_threshold_ = 0.0;
+  std::uint64_t alarms_ = 0;
+};
+
+}  // namespace veridyn::estimation
