@@ -22,7 +22,9 @@ int main(int argc, char** argv) {
   app::add_simulate(program, exit_code);
   app::add_reconstruct(program, exit_code);
   app::add_identify(program, exit_code);
+  app::add_track(program, exit_code);
   app::add_validate(program, exit_code);
+  app::add_reproduce(program, exit_code);
   app::add_export(program, exit_code);
   TerminalProgress::watch_signals();
   try {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "veridyn/numerics/parallel.hpp"
+
 namespace veridyn::app {
 
 void add_common(CLI::App& verb, CommonOptions& options, const std::string& default_out, const std::string& example) {
@@ -22,6 +24,7 @@ void add_common(CLI::App& verb, CommonOptions& options, const std::string& defau
 }
 
 Study load_study(const std::string& path, const CommonOptions& options) {
+  numerics::set_default_threads(options.threads);
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   return Study::load(path, overrides);

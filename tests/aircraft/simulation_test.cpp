@@ -45,6 +45,28 @@ TEST(Simulation, FliesTheReferenceFlightWithinTheLinearRangeOfTheWing) {
   for (const double down : flight.truth.at("pos_down").value) EXPECT_NEAR(down, -100.0, 40.0);
 }
 
+TEST(Simulation, ChangesTheAircraftAtTheStatedTime) {
+  const Study study = Study::parse(
+      "[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 20\n[[flight.change]]\ntime = 8\n"
+      "parameters = { Cm_alpha = -0.3, CL_alpha = 3.0 }\n",
+      "study.toml");
+  const SimulationOptions o = read_simulation(study.root());
+  ASSERT_EQ(o.changes.size(), 1u);
+  const SimulatedFlight flight = fly(o);
+  ASSERT_TRUE(flight.usable());
+  const auto at = [&](const char* name, std::size_t k) { return flight.truth.at(name).value[k]; };
+  for (std::size_t k = 0; k < flight.truth.at("CL").size(); k += 50) {
+    const double t = flight.truth.at("CL").times()[k];
+    AeroVariables<double> v;
+    v.alpha = at("alpha", k), v.beta = at("beta", k), v.Va = at("airspeed", k);
+    v.q_n = 0.5 * o.subject.chord * at("gyro_y", k) / v.Va;
+    v.de = at("elevator", k);
+    const AeroModel& model = t < 8.0 - 1e-9 ? o.subject.model : o.changes[0].model;
+    EXPECT_NEAR(at("CL", k), model.at(Coefficient::kCL).linear(v), 1e-9) << t;
+  }
+  EXPECT_THAT(flight.truth.events.back().text, HasSubstr("Cm_alpha"));
+}
+
 TEST(Simulation, FliesEveryBuiltInAircraft) {
   for (const std::string& name : builtin_subject_names()) {
     SimulationOptions o = calm(name, 150);

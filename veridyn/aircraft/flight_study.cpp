@@ -160,6 +160,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.segments = SegmentOptions::read(root.table_or_empty("segments"));
   result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
   result.validate = ValidationOptions::read(root.table_or_empty("validate"));
+  result.track = TrackOptions::read(root.table_or_empty("track"));
   if (!(result.segments.min_airspeed_mps > 0.0))
     result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
 
@@ -177,6 +178,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
     log.source = study.name();
     result.truth = std::move(flight.truth);
     result.true_subject = result.subject;
+    result.true_changes = simulation.changes;
   } else {
     // A study may carry the flight that its recording was simulated from.
     if (root.has("flight")) static_cast<void>(read_simulation(root));

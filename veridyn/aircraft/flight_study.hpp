@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/coefficient_tracker.hpp"
 #include "veridyn/aircraft/delays.hpp"
 #include "veridyn/aircraft/identification.hpp"
 #include "veridyn/aircraft/reconstruct.hpp"
+#include "veridyn/aircraft/simulation.hpp"
 #include "veridyn/aircraft/validation.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
@@ -23,6 +25,7 @@ namespace veridyn::aircraft {
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions
 ///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
 ///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
+///     [track]        see TrackOptions
 struct FlightStudy {
   std::string name;
   std::uint64_t seed = 0;
@@ -36,6 +39,8 @@ struct FlightStudy {
   SegmentOptions segments;
   IdentifyOptions identify;
   ValidationOptions validate;
+  TrackOptions track;
+  std::vector<ModelChange> true_changes;      ///< of a simulated flight
   std::vector<std::filesystem::path> inputs;  ///< files that were read
 };
 

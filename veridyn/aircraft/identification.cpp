@@ -48,24 +48,6 @@ std::vector<FlightSignal> needed_signals(const CoefficientModel& model) {
 
 bool is_moment(Coefficient c) { return c == Coefficient::kCl || c == Coefficient::kCm || c == Coefficient::kCn; }
 
-/// Why the coefficient cannot be computed at all, or empty.
-std::string obstacle(const CoefficientModel& model, const FlightSignals& signals, const Subject& subject) {
-  const std::string_view name = name_of(model.coefficient);
-  if (is_moment(model.coefficient) && !subject.inertia) {
-    return fmt::format("{} needs the inertia tensor (subject.inertia), which is not given", name);
-  }
-  if (model.coefficient == Coefficient::kCD && !signals[FlightSignal::kThrust].available()) {
-    return "CD needs the thrust: a channel, or throttle with a propulsion model in the subject";
-  }
-  for (const FlightSignal signal : needed_signals(model)) {
-    if (!signals[signal].available()) {
-      return fmt::format("{} needs {}, which the log does not have", name,
-                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
-    }
-  }
-  return {};
-}
-
 bool complete(const FlightSample<double>& sample, const std::vector<FlightSignal>& needed) {
   return std::all_of(needed.begin(), needed.end(), [&](FlightSignal s) { return std::isfinite(sample[s]); });
 }
@@ -145,7 +127,7 @@ class CoefficientIdentification {
     result.axis = axis_of(structure.coefficient);
     result.model = structure;
     result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
-    result.reason = obstacle(structure, signals_, subject_);
+    result.reason = identification_obstacle(structure, signals_, subject_);
     if (!result.reason.empty()) return result;
     estimate(result);
     if (result.chosen && options_.refit_significant) refit(result);
@@ -161,7 +143,7 @@ class CoefficientIdentification {
     result.axis = axis_of(model.coefficient);
     result.model = model;
     result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
-    result.reason = obstacle(model, signals_, subject_);
+    result.reason = identification_obstacle(model, signals_, subject_);
     if (!result.reason.empty()) return result;
     const std::string_view name = name_of(model.coefficient);
     const AxisSegments& axis = segments_.of(result.axis);
@@ -361,6 +343,24 @@ const char* to_string(CoefficientVerdict verdict) {
   return "skipped";
 }
 
+std::string identification_obstacle(const CoefficientModel& model, const FlightSignals& signals,
+                                    const Subject& subject) {
+  const std::string_view name = name_of(model.coefficient);
+  if (is_moment(model.coefficient) && !subject.inertia) {
+    return fmt::format("{} needs the inertia tensor (subject.inertia), which is not given", name);
+  }
+  if (model.coefficient == Coefficient::kCD && !signals[FlightSignal::kThrust].available()) {
+    return "CD needs the thrust: a channel, or throttle with a propulsion model in the subject";
+  }
+  for (const FlightSignal signal : needed_signals(model)) {
+    if (!signals[signal].available()) {
+      return fmt::format("{} needs {}, which the log does not have", name,
+                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
+    }
+  }
+  return {};
+}
+
 Axis axis_of(Coefficient coefficient) {
   const bool longitudinal =
       coefficient == Coefficient::kCL || coefficient == Coefficient::kCD || coefficient == Coefficient::kCm;
@@ -392,6 +392,23 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   options.max_unmodelled = table.number_or("max_unmodelled", "1", options.max_unmodelled);
   options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
   return options;
+}
+
+Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const FlightSignals& signals, std::size_t k,
+                                     const Subject& subject) {
+  const auto n = static_cast<Eigen::Index>(model.size());
+  Eigen::VectorXd classical = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kFlightSignals));
+  Eigen::VectorXd berkson = classical;
+  for (std::size_t i = 0; i < kFlightSignals; ++i) {
+    const GridSignal& signal = signals.signals[i];
+    const double variance = signal.sigma * signal.sigma;
+    if (signal.error == ErrorKind::kClassical) classical(static_cast<Eigen::Index>(i)) = variance;
+    if (signal.error == ErrorKind::kBerkson) berkson(static_cast<Eigen::Index>(i)) = variance;
+  }
+  const CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
+  Eigen::MatrixXd W = row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
+  W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
+  return W;
 }
 
 RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
@@ -426,23 +443,12 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
   }
   if (count == 0) return data;
 
-  // W = mean of J Sigma J'. Errors of Berkson kind are independent of the regressors and enter through z alone.
-  Eigen::VectorXd classical = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kFlightSignals));
-  Eigen::VectorXd berkson = classical;
-  for (std::size_t i = 0; i < kFlightSignals; ++i) {
-    const GridSignal& signal = signals.signals[i];
-    const double variance = signal.sigma * signal.sigma;
-    if (signal.error == ErrorKind::kClassical) classical(static_cast<Eigen::Index>(i)) = variance;
-    if (signal.error == ErrorKind::kBerkson) berkson(static_cast<Eigen::Index>(i)) = variance;
-  }
+  // The Jacobian varies slowly: a mean over some of the rows.
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n + 1, n + 1);
   const std::size_t step = std::max<std::size_t>(1, rows.size() / kCovarianceRows);
   std::size_t used = 0;
   for (std::size_t i = 0; i < rows.size(); i += step) {
-    const std::size_t k = rows[i];
-    const CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
-    W += row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
-    W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
+    W += row_error_covariance(model, signals, rows[i], subject);
     ++used;
   }
   data.error_covariance = W / static_cast<double>(used);

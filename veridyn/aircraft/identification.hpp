@@ -75,6 +75,15 @@ struct CoefficientResult {
 /// The axis on which a coefficient is identified: CL, CD, Cm longitudinal, the others lateral.
 [[nodiscard]] Axis axis_of(Coefficient coefficient);
 
+/// Why the coefficient cannot be computed from these signals at all, or empty.
+[[nodiscard]] std::string identification_obstacle(const CoefficientModel& model, const FlightSignals& signals,
+                                                  const Subject& subject);
+
+/// W of the coefficient's row [x, z] at grid point k: J Sigma J' of the signals' classical errors; those of Berkson
+/// kind enter through z alone.
+[[nodiscard]] Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const FlightSignals& signals,
+                                                   std::size_t k, const Subject& subject);
+
 /// Regression rows of a coefficient in the given spans: stride-thinned, rows that miss a signal left out, one segment
 /// id a span, W from the signals' noise.
 [[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,

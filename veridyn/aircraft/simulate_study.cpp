@@ -1,10 +1,44 @@
 #include "veridyn/aircraft/simulate_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 namespace veridyn::aircraft {
+
+namespace {
+
+std::vector<ModelChange> read_changes(const StudyTable& flight, const AeroModel& model) {
+  std::vector<ModelChange> changes;
+  AeroModel current = model;
+  for (const StudyTable& table : flight.tables("change")) {
+    ModelChange change;
+    change.time = table.positive("time", "s");
+    if (!changes.empty() && !(change.time > changes.back().time)) {
+      table.fail("time", fmt::format("= {:g} s is not after the change before it", change.time));
+    }
+    const StudyTable parameters = table.table("parameters");
+    std::vector<std::string> texts;
+    for (auto& coefficient : current.coefficients) {
+      if (!coefficient) continue;
+      const std::vector<std::string> names = coefficient->parameter_names();
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!parameters.has(names[i])) continue;
+        const double before = coefficient->values[i];
+        coefficient->values[i] = parameters.number(names[i], coefficient->terms[i].parameter_unit());
+        texts.push_back(fmt::format("{} {:.4g} to {:.4g}", names[i], before, coefficient->values[i]));
+      }
+    }
+    if (texts.empty()) table.fail("parameters", "names no parameter of the subject's model");
+    change.model = current;
+    change.text = fmt::format("{}", fmt::join(texts, ", "));
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+}  // namespace
 
 SimulationOptions read_simulation(const StudyTable& root) {
   SimulationOptions o;
@@ -55,6 +89,7 @@ SimulationOptions read_simulation(const StudyTable& root) {
   } else if (plan == "none") {
     o.manoeuvres = std::vector<Manoeuvre>{};
   }
+  o.changes = read_changes(flight, o.subject.model);
   return o;
 }
 

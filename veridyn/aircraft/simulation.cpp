@@ -146,7 +146,7 @@ std::string SimulatedFlight::message() const {
 
 SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   check(o);
-  const Subject& s = o.subject;
+  Subject s = o.subject;  // its model changes where the flight says so
   const MassProperties body(s.mass, s.inertia->matrix());
   const double airspeed = o.airspeed > 0.0 ? o.airspeed : default_airspeed(s, o.gravity);
   SimulatedFlight flight;
@@ -196,8 +196,10 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   flight.alpha_min = std::numeric_limits<double>::infinity();
   flight.alpha_max = -flight.alpha_min;
   progress.stage(fmt::format("simulating {:.0f} s of flight", o.duration));
+  std::size_t changed = 0;
   for (long long k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) * h;
+    while (changed < o.changes.size() && t >= o.changes[changed].time - 0.5 * h) s.model = o.changes[changed++].model;
     const TruthSample truth = truth_of(s, body, now, o.gravity);
     if (!now.state.allFinite() || !std::isfinite(truth[Truth::kAirspeed])) {
       flight.end = SimulationEnd::kNotFinite;
@@ -262,6 +264,10 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
     const std::string text = fmt::format("{} {}", name_of(m.kind), fmt::join(names, ", "));
     flight.measured.events.push_back({m.start, "manoeuvre", text});
     flight.truth.events.push_back({m.start, "manoeuvre", text});
+  }
+  for (std::size_t i = 0; i < changed; ++i) {
+    flight.measured.events.push_back({o.changes[i].time, "change", o.changes[i].text});
+    flight.truth.events.push_back({o.changes[i].time, "change", o.changes[i].text});
   }
   static_cast<void>(progress.update(1.0));
   return flight;

@@ -15,6 +15,13 @@
 
 namespace veridyn::aircraft {
 
+/// The aircraft changes in flight: ice, damage, a wing that stalls or recovers. From `time` on the model is `model`.
+struct ModelChange {
+  double time = 0.0;  ///< [s]
+  AeroModel model;
+  std::string text;  ///< what changed, in words: "Cm_alpha -0.7 to -0.35"
+};
+
 /// What is flown.
 struct SimulationOptions {
   Subject subject;
@@ -31,6 +38,7 @@ struct SimulationOptions {
   DrydenSettings turbulence;
   SensorSet sensors = reference_sensors();
   std::optional<std::vector<Manoeuvre>> manoeuvres;  ///< none: `default_plan`
+  std::vector<ModelChange> changes = {};             ///< by time
   std::uint64_t seed = 1;
 };
 

@@ -1,0 +1,116 @@
+// veridyn reproduce aircraft: published results beside ours, one study a row.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/veridyn/output.hpp"
+#include "apps/veridyn/reproduce_studies.hpp"
+#include "veridyn/aircraft/reproduction.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/report/html.hpp"
+#include "veridyn/report/reproduction_report.hpp"
+
+namespace veridyn::app {
+namespace {
+
+struct Options {
+  std::vector<std::string> only;
+  std::string studies;
+  CommonOptions common;
+};
+
+struct NamedStudy {
+  std::string name;
+  std::string text;
+};
+
+/// The studies built into the program, or those of a folder.
+std::vector<NamedStudy> studies_of(const Options& options) {
+  std::vector<NamedStudy> studies;
+  if (options.studies.empty()) {
+    for (const EmbeddedStudy& study : kAircraftStudies) studies.push_back({study.name, study.text});
+  } else {
+    std::vector<std::filesystem::path> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(options.studies)) {
+      if (entry.path().extension() == ".toml") paths.push_back(entry.path());
+    }
+    std::sort(paths.begin(), paths.end());
+    for (const auto& path : paths) studies.push_back({path.stem().string(), read_file(path)});
+    if (studies.empty()) throw InputError(options.studies, "holds no study (*.toml)");
+  }
+  if (options.only.empty()) return studies;
+  std::vector<NamedStudy> chosen;
+  for (const std::string& name : options.only) {
+    const std::size_t before = chosen.size();
+    for (const NamedStudy& study : studies) {
+      if (study.name.find(name) != std::string::npos) chosen.push_back(study);
+    }
+    if (chosen.size() == before) {
+      std::vector<std::string> names;
+      for (const NamedStudy& study : studies) names.push_back(study.name);
+      throw InputError("--only", fmt::format("no row is called '{}'{}", name, suggestion(name, names)));
+    }
+  }
+  return chosen;
+}
+
+int reproduce_aircraft(const Options& options) {
+  numerics::set_default_threads(options.common.threads);
+  std::vector<std::string> overrides = options.common.overrides;
+  if (options.common.seed) overrides.push_back(fmt::format("seed={}", *options.common.seed));
+  const std::vector<NamedStudy> studies = studies_of(options);
+  TerminalProgress progress(options.common.quiet);
+  std::vector<aircraft::Reproduction> rows;
+  nlohmann::ordered_json summary = {{"rows", nlohmann::ordered_json::array()}};
+  std::string run_toml;
+  for (const NamedStudy& named : studies) {
+    const Study study = Study::parse(named.text, named.name + ".toml", {}, overrides);
+    run_toml += fmt::format("# {}\n{}\n", named.name, study.to_toml());
+    aircraft::Reproduction row = aircraft::reproduce(study.root(), progress);
+    if (row.interrupted) {
+      fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
+      return kFailed;
+    }
+    tell(options.common, fmt::format("{:<4} {}", row.passed() ? "ok" : "NO", row.title));
+    nlohmann::ordered_json json = {{"row", named.name}, {"title", row.title}, {"passed", row.passed()}};
+    for (const aircraft::ReproductionCheck& check : row.checks) {
+      tell(options.common, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
+      json["checks"].push_back({{"passed", check.passed}, {"text", check.text}});
+    }
+    summary["rows"].push_back(std::move(json));
+    rows.push_back(std::move(row));
+  }
+  const std::filesystem::path folder = options.common.out;
+  make_folder(folder);
+  report::write_html(report::reproduction_report(rows, "veridyn " VERIDYN_VERSION), folder / "report.html");
+  summary["folder"] = folder.string();
+  write_file(folder / "reproduction.json", summary.dump(2) + "\n");
+  write_run_record(folder, {"reproduce", "aircraft", run_toml, options.common.seed.value_or(0), {}}, options.common);
+  tell(options.common, fmt::format("report: {}", (folder / "report.html").string()));
+  print_summary(summary, options.common);
+  return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.passed(); }) ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& program, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = program.add_subcommand("reproduce", "published results beside ours, in one report");
+  verb->require_subcommand(1);
+  CLI::App* aircraft = verb->add_subcommand("aircraft", "regression, total least squares, recursion, stall: ten rows");
+  aircraft->add_option("--only", options->only, "rows whose name holds this text (repeatable)")->type_name("TEXT");
+  aircraft->add_option("--studies", options->studies, "folder of studies to run instead of the built-in ones")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  add_common(*aircraft, options->common, "out/reproduce", "veridyn reproduce aircraft --only Cm_change");
+  aircraft->callback([options, &exit_code] { exit_code = reproduce_aircraft(*options); });
+}
+
+}  // namespace veridyn::app

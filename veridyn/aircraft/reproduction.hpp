@@ -1,0 +1,62 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/batch_experiment.hpp"
+#include "veridyn/aircraft/tracking_experiment.hpp"
+
+namespace veridyn::aircraft {
+
+/// Something that a reproduction must show, with what it showed.
+struct ReproductionCheck {
+  bool passed = false;
+  std::string text;
+};
+
+/// A published result beside ours: one row of `veridyn reproduce aircraft`, described by a study of its own
+/// (examples/reproduce/aircraft). Beside `[subject]`, `[flight]` and `[experiment]` the study holds
+///
+///     title = "CY, OLS, exact regressors"
+///     finding = "what was published, in words"
+///     [published.OLS]            # published estimates by method and parameter
+///     CY_beta = -0.9804
+///     [experiment]               # see ExperimentOptions, and
+///     methods = ["OLS", "GTLS"]  # batch: these methods once a seed
+///     [[experiment.tracker]]     # or recursive: see read_trackers
+///     [expect]                   # what must be seen; every key is optional
+///     unbiased = "OLS"           # mean over the seeds within 0.1 of an estimate's scatter of the truth, and within 1
+///     %
+///                                # where the truth is larger than ten times the scatter
+///     covers = "OLS"             # 95 % intervals hold the truth in 93 to 97 % of the seeds, every parameter
+///     biased = "OLS"             # some mean is off by more than three times the scatter
+///     output_error_below = { GTLS = 0.02 }     # largest over rows and seeds; see BatchStatistics::output_error
+///     output_error_above = { OLS = 0.10 }
+///     never_settles = ["OLS"]    # trackers; see TrackingRun::settling_s
+///     settles = ["PCA-GTLS"]
+///     settles_when_excited = "PCA-GTLS"        # and not before every direction was excited once
+///     faster = { tracker = "variable", than = "constant", factor = 5 }  # median settling after the first change
+///     no_false_alarm = ["variable"]            # neither detector nor forgetting before the first change
+///     detects = ["variable"]     # every change within `detection_window`, in every repetition
+///     detection_window = "30 s"
+///     holds = "PCA-GTLS"         # bands hold the truth in 90 % of the record, though directions were unexcited in it
+struct Reproduction {
+  std::string title;
+  std::string finding;
+  std::map<std::string, std::map<std::string, double>> published;
+  ExperimentOptions options;
+  std::optional<BatchExperiment> batch;
+  std::optional<TrackingExperiment> tracking;
+  std::vector<ReproductionCheck> checks;
+  bool interrupted = false;
+
+  [[nodiscard]] bool passed() const;
+};
+
+/// Reads the study, runs its experiment and checks what it expects.
+/// @throws InputError naming file, line and key.
+[[nodiscard]] Reproduction reproduce(const StudyTable& root, Progress& progress);
+
+}  // namespace veridyn::aircraft

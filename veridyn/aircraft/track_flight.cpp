@@ -1,0 +1,119 @@
+#include "veridyn/aircraft/track_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/aircraft/direct_air_data.hpp"
+#include "veridyn/aircraft/reconstruct_streams.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/study_data.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Seconds read again before the first new row: filters need some, the state estimate finds its wind in them.
+constexpr double kWarmSensors_s = 3.0;
+constexpr double kWarmFilter_s = 90.0;
+/// Less than this is not worth a pass.
+constexpr double kShortest_s = 1.0;
+
+FlightTracker make_tracker(const FlightStudy& study) {
+  std::optional<estimation::Estimate> start;
+  if (!study.track.estimate_file.empty()) start = io::read_estimate(study.track.estimate_file);
+  return FlightTracker(study.subject, study.track, study.segments.min_airspeed_mps, start ? &*start : nullptr);
+}
+
+std::string choose_air_data(const std::string& wanted, const Recording& recording) {
+  if (wanted != "auto") return wanted;
+  const bool pitot = recording.find("dynamic_pressure") != nullptr || recording.find("airspeed") != nullptr;
+  const bool vanes = recording.find("alpha") != nullptr && recording.find("beta") != nullptr;
+  return pitot && vanes ? "sensors" : "filter";
+}
+
+}  // namespace
+
+TrackedFlight::TrackedFlight(const FlightStudy& study) : tracker_(make_tracker(study)) {}
+
+std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
+                                                 Progress& progress) {
+  const std::vector<std::string> needed{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  require_channels(mapped, needed, "tracking");
+  const TimeSpan span = mapped.recording.at("gyro_x").span();
+  end_ = std::max(end_, span.end);
+  if (air_data_.empty()) air_data_ = choose_air_data(study.track.air_data, mapped.recording);
+  const bool by_sensors = air_data_ == "sensors";
+  const double begin = std::isfinite(tracker_.last_time())
+                           ? tracker_.last_time() - (by_sensors ? kWarmSensors_s : kWarmFilter_s)
+                           : span.begin;
+  if (!(span.end - std::max(begin, span.begin) >= kShortest_s)) return {};
+
+  MappedRecording part = mapped;
+  const bool whole = begin <= span.begin;
+  if (!whole) part.recording = io::cut(mapped.recording, {begin, kInfinity});
+  Recording air;
+  if (by_sensors) {
+    air = direct_air_data(part.recording, study.reconstruct, study.signals);
+  } else {
+    ReconstructOptions options = study.reconstruct;
+    options.keep_filter = true;
+    Reconstruction reconstruction = reconstruct(part.recording, options, progress);
+    if (reconstruction.interrupted) return {};
+    air = std::move(reconstruction.filtered);
+  }
+  SignalOptions signal_options = study.signals;
+  std::vector<std::string> ignored;
+  const SensorSigma known = internal::load_streams(part.recording, study.reconstruct, ignored).sigma;
+  const FlightSignals signals = prepare_signals(part, air, study.subject, signal_options,
+                                                study.reconstruct.sensors == "reference" ? &known : nullptr);
+  if (tracker_.rows() == 0) notes_ = signals.notes;
+  const double margin = filter_margin(signals);
+  return tracker_.feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);
+}
+
+TrackingAnalysis track_flight(FlightStudy& study, Progress& progress) {
+  progress.stage("aligning sensor delays");
+  std::vector<DelayReport> delays = align_delays(study.mapped, study.delays);
+  TrackingAnalysis analysis{std::move(delays), TrackedFlight(study), false};
+  progress.stage("tracking");
+  static_cast<void>(analysis.flight.advance(study.mapped, study, true, progress));
+  analysis.interrupted = progress.interrupted();
+  return analysis;
+}
+
+Recording history_recording(const FlightTracker& tracker) {
+  Recording out;
+  out.source = "track.csv";
+  out.frame = Frame::kFrd;
+  for (const TrackedCoefficient& c : tracker.coefficients()) {
+    if (!c.tracker) continue;
+    const TrackHistory& h = c.tracker->history();
+    const std::string name(name_of(c.model.coefficient));
+    const TimeBase time = make_time_base(h.time);
+    const auto add = [&](std::string channel, std::vector<double> values) {
+      // Before an estimate is usable its error bar is infinite: an empty cell.
+      for (double& v : values) {
+        if (std::isinf(v)) v = std::numeric_limits<double>::quiet_NaN();
+      }
+      out.add(make_channel(std::move(channel), "1", time, std::move(values)));
+    };
+    for (std::size_t i = 0; i < c.model.size(); ++i) {
+      add(c.tracker->names()[i], h.value[i]);
+      add("sigma_" + c.tracker->names()[i], h.sigma[i]);
+    }
+    for (std::size_t i = 0; i < h.singular_value.size(); ++i)
+      add(fmt::format("singular_value_{}_{}", name, i + 1), h.singular_value[i]);
+    add("threshold_" + name, h.threshold);
+    add("excited_" + name, {h.excited.begin(), h.excited.end()});
+    add("lambda_" + name, h.lambda);
+    add("innovation_" + name, h.innovation);
+    add("suspicion_" + name, h.suspicion);
+  }
+  return out;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,207 @@
+#include "veridyn/report/tracking_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::aircraft;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The true value of a parameter at each moment, where the flight was simulated; empty otherwise.
+std::vector<double> true_values(const FlightStudy& study, Coefficient c, const Term& term,
+                                const std::vector<double>& time) {
+  if (!study.true_subject) return {};
+  std::vector<double> values;
+  for (const double t : time) {
+    const AeroModel* model = &study.true_subject->model;
+    for (const ModelChange& change : study.true_changes) {
+      if (t >= change.time) model = &change.model;
+    }
+    const CoefficientModel* coefficient = model->find(c);
+    values.push_back(coefficient != nullptr ? coefficient->value_of(term.expression).value_or(kNaN) : kNaN);
+  }
+  return values;
+}
+
+std::vector<Span> poorly_excited(const TrackHistory& h, std::size_t parameters) {
+  std::vector<Span> spans;
+  bool open = false;
+  for (std::size_t k = 0; k < h.time.size(); ++k) {
+    const bool poor = h.excited[k] < static_cast<int>(parameters);
+    if (poor && !open)
+      spans.push_back({.from = h.time[k], .to = h.time[k], .label = "not all excited", .tone = SpanTone::kMuted});
+    if (poor) spans.back().to = h.time[k];
+    open = poor;
+  }
+  return spans;
+}
+
+TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
+  const TrackHistory& h = c.tracker->history();
+  TimeSeries figure;
+  figure.title = fmt::format("{} over time", name_of(c.model.coefficient));
+  figure.caption = "Bands are 95 %. Grey: some combination of parameters stays below the threshold and is held.";
+  figure.samples = h.time;
+  for (std::size_t i = 0; i < c.model.size(); ++i) {
+    Panel panel{.label = c.tracker->names()[i], .unit = c.model.terms[i].parameter_unit(), .height = 110};
+    Line line{.name = "on line", .y = h.value[i]};
+    Band band;
+    for (std::size_t k = 0; k < h.time.size(); ++k) {
+      // A band wider than the bound of what is known says nothing and hides the rest.
+      const double sigma = h.sigma[i][k];
+      const bool shown = std::isfinite(sigma) && sigma < 3.0 * std::max(std::abs(h.value[i].back()), 1e-3);
+      if (!shown) line.y[k] = std::isfinite(sigma) ? line.y[k] : kNaN;
+      band.low.push_back(shown ? h.value[i][k] - 1.96 * sigma : kNaN);
+      band.high.push_back(shown ? h.value[i][k] + 1.96 * sigma : kNaN);
+    }
+    line.band = std::move(band);
+    panel.lines.push_back(std::move(line));
+    if (auto truth = true_values(study, c.model.coefficient, c.model.terms[i], h.time); !truth.empty())
+      panel.lines.push_back({.name = "truth", .y = std::move(truth), .role = Role::kReference});
+    figure.panels.push_back(std::move(panel));
+  }
+  if (!h.singular_value.empty()) {
+    Panel panel{.label = "log10 singular values", .unit = "1"};
+    const auto log10_of = [](std::vector<double> values) {
+      for (double& v : values) v = v > 0.0 ? std::log10(v) : kNaN;
+      return values;
+    };
+    for (std::size_t i = 0; i < h.singular_value.size(); ++i)
+      panel.lines.push_back({.name = fmt::format("s{}", i + 1), .y = log10_of(h.singular_value[i])});
+    panel.lines.push_back({.name = "threshold", .y = log10_of(h.threshold), .role = Role::kReference});
+    figure.panels.push_back(std::move(panel));
+  }
+  figure.panels.push_back({.label = "lambda", .unit = "1", .lines = {{.name = "lambda", .y = h.lambda}}, .height = 90});
+  figure.panels.push_back({.label = "innovation / sigma",
+                           .unit = "1",
+                           .lines = {{.name = "rms", .y = h.innovation, .role = Role::kMeasured}},
+                           .height = 90});
+  figure.panels.push_back(
+      {.label = "suspicion (1: alarm)", .unit = "1", .lines = {{.name = "suspicion", .y = h.suspicion}}, .height = 90});
+  figure.spans = poorly_excited(h, c.model.size());
+  for (const estimation::Change& change : c.tracker->changes()) {
+    figure.spans.push_back(
+        {.from = change.began_s, .to = change.detected_s, .label = "change", .tone = SpanTone::kBad});
+  }
+  return figure;
+}
+
+Table parameter_table(const FlightStudy& study, const FlightTracker& tracker) {
+  Table table{.title = "Parameters as they stand at the end",
+              .columns = {{.name = "parameter", .align = Align::kLeft},
+                          {.name = "value"},
+                          {.name = "sigma", .digits = 2},
+                          {.name = "95 % from"},
+                          {.name = "to"},
+                          {.name = "unit", .align = Align::kLeft},
+                          {.name = "status"}}};
+  if (study.true_subject) table.columns.push_back({.name = "truth"});
+  const estimation::Estimate estimate = tracker.estimate();
+  for (const TrackedCoefficient& c : tracker.coefficients()) {
+    if (!c.tracker) continue;
+    for (std::size_t i = 0; i < c.model.size(); ++i) {
+      const estimation::EstimatedParameter* p = estimate.find(c.tracker->names()[i]);
+      const Status status = status_from_name(estimation::to_string(p->status));
+      Row row{.cells = {text_cell(p->name), measured_cell(p->value, p->sigma), number_cell(p->sigma),
+                        measured_cell(p->low95, p->sigma), measured_cell(p->high95, p->sigma), text_cell(p->unit),
+                        status_cell(status)},
+              .status = status};
+      if (study.true_subject) {
+        const auto truth =
+            true_values(study, c.model.coefficient, c.model.terms[i], {c.tracker->history().time.back()});
+        row.cells.push_back(number_cell(truth.at(0)));
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+Table change_table(const FlightTracker& tracker) {
+  Table table{.title = "Changes found",
+              .columns = {{.name = "coefficient", .align = Align::kLeft},
+                          {.name = "detected", .unit = "s"},
+                          {.name = "began", .unit = "s"},
+                          {.name = "what", .align = Align::kLeft}}};
+  for (const FlightChange& c : tracker.changes()) {
+    const bool mean = c.change.kind == estimation::ChangeKind::kMean;
+    table.rows.push_back({.cells = {text_cell(std::string(name_of(c.coefficient))), number_cell(c.change.detected_s, 1),
+                                    number_cell(c.change.began_s, 1),
+                                    text_cell(mean ? fmt::format("innovation moved by {:.1f} sigma", c.change.shift)
+                                                   : fmt::format("innovation grew {:.1f} times", c.change.shift))}});
+  }
+  return table;
+}
+
+}  // namespace
+
+Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, const std::string& program) {
+  const FlightTracker& tracker = flight.tracker();
+  const estimation::Estimate estimate = tracker.estimate();
+  const TrackOptions& options = tracker.options();
+  Document document;
+  document.title = study.subject.name;
+  document.subtitle = "followed on line";
+  document.generator = "Made with " + program;
+  const std::size_t changes = tracker.changes().size();
+  document.verdict.level = changes == 0 ? Level::kGood : Level::kCaution;
+  document.verdict.word = changes == 0 ? "No change" : "The aircraft changed";
+  document.verdict.headline = changes == 0 ? "No coefficient changed during the flight."
+                                           : fmt::format("{} changes were found, the first at {:.1f} s in {}.", changes,
+                                                         tracker.changes().front().change.detected_s,
+                                                         name_of(tracker.changes().front().coefficient));
+  document.verdict.lines = {
+      estimate.verdict, options.detect_changes
+                            ? fmt::format("Stated rate of false alarms: one per {:.1f} hours of unchanged flight for "
+                                          "each coefficient.",
+                                          options.detection.false_alarm_interval_s / 3600.0)
+                            : std::string("Changes were not looked for.")};
+  const double rate = tracker.row_rate_Hz() > 0.0 ? tracker.row_rate_Hz() : 1.0;
+  const estimation::ForgettingOptions forgetting = options.forgetting_at(rate);
+  document.facts = {{"Recording", study.mapped.recording.source},
+                    {"Method", fmt::format("{}, {} forgetting", estimation::to_string(options.method),
+                                           forgetting.variable ? "variable" : "constant")},
+                    {"Rows", fmt::format("{} at {:.1f} Hz", tracker.rows(), rate)},
+                    {"Air data", flight.air_data()},
+                    {"Memory", fmt::format("lambda {:.6f}: a sample counts 5 % after {:.1f} s", forgetting.lambda,
+                                           estimation::cut_off_time(forgetting.square_weight(), rate))}};
+  if (forgetting.variable) {
+    const estimation::FalseTriggerRate triggers = estimation::false_trigger_rate(forgetting, 4, rate, 1'000'000);
+    document.facts.push_back({"False triggers of forgetting",
+                              fmt::format("{}{:.2g} an hour on white noise with 4 parameters",
+                                          triggers.bound ? "less than " : "", triggers.per_second * 3600.0)});
+  }
+  document.sections.push_back({.title = "Parameters", .blocks = {parameter_table(study, tracker)}});
+  if (changes > 0) document.sections.push_back({.title = "Changes", .blocks = {change_table(tracker)}});
+  for (const TrackedCoefficient& c : tracker.coefficients()) {
+    Section section{.title = std::string(name_of(c.model.coefficient))};
+    if (!c.tracker) {
+      section.blocks.push_back(
+          Paragraph{.text = c.obstacle.empty() ? "Not long enough in the air." : c.obstacle, .tone = Tone::kWarning});
+    } else {
+      std::string text = fmt::format("Started from {}; {} rows taken, {} refused, forgetting triggered {} times.",
+                                     c.start, c.tracker->regression().rows(), c.tracker->regression().refused(),
+                                     c.tracker->regression().triggers());
+      const std::string held = c.tracker->regression().unexcited_text();
+      if (!held.empty()) text += fmt::format(" Held at the end, because not excited: {}.", held);
+      section.blocks.push_back(Paragraph{.text = std::move(text)});
+      section.blocks.push_back(figure_of(study, c));
+    }
+    document.sections.push_back(std::move(section));
+  }
+  std::vector<std::string> warnings = estimate.warnings;
+  warnings.insert(warnings.end(), flight.notes().begin(), flight.notes().end());
+  warnings.insert(warnings.end(), study.mapped.notes.begin(), study.mapped.notes.end());
+  if (!warnings.empty())
+    document.sections.push_back(
+        {.title = "Notes", .blocks = {List{.items = std::move(warnings), .tone = Tone::kNote}}});
+  return document;
+}
+
+}  // namespace veridyn::report
