@@ -33,6 +33,7 @@ ExperimentOptions ExperimentOptions::read(const StudyTable& root) {
   }
   o.snr_dB = table.number_or("snr", "1", o.snr_dB);
   o.regressor_snr_dB = table.optional_number("regressor_snr", "1");
+  if (table.has("events")) o.events_s = table.numbers("events", "s");
   o.noise_time_s = table.number_or("noise_time", "s", 0.0);
   if (!(o.noise_time_s >= 0.0)) table.fail("noise_time", "must be >= 0");
   return o;

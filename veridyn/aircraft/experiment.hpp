@@ -24,7 +24,8 @@ namespace veridyn::aircraft {
 ///     spans = [10, 70]           # [s] begin and end of each part of the flight that is used; left out: all
 ///     snr = 30                   # of z [dB]: 10 log10(variance of z over the rows / variance of its noise)
 ///     regressor_snr = 20         # of each regressor that is not constant [dB]; left out: regressors are exact
-///     noise_time = "0.3 s"       # correlation time of the noises (first order); left out: white
+///     events = [200, 230]        # [s] something happens to the aircraft that is no change of the model, such as a
+///     stall noise_time = "0.3 s"       # correlation time of the noises (first order); left out: white
 struct ExperimentOptions {
   SimulationOptions flight;
   Coefficient coefficient = Coefficient::kCL;
@@ -34,6 +35,7 @@ struct ExperimentOptions {
   double snr_dB = 30.0;
   std::optional<double> regressor_snr_dB;
   double noise_time_s = 0.0;
+  std::vector<double> events_s;
 
   /// Reads the tables of `root`.
   /// @throws InputError naming file, line and key.

@@ -19,11 +19,14 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTurnAround = 2.0 * std::numbers::pi;
 constexpr double kPause = 2.0;  ///< between the surfaces of one doublet or 3-2-1-1 [s]
 
-double pulse_count(ManoeuvreKind kind) { return kind == ManoeuvreKind::kDoublet ? 2.0 : 7.0; }
+double pulse_count(ManoeuvreKind kind) {
+  return kind == ManoeuvreKind::kPulse ? 1.0 : kind == ManoeuvreKind::kDoublet ? 2.0 : 7.0;
+}
 
 /// The shape of a doublet or 3-2-1-1 at `u` pulses after its start.
 double pulse_shape(ManoeuvreKind kind, double u) {
   if (u < 0.0) return 0.0;
+  if (kind == ManoeuvreKind::kPulse) return u < 1.0 ? 1.0 : 0.0;
   if (kind == ManoeuvreKind::kDoublet) return u < 1.0 ? 1.0 : u < 2.0 ? -1.0 : 0.0;
   return u < 3.0 ? 1.0 : u < 5.0 ? -1.0 : u < 6.0 ? 1.0 : u < 7.0 ? -1.0 : 0.0;
 }
@@ -137,6 +140,8 @@ std::string_view name_of(ManoeuvreKind kind) {
       return "multisine";
     case ManoeuvreKind::kTurn:
       return "turn";
+    case ManoeuvreKind::kPulse:
+      return "pulse";
   }
   return {};
 }
@@ -212,7 +217,7 @@ std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kS
 }
 
 std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const std::array<double, kSurfaces>& amplitudes) {
-  const std::vector<std::string> kinds = {"doublet", "3211", "multisine", "turn"};
+  const std::vector<std::string> kinds = {"doublet", "3211", "multisine", "turn", "pulse"};
   const std::vector<std::string> names(kSurfaceNames.begin(), kSurfaceNames.end());
   std::vector<Manoeuvre> out;
   for (const StudyTable& t : flight.tables("manoeuvre")) {

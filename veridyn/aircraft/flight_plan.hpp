@@ -20,6 +20,7 @@ enum class ManoeuvreKind {
   k3211,       ///< +3, -2, +1, -1 pulses
   kMultisine,  ///< sums of sines on several surfaces at once that are orthogonal to each other (Morelli 2003)
   kTurn,       ///< a steady turn of given bank
+  kPulse,      ///< one pulse, held: a pull into a stall
 };
 
 /// Something that the pilot does on purpose. In all but turns, the surfaces get a deflection on top of the pilot's own.
@@ -50,12 +51,12 @@ struct Manoeuvre {
 
 /// Reads `[[flight.manoeuvre]]`:
 ///
-///     kind = "multisine"                 # doublet, 3211, multisine, turn
+///     kind = "multisine"                 # doublet, 3211, multisine, turn, pulse
 ///     start = 20                         # [s]
 ///     duration = 30                      # [s] multisine and turn
 ///     surfaces = ["aileron", "rudder"]   # elevator, aileron, rudder, throttle
 ///     amplitude = "4 deg"                # one, or one a surface; left out: see default_amplitudes
-///     pulse = 0.5                        # [s] doublet, 3211
+///     pulse = 0.5                        # [s] doublet, 3211, pulse
 ///     band = [0.1, 2.0]                  # [Hz] multisine
 ///     bank = "25 deg"                    # turn
 [[nodiscard]] std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "veridyn/core/nearest.hpp"
 
@@ -178,7 +179,25 @@ class Expectations {
                                       name, e.phase_s[phase], e.phase_text[phase], window, 100.0 * share));
       }
     }
-    if (expect_.has("holds")) check_held(expect_.text("holds"));
+    for (const std::string& name : names("settles_last")) {
+      const std::size_t last = e.phase_s.size() - 1;
+      const std::vector<double> times = e.settling(tracker_of("settles_last", name), last);
+      add(std::isfinite(times.back()),
+          fmt::format("{}: after {:.0f} s it settles in every repetition, within {:.0f} to {:.0f} s", name,
+                      e.phase_s[last], times.front(), times.back()));
+    }
+    if (expect_.has("cut_off")) {
+      const StudyTable cut = expect_.table("cut_off");
+      const std::string name = cut.text("tracker");
+      const double rate = result_.options.rate_Hz;
+      const estimation::ForgettingOptions f = e.trackers[tracker_of("cut_off", name)].options.forgetting_at(rate);
+      const double seconds = estimation::cut_off_time(f.square_weight(), rate), published = cut.number("seconds", "s");
+      add(std::abs(seconds - published) < 0.1,
+          fmt::format("lambda {} at {:g} Hz: a sample counts 5 % after {:.1f} s (published {:g} s)", f.lambda, rate,
+                      seconds, published));
+    }
+    if (expect_.has("loses")) check_lost(expect_.table("loses"));
+    if (expect_.has("holds")) check_held(expect_.table("holds"));
   }
 
   /// First time at which every direction stood above the threshold.
@@ -190,28 +209,60 @@ class Expectations {
     return std::numeric_limits<double>::infinity();
   }
 
-  void check_held(const std::string& name) {
-    const TrackingExperiment& e = *result_.tracking;
-    const TrackingRun& run = e.runs[tracker_of("holds", name)][0];
-    const auto n = e.rows.names.size();
-    std::size_t unexcited = 0, held = 0, all = 0;
-    std::size_t row = 0;
-    for (std::size_t k = 0; k < run.history.time.size(); ++k) {
-      while (row + 1 < e.rows.time.size() && e.rows.time[row] < run.history.time[k] - 1e-9) ++row;
-      unexcited += run.history.excited[k] < static_cast<int>(n);
-      for (std::size_t i = 0; i < n; ++i) {
-        const double truth = e.rows.truth_at(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i));
-        held += std::abs(run.history.value[i][k] - truth) <= 1.96 * run.history.sigma[i][k];
-        ++all;
-      }
+  /// Largest share of the coefficient's deviation that some parameter's error amounts to at a stored moment.
+  double error_share(const TrackHistory& h, std::size_t k) const {
+    const ExactRows& rows = result_.tracking->rows;
+    const auto after = std::lower_bound(rows.time.begin(), rows.time.end(), h.time[k] - 1e-9);
+    const auto row = std::min<Eigen::Index>(after - rows.time.begin(), rows.truth_at.rows() - 1);
+    const double deviation = std::sqrt((rows.regressand.array() - rows.regressand.mean()).square().mean());
+    double worst = 0.0;
+    for (std::size_t i = 0; i < h.value.size(); ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      const double rms = std::sqrt(rows.regressors.col(j).array().square().mean());
+      worst = std::max(worst, std::abs(h.value[i][k] - rows.truth_at(row, j)) * rms / deviation);
     }
-    const double share = static_cast<double>(held) / static_cast<double>(std::max<std::size_t>(1, all));
-    const double poor =
-        static_cast<double>(unexcited) / static_cast<double>(std::max<std::size_t>(1, run.history.time.size()));
-    add(share >= kHeldShare && poor > 0.1,
-        fmt::format("{}: says that a direction is not excited in {:.0f} % of the time, and its bands hold the truth in "
-                    "{:.1f} % (at least {:.0f} %)",
-                    name, 100.0 * poor, 100.0 * share, 100.0 * kHeldShare));
+    return worst;
+  }
+
+  void check_lost(const StudyTable& loses) {
+    const std::string name = loses.text("tracker");
+    const double from = loses.number("from", "s"), to = loses.number("to", "s");
+    const TrackHistory& h = result_.tracking->runs[tracker_of("loses", name)][0].history;
+    double worst = 0.0;
+    for (std::size_t k = 0; k < h.time.size(); ++k) {
+      if (h.time[k] >= from && h.time[k] <= to) worst = std::max(worst, error_share(h, k));
+    }
+    add(worst > 0.5,
+        fmt::format("{}: between {:.0f} and {:.0f} s an error of its parameters moves the coefficient by up to "
+                    "{:.1f} times its standard deviation (more than 0.5)",
+                    name, from, to, worst));
+  }
+
+  void check_held(const StudyTable& holds) {
+    const TrackingExperiment& e = *result_.tracking;
+    const std::string name = holds.text("tracker");
+    const double to = holds.number("to", "s");
+    const TrackHistory& h = e.runs[tracker_of("holds", name)][0].history;
+    const auto n = static_cast<int>(e.rows.names.size());
+    std::size_t first = 0;
+    while (first < h.time.size() && h.excited[first] < n) ++first;
+    std::size_t poor = 0, held = 0, all = 0;
+    double worst = 0.0;
+    for (std::size_t k = first; k < h.time.size() && h.time[k] <= to; ++k) {
+      ++all;
+      poor += h.excited[k] < n;
+      const double error = error_share(h, k);
+      held += error <= 0.05;
+      worst = std::max(worst, error);
+    }
+    const auto share = [&](std::size_t part) {
+      return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(1, all));
+    };
+    add(share(held) >= kHeldShare && share(poor) > 0.1,
+        fmt::format(
+            "{}: until {:.0f} s it says that a direction is not excited in {:.0f} % of the time, and no parameter's "
+            "error moves the coefficient by more than 5 % of its deviation in {:.1f} % of it (worst {:.1f} %)",
+            name, to, 100.0 * share(poor), 100.0 * share(held), 100.0 * worst));
   }
 
   static double median(const std::vector<double>& sorted) { return sorted[sorted.size() / 2]; }

@@ -36,12 +36,17 @@ struct ReproductionCheck {
 ///     output_error_above = { OLS = 0.10 }
 ///     never_settles = ["OLS"]    # trackers; see TrackingRun::settling_s
 ///     settles = ["PCA-GTLS"]
-///     settles_when_excited = "PCA-GTLS"        # and not before every direction was excited once
+///     settles_when_excited = "PCA-GTLS"        # first every direction is excited, then the estimate settles
+///     settles_last = ["variable"]              # settles in the last phase, in every repetition
+///     loses = { tracker = "GTLS", from = "350 s", to = "480 s" }  # is far off at some time in between: some
+///                                # parameter's error moves the coefficient by more than half of its deviation
 ///     faster = { tracker = "variable", than = "constant", factor = 5 }  # median settling after the first change
 ///     no_false_alarm = ["variable"]            # neither detector nor forgetting before the first change
 ///     detects = ["variable"]     # every change within `detection_window`, in every repetition
 ///     detection_window = "30 s"
-///     holds = "PCA-GTLS"         # bands hold the truth in 90 % of the record, though directions were unexcited in it
+///     holds = { tracker = "PCA-GTLS", to = "480 s" }   # settled or within its bands in 90 % of the time until then,
+///                                # though a direction was unexcited in more than a tenth of it
+///     cut_off = { tracker = "constant", seconds = 99.8 }      # time to 5 % weight, printed to a tenth of a second
 struct Reproduction {
   std::string title;
   std::string finding;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "veridyn/numerics/parallel.hpp"
 
@@ -52,7 +53,7 @@ class Settling {
     for (std::size_t i = 0; i < history.value.size(); ++i) {
       const auto j = static_cast<Eigen::Index>(i);
       const double error = std::abs(history.value[i][k] - truth_[phase](j));
-      if (phase == 0) {
+      if (phase == 0 || truth_[phase] == truth_[phase - 1]) {
         if (!(error <= at_start_(j))) return false;
       } else if (truth_[phase](j) != truth_[phase - 1](j)) {
         if (!(error <= kSettled * std::abs(truth_[phase](j)))) return false;
@@ -114,9 +115,12 @@ TrackingExperiment run_tracking_experiment(const ExperimentOptions& o, const std
   out.trackers = trackers;
   out.phase_s = {out.rows.time.front()};
   out.phase_text = {"start"};
-  for (const ModelChange& change : o.flight.changes) {
-    out.phase_s.push_back(change.time);
-    out.phase_text.push_back(change.text);
+  std::map<double, std::string> phases;
+  for (const double event : o.events_s) phases[event] = "event";
+  for (const ModelChange& change : o.flight.changes) phases[change.time] = change.text;
+  for (const auto& [time, text] : phases) {
+    out.phase_s.push_back(time);
+    out.phase_text.push_back(text);
   }
   const auto seeds = static_cast<std::size_t>(o.seeds);
   out.runs.assign(trackers.size(), std::vector<TrackingRun>(seeds));

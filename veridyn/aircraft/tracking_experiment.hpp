@@ -19,8 +19,8 @@ struct TrackerSetting {
 struct TrackingRun {
   /// Per phase (before the first change, after each): time from its beginning until what changed (at the start: every
   /// parameter) has settled for the rest of the phase [s]; NaN: it never did. A changed parameter has settled within
-  /// 5 % of its new value; at the start a parameter has settled when its error moves the coefficient by less than 5 %
-  /// of the coefficient's standard deviation.
+  /// 5 % of its new value; at the start and after events every parameter has to, and has settled when its error moves
+  /// the coefficient by less than 5 % of the coefficient's standard deviation.
   std::vector<double> settling_s;
   std::vector<estimation::Change> changes;  ///< alarms of the change detector
   std::uint64_t triggers = 0;               ///< of variable forgetting
