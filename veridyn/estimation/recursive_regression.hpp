@@ -29,7 +29,7 @@ struct RecursiveOptions {
   /// PCA-GTLS: weights U of |U (theta - theta_0)|, > 0, infinity pins. Empty means 1.
   Eigen::VectorXd prior_weight = {};
   /// PCA-GTLS: B_0, 95 % bound on |U (theta - theta_0)| along a direction that is not excited. 0 chooses
-  /// 10 max(1, largest |U (theta - prior)|_i), or what a hybrid start knew of that direction.
+  /// 10 max(1, largest |U (theta - prior)|_i); never below 1.96 sigma of GTLS in that direction.
   double unexcited_bound = 0.0;
   /// Error bars for coloured residuals (the default) from sums of scores over blocks, or for white ones.
   CovarianceKind covariance = CovarianceKind::kColoured;
@@ -59,8 +59,8 @@ struct RecursiveUpdate {
 ///
 /// PCA-GTLS holds what is not excited: theta_0 of its minimisation |U (theta - theta_0)| is the estimate before the
 /// row, at first the prior. So along directions below the threshold theta stays where it was when they were last
-/// excited; their error bars are the bound B_0 (never less than what was known when they were lost), and
-/// `unexcited` names them. Exact regressors have no noise, hence no threshold: they are held when linearly dependent
+/// excited; their error bars are the bound B_0, since what was known of them is
+/// forgotten, and `unexcited` names them. Exact regressors have no noise, hence no threshold: they are held when linearly dependent
 /// to rounding.
 ///
 /// Error bars. White: s2 M^-1 A2 M^-1 with its second-order term, where squares carry their weight and A2 the weight
@@ -108,7 +108,7 @@ class RecursiveRegression {
   /// OLS: empty.
   [[nodiscard]] const SmallVector& singular_values() const;
   /// Right singular vectors that go with them: columns, orthonormal to 1e-12. OLS: empty.
-  [[nodiscard]] const SmallMatrix& right_singular_vectors() const;
+  [[nodiscard]] SmallMatrix right_singular_vectors() const;
   /// Directions with larger singular values are excited (PCA-GTLS; the others only report it).
   [[nodiscard]] double threshold() const;
   /// Of n_p; exact ones included.
@@ -128,6 +128,8 @@ class RecursiveRegression {
   [[nodiscard]] double residual_sd() const;
   /// Estimated factor on W: 1 when model and assumed errors are right. OLS: 0.
   [[nodiscard]] double error_scale() const;
+  /// Of Student's t: N - n_p, or what the number of blocks gives.
+  [[nodiscard]] double degrees_of_freedom() const;
   /// Rows taken and refused.
   [[nodiscard]] std::uint64_t rows() const;
   [[nodiscard]] std::uint64_t refused() const;

@@ -9,9 +9,8 @@
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::estimation {
-namespace {
 
-void check_covariance(const Eigen::MatrixXd& W, Eigen::Index size) {
+void check_error_covariance(const Eigen::MatrixXd& W, Eigen::Index size) {
   if (W.rows() != size || W.cols() != size) {
     throw InputError(
         "regression.error_covariance",
@@ -54,8 +53,6 @@ void check_covariance(const Eigen::MatrixXd& W, Eigen::Index size) {
                     smallest));
   }
 }
-
-}  // namespace
 
 void RegressionData::validate() const {
   const Eigen::Index n = regressors.cols();
@@ -113,7 +110,7 @@ void RegressionData::validate() const {
     throw InputError("regression.regressand_error_known",
                      "is false while the scale of the errors is not known either; one of them must be");
   }
-  if (has_error_covariance()) check_covariance(error_covariance, n + 1);
+  if (has_error_covariance()) check_error_covariance(error_covariance, n + 1);
 }
 
 std::vector<std::pair<Eigen::Index, Eigen::Index>> segment_ranges(Eigen::Index rows, std::span<const int> segment) {

@@ -56,4 +56,8 @@ struct RegressionData {
 /// @returns how many rows were removed.
 Eigen::Index drop_rows_that_are_not_finite(RegressionData& data);
 
+/// W of [regressors, regressand] must be size x size, finite, symmetric, positive semi-definite, with W_zz > 0.
+/// @throws InputError naming the element and the rule
+void check_error_covariance(const Eigen::MatrixXd& error_covariance, Eigen::Index size);
+
 }  // namespace veridyn::estimation

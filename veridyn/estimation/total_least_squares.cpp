@@ -22,9 +22,8 @@ Eigen::VectorXd with_minus_one(const Eigen::VectorXd& theta) {
 
 }  // namespace
 
-WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd& W) {
-  const Eigen::Index size = triangle.cols();
-  VERIDYN_ASSERT(W.rows() == size && W.cols() == size);
+ErrorBasis error_basis(const Eigen::MatrixXd& W) {
+  const Eigen::Index size = W.rows();
   std::vector<Eigen::Index> exact, noisy;
   for (Eigen::Index i = 0; i < size; ++i) (W(i, i) > 0.0 ? noisy : exact).push_back(i);
   const auto noisy_count = static_cast<Eigen::Index>(noisy.size());
@@ -59,6 +58,16 @@ WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd
           eigen.eigenvectors()(i, null_count + j) / (sd(i) * std::sqrt(eigen.eigenvalues()(null_count + j)));
     }
   }
+  return {.exact = T_exact, .white = T_white};
+}
+
+WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd& W) {
+  const Eigen::Index size = triangle.cols();
+  VERIDYN_ASSERT(W.rows() == size && W.cols() == size);
+  ErrorBasis errors = error_basis(W);
+  Eigen::MatrixXd& T_exact = errors.exact;
+  const Eigen::MatrixXd& T_white = errors.white;
+  const Eigen::Index exact_count = T_exact.cols(), white_count = T_white.cols();
 
   WhitenedRegression result;
   Eigen::MatrixXd T_rank = Eigen::MatrixXd::Zero(size, 0);

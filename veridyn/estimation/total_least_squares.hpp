@@ -24,6 +24,14 @@ struct WhitenedRegression {
   Eigen::Index exact = 0;           ///< number of exact combinations of full rank
 };
 
+/// T_e and T_w of an error covariance: columns without error (and null directions of W), and columns that whiten the
+/// others; [T_e, T_w] is square and regular.
+struct ErrorBasis {
+  Eigen::MatrixXd exact;
+  Eigen::MatrixXd white;
+};
+[[nodiscard]] ErrorBasis error_basis(const Eigen::MatrixXd& error_covariance);
+
 /// Null directions of W are those with less than 1e-10 of the largest eigenvalue of its correlation matrix: rounding of
 /// a W that was itself computed. Exact columns are dependent below 1e-12 of the largest singular value of unit columns.
 [[nodiscard]] WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd& error_covariance);
