@@ -5,14 +5,15 @@
 
 namespace veridyn::estimation {
 
-/// Average number of samples until a two-sided CUSUM on white N(mean, 1) samples crosses `threshold`, from zero.
+/// Average number of white samples u of N(mean, sd^2) until a two-sided CUSUM crosses `threshold`, from zero.
 ///
-/// Each side is Page's S_k = max(0, S_{k-1} +- u_k - reference). Its run length solves a Fredholm equation (Page 1954),
-/// discretised by Gauss-Legendre; sides combine as 1/L = 1/L_up + 1/L_down (Kemp 1961, exact where one must be zero for
-/// the other to alarm). Check: reference 0.5, threshold 4 gives 168; threshold 5 gives 465 (Lucas & Crosier 1982).
-[[nodiscard]] double cusum_run_length(double reference, double threshold, double mean = 0.0);
-/// The threshold with that average run length on unchanged samples. @throws InputError when it would need more than 1e12.
-[[nodiscard]] double cusum_threshold(double reference, double run_length);
+/// Each side is Page's S_k = max(0, S_{k-1} +- u_k - reference); its run length is that of a Markov chain of 2 x 75
+/// states, extrapolated (Brook & Evans 1972). Sides combine as 1/L = 1/L_up + 1/L_down. Check: reference 0.5, threshold
+/// 4 gives 168, threshold 5 gives 465 (Lucas & Crosier 1982).
+[[nodiscard]] double cusum_run_length(double reference, double threshold, double mean = 0.0, double sd = 1.0);
+
+/// The same of a one-sided CUSUM on u^2, u white N(0, sd^2): S_k = max(0, S_{k-1} + u_k^2 - reference).
+[[nodiscard]] double spread_cusum_run_length(double reference, double threshold, double sd = 1.0);
 
 struct ChangeDetectionOptions {
   double rate_Hz = 100.0;  ///< of the innovations
@@ -51,9 +52,9 @@ struct Change {
 ///
 /// Innovations of real flight are coloured, so they are averaged over blocks, and block means b_i are whitened by a
 /// running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
-/// slowly, from blocks that raise no suspicion. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
-/// u^2 for the spread; thresholds give each half of the stated rate (normal u; average run lengths from integral
-/// equations, the error of the learned s included). After an alarm sums start again and the model is learned anew.
+/// slowly. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
+/// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains, mean
+/// rate over the errors that mu and s have at the end of learning). After an alarm sums start again and the model is learned anew.
 class ChangeDetector {
  public:
   explicit ChangeDetector(const ChangeDetectionOptions& options);
@@ -71,10 +72,42 @@ class ChangeDetector {
   [[nodiscard]] std::uint64_t alarms() const { return alarms_; }
 
  private:
+  /// A sum that watches, and when it last left zero.
+  struct Sum {
+    double value = 0.0;
+    double since_s = 0.0;
+    double blocks = 0.0;
+    void add(double increment, double time_s);
+  };
+  std::optional<Change> take_block(double mean);
+  void learn(double mean);
+  void start_again();
+
   ChangeDetectionOptions options_;
+  double mean_reference_ = 0.0;
   double mean_threshold_ = 0.0;
+  double spread_reference_ = 0.0;
   double spread_threshold_ = 0.0;
+  std::uint64_t block_length_ = 1;
+  double learn_blocks_ = 1.0;
+  double memory_blocks_ = 1.0;
   std::uint64_t alarms_ = 0;
+
+  // The block that is being filled.
+  double block_sum_ = 0.0;
+  std::uint64_t block_filled_ = 0;
+  double block_began_s_ = 0.0;
+  double last_s_ = 0.0;
+
+  // Model of unchanged block means.
+  double blocks_ = 0.0;
+  double mean_ = 0.0;
+  double variance_ = 0.0;
+  double covariance_ = 0.0;
+  double previous_ = 0.0;
+  bool has_previous_ = false;
+
+  Sum up_, down_, spread_;
 };
 
 }  // namespace veridyn::estimation
