@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,10 +17,28 @@ namespace {
 constexpr double kNormal95 = 1.959963984540054;
 constexpr double kAutomaticBound = 10.0;
 
-// A S A for symmetric A and S.
+// A S A for symmetric A and S. Plain loops: for these sizes a third of the time of general products.
 SmallMatrix sandwich(const SmallMatrix& A, const SmallMatrix& S) {
-  const SmallMatrix half = S.lazyProduct(A);
-  return A.lazyProduct(half);
+  const Eigen::Index n = A.rows();
+  SmallMatrix half(n, n), result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    std::array<double, kMaxRecursiveColumns> column{};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double a = A(k, j);
+      const double* s = S.data() + k * n;
+      for (Eigen::Index i = 0; i < n; ++i) column[static_cast<std::size_t>(i)] += a * s[i];
+    }
+    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[static_cast<std::size_t>(i)];
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const double *a = A.data() + i * n, *b = half.data() + j * n;
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < n; ++k) sum += a[k] * b[k];
+      result(i, j) = result(j, i) = sum;
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -115,45 +134,46 @@ void RecursiveRegression::State::inverse_on_excited(const SmallMatrix& jacobian,
   inverse = root.transpose().lazyProduct(root);
 }
 
-void RecursiveRegression::State::compute_error_bars(internal::RecursiveErrorBars& result) const {
+void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& result) const {
   const auto all = static_cast<Eigen::Index>(names.size());
   const Eigen::Index n = count();
   result.covariance.setZero(all, all);
-  result.covariance_white.setZero(all, all);
   result.sigma.setZero(all);
   result.excited_variance.setZero(all);
   result.degrees_of_freedom = std::max(1.0, samples - static_cast<double>(n));
   bool good = termination == EstimateTermination::kEstimated && residual_variance >= 0.0;
-  SmallMatrix inverse, jacobian, white, coloured, bound = SmallMatrix::Zero(n, n);
+  SmallMatrix inverse, jacobian, excited, bound;
   if (good) {
     const bool partial = unexcited.cols() > 0;
-    if (partial || !forgets) corrected_jacobian(jacobian);
     if (partial) {
+      corrected_jacobian(jacobian);
       inverse_on_excited(jacobian, inverse);
     } else {
       good = inverse_jacobian(h, inverse);
     }
     if (good) {
+      // With all directions excited and nothing forgotten the leading term s2 M needs no M: M^-1 M M^-1 = M^-1.
       SmallMatrix S;
-      white_filling(jacobian, W_h, residual_variance, S);
+      double leading = 0.0;
       if (!partial && !forgets) {
-        // The leading term from M^-1 itself: no digits lost in M.
-        white_filling(SmallMatrix::Zero(n, n), W_h, residual_variance, white);
-        white = sandwich(inverse, white) + residual_variance * inverse;
-      } else {
-        white = sandwich(inverse, S);
+        leading = residual_variance;
+        jacobian.setZero(n, n);
       }
-      coloured = white;
-      if (options.covariance == CovarianceKind::kColoured && scores.weight > 0.0) {
+      white_filling(jacobian, W_h, residual_variance, S);
+      if (kind == CovarianceKind::kColoured && scores.weight > 0.0) {
         // Few blocks know little: the white filling counts as n + 1 of them.
         const double blocks = scores.blocks();
         const double trust = blocks / (blocks + static_cast<double>(n) + 1.0);
         const double freedom = result.degrees_of_freedom;
         const double whole = squared_weights / scores.weight * (samples > freedom ? samples / freedom : 1.0);
-        coloured = (1.0 - trust) * white + (trust * whole) * sandwich(inverse, scores.sum);
+        S = (1.0 - trust) * S + (trust * whole) * scores.sum;
+        leading *= 1.0 - trust;
         result.degrees_of_freedom = std::min(freedom, blocks + static_cast<double>(n) + 1.0);
       }
+      excited = sandwich(inverse, S);
+      if (leading > 0.0) excited += leading * inverse;
     }
+    bound.setZero(n, n);
     if (good && partial) {
       double largest = 1.0;
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -167,7 +187,7 @@ void RecursiveRegression::State::compute_error_bars(internal::RecursiveErrorBars
       bool has_gtls = data.null_columns() == 0;
       if (has_gtls) {
         data.basis(data.noisy_columns() - 1, b.data());
-        has_gtls = data.share_of_last(b.data()) > 1e-10;
+        has_gtls = data.share_of_last(b.data()) > 1e-20;
       }
       if (has_gtls) {
         gtls_h = b * (-1.0 / b(n));
@@ -197,36 +217,35 @@ void RecursiveRegression::State::compute_error_bars(internal::RecursiveErrorBars
       const Eigen::Index to = free[static_cast<std::size_t>(j)];
       for (Eigen::Index i = 0; i < n; ++i) {
         const Eigen::Index from = free[static_cast<std::size_t>(i)];
-        result.covariance(from, to) = coloured(i, j) + bound(i, j);
-        result.covariance_white(from, to) = white(i, j) + bound(i, j);
+        result.covariance(from, to) = excited(i, j) + bound(i, j);
       }
-      good = good && std::isfinite(result.covariance(to, to)) && std::isfinite(result.covariance_white(to, to));
-      result.excited_variance(to) = std::max(0.0, coloured(j, j));
+      good = good && std::isfinite(result.covariance(to, to));
+      result.excited_variance(to) = std::max(0.0, excited(j, j));
       result.sigma(to) = std::sqrt(std::max(0.0, result.covariance(to, to)));
     }
   }
   if (good) return;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   result.covariance.setZero();
-  result.covariance_white.setZero();
   result.sigma.setZero();
   for (const Eigen::Index i : free) {
-    result.covariance(i, i) = result.covariance_white(i, i) = result.sigma(i) = kInfinite;
+    result.covariance(i, i) = result.sigma(i) = kInfinite;
     result.excited_variance(i) = kInfinite;
   }
 }
 
-const internal::RecursiveErrorBars& RecursiveRegression::State::error_bars() const {
-  if (!bars_fresh) {
-    compute_error_bars(bars);
-    bars_fresh = true;
+const internal::RecursiveErrorBars& RecursiveRegression::State::error_bars(CovarianceKind kind) const {
+  internal::RecursiveErrorBars& known = kind == CovarianceKind::kWhite ? white_bars : coloured_bars;
+  if (!known.fresh) {
+    compute_error_bars(kind, known);
+    known.fresh = true;
   }
-  return bars;
+  return known;
 }
 
 ParameterStatus RecursiveRegression::State::status(Eigen::Index parameter, double significance) const {
   if (std::find(pinned.begin(), pinned.end(), parameter) != pinned.end()) return ParameterStatus::kFixed;
-  const internal::RecursiveErrorBars& known = error_bars();
+  const internal::RecursiveErrorBars& known = error_bars(options.covariance);
   const double sigma = known.sigma(parameter);
   if (termination != EstimateTermination::kEstimated || !std::isfinite(sigma)) return ParameterStatus::kRejected;
   const double critical =
@@ -239,14 +258,15 @@ ParameterStatus RecursiveRegression::State::status(Eigen::Index parameter, doubl
 }
 
 RegressionEstimate RecursiveRegression::State::estimate(double significance) const {
-  const internal::RecursiveErrorBars& known = error_bars();
+  const internal::RecursiveErrorBars& known = error_bars(options.covariance);
   const auto all = static_cast<Eigen::Index>(names.size());
   RegressionEstimate result;
   result.method = options.method;
   result.termination = termination;
   result.theta = theta;
   result.covariance = known.covariance;
-  result.covariance_white = known.covariance_white;
+  const internal::RecursiveErrorBars& white = error_bars(CovarianceKind::kWhite);
+  result.covariance_white = white.covariance;
   result.degrees_of_freedom = known.degrees_of_freedom;
   result.lag_window = options.covariance == CovarianceKind::kColoured ? options.block : 0;
   result.rows = static_cast<Eigen::Index>(rows);
@@ -261,7 +281,7 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
     p.name = names[static_cast<std::size_t>(i)];
     p.value = theta(i);
     p.sigma = known.sigma(i);
-    p.sigma_white = std::sqrt(std::max(0.0, known.covariance_white(i, i)));
+    p.sigma_white = white.sigma(i);
     p.low95 = p.value - quantile95 * p.sigma;
     p.high95 = p.value + quantile95 * p.sigma;
     p.status = status(i, significance);

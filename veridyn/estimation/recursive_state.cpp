@@ -12,7 +12,7 @@
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kNotInData = 1e-10;  // share of z below which a vector says nothing of it
+constexpr double kNotInData = 1e-10;  // share (of amplitude) of z below which a vector says nothing of it
 constexpr double kNoise = 3.0;        // standard deviations of the largest singular value of noise, about
 constexpr double kLargestValue = 1e150;
 
@@ -251,7 +251,7 @@ void RecursiveRegression::State::solve() {
   const int w = data.noisy_columns();
   const double freedom = std::max(1.0, samples - static_cast<double>(n));
   const double smallest = data.singular_value(w - 1);
-  bars_fresh = false;
+  white_bars.fresh = coloured_bars.fresh = false;
   scale = smallest * smallest / freedom;
   // Rows of pure noise have singular values up to sqrt(N) + sqrt(w), which matters while there are few.
   threshold = std::max((options.signal_to_noise + 1.0) * std::sqrt(freedom),
@@ -299,7 +299,7 @@ bool RecursiveRegression::State::solve_least() {
   }
   Buffer b;
   data.basis(last, b.data());
-  if (!(data.share_of_last(b.data()) > kNotInData)) return false;
+  if (!(data.share_of_last(b.data()) > kNotInData * kNotInData)) return false;
   const double factor = -1.0 / b[static_cast<std::size_t>(n)];
   double largest = 0.0;
   for (Eigen::Index j = 0; j < n; ++j) largest = std::max(largest, std::abs(b[static_cast<std::size_t>(j)] * factor));

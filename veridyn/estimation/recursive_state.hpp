@@ -15,10 +15,10 @@ namespace internal {
 /// What an update leaves for those who ask for error bars. Of all parameters.
 struct RecursiveErrorBars {
   SmallMatrix covariance;
-  SmallMatrix covariance_white;
   SmallVector sigma;
   SmallVector excited_variance;  ///< part of sigma^2 that does not come from the bound
   double degrees_of_freedom = 0.0;
+  bool fresh = false;
 };
 
 /// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k g_k.
@@ -50,8 +50,8 @@ struct RecursiveRegression::State {
   void solve();
   bool solve_least();
   bool solve_excited(int excited);
-  const internal::RecursiveErrorBars& error_bars() const;
-  void compute_error_bars(internal::RecursiveErrorBars& bars) const;
+  const internal::RecursiveErrorBars& error_bars(CovarianceKind kind) const;
+  void compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& bars) const;
   bool inverse_jacobian(const SmallVector& h, SmallMatrix& inverse) const;
   void inverse_on_excited(const SmallMatrix& jacobian, SmallMatrix& inverse) const;
   void white_filling(const SmallMatrix& jacobian, const SmallVector& W_h, double s2, SmallMatrix& S) const;
@@ -96,8 +96,8 @@ struct RecursiveRegression::State {
   SmallMatrix unexcited_combinations;  // unit columns, all parameters
   SmallVector unexcited_share;         // all parameters
 
-  mutable internal::RecursiveErrorBars bars;
-  mutable bool bars_fresh = false;
+  mutable internal::RecursiveErrorBars white_bars;
+  mutable internal::RecursiveErrorBars coloured_bars;
 };
 
 }  // namespace veridyn::estimation

@@ -296,7 +296,7 @@ double RecursiveTotalLeastSquares::power(const double* h) const {
 double RecursiveTotalLeastSquares::share_of_last(const double* h) const {
   double sum = 0.0, last = 0.0;
   for (int i = 0; i < size_; ++i) {
-    last = std::sqrt(column_power_[static_cast<std::size_t>(i)]) * std::abs(h[i]);
+    last = column_power_[static_cast<std::size_t>(i)] * h[i] * h[i];
     sum += last;
   }
   return sum > 0.0 ? last / sum : 0.0;

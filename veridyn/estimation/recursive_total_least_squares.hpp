@@ -48,7 +48,7 @@ class RecursiveTotalLeastSquares {
   void coordinates(const double* row, double* along_basis, double* along_exact) const;
   /// |R22 (whitened part of h)|^2: weighted sum of (D h)^2 for h in the span of the b_j and null columns.
   [[nodiscard]] double power(const double* h) const;
-  /// Share of column m - 1 in what the columns times h contribute to the data: 0 where h says nothing of z.
+  /// Share of column m - 1 in sum |d_i h_i|^2, what the columns times h contribute: 0 where h says nothing of z.
   [[nodiscard]] double share_of_last(const double* h) const;
   /// Rows of a matrix A (`rows` of them, m or fewer) with A'A = D'D.
   void square_root(SmallMatrix& A) const;

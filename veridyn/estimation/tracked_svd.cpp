@@ -21,6 +21,15 @@ constexpr double kNoAngle = 4.0 * std::numeric_limits<double>::epsilon();
 constexpr int kMostTurns = 60;
 constexpr std::uint64_t kUpdatesPerCleaning = 64;
 
+// Everything below is inlined into one function per size, which is compiled twice where processors differ: for those
+// with AVX2 and fused multiply-add (twice as fast; last digits differ), and for all.
+#define VERIDYN_INLINE [[gnu::always_inline]] inline
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define VERIDYN_HAS_FAST_VERSION 1
+#else
+#define VERIDYN_HAS_FAST_VERSION 0
+#endif
+
 // Two doubles at a time (every x86-64 and ARMv8 has them): rows below are kept in registers while they are summed.
 using Pair = double __attribute__((vector_size(16)));
 
@@ -29,22 +38,22 @@ struct Row {
   static constexpr int kPairs = (kColumns + 1) / 2;
   Pair pair[kPairs];
 
-  static Row zero() {
+  VERIDYN_INLINE static Row zero() {
     Row r;
     for (Pair& p : r.pair) p = Pair{0.0, 0.0};
     return r;
   }
-  void add(double a, const Row& x) {
+  VERIDYN_INLINE void add(double a, const Row& x) {
     const Pair factor{a, a};
     for (int j = 0; j < kPairs; ++j) pair[j] += factor * x.pair[j];
   }
-  void scale(double a) {
+  VERIDYN_INLINE void scale(double a) {
     const Pair factor{a, a};
     for (Pair& p : pair) p *= factor;
   }
-  double operator()(int j) const { return pair[j / 2][j % 2]; }
+  VERIDYN_INLINE double operator()(int j) const { return pair[j / 2][j % 2]; }
   /// Slow: a pair must not be read soon after one of its halves was written.
-  void set(int j, double value) { pair[j / 2][j % 2] = value; }
+  VERIDYN_INLINE void set(int j, double value) { pair[j / 2][j % 2] = value; }
 };
 
 template <int kColumns>
@@ -52,7 +61,7 @@ using Rows = std::array<Row<kColumns>, static_cast<std::size_t>(kColumns)>;
 
 // a' b of the rows of two square matrices, the Gram matrix when they are the same.
 template <int kColumns>
-void gram(const Rows<kColumns>& b, Rows<kColumns>& result) {
+VERIDYN_INLINE void gram(const Rows<kColumns>& b, Rows<kColumns>& result) {
   for (std::size_t i = 0; i < kColumns; ++i) {
     Row<kColumns> sum = Row<kColumns>::zero();
     for (std::size_t k = 0; k < kColumns; ++k) sum.add(b[k](static_cast<int>(i)), b[k]);
@@ -62,7 +71,7 @@ void gram(const Rows<kColumns>& b, Rows<kColumns>& result) {
 
 // y_i = scale x_i + factor sum_k a_ik b_k
 template <int kColumns>
-void multiply(const Rows<kColumns>& a, const Rows<kColumns>& b, double factor, double scale, const Rows<kColumns>& x,
+VERIDYN_INLINE void multiply(const Rows<kColumns>& a, const Rows<kColumns>& b, double factor, double scale, const Rows<kColumns>& x,
               Rows<kColumns>& y) {
   for (std::size_t i = 0; i < kColumns; ++i) {
     Row<kColumns> sum = Row<kColumns>::zero();
@@ -81,7 +90,7 @@ struct Angles {
 
 // K_ij = g_ij/(g_jj - g_ii), 0 where the columns are orthogonal to rounding.
 template <int kColumns>
-Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& power, Rows<kColumns>& K) {
+VERIDYN_INLINE Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& power, Rows<kColumns>& K) {
   constexpr int kPairs = Row<kColumns>::kPairs;
   const Pair none{0.0, 0.0};
   Pair largest = none, excess = none;
@@ -112,7 +121,7 @@ Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& power, Rows<kColu
 
 // V <- V (K + sqrt(1 + K^2)) = V (1 + K + Q/2 - Q^2/8 + ...), Q = K^2, which is orthogonal.
 template <int kColumns>
-void turn_all(Rows<kColumns>& V, const Rows<kColumns>& K, double largest) {
+VERIDYN_INLINE void turn_all(Rows<kColumns>& V, const Rows<kColumns>& K, double largest) {
   Rows<kColumns> Q, turn;
   multiply<kColumns>(K, K, 0.5, 1.0, K, turn);
   if (largest > kNoFourthPower) {
@@ -129,7 +138,7 @@ void turn_all(Rows<kColumns>& V, const Rows<kColumns>& K, double largest) {
 
 // Rotates the pairs of columns of B (and V) with large angles one by one.
 template <int kColumns>
-void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<kColumns>& K) {
+VERIDYN_INLINE void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<kColumns>& K) {
   for (int i = 0; i < kColumns; ++i) {
     for (int j = i + 1; j < kColumns; ++j) {
       if (!(std::abs(K[static_cast<std::size_t>(i)](j)) > kLargestAngle)) continue;
@@ -154,30 +163,24 @@ void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<kColumns>& K) {
   }
 }
 
-}  // namespace
-
-TrackedSvd::TrackedSvd(int columns) : columns_(columns), padded_(columns + columns % 2) {
-  VERIDYN_ASSERT(columns >= 1 && columns <= kMaxRecursiveColumns);
-  for (int j = 0; j < columns; ++j) vectors_[static_cast<std::size_t>(j * padded_ + j)] = 1.0;
-}
-
-SmallMatrix TrackedSvd::vectors() const {
-  SmallMatrix V(columns_, columns_);
-  for (int j = 0; j < columns_; ++j) {
-    for (int i = 0; i < columns_; ++i) V(i, j) = vector(i, j);
-  }
-  return V;
-}
+struct Tracked {
+  double* vectors;  // rows of V
+  double* values;
+  std::uint64_t* turns;
+  std::uint64_t* updates;
+};
 
 template <int kColumns>
-void TrackedSvd::decompose(const double* triangle, int stride, const double* fresh, double weight) {
+VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int stride, const double* fresh, double weight) {
+  double* const vectors = tracked.vectors;
+  double* const values = tracked.values;
   constexpr auto kSize = static_cast<std::size_t>(kColumns);
   constexpr std::size_t kPairs = Row<kColumns>::kPairs;
 
   Rows<kColumns> V, B, G, K;
   for (std::size_t i = 0; i < kSize; ++i) {
     for (std::size_t j = 0; j < kPairs; ++j) {
-      const double* source = vectors_.data() + 2 * (i * kPairs + j);
+      const double* source = vectors + 2 * (i * kPairs + j);
       V[i].pair[j] = Pair{source[0], source[1]};
     }
   }
@@ -195,7 +198,7 @@ void TrackedSvd::decompose(const double* triangle, int stride, const double* fre
     Row<kColumns> y = Row<kColumns>::zero(), power = y;
     for (std::size_t i = 0; i < kSize; ++i) y.add(fresh[i], V[i]);
     for (std::size_t j = 0; j < kPairs; ++j) {
-      const Pair s{values_[2 * j], 2 * j + 1 < kSize ? values_[2 * j + 1] : 0.0};
+      const Pair s{values[2 * j], 2 * j + 1 < kSize ? values[2 * j + 1] : 0.0};
       power.pair[j] = weight * s * s + y.pair[j] * y.pair[j];
     }
     for (std::size_t i = 0; i < kSize; ++i) {
@@ -205,7 +208,7 @@ void TrackedSvd::decompose(const double* triangle, int stride, const double* fre
     const Angles angles = angles_of<kColumns>(G, power, K);
     if (angles.largest <= kLargestAngle) {
       turn_all<kColumns>(V, K, angles.largest);
-      ++turns_;
+      ++*tracked.turns;
     }
   }
   const double inverse_unit = 1.0 / unit;
@@ -225,7 +228,7 @@ void TrackedSvd::decompose(const double* triangle, int stride, const double* fre
     }
     const Angles angles = angles_of<kColumns>(G, power, K);
     if (angles.largest == 0.0 || count == kMostTurns) break;
-    ++turns_;
+    ++*tracked.turns;
     if (angles.largest > kLargestAngle) {
       turn_pairs<kColumns>(V, B, K);
     } else {
@@ -234,16 +237,16 @@ void TrackedSvd::decompose(const double* triangle, int stride, const double* fre
     }
   }
 
-  if (++updates_ % kUpdatesPerCleaning == 0) {
+  if (++*tracked.updates % kUpdatesPerCleaning == 0) {
     // V <- V (3 - V'V)/2: the error of orthogonality is squared.
     gram<kColumns>(V, G);
     B = V;
     multiply<kColumns>(B, G, -0.5, 1.5, B, V);
   }
-  for (std::size_t i = 0; i < kSize; ++i) values_[i] = power(static_cast<int>(i));
+  for (std::size_t i = 0; i < kSize; ++i) values[i] = power(static_cast<int>(i));
   for (std::size_t j = 1; j < kSize; ++j) {
-    for (std::size_t i = j; i > 0 && values_[i] > values_[i - 1]; --i) {
-      std::swap(values_[i], values_[i - 1]);
+    for (std::size_t i = j; i > 0 && values[i] > values[i - 1]; --i) {
+      std::swap(values[i], values[i - 1]);
       for (auto& v : V) {
         const double swapped = v(static_cast<int>(i));
         v.set(static_cast<int>(i), v(static_cast<int>(i) - 1));
@@ -251,37 +254,76 @@ void TrackedSvd::decompose(const double* triangle, int stride, const double* fre
       }
     }
   }
-  for (std::size_t i = 0; i < kSize; ++i) values_[i] = unit * std::sqrt(values_[i]);
+  for (std::size_t i = 0; i < kSize; ++i) values[i] = unit * std::sqrt(values[i]);
   for (std::size_t i = 0; i < kSize; ++i) {
     for (std::size_t j = 0; j < kPairs; ++j) {
-      double* target = vectors_.data() + 2 * (i * kPairs + j);
+      double* target = vectors + 2 * (i * kPairs + j);
       target[0] = V[i].pair[j][0];
       target[1] = V[i].pair[j][1];
     }
   }
 }
 
+template <int kColumns>
+void track_on_any(const Tracked& tracked, const double* triangle, int stride, const double* fresh, double weight) {
+  track<kColumns>(tracked, triangle, stride, fresh, weight);
+}
+
+#if VERIDYN_HAS_FAST_VERSION
+template <int kColumns>
+__attribute__((target("avx2,fma"))) void track_fast(const Tracked& tracked, const double* triangle, int stride,
+                                                    const double* fresh, double weight) {
+  track<kColumns>(tracked, triangle, stride, fresh, weight);
+}
+const bool kFast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+
+template <int kColumns>
+void track_here(const Tracked& tracked, const double* triangle, int stride, const double* fresh, double weight) {
+#if VERIDYN_HAS_FAST_VERSION
+  if (kFast) return track_fast<kColumns>(tracked, triangle, stride, fresh, weight);
+#endif
+  track_on_any<kColumns>(tracked, triangle, stride, fresh, weight);
+}
+
+}  // namespace
+
+TrackedSvd::TrackedSvd(int columns) : columns_(columns), padded_(columns + columns % 2) {
+  VERIDYN_ASSERT(columns >= 1 && columns <= kMaxRecursiveColumns);
+  for (int j = 0; j < columns; ++j) vectors_[static_cast<std::size_t>(j * padded_ + j)] = 1.0;
+}
+
+SmallMatrix TrackedSvd::vectors() const {
+  SmallMatrix V(columns_, columns_);
+  for (int j = 0; j < columns_; ++j) {
+    for (int i = 0; i < columns_; ++i) V(i, j) = vector(i, j);
+  }
+  return V;
+}
+
 void TrackedSvd::update(const double* triangle, int stride, const double* fresh, double weight) {
+  const Tracked tracked{
+      .vectors = vectors_.data(), .values = values_.data(), .turns = &turns_, .updates = &updates_};
   switch (columns_) {
     case 1:
       values_[0] = std::abs(triangle[0]);
       return;
     case 2:
-      return decompose<2>(triangle, stride, fresh, weight);
+      return track_here<2>(tracked, triangle, stride, fresh, weight);
     case 3:
-      return decompose<3>(triangle, stride, fresh, weight);
+      return track_here<3>(tracked, triangle, stride, fresh, weight);
     case 4:
-      return decompose<4>(triangle, stride, fresh, weight);
+      return track_here<4>(tracked, triangle, stride, fresh, weight);
     case 5:
-      return decompose<5>(triangle, stride, fresh, weight);
+      return track_here<5>(tracked, triangle, stride, fresh, weight);
     case 6:
-      return decompose<6>(triangle, stride, fresh, weight);
+      return track_here<6>(tracked, triangle, stride, fresh, weight);
     case 7:
-      return decompose<7>(triangle, stride, fresh, weight);
+      return track_here<7>(tracked, triangle, stride, fresh, weight);
     case 8:
-      return decompose<8>(triangle, stride, fresh, weight);
+      return track_here<8>(tracked, triangle, stride, fresh, weight);
     default:
-      return decompose<9>(triangle, stride, fresh, weight);
+      return track_here<9>(tracked, triangle, stride, fresh, weight);
   }
 }
 

@@ -38,9 +38,6 @@ class TrackedSvd {
   [[nodiscard]] std::uint64_t turns() const { return turns_; }
 
  private:
-  template <int kColumns>
-  void decompose(const double* triangle, int stride, const double* fresh, double weight);
-
   int columns_;
   int padded_;  // length of a row of V: even, for pairs of doubles
   std::uint64_t turns_ = 0;
