@@ -11,6 +11,9 @@
 namespace veridyn::aircraft {
 namespace {
 
+/// Standard deviations of the regressors' noise by which a row moves along a held direction.
+constexpr double kExcursion = 3.0;
+
 estimation::RecursiveOptions regression_options(const Eigen::MatrixXd& W, const TrackOptions& options, double rate_Hz) {
   estimation::RecursiveOptions o;
   o.method = options.method;
@@ -61,6 +64,7 @@ TrackOptions TrackOptions::read(const StudyTable& table) {
   o.detection.block_s = table.positive_or("detection_block", "s", o.detection.block_s);
   o.detection.learn_s = table.positive_or("detection_learning", "s", o.detection.learn_s);
   o.detection.memory_s = table.positive_or("detection_memory", "s", o.detection.memory_s);
+  o.detection.settle_s = table.number_or("detection_settling", "s", o.detection.settle_s);
   o.detection.validate();
   if (table.has("coefficients")) {
     const std::vector<std::string> names(kCoefficientNames.begin(), kCoefficientNames.end());
@@ -90,6 +94,7 @@ CoefficientTracker::CoefficientTracker(const CoefficientModel& model, const Eige
     : model_(model),
       options_(options),
       rate_Hz_(rate_Hz),
+      W_(error_covariance),
       regression_(model.parameter_names(), regression_options(error_covariance, options, rate_Hz)),
       detector_(detection_options(options, rate_Hz)) {
   history_.value.resize(model.size());
@@ -102,7 +107,21 @@ void CoefficientTracker::start(const Eigen::VectorXd& theta_0, const Eigen::Matr
   regression_.start(theta_0, P_0, rows, residual_sd);
 }
 
+bool CoefficientTracker::moves_held_direction(std::span<const double> x) const {
+  const estimation::SmallMatrix& held = regression_.unexcited();
+  const auto n = static_cast<Eigen::Index>(x.size());
+  const Eigen::Map<const Eigen::VectorXd> row(x.data(), n);
+  for (Eigen::Index j = 0; j < held.cols(); ++j) {
+    const double along = row.dot(held.col(j));
+    const double noise = held.col(j).dot(W_.topLeftCorner(n, n) * held.col(j));
+    if (along * along > kExcursion * kExcursion * noise) return true;
+  }
+  return false;
+}
+
 std::optional<estimation::Change> CoefficientTracker::update(double t, std::span<const double> x, double z) {
+  // Before the update: it may turn the direction into an excited one.
+  const bool moves_held = options_.detect_changes && moves_held_direction(x);
   const estimation::RecursiveUpdate u = regression_.update(x, z);
   std::optional<estimation::Change> change;
   if (u.accepted) {
@@ -111,8 +130,9 @@ std::optional<estimation::Change> CoefficientTracker::update(double t, std::span
     if (std::isfinite(normalised)) {
       innovation_power_ += normalised * normalised;
       ++innovations_;
-      // Before the estimate has a covariance its innovations say nothing about the aircraft.
-      if (options_.detect_changes && regression_.usable()) change = detector_.update(t, normalised);
+      // Before the estimate has a covariance its innovations say nothing about the aircraft; neither do they where the
+      // row moves along a combination of parameters that is not known.
+      if (options_.detect_changes && regression_.usable() && !moves_held) change = detector_.update(t, normalised);
     }
   }
   if (change) changes_.push_back(*change);

@@ -24,7 +24,8 @@ struct TrackOptions {
   estimation::ForgettingOptions forgetting{.variable = true};
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   bool detect_changes = true;    ///< `detect_changes`
-  /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`: see ChangeDetectionOptions.
+  /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
+  /// `detection_settling`: see ChangeDetectionOptions.
   estimation::ChangeDetectionOptions detection = {};
   std::vector<Coefficient> coefficients = {};  ///< `coefficients`; empty: all that the subject models
   std::string estimate_file;                   ///< `estimate`: estimate.json to start from (hybrid start)
@@ -76,10 +77,12 @@ class CoefficientTracker {
 
  private:
   void remember(double t);
+  [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
 
   CoefficientModel model_;
   TrackOptions options_;
   double rate_Hz_;
+  estimation::SmallMatrix W_;
   estimation::RecursiveRegression regression_;
   estimation::ChangeDetector detector_;
   std::vector<estimation::Change> changes_;

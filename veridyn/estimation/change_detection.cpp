@@ -94,11 +94,11 @@ double solve_threshold(const std::function<double(double)>& rate_of, double rate
 }  // namespace
 
 double cusum_run_length(double reference, double threshold, double mean, double sd) {
-  const double up = one_sided_run_length([&](double v) { return numerics::normal_cdf((v - mean) / sd); }, reference,
-                                         threshold);
+  const double up =
+      one_sided_run_length([&](double v) { return numerics::normal_cdf((v - mean) / sd); }, reference, threshold);
   if (mean == 0.0) return 0.5 * up;
-  const double down = one_sided_run_length([&](double v) { return numerics::normal_cdf((v + mean) / sd); }, reference,
-                                           threshold);
+  const double down =
+      one_sided_run_length([&](double v) { return numerics::normal_cdf((v + mean) / sd); }, reference, threshold);
   return 1.0 / (1.0 / up + 1.0 / down);
 }
 
@@ -120,6 +120,7 @@ void ChangeDetectionOptions::validate() const {
   check(mean_shift > 0.0, "mean_shift", mean_shift, "> 0");
   check(spread_factor == 0.0 || spread_factor > 1.0, "spread_factor", spread_factor, "0 or > 1");
   check(learn_s >= 50.0 * block_s, "learn_s", learn_s, "at least 50 blocks");
+  check(settle_s >= 0.0, "settle_s", settle_s, ">= 0");
   check(memory_s >= learn_s, "memory_s", memory_s, "at least learn_s");
 }
 
@@ -168,6 +169,14 @@ void ChangeDetector::start_again() {
   has_previous_ = false;
 }
 
+void ChangeDetector::pause_after_alarm() {
+  const bool again = alarms_ > 1 && since_alarm_ < learn_blocks_;
+  since_alarm_ = 0.0;
+  if (again) return start_again();
+  up_ = down_ = spread_ = {};
+  pause_blocks_ = options_.settle_s * options_.rate_Hz / static_cast<double>(block_length_);
+}
+
 void ChangeDetector::learn(double mean) {
   blocks_ += 1.0;
   const double share = 1.0 / std::min(blocks_, memory_blocks_);
@@ -180,6 +189,13 @@ void ChangeDetector::learn(double mean) {
 
 std::optional<Change> ChangeDetector::take_block(double mean) {
   std::optional<Change> change;
+  if (pause_blocks_ > 0.0) {
+    pause_blocks_ -= 1.0;
+    previous_ = mean;
+    has_previous_ = true;
+    return change;
+  }
+  since_alarm_ += 1.0;
   if (watching() && variance_ > 0.0) {
     const double a = has_previous_ ? correlation() : 0.0;
     const double s = std::sqrt(variance_ * (1.0 - a * a));
@@ -203,7 +219,7 @@ std::optional<Change> ChangeDetector::take_block(double mean) {
   }
   if (change) {
     ++alarms_;
-    start_again();
+    pause_after_alarm();
     return change;
   }
   learn(mean);

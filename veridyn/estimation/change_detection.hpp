@@ -32,6 +32,9 @@ struct ChangeDetectionOptions {
   /// They are followed with this memory afterwards [s].
   double memory_s = 300.0;
 
+  /// Not watched for this long after an alarm [s]: the estimate follows the change meanwhile.
+  double settle_s = 10.0;
+
   /// @throws InputError naming the option, its value and its rule.
   void validate() const;
 };
@@ -53,8 +56,11 @@ struct Change {
 /// Innovations of real flight are coloured, so they are averaged over blocks, and block means b_i are whitened by a
 /// running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
 /// slowly. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
-/// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains, mean
-/// rate over the errors that mu and s have at the end of learning). After an alarm sums start again and the model is learned anew.
+/// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains,
+/// mean rate over the errors that mu and s have at the end of learning). After an alarm the sums start again when
+/// `settle_s` are over, in which the estimate follows; the model of the noise is kept, for it is the aircraft that
+/// changed. A second alarm soon after (within `learn_s`) is reported too, and then the noise is learned anew: it may be
+/// what changed.
 class ChangeDetector {
  public:
   explicit ChangeDetector(const ChangeDetectionOptions& options);
@@ -82,6 +88,7 @@ class ChangeDetector {
   std::optional<Change> take_block(double mean);
   void learn(double mean);
   void start_again();
+  void pause_after_alarm();
 
   ChangeDetectionOptions options_;
   double mean_reference_ = 0.0;
@@ -108,6 +115,8 @@ class ChangeDetector {
   bool has_previous_ = false;
 
   Sum up_, down_, spread_;
+  double pause_blocks_ = 0.0;  ///< still to be left out
+  double since_alarm_ = 0.0;   ///< blocks watched since the last alarm's pause
 };
 
 }  // namespace veridyn::estimation
