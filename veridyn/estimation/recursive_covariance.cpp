@@ -161,14 +161,14 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
       }
       white_filling(jacobian, W_h, residual_variance, S);
       if (kind == CovarianceKind::kColoured && scores.weight > 0.0) {
-        // Few blocks know little: the white filling counts as n + 1 of them.
+        // Few blocks know little: the white filling counts as one of them.
         const double blocks = scores.blocks();
-        const double trust = blocks / (blocks + static_cast<double>(n) + 1.0);
+        const double trust = blocks / (blocks + 1.0);
         const double freedom = result.degrees_of_freedom;
         const double whole = squared_weights / scores.weight * (samples > freedom ? samples / freedom : 1.0);
         S = (1.0 - trust) * S + (trust * whole) * scores.sum;
         leading *= 1.0 - trust;
-        result.degrees_of_freedom = std::min(freedom, blocks + static_cast<double>(n) + 1.0);
+        result.degrees_of_freedom = std::min(freedom, std::max(1.0, blocks));
       }
       excited = sandwich(inverse, S);
       if (leading > 0.0) excited += leading * inverse;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNotInData = 1e-10;  // share (of amplitude) of z below which a vector says nothing of it
 constexpr double kNoise = 3.0;        // standard deviations of the largest singular value of noise, about
+constexpr double kMoreNoise = 4.0;    // factor on h'Wh that an estimate may need in one step
 constexpr double kLargestValue = 1e150;
 
 using Buffer = std::array<double, kMaxRecursiveColumns>;
@@ -268,7 +269,25 @@ void RecursiveRegression::State::solve() {
   }
   bool solved = false;
   if (options.method == Method::kPcaGtls) {
-    solved = solve_excited(excited_noisy);
+    // A direction of misfit stands out of the noise as one of signal does; taken for signal, it leaves z to directions
+    // that say nothing of it, and theta runs away along those. Such an estimate needs larger errors of the rows (h'Wh)
+    // than the one before and explains them worse: then the weakest direction is not taken for excited.
+    const SmallVector before = free_theta;
+    const double power_before = data.power(h.data()), noise_before = h_W_h;
+    for (;; --excited_noisy) {
+      solved = solve_excited(excited_noisy);
+      if (!solved || excited_noisy == 0) break;
+      double noise = 0.0;
+      h.head(n) = free_theta;
+      for (Eigen::Index j = 0; j <= n; ++j) {
+        double value = 0.0;
+        for (Eigen::Index i = 0; i <= n; ++i) value += W(i, j) * h(i);
+        noise += value * h(j);
+      }
+      if (noise <= kMoreNoise * noise_before || data.power(h.data()) <= power_before) break;
+      free_theta = before;
+      h.head(n) = before;
+    }
   } else {
     solved = data.null_columns() == 0 && solve_least();
     excited_directions = options.method == Method::kOls ? data.exact_rank() : data.exact_rank() + excited_noisy;

@@ -14,6 +14,8 @@ namespace {
 constexpr double kLastAngle = 1e-6;
 // Above this a turn of all columns at once would not be orthogonal to rounding (its error is angle^6/8).
 constexpr double kLargestAngle = 0.01;
+// Above this V is made orthonormal again at once.
+constexpr double kCleanAngle = 1e-3;
 // Below this it is so without the fourth power.
 constexpr double kNoFourthPower = 1e-4;
 // Cosines below this are rounding.
@@ -88,32 +90,33 @@ struct Angles {
   bool last_cosines = true;  ///< all cosines below kLastAngle
 };
 
-// K_ij = g_ij/(g_jj - g_ii), 0 where the columns are orthogonal to rounding.
+// K_ij = g_ij/(g_jj - g_ii), 0 where the columns are orthogonal to rounding: B = R V has errors of the size of its
+// largest column, so cosines between columns that are nothing but such errors say nothing.
 template <int kColumns>
 VERIDYN_INLINE Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& power, Rows<kColumns>& K) {
   constexpr int kPairs = Row<kColumns>::kPairs;
   const Pair none{0.0, 0.0};
   Pair largest = none, excess = none;
+  double most = 0.0;
+  for (int i = 0; i < kColumns; ++i) most = std::max(most, power(i));
+  const double level = kNoAngle * kNoAngle * most;
+  const Pair rounding{level, level};
   for (std::size_t i = 0; i < kColumns; ++i) {
     const Pair own{power(static_cast<int>(i)), power(static_cast<int>(i))};
     for (int j = 0; j < kPairs; ++j) {
       const Pair d = G[i].pair[j];
       const Pair product = own * power.pair[j];
+      const Pair longer = own > power.pair[j] ? own : power.pair[j];
       const Pair square = d * d;
       Pair difference = power.pair[j] - own;
       if (j == static_cast<int>(i) / 2) difference[static_cast<int>(i) % 2] = std::numeric_limits<double>::infinity();
       Pair k = d / difference;
-      k = square > (kNoAngle * kNoAngle) * product ? k : none;
+      k = square > rounding * longer ? k : none;
       K[i].pair[j] = k;
       const Pair size = k < none ? -k : k;
       largest = size > largest ? size : largest;
       const Pair over = square - (kLastAngle * kLastAngle) * product;
-      if (j != static_cast<int>(i) / 2) {
-        excess = over > excess ? over : excess;
-      } else {
-        const int other = 1 - static_cast<int>(i) % 2;
-        if (over[other] > excess[other]) excess[other] = over[other];
-      }
+      excess = k != none && over > excess ? over : excess;  // k is 0 on the diagonal
     }
   }
   return {.largest = std::max(largest[0], largest[1]), .last_cosines = !(excess[0] > 0.0 || excess[1] > 0.0)};
@@ -184,6 +187,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
       V[i].pair[j] = Pair{source[0], source[1]};
     }
   }
+  bool clean = false;
   double largest = 0.0;
   for (int i = 0; i < kColumns; ++i) {
     for (int j = i; j < kColumns; ++j) largest = std::max(largest, std::abs(triangle[i * stride + j]));
@@ -209,6 +213,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
     if (angles.largest <= kLargestAngle) {
       turn_all<kColumns>(V, K, angles.largest);
       ++*tracked.turns;
+      clean = angles.largest > kCleanAngle;
     }
   }
   const double inverse_unit = 1.0 / unit;
@@ -229,6 +234,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
     const Angles angles = angles_of<kColumns>(G, power, K);
     if (angles.largest == 0.0 || count == kMostTurns) break;
     ++*tracked.turns;
+    clean = clean || angles.largest > kCleanAngle;
     if (angles.largest > kLargestAngle) {
       turn_pairs<kColumns>(V, B, K);
     } else {
@@ -237,7 +243,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
     }
   }
 
-  if (++*tracked.updates % kUpdatesPerCleaning == 0) {
+  if (++*tracked.updates % kUpdatesPerCleaning == 0 || clean) {
     // V <- V (3 - V'V)/2: the error of orthogonality is squared.
     gram<kColumns>(V, G);
     B = V;
