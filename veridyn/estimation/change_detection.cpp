@@ -94,11 +94,11 @@ double solve_threshold(const std::function<double(double)>& rate_of, double rate
 }  // namespace
 
 double cusum_run_length(double reference, double threshold, double mean, double sd) {
-  const double up = one_sided_run_length([&](double v) { return numerics::normal_cdf((v - mean) / sd); }, reference,
-                                         threshold);
+  const double up =
+      one_sided_run_length([&](double v) { return numerics::normal_cdf((v - mean) / sd); }, reference, threshold);
   if (mean == 0.0) return 0.5 * up;
-  const double down = one_sided_run_length([&](double v) { return numerics::normal_cdf((v + mean) / sd); }, reference,
-                                           threshold);
+  const double down =
+      one_sided_run_length([&](double v) { return numerics::normal_cdf((v + mean) / sd); }, reference, threshold);
   return 1.0 / (1.0 / up + 1.0 / down);
 }
 

@@ -53,8 +53,9 @@ struct Change {
 /// Innovations of real flight are coloured, so they are averaged over blocks, and block means b_i are whitened by a
 /// running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
 /// slowly. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
-/// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains, mean
-/// rate over the errors that mu and s have at the end of learning). After an alarm sums start again and the model is learned anew.
+/// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains,
+/// mean rate over the errors that mu and s have at the end of learning). After an alarm sums start again and the model
+/// is learned anew.
 class ChangeDetector {
  public:
   explicit ChangeDetector(const ChangeDetectionOptions& options);
