@@ -9,9 +9,9 @@
 
 #include "simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/augmented_qr.hpp"
 #include "veridyn/estimation/ordinary_least_squares.hpp"
 #include "veridyn/estimation/pca_total_least_squares.hpp"
-#include "veridyn/estimation/augmented_qr.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -30,9 +30,8 @@ Eigen::MatrixXd correlated_errors(Eigen::Index n, double ratio) {
 
 void feed(RecursiveRegression& recursive, const RegressionData& data) {
   for (Eigen::Index k = 0; k < data.rows(); ++k) {
-    const auto result =
-        recursive.update(std::span(data.regressors.row(k).data(), static_cast<std::size_t>(data.parameters())),
-                         data.regressand(k));
+    const auto result = recursive.update(
+        std::span(data.regressors.row(k).data(), static_cast<std::size_t>(data.parameters())), data.regressand(k));
     ASSERT_TRUE(result.accepted);
   }
 }
@@ -104,7 +103,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, RecursiveRegressionOfAnyMethod,
 
 TEST(RecursiveRegression, WithUnknownDirectionsIsTheBatchPcaAroundTheEstimateBefore) {
   // theta2 and theta3 hardly move: not excited.
-  auto simulated = simulate_regression(3, Eigen::Vector4d(0.2, 1.0, -0.5, 0.3), correlated_errors(4, 0.02), {.rows = 600});
+  auto simulated =
+      simulate_regression(3, Eigen::Vector4d(0.2, 1.0, -0.5, 0.3), correlated_errors(4, 0.02), {.rows = 600});
   RegressionData& d = simulated.data;
   d.regressors.rightCols(1) *= 0.05;
   d.regressors.col(2) = d.regressors.col(1) * 0.7 + 0.02 * d.regressors.col(2);
@@ -216,7 +216,8 @@ TEST(RecursiveRegression, CoversTheTruthAndPredictsItsInnovation) {
     }
     const RegressionEstimate e = recursive.estimate();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      held += truth(i) > e.parameters[static_cast<std::size_t>(i)].low95 && truth(i) < e.parameters[static_cast<std::size_t>(i)].high95;
+      held += truth(i) > e.parameters[static_cast<std::size_t>(i)].low95 &&
+              truth(i) < e.parameters[static_cast<std::size_t>(i)].high95;
       white_held += std::abs(truth(i) - e.theta(i)) < 1.96 * std::sqrt(e.covariance_white(i, i));
       ++all;
     }
@@ -357,7 +358,8 @@ TEST(RecursiveRegression, HoldsThePriorOfExactRegressorsThatAreDependent) {
   // The deflection moves: all is determined.
   for (int k = 0; k < 500; ++k) {
     const double alpha = normal(generator), de = normal(generator);
-    recursive.update(std::array{1.0, de, alpha + 0.1 * normal(generator)}, 0.5 + de + 2.0 * alpha + 0.1 * normal(generator));
+    recursive.update(std::array{1.0, de, alpha + 0.1 * normal(generator)},
+                     0.5 + de + 2.0 * alpha + 0.1 * normal(generator));
   }
   EXPECT_EQ(recursive.excited_directions(), 3);
   EXPECT_NEAR(recursive.theta()(0), 0.5, 0.03);
@@ -368,13 +370,15 @@ TEST(RecursiveRegression, PinsWhatThePriorWeightPins) {
   auto simulated = simulate_regression(9, Eigen::Vector3d(0.5, 1.0, -1.0), correlated_errors(3, 0.02));
   const RegressionData& d = simulated.data;
   const Eigen::Vector3d prior(0.0, 0.0, -0.9), weight(1.0, 1.0, std::numeric_limits<double>::infinity());
-  RecursiveOptions options{.error_covariance = d.error_covariance, .prior = prior, .prior_weight = weight,
+  RecursiveOptions options{.error_covariance = d.error_covariance,
+                           .prior = prior,
+                           .prior_weight = weight,
                            .covariance = CovarianceKind::kWhite};
   options.forgetting.lambda = 1.0;
   RecursiveRegression recursive(d.parameter_names, options);
   feed(recursive, d);
-  const RegressionEstimate batch = estimate(
-      d, Method::kPcaGtls, {.covariance = CovarianceKind::kWhite, .prior = prior, .prior_weight = weight});
+  const RegressionEstimate batch =
+      estimate(d, Method::kPcaGtls, {.covariance = CovarianceKind::kWhite, .prior = prior, .prior_weight = weight});
   EXPECT_EQ(recursive.theta()(2), -0.9);
   EXPECT_EQ(recursive.status(2), ParameterStatus::kFixed);
   EXPECT_LT(relative(recursive.theta(), batch.theta), kLastDigits);
@@ -402,7 +406,8 @@ TEST(RecursiveRegression, SurvivesFlightsThatBreakThings) {
 TEST(RecursiveRegression, SaysWhatIsWrongWithItsOptions) {
   const auto message = [](const RecursiveOptions& options, std::size_t n = 2) -> std::string {
     try {
-      RecursiveRegression recursive(n == 2 ? std::vector<std::string>{"a", "b"} : std::vector<std::string>(n, "a"), options);
+      RecursiveRegression recursive(n == 2 ? std::vector<std::string>{"a", "b"} : std::vector<std::string>(n, "a"),
+                                    options);
     } catch (const InputError& error) {
       return error.what();
     }

@@ -14,8 +14,8 @@ struct ForgettingOptions {
   /// Forget faster while the a-priori residual is larger than its noise (Paleologu, Benesty & Ciochina 2008).
   bool variable = false;
   /// Variable forgetting never goes below this: without it the first trigger, true or false, wipes the memory.
-  /// The default keeps 20 samples: forgets an abrupt change's past within a window, and a false trigger's not quite.
-  double lambda_min = 0.95;
+  /// The default keeps 10 samples: an abrupt change of the past is forgotten before its trigger ends.
+  double lambda_min = 0.9;
   /// Windows of the powers of residual and noise [multiples of the number of parameters]; K_b > K_a >= 2. The
   /// published K_a = 2 triggers on noise alone (see `false_trigger_rate`).
   double K_a = 10.0;

@@ -92,8 +92,7 @@ void RecursiveRegression::State::white_filling(const SmallMatrix& jacobian, cons
     S.resize(n, n);
     for (Eigen::Index j = 0; j < n; ++j) {
       for (Eigen::Index i = 0; i < n; ++i) {
-        S(i, j) = s2 * squares(std::min(i, j), std::max(i, j)) +
-                  s2 * scale * static_cast<double>(n) * kappa * W(i, j) -
+        S(i, j) = s2 * squares(std::min(i, j), std::max(i, j)) + s2 * scale * static_cast<double>(n) * kappa * W(i, j) -
                   squared_weights * scale * scale * least_W_h(i) * least_W_h(j);
       }
     }
@@ -177,8 +176,8 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
     if (good && partial) {
       double largest = 1.0;
       for (Eigen::Index i = 0; i < n; ++i) {
-        largest = std::max(largest,
-                           std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
+        largest =
+            std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
       }
       const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
       // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.

@@ -87,8 +87,12 @@ const std::vector<std::string>& RecursiveRegression::names() const { return stat
 const RecursiveOptions& RecursiveRegression::options() const { return state_->options; }
 const SmallVector& RecursiveRegression::theta() const { return state_->theta; }
 EstimateTermination RecursiveRegression::termination() const { return state_->termination; }
-const SmallMatrix& RecursiveRegression::covariance() const { return state_->error_bars(state_->options.covariance).covariance; }
-const SmallMatrix& RecursiveRegression::covariance_white() const { return state_->error_bars(CovarianceKind::kWhite).covariance; }
+const SmallMatrix& RecursiveRegression::covariance() const {
+  return state_->error_bars(state_->options.covariance).covariance;
+}
+const SmallMatrix& RecursiveRegression::covariance_white() const {
+  return state_->error_bars(CovarianceKind::kWhite).covariance;
+}
 const SmallVector& RecursiveRegression::sigma() const { return state_->error_bars(state_->options.covariance).sigma; }
 const SmallVector& RecursiveRegression::singular_values() const { return state_->singular_values; }
 SmallMatrix RecursiveRegression::right_singular_vectors() const {
@@ -117,7 +121,9 @@ double RecursiveRegression::residual_sd() const {
                                           : std::numeric_limits<double>::quiet_NaN();
 }
 double RecursiveRegression::error_scale() const { return state_->options.method == Method::kOls ? 0.0 : state_->scale; }
-double RecursiveRegression::degrees_of_freedom() const { return state_->error_bars(state_->options.covariance).degrees_of_freedom; }
+double RecursiveRegression::degrees_of_freedom() const {
+  return state_->error_bars(state_->options.covariance).degrees_of_freedom;
+}
 std::uint64_t RecursiveRegression::rows() const { return state_->rows; }
 std::uint64_t RecursiveRegression::refused() const { return state_->refused; }
 std::uint64_t RecursiveRegression::triggers() const { return state_->variable.triggers(); }

@@ -45,8 +45,8 @@ struct RecursiveUpdate {
   double innovation = 0.0;        ///< z - x theta with theta before this row [unit of z]; NaN when refused
   double innovation_sigma = 0.0;  ///< its standard deviation: errors of row and estimate; NaN until it is known
   double lambda = 1.0;            ///< weight of squares that was applied
-  bool accepted = false;          ///< false: the row holds a number that is not finite (or beyond 1e150); nothing changed
-  bool triggered = false;         ///< variable forgetting sees a change
+  bool accepted = false;   ///< false: the row holds a number that is not finite (or beyond 1e150); nothing changed
+  bool triggered = false;  ///< variable forgetting sees a change
 };
 
 /// One linear regression z = x theta estimated row by row, by OLS, GTLS or PCA-GTLS, with constant or variable
@@ -60,8 +60,8 @@ struct RecursiveUpdate {
 /// PCA-GTLS holds what is not excited: theta_0 of its minimisation |U (theta - theta_0)| is the estimate before the
 /// row, at first the prior. So along directions below the threshold theta stays where it was when they were last
 /// excited; their error bars are the bound B_0, since what was known of them is
-/// forgotten, and `unexcited` names them. Exact regressors have no noise, hence no threshold: they are held when linearly dependent
-/// to rounding.
+/// forgotten, and `unexcited` names them. Exact regressors have no noise, hence no threshold: they are held when
+/// linearly dependent to rounding.
 ///
 /// Error bars. White: s2 M^-1 A2 M^-1 with its second-order term, where squares carry their weight and A2 the weight
 /// squared (docs/estimation.md). Coloured: M^-1 S M^-1, S from sums of scores over blocks of `block` samples under the

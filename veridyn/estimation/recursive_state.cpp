@@ -234,8 +234,7 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
     const double square = lambda * lambda;
     for (Eigen::Index j = 0; j < n; ++j) {
       for (Eigen::Index i = 0; i <= j; ++i) {
-        squares(i, j) =
-            square * squares(i, j) + row[static_cast<std::size_t>(i)] * row[static_cast<std::size_t>(j)];
+        squares(i, j) = square * squares(i, j) + row[static_cast<std::size_t>(i)] * row[static_cast<std::size_t>(j)];
       }
     }
   }
@@ -260,7 +259,8 @@ void RecursiveRegression::State::solve() {
   if (!options.error_scale_known) threshold *= std::sqrt(scale);
   excited_noisy = 0;
   while (excited_noisy < w - 1 && data.singular_value(excited_noisy) > threshold) ++excited_noisy;
-  for (Eigen::Index j = 0; j < singular_values.size(); ++j) singular_values(j) = data.singular_value(static_cast<int>(j));
+  for (Eigen::Index j = 0; j < singular_values.size(); ++j)
+    singular_values(j) = data.singular_value(static_cast<int>(j));
 
   if (!(static_cast<double>(rows) + prior_rows > static_cast<double>(n))) {
     termination = EstimateTermination::kTooFewRows;
@@ -292,10 +292,10 @@ void RecursiveRegression::State::solve() {
     solved = data.null_columns() == 0 && solve_least();
     excited_directions = options.method == Method::kOls ? data.exact_rank() : data.exact_rank() + excited_noisy;
   }
-  termination = solved ? EstimateTermination::kEstimated
-                       : (options.method != Method::kPcaGtls && data.null_columns() > 0
-                              ? EstimateTermination::kRankDeficient
-                              : EstimateTermination::kNongeneric);
+  termination =
+      solved ? EstimateTermination::kEstimated
+             : (options.method != Method::kPcaGtls && data.null_columns() > 0 ? EstimateTermination::kRankDeficient
+                                                                              : EstimateTermination::kNongeneric);
   if (!solved) return;
   h.head(n) = free_theta;
   for (Eigen::Index i = 0; i <= n; ++i) {

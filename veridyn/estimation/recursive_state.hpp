@@ -21,9 +21,9 @@ struct RecursiveErrorBars {
   bool fresh = false;
 };
 
-/// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k g_k.
-/// Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so colour shorter than a
-/// block is in S in full.
+/// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k
+/// g_k. Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so colour shorter
+/// than a block is in S in full.
 struct ScoreBlocks {
   Eigen::Index length = 1;
   Eigen::Index filled = 0;

@@ -180,7 +180,8 @@ void RecursiveTotalLeastSquares::split_exact() {
   for (int j = 0; j < exact_; ++j) {
     std::array<double, kMaxRecursiveColumns> row{};
     for (int k = 0; k < noisy_; ++k) {
-      for (int i = 0; i < exact_; ++i) row[static_cast<std::size_t>(k)] += svd.matrixU()(i, j) * triangle(i)[exact_ + k];
+      for (int i = 0; i < exact_; ++i)
+        row[static_cast<std::size_t>(k)] += svd.matrixU()(i, j) * triangle(i)[exact_ + k];
     }
     if (j < rank_) {
       for (int k = 0; k < noisy_; ++k)
@@ -204,7 +205,8 @@ void RecursiveTotalLeastSquares::basis(int j, double* b) const {
     for (int i = 0; i < exact_; ++i) g[static_cast<std::size_t>(i)] = 0.0;
     for (int r = 0; r < rank_; ++r) {
       double value = 0.0;
-      for (int k = 0; k < noisy_; ++k) value += exact_noisy_[static_cast<std::size_t>(r * kStride + k)] * svd_.vector(k, j);
+      for (int k = 0; k < noisy_; ++k)
+        value += exact_noisy_[static_cast<std::size_t>(r * kStride + k)] * svd_.vector(k, j);
       for (int i = 0; i < exact_; ++i)
         g[static_cast<std::size_t>(i)] -= exact_basis_[static_cast<std::size_t>(r * kStride + i)] * value;
     }
@@ -218,7 +220,8 @@ void RecursiveTotalLeastSquares::basis(int j, double* b) const {
   }
   for (int i = 0; i < size_; ++i) b[i] = 0.0;
   for (int k = 0; k < size_; ++k) {
-    for (int i = 0; i < size_; ++i) b[i] += T_[static_cast<std::size_t>(k * kStride + i)] * g[static_cast<std::size_t>(k)];
+    for (int i = 0; i < size_; ++i)
+      b[i] += T_[static_cast<std::size_t>(k * kStride + i)] * g[static_cast<std::size_t>(k)];
   }
 }
 
@@ -237,7 +240,8 @@ void RecursiveTotalLeastSquares::exact_basis(int column, double* e) const {
   }
   for (int i = 0; i < size_; ++i) e[i] = 0.0;
   for (int k = 0; k < exact_; ++k) {
-    for (int i = 0; i < size_; ++i) e[i] += T_[static_cast<std::size_t>(k * kStride + i)] * g[static_cast<std::size_t>(k)];
+    for (int i = 0; i < size_; ++i)
+      e[i] += T_[static_cast<std::size_t>(k * kStride + i)] * g[static_cast<std::size_t>(k)];
   }
 }
 

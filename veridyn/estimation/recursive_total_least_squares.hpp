@@ -14,8 +14,8 @@ namespace veridyn::estimation {
 /// [R11, R12; 0, R22] of all of them: R11 and R12 of the exact columns and R22 of those with unit error under one
 /// forgetting. Singular values and V are those of R22 (`TrackedSvd`); basis vectors are
 ///     b_j = T_w v_j - T_e R11^-1 R12 v_j,  h = [theta; -1] in their span,
-/// so least squares (W zero but for z), GTLS and PCA-GTLS all follow. Exact columns that are dependent below 1e-12 leave
-/// their rows to R22, and their null space to `null_columns`. Nothing allocates after construction.
+/// so least squares (W zero but for z), GTLS and PCA-GTLS all follow. Exact columns that are dependent below 1e-12
+/// leave their rows to R22, and their null space to `null_columns`. Nothing allocates after construction.
 class RecursiveTotalLeastSquares {
  public:
   /// @param error_covariance W, m x m with 2 <= m <= 9, positive semi-definite, W_zz > 0 (last)

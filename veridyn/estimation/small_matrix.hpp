@@ -12,7 +12,7 @@ inline constexpr int kMaxRecursiveColumns = kMaxRecursiveParameters + 1;
 
 /// Vector and matrix of at most 9 (x 9) on the stack or inside an object.
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRecursiveColumns, 1>;
-using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRecursiveColumns,
-                                  kMaxRecursiveColumns>;
+using SmallMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRecursiveColumns, kMaxRecursiveColumns>;
 
 }  // namespace veridyn::estimation

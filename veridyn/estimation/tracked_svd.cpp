@@ -73,8 +73,8 @@ VERIDYN_INLINE void gram(const Rows<kColumns>& b, Rows<kColumns>& result) {
 
 // y_i = scale x_i + factor sum_k a_ik b_k
 template <int kColumns>
-VERIDYN_INLINE void multiply(const Rows<kColumns>& a, const Rows<kColumns>& b, double factor, double scale, const Rows<kColumns>& x,
-              Rows<kColumns>& y) {
+VERIDYN_INLINE void multiply(const Rows<kColumns>& a, const Rows<kColumns>& b, double factor, double scale,
+                             const Rows<kColumns>& x, Rows<kColumns>& y) {
   for (std::size_t i = 0; i < kColumns; ++i) {
     Row<kColumns> sum = Row<kColumns>::zero();
     for (std::size_t k = 0; k < kColumns; ++k) sum.add(a[i](static_cast<int>(k)), b[k]);
@@ -86,7 +86,7 @@ VERIDYN_INLINE void multiply(const Rows<kColumns>& a, const Rows<kColumns>& b, d
 
 /// The angles of all pairs and what they allow.
 struct Angles {
-  double largest = 0.0;       ///< infinite for columns of equal length that are not orthogonal
+  double largest = 0.0;      ///< infinite for columns of equal length that are not orthogonal
   bool last_cosines = true;  ///< all cosines below kLastAngle
 };
 
@@ -174,7 +174,8 @@ struct Tracked {
 };
 
 template <int kColumns>
-VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int stride, const double* fresh, double weight) {
+VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int stride, const double* fresh,
+                          double weight) {
   double* const vectors = tracked.vectors;
   double* const values = tracked.values;
   constexpr auto kSize = static_cast<std::size_t>(kColumns);
@@ -308,8 +309,7 @@ SmallMatrix TrackedSvd::vectors() const {
 }
 
 void TrackedSvd::update(const double* triangle, int stride, const double* fresh, double weight) {
-  const Tracked tracked{
-      .vectors = vectors_.data(), .values = values_.data(), .turns = &turns_, .updates = &updates_};
+  const Tracked tracked{.vectors = vectors_.data(), .values = values_.data(), .turns = &turns_, .updates = &updates_};
   switch (columns_) {
     case 1:
       values_[0] = std::abs(triangle[0]);

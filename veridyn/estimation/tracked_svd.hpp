@@ -15,9 +15,9 @@ namespace veridyn::estimation {
 /// whose columns are nearly orthogonal already, and turns them all at once by K + sqrt(1 + K^2), K the skew matrix of
 /// the angles b_i.b_j/(|b_i|^2 - |b_j|^2), which leaves their square; pairs with an angle above 0.01 (columns of equal
 /// length, a first decomposition) are turned one by one (Hestenes 1958). Once angles and cosines are below 1e-6 one
-/// more such turn ends it: what is left is of order 1e-12. V is made orthonormal again every 64 updates, and after angles above 1e-3
-/// (one Newton-Schulz step). Backward stable: errors of singular values are of the order of rounding of the largest. The
-/// triangle may be of any size from 1e-290 to 1e290, singular or zero.
+/// more such turn ends it: what is left is of order 1e-12. V is made orthonormal again every 64 updates, and after
+/// angles above 1e-3 (one Newton-Schulz step). Backward stable: errors of singular values are of the order of rounding
+/// of the largest. The triangle may be of any size from 1e-290 to 1e290, singular or zero.
 class TrackedSvd {
  public:
   /// @param columns 1 to 9; starts with V = I
