@@ -143,10 +143,9 @@ class Estimation {
       if (!progress_.update(static_cast<double>(relaxation + 1) / options_.max_relaxations)) {
         return end(OutputErrorTermination::kInterrupted, "interrupted");
       }
-      if (relaxation > 0 && moved < options_.tolerance && noise_change < 0.01) {
+      if (relaxation > 0 && moved < options_.tolerance && noise_change < 10.0 * options_.tolerance) {
         return end(OutputErrorTermination::kConverged, "");
       }
-      if (options_.noise == OutputNoise::kGiven) return end(OutputErrorTermination::kConverged, "");
     }
     end(OutputErrorTermination::kRelaxations, "");
   }
@@ -197,6 +196,8 @@ class Estimation {
     o.function_tolerance = 1e-10;
     o.gradient_tolerance = 1e-12;
     o.parameter_tolerance = 1e-12;
+    // Close to the solution full Gauss-Newton steps are right; damping would only slow them.
+    if (result_.relaxations > 1) o.initial_trust_region_radius = 1e12;
     o.num_threads = 1;
     o.logging_type = ceres::SILENT;
     Watch watch(progress_);
@@ -250,9 +251,8 @@ class Estimation {
     result_.outputs = problem_.output_fits();
     if (!result_.message.empty()) return;
     const char* how = result_.termination == OutputErrorTermination::kConverged ? "converged" : "stopped";
-    result_.message =
-        fmt::format("{} after {} relaxations and {} steps over {} segments, {} values", how, result_.relaxations,
-                    result_.steps, problem_.segments(), result_.values);
+    result_.message = fmt::format("{} after {} relaxations and {} steps over {} segments, {} values", how,
+                                  result_.relaxations, result_.steps, problem_.segments(), result_.values);
     if (result_.diverged_steps > 0) {
       result_.message += fmt::format("; {} steps were refused because a simulation diverged, last that of {}",
                                      result_.diverged_steps, result_.diverged_segment);

@@ -21,11 +21,11 @@ enum class OutputNoise {
 
 /// How an output-error estimation ended. With the first two there is an estimate.
 enum class OutputErrorTermination {
-  kConverged,        ///< a relaxation moved no parameter by more than `tolerance` sigma and no noise by 1 %
-  kRelaxations,      ///< `max_relaxations` were used up first
-  kInterrupted,      ///< the caller's progress asked to stop
-  kDivergedAtStart,  ///< the simulation diverges at the starting values; the message names the segment
-  kTooFewSamples,    ///< fewer measured values than unknowns
+  kConverged,  ///< a relaxation moved no parameter by more than `tolerance` sigma and no noise by ten times that share
+  kRelaxations,        ///< `max_relaxations` were used up first
+  kInterrupted,        ///< the caller's progress asked to stop
+  kDivergedAtStart,    ///< the simulation diverges at the starting values; the message names the segment
+  kTooFewSamples,      ///< fewer measured values than unknowns
   kNothingToEstimate,  ///< the data determine no direction of the parameters
   kSolverFailed        ///< the optimiser could not go on: every step diverged or was not finite
 };
@@ -39,7 +39,7 @@ struct OutputErrorOptions {
   /// Error bars: inverse information (kWhite: Cramer-Rao, too small when the model is incomplete) or corrected for the
   /// colour of the residuals (kColoured, the default).
   CovarianceKind covariance = CovarianceKind::kColoured;
-  bool free_initial_conditions = true;  ///< estimate the initial conditions of every segment
+  bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
   double significance = 0.05;                   ///< two-sided level of the t-tests
   int max_relaxations = 30;                     ///< alternations between parameters and R
@@ -75,7 +75,7 @@ struct SegmentParameter {
 /// Maximum-likelihood estimate of a model's parameters from its outputs.
 struct OutputErrorEstimate {
   OutputErrorTermination termination = OutputErrorTermination::kTooFewSamples;
-  std::string message;  ///< one sentence
+  std::string message;                        ///< one sentence
   std::vector<ParameterEstimate> parameters;  ///< those that all segments share, in the model's order
   Eigen::VectorXd theta;                      ///< their values
   Eigen::MatrixXd covariance;        ///< of the chosen kind; 0 for fixed, infinite variance for not identifiable ones
@@ -85,7 +85,7 @@ struct OutputErrorEstimate {
   std::vector<SegmentParameter> segment_parameters;
   Eigen::MatrixXd noise_covariance;  ///< R
   std::vector<OutputFit> outputs;
-  std::vector<RowMatrix> predicted;  ///< per segment, samples x outputs, bias included
+  std::vector<RowMatrix> predicted;       ///< per segment, samples x outputs, bias included
   std::vector<Direction> unidentifiable;  ///< combinations that the data (and priors) do not determine
   double condition_number = 0.0;  ///< of the information's root over the shared parameters, columns of unit length
   /// Share of each parameter's variance before the data that the data removed: 1 - (sigma/prior_sigma)^2; 1 without a
@@ -95,8 +95,8 @@ struct OutputErrorEstimate {
   double negative_log_likelihood = 0.0;  ///< without the constant N p/2 log(2 pi)
   Eigen::Index values = 0;               ///< measured values used
   int relaxations = 0;
-  int steps = 0;           ///< Levenberg-Marquardt steps, all relaxations
-  int diverged_steps = 0;  ///< of these, refused because a simulation diverged
+  int steps = 0;                 ///< Levenberg-Marquardt steps, all relaxations
+  int diverged_steps = 0;        ///< of these, refused because a simulation diverged
   std::string diverged_segment;  ///< the segment that diverged last; empty when none did
 
   [[nodiscard]] bool usable() const {

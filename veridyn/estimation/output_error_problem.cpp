@@ -66,9 +66,9 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
   for (std::size_t s = 0; s < measured.size(); ++s) {
     const RowMatrix& z = measured[s];
     if (z.rows() != model.samples(s) || z.cols() != outputs_) {
-      throw InputError(fmt::format("output_error.measured: {}", model.segment_name(s)),
-                       fmt::format("is {} x {}; must be {} samples x {} outputs", z.rows(), z.cols(), model.samples(s),
-                                   outputs_));
+      throw InputError(
+          fmt::format("output_error.measured: {}", model.segment_name(s)),
+          fmt::format("is {} x {}; must be {} samples x {} outputs", z.rows(), z.cols(), model.samples(s), outputs_));
     }
     Segment segment;
     const auto initial = model.initial_conditions(s);
@@ -177,8 +177,7 @@ bool OutputErrorProblem::linearise(std::size_t s, bool derivatives, RowMatrix& r
       row(n) = residual(k, j);
       if (!derivatives) continue;
       row.head(initial) = -response.sensitivity.row(k * outputs_ + j).head(initial);
-      row.segment(initial + biases, shared_.size()) =
-          -response.sensitivity.row(k * outputs_ + j).tail(shared_.size());
+      row.segment(initial + biases, shared_.size()) = -response.sensitivity.row(k * outputs_ + j).tail(shared_.size());
       for (Index b = 0; b < biases; ++b)
         if (biased_[static_cast<std::size_t>(b)] == j) row(initial + b) = -1.0;
     }
@@ -250,7 +249,8 @@ bool OutputErrorProblem::valid() const {
 
 void OutputErrorProblem::set_noise(const Eigen::MatrixXd& noise) {
   noise_ = noise;
-  for (Index j = 0; j < outputs_; ++j) noise_(j, j) = std::max(noise_(j, j), noise_floor_.size() > 0 ? noise_floor_(j) * noise_floor_(j) : 0.0);
+  for (Index j = 0; j < outputs_; ++j)
+    noise_(j, j) = std::max(noise_(j, j), noise_floor_.size() > 0 ? noise_floor_(j) * noise_floor_(j) : 0.0);
   if (options_.noise != OutputNoise::kFull) {
     whitener_ = noise_.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
     return;
@@ -260,8 +260,8 @@ void OutputErrorProblem::set_noise(const Eigen::MatrixXd& noise) {
   const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * noise_ * sd.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
   if (eigen.eigenvalues()(0) < 1e-10) {
-    const Eigen::MatrixXd repaired = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-10).asDiagonal() *
-                                     eigen.eigenvectors().transpose();
+    const Eigen::MatrixXd repaired =
+        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-10).asDiagonal() * eigen.eigenvectors().transpose();
     noise_ = sd.asDiagonal() * repaired * sd.asDiagonal();
   }
   const Eigen::LLT<Eigen::MatrixXd> llt(noise_);
@@ -362,8 +362,7 @@ std::vector<RowMatrix> OutputErrorProblem::whitened_residuals() const {
     for (Index i = 0; i < s.residual.size(); ++i) rows(i, 0) = s.residual.data()[i];
     whiten(s.residual, rows);
     RowMatrix white(s.residual.rows(), outputs_);
-    for (Index i = 0; i < white.size(); ++i)
-      white.data()[i] = std::isfinite(s.residual.data()[i]) ? rows(i, 0) : kNaN;
+    for (Index i = 0; i < white.size(); ++i) white.data()[i] = std::isfinite(s.residual.data()[i]) ? rows(i, 0) : kNaN;
     result.push_back(std::move(white));
   }
   return result;

@@ -133,8 +133,8 @@ Eigen::MatrixXd coloured_information(const ResidualSpectrum& spectrum, const Row
   for (Eigen::Index f = 0; f < half; ++f) {
     for (Eigen::Index j = 0; j < outputs; ++j) rows.row(j) = transformed[static_cast<std::size_t>(j)].row(f);
     const double twice = f == 0 || (f == half - 1 && L % 2 == 0) ? 1.0 : 2.0;
-    result += twice / static_cast<double>(L) *
-              (rows.adjoint() * spectrum.density[static_cast<std::size_t>(f)] * rows).real();
+    result +=
+        twice / static_cast<double>(L) * (rows.adjoint() * spectrum.density[static_cast<std::size_t>(f)] * rows).real();
   }
   return 0.5 * (result + result.transpose());
 }
