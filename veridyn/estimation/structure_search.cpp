@@ -41,6 +41,7 @@ class Search {
   StructureSearch run() {
     result_.method = options_.method;
     model_ = always_;
+    if (options_.method == StructureMethod::kOrthogonal && options_.colour_penalty) result_.penalty = colour_penalty();
     result_.history.push_back(describe(StructureAction::kStart, -1, 0.0, model_));
     result_.history.back().r2_change = result_.history.back().r2;
     if (options_.method == StructureMethod::kStepwise)
@@ -104,7 +105,7 @@ class Search {
     step.residual_sd = std::sqrt(squares / std::max(1.0, N_ - k));
     step.r2 = total_ > 0.0 ? 1.0 - squares / total_ : 0.0;
     step.press = press(columns);
-    step.pse = squares / N_ + total_ / N_ * k / N_;
+    step.pse = squares / N_ + result_.penalty * total_ / N_ * k / N_;
     return step;
   }
 
@@ -133,6 +134,21 @@ class Search {
       if (candidate < squares) squares = candidate, best = j;
     }
     return best;
+  }
+
+  /// Median over the parameters of the full model of their variance with coloured over that with white residuals.
+  [[nodiscard]] double colour_penalty() const {
+    std::vector<Index> all;
+    for (Index j = 0; j < data_.parameters(); ++j) {
+      if (static_cast<double>(all.size()) + 2.0 <= N_ && std::isfinite(rss(with(all, j)))) all.push_back(j);
+    }
+    if (all.empty()) return 1.0;
+    const RegressionEstimate full = estimate(select_columns(data_, all), Method::kOls);
+    if (!full.usable()) return 1.0;
+    std::vector<double> ratio;
+    for (const ParameterEstimate& p : full.parameters)
+      if (p.sigma_white > 0.0) ratio.push_back(p.sigma * p.sigma / (p.sigma_white * p.sigma_white));
+    return ratio.empty() ? 1.0 : std::max(1.0, numerics::median(ratio));
   }
 
   void stepwise() {

@@ -23,6 +23,10 @@ struct StructureOptions {
   double min_r2_change = 0.005;  ///< stepwise: a term that explains less of the variance does not enter
   bool stop_at_least_press =
       true;  ///< stepwise: a term that raises the sum of squared prediction errors does not enter
+  /// Orthogonal: multiply the penalty of the predicted squared error by how much the residuals' colour raises the
+  /// variance of parameters (median over the fit with all candidates). Without it a term enters for tracking coloured
+  /// noise: Morelli's penalty alone is right for white residuals.
+  bool colour_penalty = true;
   /// Orthogonal: terms of the chosen model that contribute less than this share of its RMS are dropped.
   double least_contribution = 1e-3;
   /// Columns that are always in, beside constant ones.
@@ -61,6 +65,7 @@ struct StructureStep {
 struct StructureSearch {
   StructureMethod method = StructureMethod::kStepwise;
   std::vector<StructureStep> history;
+  double penalty = 1.0;  ///< c of the predicted squared error: 1, or what the residuals' colour makes of it
   std::vector<Eigen::Index> selected;  ///< columns of the data, ascending
   RegressionEstimate estimate;         ///< OLS of the chosen terms, coloured error bars
   std::string text;                    ///< one sentence
