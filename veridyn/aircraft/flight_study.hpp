@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/delays.hpp"
 #include "veridyn/aircraft/identification.hpp"
+#include "veridyn/aircraft/other_estimators.hpp"
 #include "veridyn/aircraft/reconstruct.hpp"
 #include "veridyn/aircraft/validation.hpp"
 #include "veridyn/core/progress.hpp"
@@ -50,7 +51,8 @@ struct FlightAnalysis {
   FlightSignals signals;
   Segments segments;
   std::vector<CoefficientResult> coefficients;
-  Subject identified;  ///< the subject with the identified values
+  OtherEstimators others;  ///< output error, frequency domain, bootstrap, where asked for
+  Subject identified;      ///< the subject with the identified values
   Validation validation;
   estimation::Estimate estimate;
   bool interrupted = false;
