@@ -37,8 +37,9 @@ struct IdentifyOptions {
   /// `candidates`: terms to choose among, `[identify.candidates] CL = ["1", "alpha", ...]`; coefficients that are not
   /// named choose among `default_candidates`.
   std::array<std::vector<Term>, kCoefficients> candidates;
-  bool output_error = false;         ///< `output_error`: output-error maximum likelihood beside regression
-  bool output_error_gusts = false;   ///< `output_error_gusts`: the reconstructed gust is an input of its simulation
+  bool output_error = false;  ///< `output_error`: output-error maximum likelihood beside regression
+  /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
+  bool output_error_gusts = true;
   bool output_error_biases = false;  ///< `output_error_biases`: constant biases of the accelerometers, per segment
   double frequency_low_Hz = 0.0;     ///< `frequency_band = ["0.1 Hz", "2 Hz"]`: equation error in the frequency domain
   double frequency_high_Hz = 0.0;    ///< 0: not asked for

@@ -89,7 +89,9 @@ class OtherMethods {
       run.attempted = true;
       estimation::OutputErrorOptions o;
       o.significance = options_.significance;
-      o.max_relaxations = 15;
+      o.max_relaxations = 40;
+      // A hundredth of an error bar is nobody's concern, and a long flight is simulated for every further digit.
+      o.tolerance = 0.01;
       if (options_.output_error_biases) {
         for (const estimation::ModelOutput& output : model.outputs()) {
           // A bias of a state that the model integrates freely is what it can tell; that of its initial value is not.

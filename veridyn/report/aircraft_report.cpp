@@ -245,8 +245,8 @@ Section other_estimators_section(const FlightAnalysis& analysis) {
       "The same parameters on the same identification segments by other principles. Apart: difference to the "
       "recommended regression in units of the two standard errors together; both use the same data, so more than 3 is "
       "a "
-      "contradiction and less than 1 is common. Output error does not model turbulence as process noise: in gusty air "
-      "its error bars are wide and its longitudinal damping may be biased."});
+      "contradiction and less than 1 is common. Output error knows turbulence only as far as the reconstruction found "
+      "the gust; the frequency domain is biased by noise of the regressors as ordinary least squares is."});
   Table table{.title = "Comparison",
               .columns = {{.name = "Parameter"},
                           {.name = "Method"},
