@@ -199,6 +199,37 @@ TEST(OutputError, IsOrdinaryLeastSquaresOnAStaticModel) {
   EXPECT_NEAR(oe.degrees_of_freedom, ols.degrees_of_freedom, 1e-9);
 }
 
+TEST(OutputError, UnknownsOfASegmentAreEliminatedAsTheirColumnsWouldBe) {
+  // A bias per segment is a column of ones there: OLS with those columns, coloured error bars included.
+  std::mt19937_64 generator(14);
+  const Index N = 500, first = 180;
+  RowMatrix X = RowMatrix::Zero(N, 4);
+  for (Index j = 0; j < 2; ++j) X.col(j) = coloured_noise(generator, N, 0.95);
+  X.col(0).array() += 2.0;  // far from its mean: the bias takes much of its information
+  X.col(2).head(first).setOnes();
+  X.col(3).tail(N - first).setOnes();
+  RegressionData data;
+  data.regressors = X;
+  data.regressand = X * Eigen::Vector4d(0.3, -1.2, 0.7, -0.4) + 0.5 * coloured_noise(generator, N, 0.7);
+  data.parameter_names = {"a", "b", "bias1", "bias2"};
+  data.segment.assign(static_cast<std::size_t>(N), 0);
+  std::fill(data.segment.begin() + first, data.segment.end(), 1);
+  const RegressionEstimate ols = estimate(data, Method::kOls);
+  const RowMatrix shared = X.leftCols(2);
+  const Static model({{shared.topRows(first)}, {shared.bottomRows(N - first)}});
+  const OutputErrorEstimate oe =
+      output_error(model, {data.regressand.head(first), data.regressand.tail(N - first)}, {.output_biases = {"y0"}});
+  ASSERT_TRUE(oe.usable()) << oe.message;
+  ASSERT_GT(oe.lag_window, 0);
+  for (Index i = 0; i < 2; ++i) {
+    const ParameterEstimate& p = ols.parameters[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(oe.theta(i), ols.theta(i), 1e-5 * p.sigma);
+    EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma, p.sigma, 1e-6 * p.sigma);
+    EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma_white, p.sigma_white, 1e-6 * p.sigma);
+  }
+  EXPECT_NEAR(oe.segment_parameters[1].value, ols.theta(3), 1e-4);
+}
+
 TEST(OutputError, WithFullNoiseIsSeeminglyUnrelatedRegression) {
   // Two outputs of correlated noise and one parameter each: the maximum-likelihood estimate is the fixed point of
   // Zellner's generalised least squares, here iterated with Kronecker products.

@@ -106,8 +106,7 @@ class OtherMethods {
           if (r.chosen && r.chosen->find(p.name) != nullptr) add(r, method, p);
         }
       }
-      run.text = fmt::format("{} ({}): {}: {}", label, fmt::join(names, ", "), to_string(run.estimate.termination),
-                             run.estimate.message);
+      run.text = fmt::format("{} ({}): {}", label, fmt::join(names, ", "), run.estimate.message);
     }
     out_.notes.push_back(run.text);
     out_.output_error.push_back(std::move(run));
