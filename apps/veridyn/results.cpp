@@ -56,7 +56,7 @@ std::string structure_csv(const FlightAnalysis& analysis) {
   for (const CoefficientResult& r : analysis.coefficients) {
     if (!r.structure) continue;
     for (const estimation::StructureStep& s : r.structure->history) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", name_of(r.coefficient),
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},\"{}\"\n", name_of(r.coefficient),
                           estimation::to_string(s.action), s.term, s.terms, s.F, s.residual_sd, s.r2, s.r2_change,
                           s.press, s.pse, s.in_model ? 1 : 0, s.reason);
     }
