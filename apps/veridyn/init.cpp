@@ -95,6 +95,11 @@ file = @LOG@
 [identify]
 # method = "auto"                # "OLS", "TLS", "GTLS", "PCA-GTLS"
 # refit_significant = false      # once more with the significant parameters only
+# structure = "given"            # "stepwise", "orthogonal": choose the terms among [identify.candidates]
+# output_error = false           # beside regression: output-error maximum likelihood
+# output_error_gusts = true      # its simulation is driven by the reconstructed gust; false: the air is calm
+# frequency_band = ["0.1 Hz", "2 Hz"]   # beside regression: equation error in the frequency domain
+# bootstrap = 0                  # beside regression: replicates of a block bootstrap, such as 500
 
 [validate]
 # period = "5 s"                 # the model is started anew this often

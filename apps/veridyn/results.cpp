@@ -31,6 +31,45 @@ std::string parameters_csv(const estimation::Estimate& estimate) {
   return text;
 }
 
+/// Every method's figures for every parameter, the recommended regression first.
+std::string methods_csv(const FlightAnalysis& analysis) {
+  std::string text = "parameter,method,value,sigma,low95,high95\n";
+  const auto line = [&](std::string_view name, std::string_view method, double value, double sigma, double low,
+                        double high) {
+    text += fmt::format("{},{},{},{},{},{}\n", name, method, value, sigma, low, high);
+  };
+  for (const CoefficientResult& r : analysis.coefficients) {
+    for (const estimation::RegressionEstimate& e : r.comparison.estimates) {
+      if (!e.usable()) continue;
+      for (const auto& p : e.parameters)
+        line(p.name, estimation::to_string(e.method), p.value, p.sigma, p.low95, p.high95);
+    }
+    for (const OtherParameter& other : analysis.others.parameters) {
+      const estimation::MethodEstimate& p = other.estimate;
+      if (other.coefficient == r.coefficient) line(p.parameter, p.method, p.value, p.sigma, p.low95, p.high95);
+    }
+  }
+  return text;
+}
+
+std::string structure_csv(const FlightAnalysis& analysis) {
+  std::string text = "coefficient,action,term,terms,F,residual_sd,r2,r2_change,press,pse,in_model,reason\n";
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.structure) continue;
+    for (const estimation::StructureStep& s : r.structure->history) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},\"{}\"\n", name_of(r.coefficient),
+                          estimation::to_string(s.action), s.term, s.terms, s.F, s.residual_sd, s.r2, s.r2_change,
+                          s.press, s.pse, s.in_model ? 1 : 0, s.reason);
+    }
+  }
+  return text;
+}
+
+bool searched_structure(const FlightAnalysis& analysis) {
+  return std::any_of(analysis.coefficients.begin(), analysis.coefficients.end(),
+                     [](const CoefficientResult& r) { return r.structure.has_value(); });
+}
+
 /// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
 Recording thinned(const Recording& recording, double rate_Hz) {
   Recording result;
@@ -101,6 +140,8 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   page.get();
   flight.get();
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
+  if (!analysis.others.empty()) write_file(folder / "methods.csv", methods_csv(analysis));
+  if (searched_structure(analysis)) write_file(folder / "structure.csv", structure_csv(analysis));
   write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
   // JSBSim flies a complete model only; `veridyn export` says what is missing.
   if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
@@ -124,6 +165,10 @@ void tell_identification(const FlightAnalysis& analysis, const std::filesystem::
   tell(options, analysis.segments.lateral.text);
   for (const CoefficientResult& r : analysis.coefficients)
     tell(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.structure) tell(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));
+  }
+  for (const std::string& note : analysis.others.notes) tell(options, fmt::format("  beside       {}", note));
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     tell(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae, q.unit,
                               q.fit.r2, q.fit.theil));

@@ -101,6 +101,7 @@ std::vector<std::string> names_with(std::span<const CoefficientResult> results, 
 void summarise(const FlightStudy& study, FlightAnalysis& analysis) {
   estimation::Estimate& estimate = analysis.estimate;
   estimate = make_estimate(study.subject, analysis.coefficients);
+  for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
   std::vector<std::string> parts;
   for (const CoefficientVerdict verdict : {CoefficientVerdict::kIdentified, CoefficientVerdict::kRejected,
                                            CoefficientVerdict::kNotExcited, CoefficientVerdict::kSkipped}) {
@@ -159,6 +160,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.signals = SignalOptions::read(root.table_or_empty("signals"));
   result.segments = SegmentOptions::read(root.table_or_empty("segments"));
   result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
+  result.identify.seed = result.seed;
   result.validate = ValidationOptions::read(root.table_or_empty("validate"));
   result.track = TrackOptions::read(root.table_or_empty("track"));
   if (!(result.segments.min_airspeed_mps > 0.0))
@@ -202,6 +204,8 @@ FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
   if (analysis.interrupted) return analysis;
   analysis.coefficients =
       identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
+  analysis.others = estimate_otherwise(analysis.signals, analysis.segments, study.subject, analysis.coefficients,
+                                       study.identify, progress);
   progress.stage("validating on the hold-out");
   judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);
   return analysis;

@@ -7,6 +7,7 @@
 #include "veridyn/aircraft/coefficient_tracker.hpp"
 #include "veridyn/aircraft/delays.hpp"
 #include "veridyn/aircraft/identification.hpp"
+#include "veridyn/aircraft/other_estimators.hpp"
 #include "veridyn/aircraft/reconstruct.hpp"
 #include "veridyn/aircraft/simulation.hpp"
 #include "veridyn/aircraft/validation.hpp"
@@ -55,7 +56,8 @@ struct FlightAnalysis {
   FlightSignals signals;
   Segments segments;
   std::vector<CoefficientResult> coefficients;
-  Subject identified;  ///< the subject with the identified values
+  OtherEstimators others;  ///< output error, frequency domain, bootstrap, where asked for
+  Subject identified;      ///< the subject with the identified values
   Validation validation;
   estimation::Estimate estimate;
   bool interrupted = false;

@@ -129,6 +129,7 @@ class CoefficientIdentification {
     result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
     result.reason = identification_obstacle(structure, signals_, subject_);
     if (!result.reason.empty()) return result;
+    if (options_.structure != "given") choose_structure(result);
     estimate(result);
     if (result.chosen && options_.refit_significant) refit(result);
     judge(result);
@@ -204,6 +205,30 @@ class CoefficientIdentification {
       for (std::size_t i = 0; i < result.model.size(); ++i)
         result.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
     }
+  }
+
+  /// The terms of the model chosen among the candidates, by least squares on the identification rows.
+  void choose_structure(CoefficientResult& result) const {
+    CoefficientModel all{result.coefficient, options_.candidates[static_cast<std::size_t>(result.coefficient)], {}};
+    if (all.terms.empty()) all.terms = default_candidates(result.model);
+    // What the log does not have cannot be chosen.
+    std::erase_if(all.terms, [&](const Term& term) {
+      const CoefficientModel single{result.coefficient, {term}, {kUnknown}};
+      return !obstacle(single, signals_, subject_).empty();
+    });
+    all.values.assign(all.terms.size(), kUnknown);
+    const RegressionData data = coefficient_data(all, signals_, segments_.of(result.axis).identification, subject_);
+    if (all.terms.empty() || data.rows() < static_cast<Eigen::Index>(10 * all.size())) return;
+    estimation::StructureOptions search;
+    search.method = options_.structure == "stepwise" ? estimation::StructureMethod::kStepwise
+                                                     : estimation::StructureMethod::kOrthogonal;
+    search.significance = options_.significance;
+    result.structure = estimation::search_structure(data, search);
+    if (result.structure->selected.empty()) return;
+    result.model.terms.clear();
+    for (const Eigen::Index j : result.structure->selected)
+      result.model.terms.push_back(all.terms[static_cast<std::size_t>(j)]);
+    result.model.values.assign(result.model.terms.size(), kUnknown);
   }
 
   /// Once more with the significant parameters only, the constant always kept.
@@ -391,6 +416,35 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   options.min_holdout_r2 = table.number_or("min_holdout_r2", "1", options.min_holdout_r2);
   options.max_unmodelled = table.number_or("max_unmodelled", "1", options.max_unmodelled);
   options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
+  const std::vector<std::string> structures{"given", "stepwise", "orthogonal"};
+  options.structure = table.choice_or("structure", structures, options.structure);
+  const StudyTable candidates = table.table_or_empty("candidates");
+  for (std::size_t i = 0; i < kCoefficients; ++i) {
+    if (!candidates.has(kCoefficientNames[i])) continue;
+    for (const std::string& text : candidates.texts(kCoefficientNames[i])) {
+      Term term = parse_term(text, candidates.place(kCoefficientNames[i]));
+      auto& terms = options.candidates[i];
+      if (std::find(terms.begin(), terms.end(), term) != terms.end())
+        candidates.fail(kCoefficientNames[i], fmt::format("names the term '{}' twice", text));
+      terms.push_back(std::move(term));
+    }
+  }
+  if (table.has("candidates") && options.structure == "given")
+    table.fail("candidates", "needs structure = \"stepwise\" or \"orthogonal\"");
+  options.output_error = table.flag_or("output_error", options.output_error);
+  options.output_error_gusts = table.flag_or("output_error_gusts", options.output_error_gusts);
+  options.output_error_biases = table.flag_or("output_error_biases", options.output_error_biases);
+  if (table.has("frequency_band")) {
+    const std::vector<double> band = table.numbers("frequency_band", "Hz");
+    if (band.size() != 2 || !(band[0] > 0.0) || !(band[1] > band[0]))
+      table.fail("frequency_band", "must be two frequencies, 0 < low < high, such as [\"0.1 Hz\", \"2 Hz\"]");
+    options.frequency_low_Hz = band[0];
+    options.frequency_high_Hz = band[1];
+  }
+  const long long replicates = table.integer_or("bootstrap", 0);
+  if (replicates != 0 && (replicates < 50 || replicates > 1000000))
+    table.fail("bootstrap", fmt::format("= {} must be 0 (none) or from 50 to 1000000 replicates", replicates));
+  options.bootstrap = static_cast<std::size_t>(replicates);
   return options;
 }
 
@@ -411,18 +465,35 @@ Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const Flight
   return W;
 }
 
+std::vector<Term> default_candidates(const CoefficientModel& model) {
+  std::vector<Term> terms = model.terms;
+  std::vector<const char*> usual{"1",          "beta",      "p_n",       "r_n",      "da",       "dr",
+                                 "alpha*beta", "alpha*p_n", "alpha*r_n", "alpha*da", "alpha*dr", "beta^3"};
+  if (axis_of(model.coefficient) == Axis::kLongitudinal)
+    usual = {"1", "alpha", "q_n", "de", "alpha^2", "alpha*q_n", "alpha*de", "de^2"};
+  for (const char* text : usual) {
+    Term term = parse_term(text, "candidates");
+    if (std::find(terms.begin(), terms.end(), term) == terms.end()) terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
 RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
                                 std::span<const TimeSpan> spans, const Subject& subject) {
   const std::vector<FlightSignal> needed = needed_signals(model);
   const auto n = static_cast<Eigen::Index>(model.size());
   std::vector<std::size_t> rows;
   std::vector<int> segment;
-  for (std::size_t s = 0; s < spans.size(); ++s) {
-    const auto [begin, end] = signals.indices(spans[s]);
+  int id = 0;
+  for (const TimeSpan& span : spans) {
+    const auto [begin, end] = signals.indices(span);
+    ++id;
     for (std::size_t k = begin; k < end; k += signals.stride) {
       if (!complete(signals.sample(k), needed)) continue;
+      // No lag and no transform is formed across a hole.
+      if (!rows.empty() && segment.back() == id && rows.back() + signals.stride != k) ++id;
       rows.push_back(k);
-      segment.push_back(static_cast<int>(s));
+      segment.push_back(id);
     }
   }
   RegressionData data;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/regression.hpp"
+#include "veridyn/estimation/structure_search.hpp"
 
 namespace veridyn::aircraft {
 
@@ -29,6 +32,19 @@ struct IdentifyOptions {
   double max_unmodelled = 0.1;
   /// `contradiction_level`: identification and hold-out data, estimated apart, must agree at this level (chi-square).
   double contradiction_level = 1e-3;
+  /// `structure`: "given" takes the subject's terms; "stepwise" or "orthogonal" chooses among the candidates first.
+  std::string structure = "given";
+  /// `candidates`: terms to choose among, `[identify.candidates] CL = ["1", "alpha", ...]`; coefficients that are not
+  /// named choose among `default_candidates`.
+  std::array<std::vector<Term>, kCoefficients> candidates;
+  bool output_error = false;  ///< `output_error`: output-error maximum likelihood beside regression
+  /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
+  bool output_error_gusts = true;
+  bool output_error_biases = false;  ///< `output_error_biases`: constant biases of the accelerometers, per segment
+  double frequency_low_Hz = 0.0;     ///< `frequency_band = ["0.1 Hz", "2 Hz"]`: equation error in the frequency domain
+  double frequency_high_Hz = 0.0;    ///< 0: not asked for
+  std::size_t bootstrap = 0;         ///< `bootstrap`: replicates of a block bootstrap of the chosen regression; 0: none
+  std::uint64_t seed = 1;            ///< of the bootstrap; the study's
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
@@ -53,6 +69,7 @@ struct CoefficientResult {
   estimation::RegressionData data;              ///< identification rows, for further analysis
   estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
   std::optional<estimation::RegressionEstimate> chosen;
+  std::optional<estimation::StructureSearch> structure;  ///< how its terms were chosen, where they were
   double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
   /// Share of the coefficient's variance that is neither modelled nor explained by twice the sensors' noise:
   /// (1 - R^2) (1 - 4 / error_ratio).
@@ -72,6 +89,11 @@ struct CoefficientResult {
                                                                    const Segments& segments, const Subject& subject,
                                                                    const IdentifyOptions& options, Progress& progress);
 
+/// Terms that a structure search chooses among unless told otherwise: those of `model`, the coefficient's usual linear
+/// ones, and second-order ones: alpha^2, alpha q_n, alpha de, de^2 (longitudinal), alpha beta,
+/// alpha p_n, alpha r_n, alpha da, alpha dr, beta^3 (lateral).
+[[nodiscard]] std::vector<Term> default_candidates(const CoefficientModel& model);
+
 /// The axis on which a coefficient is identified: CL, CD, Cm longitudinal, the others lateral.
 [[nodiscard]] Axis axis_of(Coefficient coefficient);
 
@@ -85,7 +107,7 @@ struct CoefficientResult {
                                                    std::size_t k, const Subject& subject);
 
 /// Regression rows of a coefficient in the given spans: stride-thinned, rows that miss a signal left out, one segment
-/// id a span, W from the signals' noise.
+/// id a gapless stretch of a span, W from the signals' noise.
 [[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
                                                           std::span<const TimeSpan> spans, const Subject& subject);
 

@@ -22,6 +22,18 @@ struct EstimatedParameter {
   ParameterStatus status = ParameterStatus::kRejected;
 };
 
+/// The same parameter by another method, for comparison.
+struct MethodEstimate {
+  std::string parameter;
+  std::string method;  ///< "output error", "frequency domain", "bootstrap of GTLS"
+  double value = 0.0;
+  double sigma = 0.0;
+  double low95 = 0.0;
+  double high95 = 0.0;
+  std::string unit = "1";
+  ParameterStatus status = ParameterStatus::kRejected;
+};
+
 /// How well a quantity was predicted on data that identification did not see.
 struct ValidationMeasure {
   double mae = 0.0;
@@ -36,7 +48,8 @@ struct Estimate {
   std::string subject;
   std::string method;
   std::vector<EstimatedParameter> parameters;
-  Eigen::MatrixXd covariance;  ///< in parameter order; zero between separately estimated groups
+  Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
+  std::vector<MethodEstimate> other_methods;  ///< beside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
   std::map<std::string, ValidationMeasure> validation;
   std::string verdict;

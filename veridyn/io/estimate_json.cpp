@@ -64,6 +64,19 @@ std::string to_json(const Estimate& estimate) {
                                   {"unit", p.unit},
                                   {"status", std::string(estimation::to_string(p.status))}});
   }
+  if (!estimate.other_methods.empty()) {
+    root["other_methods"] = ordered_json::array();
+    for (const estimation::MethodEstimate& p : estimate.other_methods) {
+      root["other_methods"].push_back({{"name", p.parameter},
+                                       {"method", p.method},
+                                       {"value", number(p.value)},
+                                       {"sigma", number(p.sigma)},
+                                       {"low95", number(p.low95)},
+                                       {"high95", number(p.high95)},
+                                       {"unit", p.unit},
+                                       {"status", std::string(estimation::to_string(p.status))}});
+    }
+  }
   root["covariance"] = ordered_json::array();
   for (Eigen::Index i = 0; i < estimate.covariance.rows(); ++i) {
     ordered_json row = ordered_json::array();

@@ -236,6 +236,98 @@ std::string unexcited_text(const RegressionEstimate& e) {
   return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, "; "));
 }
 
+/// Estimators beside regression; no blocks when none was asked for.
+Section other_estimators_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Other estimators", .id = "other-estimators"};
+  const OtherEstimators& others = analysis.others;
+  if (others.empty()) return section;
+  section.blocks.emplace_back(Paragraph{
+      "The same parameters on the same identification segments by other principles. Apart: difference to the "
+      "recommended regression in units of the two standard errors together; both use the same data, so more than 3 is "
+      "a "
+      "contradiction and less than 1 is common. Output error knows turbulence only as far as the reconstruction found "
+      "the gust; the frequency domain is biased by noise of the regressors as ordinary least squares is."});
+  Table table{.title = "Comparison",
+              .columns = {{.name = "Parameter"},
+                          {.name = "Method"},
+                          {.name = "Status"},
+                          {.name = "Value"},
+                          {.name = "Sigma"},
+                          {.name = "95 % low", .group = "interval"},
+                          {.name = "95 % high", .group = "interval"},
+                          {.name = "Unit"},
+                          {.name = "Apart", .unit = "sigma", .digits = 2}}};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.chosen) continue;
+    for (const auto& p : r.chosen->parameters) {
+      table.rows.push_back(
+          {.cells = {text_cell(p.name), text_cell(std::string(estimation::to_string(r.chosen->method))),
+                     status_cell(status_of(p.status)), measured_cell(p.value, p.sigma), measured_cell(p.sigma, p.sigma),
+                     measured_cell(p.low95, p.sigma), measured_cell(p.high95, p.sigma), text_cell(p.unit),
+                     number_cell(kNaN)}});
+      for (const OtherParameter& other : others.parameters) {
+        const estimation::MethodEstimate& e = other.estimate;
+        if (e.parameter != p.name) continue;
+        const bool contradicts = std::abs(other.apart_sigma) > 3.0;
+        table.rows.push_back({.cells = {text_cell(""), text_cell(e.method), status_cell(status_of(e.status)),
+                                        measured_cell(e.value, e.sigma), measured_cell(e.sigma, e.sigma),
+                                        measured_cell(e.low95, e.sigma), measured_cell(e.high95, e.sigma),
+                                        text_cell(e.unit), number_cell(other.apart_sigma)},
+                              .status = contradicts ? Status::kCaution : Status::kNone});
+      }
+    }
+  }
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  for (const AxisOutputError& run : others.output_error) {
+    if (!run.attempted || !run.estimate.usable()) continue;
+    Table outputs{.title = fmt::format("Output error, {}: outputs", to_string(run.axis)),
+                  .caption =
+                      "Noise: estimated standard deviation of the residual. Lag 1: its autocorrelation at one "
+                      "sample, 0 when white; the error bars are corrected for it.",
+                  .columns = {{.name = "Output"},
+                              {.name = "Noise", .digits = 3},
+                              {.name = "Unit"},
+                              {.name = "R2", .digits = 3},
+                              {.name = "Theil", .digits = 3},
+                              {.name = "Lag 1", .digits = 3}}};
+    for (const estimation::OutputFit& o : run.estimate.outputs) {
+      outputs.rows.push_back({.cells = {text_cell(o.name), number_cell(o.noise_sd), text_cell(o.unit),
+                                        number_cell(o.fit.r2), number_cell(o.fit.theil), number_cell(o.lag1)}});
+    }
+    section.blocks.emplace_back(std::move(outputs));
+  }
+  section.blocks.emplace_back(List{.items = others.notes});
+  return section;
+}
+
+/// How the terms were chosen; no blocks when the subject's were taken.
+Section structure_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Choice of terms", .id = "structure"};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.structure) continue;
+    Table table{.title = fmt::format("{}: history", name_of(r.coefficient)),
+                .caption = r.structure->text,
+                .columns = {{.name = "Action"},
+                            {.name = "Term"},
+                            {.name = "Terms"},
+                            {.name = "F", .digits = 3},
+                            {.name = "R2", .unit = "%", .digits = 4},
+                            {.name = "Change", .unit = "%", .digits = 3},
+                            {.name = "PRESS", .digits = 4},
+                            {.name = "PSE", .digits = 4},
+                            {.name = "Why not"}}};
+    for (const estimation::StructureStep& s : r.structure->history) {
+      table.rows.push_back(
+          {.cells = {text_cell(std::string(estimation::to_string(s.action))), text_cell(s.term),
+                     number_cell(static_cast<double>(s.terms), 0), number_cell(s.term.empty() ? kNaN : s.F),
+                     number_cell(100.0 * s.r2), number_cell(100.0 * s.r2_change), number_cell(s.press),
+                     number_cell(s.pse), text_cell(s.reason)}});
+    }
+    section.blocks.emplace_back(std::move(table));
+  }
+  return section;
+}
+
 Section excitation_section(const FlightAnalysis& analysis) {
   Section section{.title = "Excitation", .id = "excitation"};
   section.blocks.emplace_back(List{.items = {analysis.segments.longitudinal.text, analysis.segments.lateral.text}});
@@ -468,6 +560,8 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   document.generator = fmt::format("Made with {}", context.program);
   document.sections.push_back(coefficients_section(analysis));
   if (context.verb != "validate") document.sections.push_back(parameters_section(study, analysis));
+  for (Section section : {other_estimators_section(analysis), structure_section(analysis)})
+    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   document.sections.push_back(validation_section(analysis));
   document.sections.push_back(flight_section(study, analysis));
   document.sections.push_back(coefficient_series_section(analysis));
