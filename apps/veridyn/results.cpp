@@ -100,6 +100,8 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   page.get();
   flight.get();
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
+  if (analysis.uncertainty.available())
+    write_file(folder / "coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
   write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
   write_file(folder / "estimate.json", io::to_json(analysis.estimate));
   write_run_record(folder, run, options);

@@ -160,6 +160,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.segments = SegmentOptions::read(root.table_or_empty("segments"));
   result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
   result.validate = ValidationOptions::read(root.table_or_empty("validate"));
+  result.uncertainty = UncertaintyOptions::read(root.table_or_empty("uncertainty"));
   if (!(result.segments.min_airspeed_mps > 0.0))
     result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
 
@@ -200,6 +201,12 @@ FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
   if (analysis.interrupted) return analysis;
   analysis.coefficients =
       identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
+  progress.stage("uncertainty of the measured coefficients");
+  if (study.uncertainty.enabled) {
+    analysis.uncertainty = coefficient_uncertainty(
+        coefficient_inputs(analysis.signals, analysis.segments, study.subject, study.uncertainty), study.subject,
+        study.uncertainty, study.seed);
+  }
   progress.stage("validating on the hold-out");
   judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);
   return analysis;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/delays.hpp"
 #include "veridyn/aircraft/identification.hpp"
 #include "veridyn/aircraft/reconstruct.hpp"
@@ -23,6 +24,7 @@ namespace veridyn::aircraft {
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions
 ///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
 ///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
+///     [uncertainty]  see UncertaintyOptions
 struct FlightStudy {
   std::string name;
   std::uint64_t seed = 0;
@@ -36,6 +38,7 @@ struct FlightStudy {
   SegmentOptions segments;
   IdentifyOptions identify;
   ValidationOptions validate;
+  UncertaintyOptions uncertainty;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
 };
 
@@ -50,7 +53,8 @@ struct FlightAnalysis {
   FlightSignals signals;
   Segments segments;
   std::vector<CoefficientResult> coefficients;
-  Subject identified;  ///< the subject with the identified values
+  UncertaintyReport uncertainty;  ///< of the measured coefficients
+  Subject identified;             ///< the subject with the identified values
   Validation validation;
   estimation::Estimate estimate;
   bool interrupted = false;

@@ -419,6 +419,37 @@ Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis
   return section;
 }
 
+Section uncertainty_section(const UncertaintyReport& report) {
+  Section section{.title = "Uncertainty of the measured coefficients", .id = "uncertainty"};
+  Table table{
+      .title = "Error of one measured coefficient",
+      .caption =
+          "Propagation of distributions (JCGM 101): 95 % of the errors lie between low and high; sigma is the larger "
+          "end over 1.96. Beside it the linear law of propagation, apart for what differs from sample to sample "
+          "(sensors) and what all samples share (mass, geometry, inertia: subject.sigma). Range: standard deviation of "
+          "the coefficient itself over the operating range.",
+      .columns = {{.name = "Coefficient"},
+                  {.name = "sigma", .group = "Monte Carlo"},
+                  {.name = "95 % low", .group = "Monte Carlo"},
+                  {.name = "95 % high", .group = "Monte Carlo"},
+                  {.name = "mean", .digits = 2, .group = "Monte Carlo"},
+                  {.name = "sigma", .group = "linear"},
+                  {.name = "of sensors", .group = "linear"},
+                  {.name = "of the aircraft's constants", .group = "linear"},
+                  {.name = "Range", .digits = 3}}};
+  for (const CoefficientUncertainty& c : report.coefficients) {
+    const double sigma = c.error.sigma;
+    table.rows.push_back(
+        {.cells = {text_cell(std::string(name_of(c.coefficient))), measured_cell(sigma, sigma),
+                   measured_cell(c.error.low, sigma), measured_cell(c.error.high, sigma), number_cell(c.error.mean),
+                   measured_cell(c.sigma_linear, sigma), measured_cell(c.sigma_sensors, sigma),
+                   measured_cell(c.sigma_body, sigma), number_cell(c.range)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  section.blocks.emplace_back(Paragraph{report.text + "."});
+  return section;
+}
+
 void add_warnings(Document& document, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
   Section section{.title = "Warnings", .id = "warnings"};
@@ -475,6 +506,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
     document.sections.push_back(excitation_section(analysis));
     document.sections.push_back(residual_section(analysis));
   }
+  if (analysis.uncertainty.available()) document.sections.push_back(uncertainty_section(analysis.uncertainty));
   document.sections.push_back(sensors_section(study, analysis));
   add_warnings(document, analysis.estimate.warnings);
   if (Section rejected = rejected_section(study, analysis); !rejected.blocks.empty())
