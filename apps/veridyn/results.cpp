@@ -60,9 +60,10 @@ Recording coefficient_recording(const FlightAnalysis& analysis) {
   for (const CoefficientResult& r : analysis.coefficients) {
     if (r.time.empty()) continue;
     const TimeBase time = make_time_base(r.time);
-    recording.add(make_channel(std::string(name_of(r.coefficient)), "1", time, r.measured));
+    const char* unit = r.per_unit_inertia ? "1/kg/m^2" : "1";
+    recording.add(make_channel(r.name, unit, time, r.measured));
     if (r.verdict == CoefficientVerdict::kIdentified) {
-      recording.add(make_channel(fmt::format("{}_model", name_of(r.coefficient)), "1", time, r.modelled));
+      recording.add(make_channel(fmt::format("{}_model", r.name), unit, time, r.modelled));
     }
   }
   return recording;
@@ -135,8 +136,7 @@ nlohmann::ordered_json summary_of(const FlightAnalysis& analysis, const std::fil
   summary["folder"] = folder.string();
   summary["coefficients"] = nlohmann::ordered_json::object();
   for (const CoefficientResult& r : analysis.coefficients) {
-    summary["coefficients"][std::string(name_of(r.coefficient))] = {{"verdict", to_string(r.verdict)},
-                                                                    {"reason", r.reason}};
+    summary["coefficients"][r.name] = {{"verdict", to_string(r.verdict)}, {"reason", r.reason}};
   }
   summary["parameters"] = analysis.estimate.parameters.size();
   summary["warnings"] = analysis.estimate.warnings;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/body_error.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 
 namespace veridyn::aircraft {
@@ -34,12 +35,6 @@ Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& x, const Subject& subject) {
   for (std::size_t i = 0; i < kCoefficients; ++i)
     J.row(static_cast<Eigen::Index>(i)) = select(c, static_cast<Coefficient>(i)).v.transpose();
   return J;
-}
-
-std::array<double, kBodyConstants> body_sigma(const Subject& subject) {
-  const BodySigma& s = subject.sigma;
-  const bool J = subject.inertia.has_value();
-  return {s.mass, s.wing_area, s.span, s.chord, J ? s.Jx : 0.0, J ? s.Jy : 0.0, J ? s.Jz : 0.0, J ? s.Jxz : 0.0};
 }
 
 std::vector<std::size_t> airborne_samples(const FlightSignals& signals, const Segments& segments) {

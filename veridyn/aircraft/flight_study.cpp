@@ -93,7 +93,7 @@ void find_flight(FlightStudy& study, FlightAnalysis& analysis) {
 std::vector<std::string> names_with(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
   std::vector<std::string> names;
   for (const CoefficientResult& result : results) {
-    if (result.verdict == verdict) names.emplace_back(name_of(result.coefficient));
+    if (result.verdict == verdict) names.push_back(result.name);
   }
   return names;
 }
@@ -119,6 +119,11 @@ void summarise(const FlightStudy& study, FlightAnalysis& analysis) {
   warn(study.mapped.notes);
   warn(analysis.reconstruction.warnings);
   warn(analysis.signals.notes);
+  if (!study.subject.inertia) {
+    estimate.warnings.emplace_back(
+        "without subject.inertia the moments are identified per unit inertia (Cl/Jx, Cm/Jy, Cn/Jz), with the inertial "
+        "coupling of a flat body (Jz = Jx + Jy, Jx = Jy, Jxz = 0) and the moments of the thrust left in");
+  }
   for (const CoefficientResult& result : analysis.coefficients) {
     if (result.verdict != CoefficientVerdict::kIdentified) estimate.warnings.push_back(result.reason);
   }

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "veridyn/aircraft/aero_model.hpp"
@@ -151,6 +152,23 @@ template <typename Scalar>
   c.Cn = s[F::kRdot] / (qS * Scalar(subject.span));
   return c;
 }
+
+/// What is regressed on: the measured coefficients, with moments per unit inertia where the subject has none.
+template <typename Scalar>
+[[nodiscard]] AeroCoefficients<Scalar> regressed_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
+                                                              double rho, const Scalar& torque = Scalar(0.0)) {
+  return subject.inertia ? measured_coefficients(s, subject, rho, torque)
+                         : coefficients_per_unit_inertia(s, subject, rho);
+}
+
+/// True of a moment of a subject without inertia.
+[[nodiscard]] bool per_unit_inertia(Coefficient coefficient, const Subject& subject);
+/// "Cl", or "Cl/Jx" per unit inertia.
+[[nodiscard]] std::string regressed_name(Coefficient coefficient, const Subject& subject);
+/// "Cl_beta", or "Cl/Jx_beta".
+[[nodiscard]] std::string regressed_parameter_name(Coefficient coefficient, const Term& term, const Subject& subject);
+/// "1/rad", or "1/rad/kg/m^2".
+[[nodiscard]] std::string regressed_parameter_unit(Coefficient coefficient, const Term& term, const Subject& subject);
 
 /// One of the six by its name.
 template <typename Scalar>
