@@ -21,15 +21,6 @@ using namespace veridyn::aircraft;
 
 const report::AircraftReportContext kIdentifyContext{.program = "veridyn " VERIDYN_VERSION};
 
-std::string parameters_csv(const estimation::Estimate& estimate) {
-  std::string text = "name,value,sigma,low95,high95,unit,status\n";
-  for (const auto& p : estimate.parameters) {
-    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
-                        estimation::to_string(p.status));
-  }
-  return text;
-}
-
 /// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
 Recording thinned(const Recording& recording, double rate_Hz) {
   Recording result;
@@ -82,6 +73,15 @@ Recording validation_recording(const Validation& validation) {
 }
 
 }  // namespace
+
+std::string parameters_csv(const estimation::Estimate& estimate) {
+  std::string text = "name,value,sigma,low95,high95,unit,status\n";
+  for (const auto& p : estimate.parameters) {
+    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
+                        estimation::to_string(p.status));
+  }
+  return text;
+}
 
 void write_identification(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
                           const RunRecord& run, const CommonOptions& options) {
