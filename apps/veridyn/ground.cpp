@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/veridyn/results.hpp"
+#include "veridyn/aircraft/air_data_calibration.hpp"
 #include "veridyn/aircraft/swing_test.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
@@ -80,13 +81,37 @@ GroundResult swing_test(const Study& study, Progress& progress) {
   return result;
 }
 
+GroundResult calibration(const Study& study, Progress& progress) {
+  const aircraft::CalibrationStudy points = aircraft::CalibrationStudy::read(study.root().table("calibration"));
+  GroundResult result;
+  result.seed = seed_of(study);
+  study.root().finish();
+  progress.stage("fitting the calibration");
+  const aircraft::CalibrationResult analysis = aircraft::calibrate(points);
+  result.estimate = analysis.estimate;
+  result.document = report::calibration_report(points, analysis, kProgram);
+  std::vector<aircraft::SensorCalibration> sensors;
+  for (const aircraft::SensorFit& fit : analysis.sensors) {
+    if (fit.usable) sensors.push_back(fit.calibration);
+    const auto& c = fit.calibration;
+    result.lines.push_back(fmt::format("  {:<17} raw = {:.4g} + {:.5g} true, residual rms {:.3g} {}, worst {:.3g}",
+                                       c.channel, c.bias, c.scale, fit.rms, fit.unit, fit.worst));
+  }
+  if (!sensors.empty())
+    result.files.emplace_back("calibration.toml", aircraft::calibration_toml(sensors, points.file.filename().string()));
+  result.files.emplace_back("residuals.csv", aircraft::residuals_csv(analysis));
+  result.inputs = {points.file};
+  return result;
+}
+
 }  // namespace
 
-bool is_ground_study(const Study& study) { return study.root().has("swing_test"); }
+bool is_ground_study(const Study& study) { return study.root().has("swing_test") || study.root().has("calibration"); }
 
 int identify_ground(const Study& study, const std::string& path, const CommonOptions& options) {
   TerminalProgress progress(options.quiet);
-  write(swing_test(study, progress), study, path, options);
+  write(study.root().has("swing_test") ? swing_test(study, progress) : calibration(study, progress), study, path,
+        options);
   return kDone;
 }
 

@@ -52,4 +52,38 @@ files = ["aircraft_z_1.csv", "aircraft_z_2.csv"]
 cradle_files = ["cradle_z_1.csv", "cradle_z_2.csv"]
 )toml";
 
+/// What `veridyn init calibration` writes.
+inline constexpr const char* kCalibrationStudy =
+    R"toml(# Calibration of air-data sensors from wind-tunnel points: scale, bias and their covariance.
+#   veridyn identify study.toml         report.html, residuals.csv, and calibration.toml, which a flight's study applies:
+#                                       [data] calibration = "calibration.toml"
+# The table is CSV with a header name[unit], a row a point, in the order in which they were taken: go up and come down
+# again, so that hysteresis shows. Keys with a leading # show what else there is.
+
+[calibration]
+name = "my air-data boom"
+file = "tunnel.csv"
+
+[calibration.dynamic_pressure]
+raw = "dp_raw"                   # column of the sensor's reading
+reference_speed = "V_ref"        # the tunnel's speed, with the density from
+static_pressure = "p"            #   columns of static pressure and temperature,
+air_temperature = "T"
+# air_density = 1.2              #   or a number; or give the dynamic pressure itself: reference = "q_ref"
+# sigma_reference = "0.5 Pa"     # standard errors per point; both given: total least squares
+# sigma_raw = "2 Pa"
+
+[calibration.alpha]              # the scale of a vane is its upwash slope
+raw = "alpha_raw"
+reference = "alpha_ref"
+
+[calibration.beta]
+raw = "beta_raw"
+reference = "beta_ref"
+
+# [calibration.static_pressure]  # likewise air_temperature, airspeed
+# raw = "p_raw"
+# reference = "p"
+)toml";
+
 }  // namespace veridyn::app

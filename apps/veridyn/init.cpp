@@ -66,6 +66,7 @@ upper = "20 deg"
 [data]
 file = @LOG@
 # files = ["IMU.csv", "GPS.csv"] # the tables of one flight instead
+# calibration = "calibration.toml"   # of pitot tube and vanes; `veridyn init calibration` makes one
 # from = 120                     # s, only this part of the log
 # to = 600
 
@@ -157,6 +158,7 @@ void add_init(CLI::App& program, int& exit_code) {
     });
   };
   add_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy);
+  add_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy);
   CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");
   verb->require_subcommand(1);
   aircraft->add_option("--log", options->log, "the log that the study is about")

@@ -81,7 +81,8 @@ UncertaintyOptions UncertaintyOptions::read(const StudyTable& table) {
 }
 
 estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, const Segments& segments,
-                                               const Subject& subject, const UncertaintyOptions& options) {
+                                               const Subject& subject, const UncertaintyOptions& options,
+                                               const CalibrationSigma& calibration) {
   const auto n = static_cast<Eigen::Index>(kCoefficientInputs);
   const auto measured = static_cast<Eigen::Index>(kFlightSignals + 1);
   estimation::UncertainInputs inputs;
@@ -125,6 +126,19 @@ estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, con
     inputs.names.emplace_back(kBodyConstantNames[j]);
     inputs.low(at) = inputs.high(at) = body.value[j];
     sigma(at) = known[j];
+  }
+  const auto airspeed = static_cast<Eigen::Index>(FlightSignal::kAirspeed);
+  const double Va = 0.5 * (inputs.low(airspeed) + inputs.high(airspeed));
+  const double rho = 0.5 * (inputs.low(measured - 1) + inputs.high(measured - 1));
+  for (const auto& [channel, left] : calibration) {
+    const auto add = [&](FlightSignal which, double s) {
+      const auto at = static_cast<Eigen::Index>(which);
+      sigma(at) = std::hypot(sigma(at), s);
+    };
+    if (channel == "alpha") add(FlightSignal::kAlpha, left);
+    if (channel == "beta") add(FlightSignal::kBeta, left);
+    if (channel == "airspeed") add(FlightSignal::kAirspeed, left);
+    if (channel == "dynamic_pressure" && Va > 0.0) add(FlightSignal::kAirspeed, left / (rho * Va));
   }
   inputs.error_covariance = sigma.cwiseAbs2().asDiagonal();
   return inputs;

@@ -53,10 +53,15 @@ struct UncertaintyReport {
   [[nodiscard]] bool available() const { return !coefficients.empty(); }
 };
 
+/// Standard deviation that a calibration leaves, by channel (alpha, beta, airspeed, dynamic_pressure).
+using CalibrationSigma = std::vector<std::pair<std::string, double>>;
+
 /// Ranges and rank correlation of the signals while airborne: uniform between the 0.5 and 99.5 % quantiles of each
-/// signal. Signals that the log has not are constant 0 without error.
+/// signal. Signals that the log has not are constant 0 without error. What a calibration leaves adds to the error of
+/// alpha, beta and airspeed.
 [[nodiscard]] estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, const Segments& segments,
-                                                             const Subject& subject, const UncertaintyOptions& options);
+                                                             const Subject& subject, const UncertaintyOptions& options,
+                                                             const CalibrationSigma& calibration = {});
 
 /// Errors of the coefficients that the subject allows for, by Monte Carlo and linearly.
 [[nodiscard]] UncertaintyReport coefficient_uncertainty(const estimation::UncertainInputs& inputs,

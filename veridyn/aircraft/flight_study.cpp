@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/air_data_calibration.hpp"
 #include "veridyn/aircraft/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/study_data.hpp"
@@ -191,6 +192,11 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
     result.inputs = data.files(data.has("file") ? "file" : "files");
   }
   result.mapped = map_channels(log, map, throws_of(result.subject, subject));
+  if (data.has("calibration")) {
+    const std::filesystem::path file = data.file("calibration");
+    apply_calibration(read_calibration(file), result.mapped);
+    result.inputs.push_back(file);
+  }
   root.finish();
   return result;
 }
@@ -208,9 +214,10 @@ FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
       identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
   progress.stage("uncertainty of the measured coefficients");
   if (study.uncertainty.enabled) {
-    analysis.uncertainty = coefficient_uncertainty(
-        coefficient_inputs(analysis.signals, analysis.segments, study.subject, study.uncertainty), study.subject,
-        study.uncertainty, study.seed);
+    analysis.uncertainty =
+        coefficient_uncertainty(coefficient_inputs(analysis.signals, analysis.segments, study.subject,
+                                                   study.uncertainty, study.mapped.calibration_sigma),
+                                study.subject, study.uncertainty, study.seed);
   }
   progress.stage("validating on the hold-out");
   judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);

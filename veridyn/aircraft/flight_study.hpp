@@ -18,7 +18,8 @@ namespace veridyn::aircraft {
 ///
 ///     seed = 1
 ///     [subject]      see read_subject
-///     [data]         see io::read_study_data; `[data.map]` see map_channels. Without it the study must have a
+///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: io::read_study_data;
+///     `[data.map]` see map_channels. Without it the study must have a
 ///     `[flight]`,
 ///                    which is then simulated
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions

@@ -141,4 +141,89 @@ Document swing_test_report(const SwingTest& test, const SwingTestResult& result,
   return document;
 }
 
+Document calibration_report(const CalibrationStudy& study, const CalibrationResult& result,
+                            const std::string& program) {
+  Document document;
+  document.title = fmt::format("{}: calibration of air-data sensors", study.name);
+  document.subtitle = "From wind-tunnel points";
+  document.generator = fmt::format("Made with {}", program);
+  const bool failed =
+      std::any_of(result.sensors.begin(), result.sensors.end(), [](const auto& f) { return !f.usable; });
+  const bool clean = result.estimate.warnings.empty();
+  document.verdict.level = failed ? Level::kBad : clean ? Level::kGood : Level::kCaution;
+  document.verdict.word = failed ? "Failed" : clean ? "Calibrated" : "With reservations";
+  document.verdict.headline = result.estimate.verdict + ".";
+  document.verdict.lines = result.estimate.warnings;
+  document.facts = {{"Points", study.file.filename().string()}};
+  Section results{.title = "Calibration", .id = "calibration"};
+  Table table{.title = "Scale and bias",
+              .caption =
+                  "raw = bias + scale true. rms, worst: of corrected readings against the reference. Hysteresis: mean "
+                  "residual of rising less falling points. Bend: what a quadratic term amounts to at the ends; p: that "
+                  "it is nothing.",
+              .columns = {{.name = "Channel"},
+                          {.name = "Method"},
+                          {.name = "Points"},
+                          {.name = "value", .group = "scale"},
+                          {.name = "sigma", .group = "scale"},
+                          {.name = "value", .group = "bias"},
+                          {.name = "sigma", .group = "bias"},
+                          {.name = "rms", .digits = 3, .group = "residual"},
+                          {.name = "worst", .digits = 3, .group = "residual"},
+                          {.name = "white p", .digits = 2, .group = "residual"},
+                          {.name = "Hysteresis", .digits = 2},
+                          {.name = "Bend", .digits = 2},
+                          {.name = "Bend p", .digits = 2},
+                          {.name = "Unit"}}};
+  Section figures{.title = "Points", .id = "points"};
+  for (const SensorFit& fit : result.sensors) {
+    const SensorCalibration& c = fit.calibration;
+    const bool angle = fit.unit == "rad";
+    const double unit = angle ? 1.0 / kDegree : 1.0;
+    const std::string name = angle ? "deg" : fit.unit;
+    const double sigma_scale = std::sqrt(c.covariance(0, 0)), sigma_bias = unit * std::sqrt(c.covariance(1, 1));
+    table.rows.push_back(
+        {.cells = {text_cell(c.channel), text_cell(fit.method), number_cell(static_cast<double>(fit.raw.size()), 0),
+                   measured_cell(c.scale, sigma_scale), measured_cell(sigma_scale, sigma_scale),
+                   measured_cell(unit * c.bias, sigma_bias), measured_cell(sigma_bias, sigma_bias),
+                   number_cell(unit * fit.rms), number_cell(unit * fit.worst), number_cell(fit.whiteness.p_value),
+                   number_cell(unit * fit.hysteresis), number_cell(unit * fit.bend), number_cell(fit.quadratic_p),
+                   text_cell(name)},
+         .status = !fit.usable            ? Status::kBad
+                   : fit.findings.empty() ? Status::kGood
+                                          : Status::kCaution});
+    XYPlot points{.title = fmt::format("{}: reading against reference", c.channel),
+                  .x = {.label = "reference", .unit = name},
+                  .y = {.label = "raw", .unit = name}};
+    XYPlot left{.title = fmt::format("{}: residual", c.channel),
+                .x = {.label = "reference", .unit = name},
+                .y = {.label = "corrected less reference", .unit = name}};
+    XYSeries raw{.name = "points"}, line{.name = "fit", .style = Style::kLine};
+    XYSeries rising{.name = "rising"}, falling{.name = "falling", .role = Role::kMeasured};
+    for (std::size_t i = 0; i < fit.raw.size(); ++i) {
+      raw.x.push_back(unit * fit.reference[i]);
+      raw.y.push_back(unit * fit.raw[i]);
+      XYSeries& side = fit.direction[i] < 0 ? falling : rising;
+      side.x.push_back(unit * fit.reference[i]);
+      side.y.push_back(unit * fit.residual[i]);
+    }
+    const auto [low, high] = std::minmax_element(fit.reference.begin(), fit.reference.end());
+    for (const double x : {*low, *high}) {
+      line.x.push_back(unit * x);
+      line.y.push_back(unit * (c.bias + c.scale * x));
+    }
+    points.series = {std::move(raw), std::move(line)};
+    left.series = {std::move(rising)};
+    if (!falling.x.empty()) left.series.push_back(std::move(falling));
+    left.guides.push_back({.direction = Guide::Direction::kHorizontal, .value = 0.0});
+    figures.blocks.emplace_back(std::move(points));
+    figures.blocks.emplace_back(std::move(left));
+  }
+  results.blocks.emplace_back(std::move(table));
+  document.sections.push_back(std::move(results));
+  document.sections.push_back(std::move(figures));
+  add_warnings(document, result.estimate.warnings);
+  return document;
+}
+
 }  // namespace veridyn::report
