@@ -19,6 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGasConstant = 287.05287;  // of dry air [J/(kg K)], ISO 2533
 constexpr double kSignificance = 0.01;
 constexpr std::size_t kLeastPoints = 4;
+constexpr double kLeastKnownScale = 0.05;  // a scale known worse than this is none
 
 const std::vector<std::string>& calibrated_channels() {
   static const std::vector<std::string> names{"dynamic_pressure", "static_pressure", "air_temperature",
@@ -121,6 +122,22 @@ class Fitting {
     fit_.calibration.bias = e.theta(0);
     fit_.calibration.scale = e.theta(1);
     fit_.calibration.covariance << e.covariance(1, 1), e.covariance(0, 1), e.covariance(0, 1), e.covariance(0, 0);
+    if (!(e.covariance(1, 1) <= kLeastKnownScale * kLeastKnownScale * e.theta(1) * e.theta(1))) bias_only();
+  }
+
+  /// Far from the points a scale that they do not determine would do harm: the sensor's own is kept.
+  void bias_only() {
+    const auto n = static_cast<double>(fit_.raw.size());
+    double mean = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < fit_.raw.size(); ++i) mean += (fit_.raw[i] - fit_.reference[i]) / n;
+    for (std::size_t i = 0; i < fit_.raw.size(); ++i) squares += std::pow(fit_.raw[i] - fit_.reference[i] - mean, 2);
+    fit_.findings.push_back(fmt::format(
+        "the reference changes too little to tell a scale ({:.2g} +- {:.2g}): scale 1 is kept, the bias fitted alone",
+        fit_.calibration.scale, std::sqrt(fit_.calibration.covariance(0, 0))));
+    fit_.method += " (bias only)";
+    fit_.calibration.scale = 1.0;
+    fit_.calibration.bias = mean;
+    fit_.calibration.covariance << 0.0, 0.0, 0.0, squares / (n - 1.0) / n;
   }
 
   void residuals() {
@@ -286,14 +303,15 @@ CalibrationResult calibrate(const CalibrationStudy& study) {
     const SensorCalibration& c = fit.calibration;
     const double z = numerics::student_t_quantile(0.975, static_cast<double>(fit.raw.size()) - 2.0);
     const auto add = [&](const char* name, double value, double sigma, const std::string& unit) {
-      e.parameters.push_back(
-          {.name = fmt::format("{}.{}", c.channel, name),
-           .value = value,
-           .sigma = sigma,
-           .low95 = value - z * sigma,
-           .high95 = value + z * sigma,
-           .unit = unit,
-           .status = fit.usable ? estimation::ParameterStatus::kIdentified : estimation::ParameterStatus::kRejected});
+      e.parameters.push_back({.name = fmt::format("{}.{}", c.channel, name),
+                              .value = value,
+                              .sigma = sigma,
+                              .low95 = value - z * sigma,
+                              .high95 = value + z * sigma,
+                              .unit = unit,
+                              .status = !fit.usable   ? estimation::ParameterStatus::kRejected
+                                        : sigma > 0.0 ? estimation::ParameterStatus::kIdentified
+                                                      : estimation::ParameterStatus::kFixed});
     };
     add("scale", c.scale, std::sqrt(c.covariance(0, 0)), "1");
     add("bias", c.bias, std::sqrt(c.covariance(1, 1)), fit.unit);
