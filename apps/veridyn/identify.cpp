@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/veridyn/ground.hpp"
 #include "apps/veridyn/results.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/progress.hpp"
@@ -19,6 +20,7 @@ struct Options {
 
 int identify(const Options& options) {
   const Study study = load_study(options.study, options.common);
+  if (is_ground_study(study)) return identify_ground(study, options.study, options.common);
   TerminalProgress progress(options.common.quiet);
   aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, progress);

@@ -1,10 +1,11 @@
-// veridyn init aircraft: a commented study file to start from.
+// veridyn init aircraft|swing-test|calibration: a commented study file to start from.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
+#include "apps/veridyn/ground_templates.hpp"
 #include "apps/veridyn/options.hpp"
 #include "apps/veridyn/output.hpp"
 #include "veridyn/core/error.hpp"
@@ -35,8 +36,9 @@ wing_area = "0.31 m^2"
 span = "1.27 m"
 chord = "0.25 m"                 # mean aerodynamic chord
 sign_convention = "positive elevator: trailing edge down"
-# Without the inertia the forces are identified and the moments are not.
-inertia = { Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }    # kg m^2
+# Without the inertia the moments are identified per unit inertia only.
+inertia = { Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }    # kg m^2; `veridyn init swing-test` measures it
+# sigma = { mass = 0.01, Jy = 0.005 }   # how well these are known: goes into every derivative's error bar
 # imu_position = [0, 0, 0]       # m from the centre of gravity: forward, right, down
 
 # What each coefficient depends on: alpha beta p_n q_n r_n de da dr CT Va, products ("alpha*q_n"), powers ("alpha^2"),
@@ -64,6 +66,7 @@ upper = "20 deg"
 [data]
 file = @LOG@
 # files = ["IMU.csv", "GPS.csv"] # the tables of one flight instead
+# calibration = "calibration.toml"   # of pitot tube and vanes; `veridyn init calibration` makes one
 # from = 120                     # s, only this part of the log
 # to = 600
 
@@ -101,6 +104,10 @@ file = @LOG@
 # frequency_band = ["0.1 Hz", "2 Hz"]   # beside regression: equation error in the frequency domain
 # bootstrap = 0                  # beside regression: replicates of a block bootstrap, such as 500
 
+[uncertainty]
+# draws = 100000                 # of the Monte Carlo on the measured coefficients
+# sigma = { thrust = "0.5 N" }   # error of a signal, where the log cannot tell
+
 [validate]
 # period = "5 s"                 # the model is started anew this often
 )toml";
@@ -125,17 +132,19 @@ std::string study_text(const std::string& log, const std::filesystem::path& fold
   return text;
 }
 
-int init_aircraft(const Options& options) {
-  const std::filesystem::path folder = options.common.out.empty() ? "." : options.common.out;
+std::filesystem::path folder_of(const Options& options) {
+  return options.common.out.empty() ? "." : options.common.out;
+}
+
+void write_study(const Options& options, const std::string& text, const std::string& to_do) {
+  const std::filesystem::path folder = folder_of(options);
   make_folder(folder);
   const std::filesystem::path path = folder / "study.toml";
   if (std::filesystem::exists(path) && !options.force) {
     throw InputError(path.string(), "is there already; --force replaces it");
   }
-  write_file(path, study_text(options.log, folder));
-  tell(options.common,
-       fmt::format("wrote {}: fill in the subject, then `veridyn identify {}`", path.string(), path.string()));
-  return kDone;
+  write_file(path, text);
+  tell(options.common, fmt::format("wrote {}: {}, then `veridyn identify {}`", path.string(), to_do, path.string()));
 }
 
 }  // namespace
@@ -143,6 +152,18 @@ int init_aircraft(const Options& options) {
 void add_init(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = program.add_subcommand("init", "write a commented study file to start from");
+  const auto add_ground = [&](const std::string& name, const std::string& help, const char* text) {
+    auto ground = std::make_shared<Options>();
+    CLI::App* kind = verb->add_subcommand(name, help);
+    kind->add_flag("--force", ground->force, "replace an existing study.toml");
+    add_common(*kind, ground->common, ".", fmt::format("veridyn init {} --out bench", name));
+    kind->callback([ground, text, &exit_code] {
+      write_study(*ground, text, "fill in what you measured");
+      exit_code = kDone;
+    });
+  };
+  add_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy);
+  add_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy);
   CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");
   verb->require_subcommand(1);
   aircraft->add_option("--log", options->log, "the log that the study is about")
@@ -151,7 +172,10 @@ void add_init(CLI::App& program, int& exit_code) {
   options->log = "flight.bin";
   aircraft->add_flag("--force", options->force, "replace an existing study.toml");
   add_common(*aircraft, options->common, ".", "veridyn init aircraft --log flight.bin --out my_aircraft");
-  aircraft->callback([options, &exit_code] { exit_code = init_aircraft(*options); });
+  aircraft->callback([options, &exit_code] {
+    write_study(*options, study_text(options->log, folder_of(*options)), "fill in the subject");
+    exit_code = kDone;
+  });
 }
 
 }  // namespace veridyn::app

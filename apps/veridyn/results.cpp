@@ -22,15 +22,6 @@ using namespace veridyn::aircraft;
 
 const report::AircraftReportContext kIdentifyContext{.program = "veridyn " VERIDYN_VERSION};
 
-std::string parameters_csv(const estimation::Estimate& estimate) {
-  std::string text = "name,value,sigma,low95,high95,unit,status\n";
-  for (const auto& p : estimate.parameters) {
-    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
-                        estimation::to_string(p.status));
-  }
-  return text;
-}
-
 /// Every method's figures for every parameter, the recommended regression first.
 std::string methods_csv(const FlightAnalysis& analysis) {
   std::string text = "parameter,method,value,sigma,low95,high95\n";
@@ -100,9 +91,10 @@ Recording coefficient_recording(const FlightAnalysis& analysis) {
   for (const CoefficientResult& r : analysis.coefficients) {
     if (r.time.empty()) continue;
     const TimeBase time = make_time_base(r.time);
-    recording.add(make_channel(std::string(name_of(r.coefficient)), "1", time, r.measured));
+    const char* unit = r.per_unit_inertia ? "1/kg/m^2" : "1";
+    recording.add(make_channel(r.name, unit, time, r.measured));
     if (r.verdict == CoefficientVerdict::kIdentified) {
-      recording.add(make_channel(fmt::format("{}_model", name_of(r.coefficient)), "1", time, r.modelled));
+      recording.add(make_channel(fmt::format("{}_model", r.name), unit, time, r.modelled));
     }
   }
   return recording;
@@ -121,6 +113,15 @@ Recording validation_recording(const Validation& validation) {
 }
 
 }  // namespace
+
+std::string parameters_csv(const estimation::Estimate& estimate) {
+  std::string text = "name,value,sigma,low95,high95,unit,status\n";
+  for (const auto& p : estimate.parameters) {
+    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
+                        estimation::to_string(p.status));
+  }
+  return text;
+}
 
 void write_identification(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
                           const RunRecord& run, const CommonOptions& options) {
@@ -142,6 +143,8 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
   if (!analysis.others.empty()) write_file(folder / "methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) write_file(folder / "structure.csv", structure_csv(analysis));
+  if (analysis.uncertainty.available())
+    write_file(folder / "coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
   write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
   // JSBSim flies a complete model only; `veridyn export` says what is missing.
   if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
@@ -182,8 +185,7 @@ nlohmann::ordered_json summary_of(const FlightAnalysis& analysis, const std::fil
   summary["folder"] = folder.string();
   summary["coefficients"] = nlohmann::ordered_json::object();
   for (const CoefficientResult& r : analysis.coefficients) {
-    summary["coefficients"][std::string(name_of(r.coefficient))] = {{"verdict", to_string(r.verdict)},
-                                                                    {"reason", r.reason}};
+    summary["coefficients"][r.name] = {{"verdict", to_string(r.verdict)}, {"reason", r.reason}};
   }
   summary["parameters"] = analysis.estimate.parameters.size();
   summary["warnings"] = analysis.estimate.warnings;

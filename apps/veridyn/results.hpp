@@ -17,6 +17,9 @@ void write_identification(const std::filesystem::path& folder, const aircraft::F
 void write_reconstruction(const std::filesystem::path& folder, const aircraft::FlightStudy& study,
                           const aircraft::FlightAnalysis& analysis, const RunRecord& run, const CommonOptions& options);
 
+/// Parameters as a table: name, value, sigma, low95, high95, unit, status.
+[[nodiscard]] std::string parameters_csv(const estimation::Estimate& estimate);
+
 /// The verdict for people, a line a coefficient.
 void tell_identification(const aircraft::FlightAnalysis& analysis, const std::filesystem::path& folder,
                          const CommonOptions& options);

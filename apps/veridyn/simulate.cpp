@@ -24,8 +24,8 @@ int simulate(const Options& options) {
   const Study study = load_study(options.study, options.common);
   const aircraft::SimulationOptions simulation = aircraft::read_simulation(study.root());
   // Tables that only the analysis of the flight reads; misspelt keys in them are found by `identify`.
-  for (const char* table :
-       {"title", "data", "delays", "reconstruct", "signals", "segments", "identify", "validate", "track"}) {
+  for (const char* table : {"title", "data", "delays", "reconstruct", "signals", "segments", "identify", "validate",
+                            "track", "uncertainty"}) {
     static_cast<void>(study.root().has(table));
   }
   study.root().finish();

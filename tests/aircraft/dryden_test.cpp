@@ -1,6 +1,10 @@
 #include "veridyn/aircraft/dryden.hpp"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
+#include <array>
+#include <cstdlib>
 
 #include "veridyn/aircraft/wind.hpp"
 #include "veridyn/core/error.hpp"
@@ -91,6 +95,102 @@ TEST(Dryden, SampleMomentsAndCorrelationMatchTheTheory) {
   EXPECT_NEAR(v2 / count, 4.0, 4.0 * 0.045);
   EXPECT_NEAR(w2 / count, 1.96, 1.96 * 0.045);
   EXPECT_NEAR(u_lag / u2, std::exp(-0.25 * 20 / 50), 0.01);
+}
+
+/// Mean of Hann-windowed periodograms of the three gusts at `frequencies`: two-sided, so that its integral over
+/// frequency/(2 pi) is the variance.
+std::array<std::vector<double>, 3> periodogram(const DrydenSettings& settings, double step, double Va, int windows,
+                                               const std::vector<double>& frequencies) {
+  constexpr int kLength = 1024;
+  std::array<std::vector<double>, 3> power;
+  for (auto& p : power) p.assign(frequencies.size(), 0.0);
+  DrydenGusts gusts(settings, numerics::RandomStream(5, "spectrum"));
+  std::vector<double> hann(kLength);
+  double energy = 0.0;
+  for (int i = 0; i < kLength; ++i) {
+    hann[static_cast<std::size_t>(i)] = 0.5 * (1.0 - std::cos(2.0 * M_PI * (i + 0.5) / kLength));
+    energy += hann[static_cast<std::size_t>(i)] * hann[static_cast<std::size_t>(i)];
+  }
+  std::array<std::vector<double>, 3> x;
+  for (auto& v : x) v.resize(kLength);
+  for (int w = 0; w < windows; ++w) {
+    for (std::size_t i = 0; i < kLength; ++i) {
+      gusts.advance(step, Va);
+      for (std::size_t axis = 0; axis < 3; ++axis) x[axis][i] = hann[i] * gusts.gust()[axis];
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t f = 0; f < frequencies.size(); ++f) {
+        // Goertzel's recursion.
+        const double c = 2.0 * std::cos(frequencies[f] * step);
+        double s1 = 0.0, s2 = 0.0;
+        for (const double value : x[axis]) {
+          const double s0 = value + c * s1 - s2;
+          s2 = s1;
+          s1 = s0;
+        }
+        power[axis][f] += step * (s1 * s1 + s2 * s2 - c * s1 * s2) / energy / windows;
+      }
+    }
+  }
+  return power;
+}
+
+/// Power of the printed transfer functions for white noise of unit density.
+double spectrum_u(double w, double L, double sigma, double Va) {
+  const double b = Va / L;
+  return sigma * sigma * 2.0 * b / (w * w + b * b);
+}
+double spectrum_v(double w, double L, double sigma, double Va) {
+  const double b = Va / L;
+  return sigma * sigma * 3.0 * b * (w * w + b * b / 3.0) / ((w * w + b * b) * (w * w + b * b));
+}
+
+/// Bands of eight frequencies each, as a ratio of measured to printed power.
+void expect_spectrum(int windows) {
+  const DrydenSettings settings{200, 200, 50, 2.12, 2.12, 1.4};
+  constexpr double kStep = 0.02, kVa = 20.0;
+  const double resolution = 2.0 * M_PI / (1024 * kStep);
+  std::vector<double> frequencies;
+  // Above the window's leakage, and below an eighth of the Nyquist frequency, where aliasing adds less than 1 %.
+  for (int band = 0; band < 6; ++band) {
+    for (int k = 0; k < 8; ++k) frequencies.push_back(resolution * (4 + 8 * band + k));
+  }
+  const auto power = periodogram(settings, kStep, kVa, windows, frequencies);
+  // Neighbouring bins of a Hann window go together: about half of the values of a band count.
+  const double bound = 4.0 / std::sqrt(4.0 * windows) + 0.01;
+  for (std::size_t band = 0; band < 6; ++band) {
+    std::array<double, 3> ratio{};
+    for (std::size_t k = 8 * band; k < 8 * band + 8; ++k) {
+      const double w = frequencies[k];
+      ratio[0] += power[0][k] / spectrum_u(w, 200, 2.12, kVa) / 8;
+      ratio[1] += power[1][k] / spectrum_v(w, 200, 2.12, kVa) / 8;
+      ratio[2] += power[2][k] / spectrum_v(w, 50, 1.4, kVa) / 8;
+    }
+    for (const double r : ratio) EXPECT_NEAR(r, 1.0, bound) << "band " << band;
+  }
+}
+
+TEST(Dryden, HasThePrintedSpectrum) { expect_spectrum(400); }
+
+// One long run: spectrum to 2.5 %, and the covariance of the stationary state kept over it.
+TEST(DrydenSoak, KeepsItsSpectrumAndCovarianceOverALongRun) {
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "a long run: VERIDYN_SOAK=1, or make soak";
+  expect_spectrum(20000);
+  const DrydenSettings settings{50, 50, 50, 1.0, 2.0, 1.4};
+  DrydenGusts gusts(settings, numerics::RandomStream(8, "long"));
+  std::array<double, 6> sum{};
+  constexpr int kSteps = 20'000'000;
+  for (int i = 0; i < kSteps; ++i) {
+    gusts.advance(0.1, 20.0);
+    const auto g = gusts.gust();
+    const std::array<double, 6> products{g[0] * g[0], g[1] * g[1], g[2] * g[2], g[0] * g[1], g[0] * g[2], g[1] * g[2]};
+    for (std::size_t k = 0; k < 6; ++k) sum[k] += products[k] / kSteps;
+  }
+  // 2e6 s at a correlation time of 2.5 s: 4e5 independent samples, 0.22 % of a variance; four standard errors.
+  EXPECT_NEAR(sum[0], 1.0, 0.009);
+  EXPECT_NEAR(sum[1], 4.0, 0.036);
+  EXPECT_NEAR(sum[2], 1.96, 0.018);
+  for (std::size_t k = 3; k < 6; ++k) EXPECT_NEAR(sum[k], 0.0, 4.0 * 2.8 / std::sqrt(4e5));
 }
 
 TEST(Dryden, ReadsPublishedAndOwnSettings) {

@@ -1,5 +1,7 @@
 #include "veridyn/aircraft/sensors.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "veridyn/aircraft/flight_plan.hpp"
@@ -102,6 +104,54 @@ TEST(Sensor, LosesTheShareOfSamplesThatWasAsked) {
       EXPECT_GT(c.gaps(1.0).size(), 50u);
     }
   }
+}
+
+/// Allan variance of a channel over m samples, overlapping.
+double allan_variance(const std::vector<double>& x, std::size_t m) {
+  std::vector<double> sum(x.size() + 1, 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) sum[i + 1] = sum[i] + x[i];
+  double total = 0.0;
+  const std::size_t count = x.size() - 2 * m + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double d = (sum[i + 2 * m] - 2.0 * sum[i + m] + sum[i]) / static_cast<double>(m);
+    total += 0.5 * d * d;
+  }
+  return total / static_cast<double>(count);
+}
+
+// White noise of density S has the Allan variance S/tau, a random walk of K^2 s^-1 has K^2 tau/3 (IEEE 952, annex C).
+TEST(Sensor, HasTheAllanVarianceOfWhiteNoiseAndOfARandomWalk) {
+  const Channel white =
+      watch("ahrs", {.rate = 50.0, .sigma = {0.2, 0, 0, 0}}, 1000.0, [](double) { return 0.0; }).at("roll");
+  for (const std::size_t m : {1U, 10U, 100U}) {
+    const double expected = 0.04 / static_cast<double>(m);
+    // Overlapping estimate over N/m independent stretches: relative standard error about sqrt(m/N).
+    const double error = std::sqrt(static_cast<double>(m) / static_cast<double>(white.size()));
+    EXPECT_NEAR(allan_variance(white.value, m), expected, 4.0 * 1.5 * error * expected) << m;
+  }
+  const Channel walk = watch("ahrs", {.rate = 50.0, .walk = 0.003}, 1000.0, [](double) { return 0.0; }).at("roll");
+  for (const std::size_t m : {20U, 100U, 400U}) {
+    const double tau = static_cast<double>(m) / 50.0;
+    // Sums of a discrete walk: K^2 tau/3 (1 + 1/(2 m^2)).
+    const double expected = 0.003 * 0.003 * tau / 3.0 * (1.0 + 0.5 / static_cast<double>(m * m));
+    const double error = std::sqrt(static_cast<double>(m) / static_cast<double>(walk.size()));
+    EXPECT_NEAR(allan_variance(walk.value, m), expected, 4.0 * 1.5 * error * expected) << m;
+  }
+}
+
+// The error of rounding a signal that crosses many steps is uniform: variance step^2/12, mean 0 (Widrow).
+TEST(Sensor, HasTheQuantisationNoiseOfAUniformError) {
+  const Channel c = watch("gyro", {.rate = 97.0, .resolution = 0.05}, 400.0, [](double) { return 0.0; }).at("gyro_x");
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const double error = c.value[i] - c.times()[i];
+    EXPECT_LE(std::abs(error), 0.025 + 1e-9);
+    sum += error;
+    squares += error * error;
+  }
+  const auto n = static_cast<double>(c.size());
+  EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.05 / std::sqrt(12.0 * n));
+  EXPECT_NEAR(squares / n, 0.05 * 0.05 / 12.0, 0.02 * 0.05 * 0.05 / 12.0);
 }
 
 TEST(Servo, FollowsAStepAsItsClosedFormSays) {

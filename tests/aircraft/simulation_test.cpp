@@ -67,6 +67,26 @@ TEST(Simulation, ChangesTheAircraftAtTheStatedTime) {
   EXPECT_THAT(flight.truth.events.back().text, HasSubstr("Cm_alpha"));
 }
 
+TEST(Simulation, MovesTheAccelerometerAlongItsLeverArm) {
+  SimulationOptions o = calm("unatrap", 60);
+  o.subject.imu_position = {0.4, -0.1, 0.2};
+  const SimulatedFlight flight = fly(o);
+  ASSERT_TRUE(flight.usable()) << flight.message();
+  const Eigen::Vector3d arm(0.4, -0.1, 0.2);
+  const auto at = [&](const char* name, std::size_t i) {
+    const auto value = [&](const char* axis) { return flight.truth.at(std::string(name) + axis).value[i]; };
+    return Eigen::Vector3d(value("_x"), value("_y"), value("_z"));
+  };
+  double largest = 0.0;
+  for (std::size_t i = 0; i < flight.truth.at("gyro_x").size(); i += 7) {
+    const Eigen::Vector3d w = at("gyro", i), dw = at("gyro_rate", i);
+    const Eigen::Vector3d difference = at("imu_accel", i) - at("accel", i);
+    EXPECT_LT((difference - dw.cross(arm) - w.cross(w.cross(arm))).norm(), 1e-9);
+    largest = std::max(largest, difference.norm());
+  }
+  EXPECT_GT(largest, 0.1);
+}
+
 TEST(Simulation, FliesEveryBuiltInAircraft) {
   for (const std::string& name : builtin_subject_names()) {
     SimulationOptions o = calm(name, 150);

@@ -269,5 +269,59 @@ TEST_F(Program, InspectsEveryRealLogOrSaysWhyNot) {
   EXPECT_GE(read, 8u);
 }
 
+TEST_F(Program, IdentifiesTheInertiaOfASwingTest) {
+  const Outcome outcome =
+      run("identify " + std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/swing_test/study.toml" + out());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
+  ASSERT_NE(estimate.find("Jy"), nullptr);
+  EXPECT_NEAR(estimate.find("Jy")->value, 0.16, 3.0 * estimate.find("Jy")->sigma);
+  EXPECT_THAT(read_file(folder_ / "out" / "subject.toml"), HasSubstr("inertia = { Jx = "));
+  EXPECT_THAT(read_file(folder_ / "out" / "report.html"), HasSubstr("aircraft_x_1.csv"));
+}
+
+TEST_F(Program, CalibratesAirDataAndAppliesItToARecording) {
+  const Outcome outcome =
+      run("identify " + std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/calibration/study.toml" + out());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
+  ASSERT_NE(estimate.find("alpha.scale"), nullptr);
+  EXPECT_NEAR(estimate.find("alpha.scale")->value, 1.12, 3.0 * estimate.find("alpha.scale")->sigma);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "residuals.csv"));
+
+  const std::string flight = file("flight.toml", kFlight);
+  ASSERT_EQ(run("simulate " + flight + " --quiet --out " + (folder_ / "sim").string()).exit_code, 0);
+  file("calibration.toml", "[alpha]\nscale = 1.0\nbias = \"2 deg\"\n");
+  const std::string study = file("study.toml",
+                                 "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"sim/recording.csv\"\n"
+                                 "calibration = \"calibration.toml\"\n[reconstruct]\nsensors = \"reference\"\n"
+                                 "turbulence = \"low_light\"\n");
+  const auto mean_alpha = [&](const std::string& set) {
+    const Outcome done = run("reconstruct " + study + set + out());
+    EXPECT_EQ(done.exit_code, 0) << done.text;
+    const Recording result = io::to_recording(io::read_csv_file(folder_ / "out" / "flight.csv"));
+    double sum = 0.0;
+    for (const double a : result.at("alpha").value) sum += a / static_cast<double>(result.at("alpha").size());
+    return sum;
+  };
+  const double corrected = mean_alpha("");
+  EXPECT_THAT(read_file(folder_ / "out" / "run.json"), HasSubstr("calibration.toml"));
+  file("calibration.toml", "[alpha]\nscale = 1.0\nbias = 0\n");
+  // The filter believes the vane's mean.
+  EXPECT_NEAR(mean_alpha("") - corrected, 2.0 * M_PI / 180.0, 0.1 * M_PI / 180.0);
+  file("calibration.toml", "[alpa]\nscale = 1.0\nbias = 0\n");
+  fs::remove_all(folder_ / "out");
+  expect_refusal("reconstruct " + study + out(), "did you mean 'alpha'");
+}
+
+TEST_F(Program, WritesStudiesOfGroundTestsThatItUnderstands) {
+  for (const std::string kind : {"swing-test", "calibration"}) {
+    const fs::path folder = folder_ / kind;
+    ASSERT_EQ(run("init " + kind + " --quiet --out " + folder.string()).exit_code, 0);
+    // All its keys are known: what is missing are the recordings.
+    expect_refusal("identify " + (folder / "study.toml").string() + out(), ".csv: ");
+  }
+}
+
 }  // namespace
 }  // namespace veridyn

@@ -90,12 +90,13 @@ estimation::ForgettingOptions TrackOptions::forgetting_at(double rate_Hz) const 
 }
 
 CoefficientTracker::CoefficientTracker(const CoefficientModel& model, const Eigen::MatrixXd& error_covariance,
-                                       const TrackOptions& options, double rate_Hz)
+                                       const TrackOptions& options, double rate_Hz, std::vector<std::string> names)
     : model_(model),
       options_(options),
       rate_Hz_(rate_Hz),
       W_(error_covariance),
-      regression_(model.parameter_names(), regression_options(error_covariance, options, rate_Hz)),
+      regression_(names.empty() ? model.parameter_names() : std::move(names),
+                  regression_options(error_covariance, options, rate_Hz)),
       detector_(detection_options(options, rate_Hz)) {
   history_.value.resize(model.size());
   history_.sigma.resize(model.size());

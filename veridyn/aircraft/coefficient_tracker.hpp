@@ -58,8 +58,9 @@ class CoefficientTracker {
  public:
   /// @param error_covariance W of a row [x, z], (n + 1) x (n + 1)
   /// @param rate_Hz of rows
+  /// @param names of the parameters; empty: those of the model
   CoefficientTracker(const CoefficientModel& model, const Eigen::MatrixXd& error_covariance,
-                     const TrackOptions& options, double rate_Hz);
+                     const TrackOptions& options, double rate_Hz, std::vector<std::string> names = {});
 
   /// Hybrid start; see RecursiveRegression::start.
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);

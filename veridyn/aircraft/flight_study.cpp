@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/air_data_calibration.hpp"
 #include "veridyn/aircraft/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/study_data.hpp"
@@ -93,7 +94,7 @@ void find_flight(FlightStudy& study, FlightAnalysis& analysis) {
 std::vector<std::string> names_with(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
   std::vector<std::string> names;
   for (const CoefficientResult& result : results) {
-    if (result.verdict == verdict) names.emplace_back(name_of(result.coefficient));
+    if (result.verdict == verdict) names.push_back(result.name);
   }
   return names;
 }
@@ -120,6 +121,11 @@ void summarise(const FlightStudy& study, FlightAnalysis& analysis) {
   warn(study.mapped.notes);
   warn(analysis.reconstruction.warnings);
   warn(analysis.signals.notes);
+  if (!study.subject.inertia) {
+    estimate.warnings.emplace_back(
+        "without subject.inertia the moments are identified per unit inertia (Cl/Jx, Cm/Jy, Cn/Jz), with the inertial "
+        "coupling of a flat body (Jz = Jx + Jy, Jx = Jy, Jxz = 0) and the moments of the thrust left in");
+  }
   for (const CoefficientResult& result : analysis.coefficients) {
     if (result.verdict != CoefficientVerdict::kIdentified) estimate.warnings.push_back(result.reason);
   }
@@ -163,6 +169,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.identify.seed = result.seed;
   result.validate = ValidationOptions::read(root.table_or_empty("validate"));
   result.track = TrackOptions::read(root.table_or_empty("track"));
+  result.uncertainty = UncertaintyOptions::read(root.table_or_empty("uncertainty"));
   if (!(result.segments.min_airspeed_mps > 0.0))
     result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
 
@@ -189,6 +196,11 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
     result.inputs = data.files(data.has("file") ? "file" : "files");
   }
   result.mapped = map_channels(log, map, throws_of(result.subject, subject));
+  if (data.has("calibration")) {
+    const std::filesystem::path file = data.file("calibration");
+    apply_calibration(read_calibration(file), result.mapped);
+    result.inputs.push_back(file);
+  }
   root.finish();
   return result;
 }
@@ -206,6 +218,13 @@ FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
       identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
   analysis.others = estimate_otherwise(analysis.signals, analysis.segments, study.subject, analysis.coefficients,
                                        study.identify, progress);
+  progress.stage("uncertainty of the measured coefficients");
+  if (study.uncertainty.enabled) {
+    analysis.uncertainty =
+        coefficient_uncertainty(coefficient_inputs(analysis.signals, analysis.segments, study.subject,
+                                                   study.uncertainty, study.mapped.calibration_sigma),
+                                study.subject, study.uncertainty, study.seed);
+  }
   progress.stage("validating on the hold-out");
   judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);
   return analysis;

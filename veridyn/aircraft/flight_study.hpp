@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/coefficient_tracker.hpp"
+#include "veridyn/aircraft/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/delays.hpp"
 #include "veridyn/aircraft/identification.hpp"
 #include "veridyn/aircraft/other_estimators.hpp"
@@ -20,13 +21,15 @@ namespace veridyn::aircraft {
 ///
 ///     seed = 1
 ///     [subject]      see read_subject
-///     [data]         see io::read_study_data; `[data.map]` see map_channels. Without it the study must have a
+///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: io::read_study_data;
+///     `[data.map]` see map_channels. Without it the study must have a
 ///     `[flight]`,
 ///                    which is then simulated
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions
 ///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
 ///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
 ///     [track]        see TrackOptions
+///     [uncertainty]  see UncertaintyOptions
 struct FlightStudy {
   std::string name;
   std::uint64_t seed = 0;
@@ -41,7 +44,8 @@ struct FlightStudy {
   IdentifyOptions identify;
   ValidationOptions validate;
   TrackOptions track;
-  std::vector<ModelChange> true_changes;      ///< of a simulated flight
+  std::vector<ModelChange> true_changes;  ///< of a simulated flight
+  UncertaintyOptions uncertainty;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
 };
 
@@ -56,8 +60,9 @@ struct FlightAnalysis {
   FlightSignals signals;
   Segments segments;
   std::vector<CoefficientResult> coefficients;
-  OtherEstimators others;  ///< output error, frequency domain, bootstrap, where asked for
-  Subject identified;      ///< the subject with the identified values
+  OtherEstimators others;         ///< output error, frequency domain, bootstrap, where asked for
+  UncertaintyReport uncertainty;  ///< of the measured coefficients
+  Subject identified;             ///< the subject with the identified values
   Validation validation;
   estimation::Estimate estimate;
   bool interrupted = false;

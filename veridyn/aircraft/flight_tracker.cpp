@@ -84,7 +84,7 @@ void FlightTracker::take(std::size_t index, double time, const FlightSignals& si
     x[j] = c.model.terms[j].evaluate(v);
     finite = finite && std::isfinite(x[j]);
   }
-  const double z = select(measured_coefficients(sample, subject_, rho, torque), c.model.coefficient);
+  const double z = select(regressed_coefficients(sample, subject_, rho, torque), c.model.coefficient);
   if (!finite || !std::isfinite(z)) return;
   if (c.tracker) {
     if (const auto change = c.tracker->update(time, {x.data(), n}, z)) found.push_back({c.model.coefficient, *change});
@@ -105,12 +105,14 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
   Learning& learning = learning_[index];
   Eigen::MatrixXd W = learning.W / static_cast<double>(learning.count);
   const auto n = static_cast<Eigen::Index>(c.model.size());
+  std::vector<std::string> names;
+  for (const Term& term : c.model.terms) names.push_back(regressed_parameter_name(c.model.coefficient, term, subject_));
   Eigen::VectorXd theta(n);
   Eigen::MatrixXd P(n, n);
   bool complete = start_.has_value();
   if (start_) {
     std::vector<Eigen::Index> at;
-    for (const std::string& name : c.model.parameter_names()) {
+    for (const std::string& name : names) {
       const EstimatedParameter* p = start_->find(name);
       const bool usable = p != nullptr && std::isfinite(p->value) && p->sigma > 0.0 && std::isfinite(p->sigma) &&
                           p->status != estimation::ParameterStatus::kRejected;
@@ -125,7 +127,7 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
       }
     }
   }
-  const std::string name(name_of(c.model.coefficient));
+  const std::string name = regressed_name(c.model.coefficient, subject_);
   const auto fit = [&](const char* key) {
     const auto found_fit = start_ ? start_->fit.find(name + "." + key) : decltype(start_->fit.end()){};
     return start_ && found_fit != start_->fit.end() ? found_fit->second : 0.0;
@@ -137,7 +139,7 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
     const double beyond = fit("residual_sd") * fit("residual_sd") - h.dot(W * h);
     if (beyond > 0.0) W(n, n) += beyond;
   }
-  c.tracker.emplace(c.model, W, options_, rate_);
+  c.tracker.emplace(c.model, W, options_, rate_, names);
   if (complete) c.tracker->start(theta, P, fit("samples"), fit("residual_sd"));
   c.start = complete ? "batch estimate" : "no estimate";
   const auto width = static_cast<std::size_t>(n) + 1;
@@ -161,7 +163,7 @@ estimation::Estimate FlightTracker::estimate() const {
   Eigen::Index at = 0;
   std::vector<std::string> followed, skipped;
   for (const TrackedCoefficient& c : coefficients_) {
-    const std::string name(name_of(c.model.coefficient));
+    const std::string name = regressed_name(c.model.coefficient, subject_);
     if (!c.tracker) {
       skipped.push_back(name);
       out.warnings.push_back(
@@ -173,8 +175,8 @@ estimation::Estimate FlightTracker::estimate() const {
     const auto n = static_cast<Eigen::Index>(c.model.size());
     for (std::size_t i = 0; i < c.model.size(); ++i) {
       const estimation::ParameterEstimate& p = e.parameters[i];
-      out.parameters.push_back(
-          {p.name, p.value, p.sigma, p.low95, p.high95, c.model.terms[i].parameter_unit(), p.status});
+      out.parameters.push_back({p.name, p.value, p.sigma, p.low95, p.high95,
+                                regressed_parameter_unit(c.model.coefficient, c.model.terms[i], subject_), p.status});
     }
     out.covariance.block(at, at, n, n) = e.covariance;
     at += n;

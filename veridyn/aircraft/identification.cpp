@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/aircraft/body_error.hpp"
 #include "veridyn/aircraft/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -45,8 +46,6 @@ std::vector<FlightSignal> needed_signals(const CoefficientModel& model) {
     needed.push_back(FlightSignal::kAlpha);
   return needed;
 }
-
-bool is_moment(Coefficient c) { return c == Coefficient::kCl || c == Coefficient::kCm || c == Coefficient::kCn; }
 
 bool complete(const FlightSample<double>& sample, const std::vector<FlightSignal>& needed) {
   return std::all_of(needed.begin(), needed.end(), [&](FlightSignal s) { return std::isfinite(sample[s]); });
@@ -122,12 +121,7 @@ class CoefficientIdentification {
       : signals_(signals), segments_(segments), subject_(subject), options_(options) {}
 
   CoefficientResult run(const CoefficientModel& structure) {
-    CoefficientResult result;
-    result.coefficient = structure.coefficient;
-    result.axis = axis_of(structure.coefficient);
-    result.model = structure;
-    result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
-    result.reason = identification_obstacle(structure, signals_, subject_);
+    CoefficientResult result = begin(structure);
     if (!result.reason.empty()) return result;
     if (options_.structure != "given") choose_structure(result);
     estimate(result);
@@ -139,14 +133,9 @@ class CoefficientIdentification {
 
   /// A given estimate instead of an own one.
   CoefficientResult evaluate(const CoefficientModel& model) {
-    CoefficientResult result;
-    result.coefficient = model.coefficient;
-    result.axis = axis_of(model.coefficient);
-    result.model = model;
-    result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
-    result.reason = identification_obstacle(model, signals_, subject_);
+    CoefficientResult result = begin(model);
     if (!result.reason.empty()) return result;
-    const std::string_view name = name_of(model.coefficient);
+    const std::string& name = result.name;
     const AxisSegments& axis = segments_.of(result.axis);
     const RegressionData data = coefficient_data(model, signals_, axis.excited, subject_);
     if (data.rows() < static_cast<Eigen::Index>(10 * model.size())) {
@@ -171,11 +160,47 @@ class CoefficientIdentification {
   }
 
  private:
+  CoefficientResult begin(const CoefficientModel& model) const {
+    CoefficientResult result;
+    result.coefficient = model.coefficient;
+    result.name = regressed_name(model.coefficient, subject_);
+    result.per_unit_inertia = per_unit_inertia(model.coefficient, subject_);
+    result.axis = axis_of(model.coefficient);
+    result.model = model;
+    result.row_interval_s = signals_.grid.step * static_cast<double>(signals_.stride);
+    result.reason = identification_obstacle(model, signals_, subject_);
+    return result;
+  }
+
   RegressionOptions regression_options() const {
     RegressionOptions options;
     options.significance = options_.significance;
     options.signal_to_noise = options_.signal_to_noise;
     return options;
+  }
+
+  /// The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the
+  /// sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
+  /// (equation error). Returns that variance over what the sensors explain.
+  static double assign_equation_error(RegressionData& data) {
+    const double unexplained = unexplained_variance(data);
+    const auto n = data.parameters();
+    const double by_sensors = data.error_covariance(n, n);
+    if (unexplained > least_response_variance(data.error_covariance)) data.error_covariance(n, n) = unexplained;
+    return unexplained / by_sensors;
+  }
+
+  /// What is not known of mass, geometry and inertia goes into the error bars; returns the constant that makes up most.
+  std::string widen_by_body_errors(CoefficientResult& result) const {
+    const auto again = [&](const Subject& changed) {
+      RegressionData data = coefficient_data(result.model, signals_, segments_.of(result.axis).identification, changed);
+      static_cast<void>(assign_equation_error(data));
+      const RegressionEstimate estimate = estimation::estimate(data, result.chosen->method, regression_options());
+      return estimate.usable() ? estimate.theta : Eigen::VectorXd();
+    };
+    result.body_sensitivity = body_sensitivity(subject_, result.chosen->theta.size(), again);
+    widen(*result.chosen, result.body_sensitivity, options_.significance);
+    return dominant_constant(*result.chosen, result.body_sensitivity, subject_);
   }
 
   void estimate(CoefficientResult& result) const {
@@ -184,21 +209,12 @@ class CoefficientIdentification {
     const auto minimum = static_cast<Eigen::Index>(10 * result.model.size());
     if (result.data.rows() < minimum) {
       result.verdict = CoefficientVerdict::kNotExcited;
-      result.reason = axis.excited.empty()
-                          ? fmt::format("{} is not excited: {}", name_of(result.coefficient), axis.text)
-                          : fmt::format("{} has only {} usable samples on its segments, {} are needed",
-                                        name_of(result.coefficient), result.data.rows(), minimum);
+      result.reason = axis.excited.empty() ? fmt::format("{} is not excited: {}", result.name, axis.text)
+                                           : fmt::format("{} has only {} usable samples on its segments, {} are needed",
+                                                         result.name, result.data.rows(), minimum);
       return;
     }
-    // The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than
-    // the sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
-    // (equation error).
-    const double unexplained = unexplained_variance(result.data);
-    const auto n = result.data.parameters();
-    const double by_sensors = result.data.error_covariance(n, n);
-    result.error_ratio = unexplained / by_sensors;
-    if (unexplained > least_response_variance(result.data.error_covariance))
-      result.data.error_covariance(n, n) = unexplained;
+    result.error_ratio = assign_equation_error(result.data);
     result.comparison = estimation::compare(result.data, regression_options());
     if (const RegressionEstimate* chosen = choose(result.comparison, options_.method)) {
       result.chosen = *chosen;
@@ -248,7 +264,7 @@ class CoefficientIdentification {
 
   void judge(CoefficientResult& result) const {
     if (result.verdict == CoefficientVerdict::kNotExcited) return;
-    const std::string_view name = name_of(result.coefficient);
+    const std::string& name = result.name;
     const auto reject = [&](std::string reason) {
       result.verdict = CoefficientVerdict::kRejected;
       result.reason = std::move(reason);
@@ -293,6 +309,7 @@ class CoefficientIdentification {
           "(p = {:.1e})",
           name, result.contradiction_p));
     }
+    const std::string dominant = widen_by_body_errors(result);
     const auto is = [&](ParameterStatus status) {
       std::vector<std::string> names;
       for (const auto& p : chosen.parameters) {
@@ -313,6 +330,9 @@ class CoefficientIdentification {
                                               estimation::to_string(chosen.method), 100.0 * result.holdout_fit.r2)
                                 : fmt::format("{} is identified by {}, but there was no hold-out to validate it on",
                                               name, estimation::to_string(chosen.method));
+    if (!dominant.empty()) result.reason += fmt::format("; its error bars are mostly those of {}", dominant);
+    if (result.per_unit_inertia)
+      result.reason += "; per unit inertia, which is not given (inertial coupling of a flat body assumed)";
     if (!insignificant.empty())
       result.reason += fmt::format("; not told apart from zero: {}", fmt::join(insignificant, ", "));
     if (!unexcited.empty()) result.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
@@ -340,7 +360,7 @@ class CoefficientIdentification {
         }
         const double torque = signals_.torque.empty() ? 0.0 : signals_.torque[k];
         const double rho = signals_.air_density[k];
-        result.measured.push_back(select(measured_coefficients(sample, subject_, rho, torque), result.coefficient));
+        result.measured.push_back(select(regressed_coefficients(sample, subject_, rho, torque), result.coefficient));
         result.modelled.push_back(estimated ? result.model.linear(aero_variables(sample, subject_, rho)) : kNaN);
       }
     }
@@ -370,10 +390,7 @@ const char* to_string(CoefficientVerdict verdict) {
 
 std::string identification_obstacle(const CoefficientModel& model, const FlightSignals& signals,
                                     const Subject& subject) {
-  const std::string_view name = name_of(model.coefficient);
-  if (is_moment(model.coefficient) && !subject.inertia) {
-    return fmt::format("{} needs the inertia tensor (subject.inertia), which is not given", name);
-  }
+  const std::string name = regressed_name(model.coefficient, subject);
   if (model.coefficient == Coefficient::kCD && !signals[FlightSignal::kThrust].available()) {
     return "CD needs the thrust: a channel, or throttle with a propulsion model in the subject";
   }
@@ -497,9 +514,11 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     }
   }
   RegressionData data;
-  data.regressand_name = name_of(model.coefficient);
-  data.parameter_names = model.parameter_names();
-  for (const Term& term : model.terms) data.parameter_units.push_back(term.parameter_unit());
+  data.regressand_name = regressed_name(model.coefficient, subject);
+  for (const Term& term : model.terms) {
+    data.parameter_names.push_back(regressed_parameter_name(model.coefficient, term, subject));
+    data.parameter_units.push_back(regressed_parameter_unit(model.coefficient, term, subject));
+  }
   data.segment = std::move(segment);
   const auto count = static_cast<Eigen::Index>(rows.size());
   data.regressors.resize(count, n);
@@ -510,7 +529,7 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     const double rho = signals.air_density[k];
     const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
     data.regressors.row(i) = model.regressors(aero_variables(sample, subject, rho)).transpose();
-    data.regressand(i) = select(measured_coefficients(sample, subject, rho, torque), model.coefficient);
+    data.regressand(i) = select(regressed_coefficients(sample, subject, rho, torque), model.coefficient);
   }
   if (count == 0) return data;
 
@@ -546,7 +565,9 @@ std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signal
 std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results) {
   std::vector<Coefficient> found;
   for (const CoefficientResult& result : results) {
-    if (result.verdict == CoefficientVerdict::kIdentified) found.push_back(result.coefficient);
+    // Per unit inertia nothing can be flown.
+    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+      found.push_back(result.coefficient);
   }
   return found;
 }
@@ -559,7 +580,16 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
     if (structure == nullptr) continue;
-    const CoefficientModel model = estimated_coefficient(*structure, estimate);
+    // Terms that the estimate dropped (refit_significant) are absent there; a coefficient of which it knows nothing is
+    // left out.
+    CoefficientModel model{structure->coefficient, {}, {}};
+    for (const Term& term : structure->terms) {
+      const estimation::EstimatedParameter* p =
+          estimate.find(regressed_parameter_name(structure->coefficient, term, subject));
+      if (p == nullptr || p->status == ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+      model.terms.push_back(term);
+      model.values.push_back(p->value);
+    }
     if (model.size() > 0) results.push_back(identification.evaluate(model));
   }
   if (results.empty()) {
@@ -574,7 +604,8 @@ Subject identified_subject(const Subject& subject, std::span<const CoefficientRe
     if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
   }
   for (const CoefficientResult& result : results) {
-    if (result.verdict == CoefficientVerdict::kIdentified) identified.model.set(result.model);
+    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+      identified.model.set(result.model);
   }
   return identified;
 }
@@ -591,15 +622,18 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     if (listed(result)) total += static_cast<Eigen::Index>(result.model.size());
   }
   estimate.covariance = Eigen::MatrixXd::Zero(total, total);
+  std::vector<std::pair<Eigen::Index, Eigen::MatrixXd>> shared;
   Eigen::Index at = 0;
   for (const CoefficientResult& result : results) {
-    const std::string name(name_of(result.coefficient));
+    const std::string& name = result.name;
     if (!listed(result)) continue;
     if (!result.chosen) {
       // Nothing was estimated: the parameters are listed all the same, so that nobody takes silence for zero.
       for (std::size_t i = 0; i < result.model.size(); ++i) {
-        estimate.parameters.push_back({parameter_name(result.coefficient, result.model.terms[i]), kNaN, kNaN, kNaN,
-                                       kNaN, result.model.terms[i].parameter_unit(), ParameterStatus::kNotExcited});
+        const Term& term = result.model.terms[i];
+        estimate.parameters.push_back({regressed_parameter_name(result.coefficient, term, subject), kNaN, kNaN, kNaN,
+                                       kNaN, regressed_parameter_unit(result.coefficient, term, subject),
+                                       ParameterStatus::kNotExcited});
         estimate.covariance(at, at) = kNaN;
         ++at;
       }
@@ -612,6 +646,14 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
           {p.name, p.value, p.sigma, p.low95, p.high95, p.unit, out ? ParameterStatus::kNotExcited : p.status});
     }
     estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
+    // Coefficients are estimated apart, but share the errors of mass, geometry and inertia.
+    shared.push_back({at, result.body_sensitivity});
+    for (const auto& [other, G] : shared) {
+      if (other == at || G.size() == 0 || result.body_sensitivity.size() == 0) continue;
+      const Eigen::MatrixXd cross = result.body_sensitivity * G.transpose();
+      estimate.covariance.block(at, other, cross.rows(), cross.cols()) = cross;
+      estimate.covariance.block(other, at, cross.cols(), cross.rows()) = cross.transpose();
+    }
     at += chosen.theta.size();
     estimate.fit[name + ".r2"] = result.identification_fit.r2;
     estimate.fit[name + ".residual_sd"] = chosen.residual_sd;

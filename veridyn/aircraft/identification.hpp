@@ -55,13 +55,15 @@ enum class CoefficientVerdict {
   kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
   kNotExcited,  ///< the flight does not move what the coefficient depends on
   kRejected,    ///< an estimate exists and must not be used
-  kSkipped      ///< something that it needs is missing: inertia, thrust, a channel
+  kSkipped      ///< something that it needs is missing: thrust, a channel
 };
 [[nodiscard]] const char* to_string(CoefficientVerdict verdict);
 
 /// One coefficient: the estimates of all methods, what was chosen, and whether to believe it.
 struct CoefficientResult {
   Coefficient coefficient = Coefficient::kCL;
+  std::string name;               ///< "Cm", or "Cm/Jy" where the subject has no inertia
+  bool per_unit_inertia = false;  ///< then the model's values are no aerodynamic coefficients
   Axis axis = Axis::kLongitudinal;
   CoefficientVerdict verdict = CoefficientVerdict::kSkipped;
   std::string reason;                           ///< one sentence
@@ -74,6 +76,8 @@ struct CoefficientResult {
   /// Share of the coefficient's variance that is neither modelled nor explained by twice the sensors' noise:
   /// (1 - R^2) (1 - 4 / error_ratio).
   double unmodelled_share = 0.0;
+  /// Change of the parameters per standard deviation of mass, geometry and inertia; see body_sensitivity.
+  Eigen::MatrixXd body_sensitivity;
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
   double contradiction_p = 1.0;  ///< of identification against hold-out estimates

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "veridyn/aircraft/aero_model.hpp"
@@ -62,34 +63,57 @@ template <typename Scalar>
   return v;
 }
 
+/// The constants of the aircraft that enter the coefficients, as a type that can carry derivatives or errors.
+enum class BodyConstant { kMass, kWingArea, kSpan, kChord, kJx, kJy, kJz, kJxz };
+inline constexpr std::size_t kBodyConstants = 8;
+inline constexpr std::array<std::string_view, kBodyConstants> kBodyConstantNames = {
+    "mass", "wing_area", "span", "chord", "Jx", "Jy", "Jz", "Jxz"};
+
+/// kg, m^2, m, m, kg m^2; inertia is zero when the subject has none.
+template <typename Scalar>
+struct BodyConstants {
+  std::array<Scalar, kBodyConstants> value{};
+  [[nodiscard]] const Scalar& operator[](BodyConstant c) const { return value[static_cast<std::size_t>(c)]; }
+  [[nodiscard]] Scalar& operator[](BodyConstant c) { return value[static_cast<std::size_t>(c)]; }
+};
+
+template <typename Scalar>
+[[nodiscard]] BodyConstants<Scalar> body_constants(const Subject& subject) {
+  const Inertia J = subject.inertia.value_or(Inertia{});
+  return {{Scalar(subject.mass), Scalar(subject.wing_area), Scalar(subject.span), Scalar(subject.chord), Scalar(J.Jx),
+           Scalar(J.Jy), Scalar(J.Jz), Scalar(J.Jxz)}};
+}
+
 /// Coefficients from specific force, thrust, rates and rate derivatives: the rigid-body equations solved for the
-/// aerodynamics (docs/aircraft.md, "Coefficients"). Moments per unit inertia are not given: without `subject.inertia`
-/// the three moment coefficients are zero and must not be used. `torque` is the engine's reaction about x [N m]. The
-/// aerodynamic force is taken to act at the centre of gravity; `subject.force_point` moves the moments.
+/// aerodynamics (docs/aircraft.md, "Coefficients"). Without `subject.inertia` the three moment coefficients are zero
+/// and must not be used. `torque` is the engine's reaction about x [N m]. The aerodynamic force is taken to act at the
+/// centre of gravity; `subject.force_point` moves the moments. `body` overrides the subject's constants.
 template <typename Scalar>
 [[nodiscard]] AeroCoefficients<Scalar> measured_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
-                                                             double rho, const Scalar& torque = Scalar(0.0)) {
+                                                             const BodyConstants<Scalar>& body, const Scalar& rho,
+                                                             const Scalar& torque) {
   using F = FlightSignal;
+  using B = BodyConstant;
   using std::cos;
   using std::sin;
   const Scalar& Va = s[F::kAirspeed];
-  const Scalar qS = Scalar(0.5 * rho * subject.wing_area) * Va * Va;
+  const Scalar qS = Scalar(0.5) * rho * body[B::kWingArea] * Va * Va;
   const Scalar ca = cos(s[F::kAlpha]);
   const Scalar sa = sin(s[F::kAlpha]);
-  const Scalar Fx = Scalar(subject.mass) * s[F::kAx] - s[F::kThrust];
-  const Scalar Fy = Scalar(subject.mass) * s[F::kAy];
-  const Scalar Fz = Scalar(subject.mass) * s[F::kAz];
+  const Scalar Fx = body[B::kMass] * s[F::kAx] - s[F::kThrust];
+  const Scalar Fy = body[B::kMass] * s[F::kAy];
+  const Scalar Fz = body[B::kMass] * s[F::kAz];
   AeroCoefficients<Scalar> c;
   c.CL = (Fx * sa - Fz * ca) / qS;
   c.CD = -(Fx * ca + Fz * sa) / qS;
   c.CY = Fy / qS;
   if (!subject.inertia) return c;
-  const Inertia& J = *subject.inertia;
+  const Scalar &Jx = body[B::kJx], &Jy = body[B::kJy], &Jz = body[B::kJz], &Jxz = body[B::kJxz];
   const Scalar &p = s[F::kP], &q = s[F::kQ], &r = s[F::kR];
   const Scalar &dp = s[F::kPdot], &dq = s[F::kQdot], &dr = s[F::kRdot];
-  Scalar l = Scalar(J.Jx) * dp - Scalar(J.Jxz) * dr + Scalar(J.Jz - J.Jy) * q * r - Scalar(J.Jxz) * p * q - torque;
-  Scalar m = Scalar(J.Jy) * dq + Scalar(J.Jx - J.Jz) * p * r + Scalar(J.Jxz) * (p * p - r * r);
-  Scalar n = Scalar(J.Jz) * dr - Scalar(J.Jxz) * dp + Scalar(J.Jy - J.Jx) * p * q + Scalar(J.Jxz) * q * r;
+  Scalar l = Jx * dp - Jxz * dr + (Jz - Jy) * q * r - Jxz * p * q - torque;
+  Scalar m = Jy * dq + (Jx - Jz) * p * r + Jxz * (p * p - r * r);
+  Scalar n = Jz * dr - Jxz * dp + (Jy - Jx) * p * q + Jxz * q * r;
   // Moments of thrust and of the aerodynamic force about the centre of gravity: r x F.
   const auto& e = subject.propulsion.position;
   m -= Scalar(e[2]) * s[F::kThrust];
@@ -98,11 +122,53 @@ template <typename Scalar>
   l -= Scalar(f[1]) * Fz - Scalar(f[2]) * Fy;
   m -= Scalar(f[2]) * Fx - Scalar(f[0]) * Fz;
   n -= Scalar(f[0]) * Fy - Scalar(f[1]) * Fx;
-  c.Cl = l / (qS * Scalar(subject.span));
-  c.Cm = m / (qS * Scalar(subject.chord));
-  c.Cn = n / (qS * Scalar(subject.span));
+  c.Cl = l / (qS * body[B::kSpan]);
+  c.Cm = m / (qS * body[B::kChord]);
+  c.Cn = n / (qS * body[B::kSpan]);
   return c;
 }
+
+/// The same with the subject's own constants.
+template <typename Scalar>
+[[nodiscard]] AeroCoefficients<Scalar> measured_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
+                                                             double rho, const Scalar& torque = Scalar(0.0)) {
+  return measured_coefficients(s, subject, body_constants<Scalar>(subject), Scalar(rho), torque);
+}
+
+/// Moment coefficients per unit inertia, for an aircraft whose inertia is not known: Cl/Jx, Cm/Jy, Cn/Jz [1/(kg m^2)]
+/// stand in `Cl`, `Cm`, `Cn`; the forces are as above.
+///
+/// The inertial coupling is that of a flat body, Jz = Jx + Jy, with Jxz = 0 and Jx = Jy:
+///     Cl/Jx = (p' + q r)/(qbar S b),  Cm/Jy = (q' - p r)/(qbar S c),  Cn/Jz = r'/(qbar S b).
+/// Moments of thrust, reaction torque and of an offset force cannot be taken out without the inertia; they stay in.
+template <typename Scalar>
+[[nodiscard]] AeroCoefficients<Scalar> coefficients_per_unit_inertia(const FlightSample<Scalar>& s,
+                                                                     const Subject& subject, double rho) {
+  using F = FlightSignal;
+  AeroCoefficients<Scalar> c = measured_coefficients(s, subject, rho);
+  const Scalar qS = Scalar(0.5 * rho * subject.wing_area) * s[F::kAirspeed] * s[F::kAirspeed];
+  c.Cl = (s[F::kPdot] + s[F::kQ] * s[F::kR]) / (qS * Scalar(subject.span));
+  c.Cm = (s[F::kQdot] - s[F::kP] * s[F::kR]) / (qS * Scalar(subject.chord));
+  c.Cn = s[F::kRdot] / (qS * Scalar(subject.span));
+  return c;
+}
+
+/// What is regressed on: the measured coefficients, with moments per unit inertia where the subject has none.
+template <typename Scalar>
+[[nodiscard]] AeroCoefficients<Scalar> regressed_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
+                                                              double rho, const Scalar& torque = Scalar(0.0)) {
+  return subject.inertia ? measured_coefficients(s, subject, rho, torque)
+                         : coefficients_per_unit_inertia(s, subject, rho);
+}
+
+/// True of a moment of a subject without inertia.
+[[nodiscard]] bool per_unit_inertia(Coefficient coefficient, const Subject& subject);
+/// "Cl", or "Cl/Jx" per unit inertia.
+[[nodiscard]] std::string regressed_name(Coefficient coefficient, const Subject& subject);
+/// "Cl_beta", or "Cl/Jx_beta".
+[[nodiscard]] std::string regressed_parameter_name(Coefficient coefficient, const Term& term, const Subject& subject);
+/// "1/rad", or "1/rad/kg/m^2".
+[[nodiscard]] std::string regressed_parameter_unit(Coefficient coefficient, const Term& term, const Subject& subject);
 
 /// One of the six by its name.
 template <typename Scalar>

@@ -36,6 +36,22 @@ Inertia read_inertia(const StudyTable& subject, std::vector<std::string>& warnin
   return J;
 }
 
+BodySigma read_sigma(const StudyTable& table) {
+  const auto sigma = [&](std::string_view key, std::string_view unit) {
+    const double value = table.number_or(key, unit, 0.0);
+    if (!(value >= 0.0)) table.fail(key, fmt::format("= {:g} must be >= 0", value));
+    return value;
+  };
+  return {.mass = sigma("mass", "kg"),
+          .wing_area = sigma("wing_area", "m^2"),
+          .span = sigma("span", "m"),
+          .chord = sigma("chord", "m"),
+          .Jx = sigma("Jx", "kg m^2"),
+          .Jy = sigma("Jy", "kg m^2"),
+          .Jz = sigma("Jz", "kg m^2"),
+          .Jxz = sigma("Jxz", "kg m^2")};
+}
+
 Actuator read_actuator(const StudyTable& table, const Actuator& base, bool throttle) {
   const std::string_view unit = throttle ? "1" : "rad";
   const std::string_view rate = throttle ? "1/s" : "rad/s";
@@ -106,8 +122,8 @@ std::string Inertia::inadmissible() const {
 
 bool operator==(const Subject& a, const Subject& b) {
   return a.name == b.name && a.description == b.description && a.sign_convention == b.sign_convention &&
-         a.mass == b.mass && a.inertia == b.inertia && a.wing_area == b.wing_area && a.span == b.span &&
-         a.chord == b.chord && a.force_point == b.force_point && a.imu_position == b.imu_position &&
+         a.mass == b.mass && a.inertia == b.inertia && a.sigma == b.sigma && a.wing_area == b.wing_area &&
+         a.span == b.span && a.chord == b.chord && a.force_point == b.force_point && a.imu_position == b.imu_position &&
          a.model == b.model && a.propulsion == b.propulsion && a.elevator == b.elevator && a.aileron == b.aileron &&
          a.rudder == b.rudder && a.throttle == b.throttle;
 }
@@ -128,6 +144,7 @@ Subject read_subject(const StudyTable& table) {
     s.warnings.clear();
     s.inertia = read_inertia(table, s.warnings);
   }
+  if (table.has("sigma")) s.sigma = read_sigma(table.table("sigma"));
   s.model = read_aero_model(table.table_or_empty("model"), s.model);
   s.propulsion = read_propulsion(table.table_or_empty("propulsion"), s.propulsion);
   const StudyTable actuators = table.table_or_empty("actuators");
@@ -147,6 +164,12 @@ std::string write_subject_toml(const Subject& s) {
   if (s.inertia) {
     out += fmt::format("inertia = {{ Jx = {}, Jy = {}, Jz = {}, Jxz = {} }}\n", s.inertia->Jx, s.inertia->Jy,
                        s.inertia->Jz, s.inertia->Jxz);
+  }
+  if (s.sigma.any()) {
+    const BodySigma& e = s.sigma;
+    out += fmt::format(
+        "sigma = {{ mass = {}, wing_area = {}, span = {}, chord = {}, Jx = {}, Jy = {}, Jz = {}, Jxz = {} }}\n", e.mass,
+        e.wing_area, e.span, e.chord, e.Jx, e.Jy, e.Jz, e.Jxz);
   }
   out += "\n" + write_aero_model_toml(s.model);
   out += "\n" + write_propulsion_toml(s.propulsion);

@@ -40,6 +40,18 @@ struct Actuator {
   friend bool operator==(const Actuator&, const Actuator&) = default;
 };
 
+/// Standard deviations of the aircraft's constants, as known from scales, drawings and swing tests: errors that all
+/// samples share. Zero: exact. Study table `[subject.sigma]`.
+struct BodySigma {
+  double mass = 0.0;                               ///< [kg]
+  double wing_area = 0.0;                          ///< [m^2]
+  double span = 0.0, chord = 0.0;                  ///< [m]
+  double Jx = 0.0, Jy = 0.0, Jz = 0.0, Jxz = 0.0;  ///< [kg m^2]
+
+  [[nodiscard]] bool any() const { return !(*this == BodySigma{}); }
+  friend bool operator==(const BodySigma&, const BodySigma&) = default;
+};
+
 /// The physical aircraft: what is measured on the bench, and its model of aerodynamics as far as known.
 struct Subject {
   std::string name;
@@ -47,6 +59,7 @@ struct Subject {
   std::string sign_convention;     ///< of deflections, in words: "positive deflection gives positive moment"
   double mass = 0.0;               ///< [kg]
   std::optional<Inertia> inertia;  ///< without it forces are identified and moments are not
+  BodySigma sigma;                 ///< how well mass, geometry and inertia are known
   double wing_area = 0.0;          ///< S [m^2]
   double span = 0.0;               ///< b [m]
   double chord = 0.0;              ///< c, mean aerodynamic chord [m]
@@ -76,6 +89,9 @@ struct Subject {
 ///     force_point = [0, 0, 0]   # [m] where the aerodynamic force acts, from the centre of gravity
 ///     imu_position = [0, 0, 0]  # [m] from the centre of gravity, body axes
 ///     inertia = { Jx = 1.1, Jy = 1.2, Jz = 2.0, Jxz = 0.1 }      # [kg m^2]; Jxz may be left out
+///     sigma = { mass = 0.02, wing_area = 0.01, span = 0.005, chord = 0.002, Jx = 0.01, Jy = 0.02, Jz = 0.02, Jxz =
+///     0.01 }
+///                               # standard deviations, each optional; they widen the intervals of the derivatives
 ///     [subject.model]           # see read_aero_model
 ///     [subject.propulsion]      # see read_propulsion
 ///     [subject.actuators.elevator]                # likewise aileron, rudder, throttle

@@ -191,7 +191,7 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
     figure.spans = segment_spans(analysis.segments, axis == Axis::kLongitudinal, axis == Axis::kLateral);
     for (const CoefficientResult& r : analysis.coefficients) {
       if (r.axis != axis || r.time.empty()) continue;
-      Panel panel{.label = std::string(name_of(r.coefficient))};
+      Panel panel{.label = r.name};
       panel.lines.push_back({.name = "measured", .y = r.measured, .x = r.time, .role = Role::kMeasured});
       if (r.verdict == CoefficientVerdict::kIdentified)
         panel.lines.push_back({.name = "model", .y = r.modelled, .x = r.time});
@@ -220,7 +220,7 @@ std::vector<TimeSeries> validation_figures(const Validation& validation) {
 }
 
 XYPlot residual_autocorrelation_plot(const CoefficientResult& result) {
-  XYPlot plot{.title = fmt::format("{}: residual autocorrelation", name_of(result.coefficient)),
+  XYPlot plot{.title = fmt::format("{}: residual autocorrelation", result.name),
               .caption = "Inside the dashed lines 95 % of the time when the residual is white.",
               .x = {.label = "lag", .unit = "s"},
               .y = {.label = "correlation"}};
@@ -237,7 +237,7 @@ XYPlot residual_autocorrelation_plot(const CoefficientResult& result) {
 
 XYPlot residual_normal_plot(const CoefficientResult& result) {
   const numerics::NormalPlot& normal = result.chosen->normal_plot;
-  XYPlot plot{.title = fmt::format("{}: normal probability plot", name_of(result.coefficient)),
+  XYPlot plot{.title = fmt::format("{}: normal probability plot", result.name),
               .caption = "On the line when the residual is normally distributed.",
               .x = {.label = "normal quantile"},
               .y = {.label = "residual"}};

@@ -59,7 +59,7 @@ std::string_view meaning(Coefficient c) {
 std::vector<std::string> meanings(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
   std::vector<std::string> names;
   for (const CoefficientResult& r : results) {
-    if (r.verdict == verdict) names.push_back(fmt::format("{} ({})", meaning(r.coefficient), name_of(r.coefficient)));
+    if (r.verdict == verdict) names.push_back(fmt::format("{} ({})", meaning(r.coefficient), r.name));
   }
   return names;
 }
@@ -139,7 +139,7 @@ Section coefficients_section(const FlightAnalysis& analysis) {
                   {.name = "Equation error", .digits = 3}}};
   for (const CoefficientResult& r : analysis.coefficients) {
     const bool has = r.chosen.has_value();
-    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", name_of(r.coefficient), meaning(r.coefficient))),
+    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", r.name, meaning(r.coefficient))),
                                     status_cell(status_of(r.verdict), to_string(r.verdict)),
                                     text_cell(has ? std::string(estimation::to_string(r.chosen->method)) : ""),
                                     number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
@@ -191,11 +191,11 @@ Table parameter_table(const FlightStudy& study, std::span<const CoefficientResul
 }
 
 IntervalPlot interval_plot(const FlightStudy& study, const CoefficientResult& r) {
-  IntervalPlot plot{.title = fmt::format("{}: estimates of all methods", name_of(r.coefficient)),
-                    .reference_name = "truth"};
+  IntervalPlot plot{.title = fmt::format("{}: estimates of all methods", r.name), .reference_name = "truth"};
   for (const RegressionEstimate& e : r.comparison.estimates) plot.methods.emplace_back(estimation::to_string(e.method));
   for (std::size_t i = 0; i < r.model.size(); ++i) {
-    IntervalRow row{.name = parameter_name(r.coefficient, r.model.terms[i]), .unit = r.model.terms[i].parameter_unit()};
+    IntervalRow row{.name = regressed_parameter_name(r.coefficient, r.model.terms[i], study.subject),
+                    .unit = regressed_parameter_unit(r.coefficient, r.model.terms[i], study.subject)};
     for (const RegressionEstimate& e : r.comparison.estimates) {
       if (e.usable()) {
         const auto& p = e.parameters[i];
@@ -347,16 +347,15 @@ Section excitation_section(const FlightAnalysis& analysis) {
     if (e == nullptr) continue;
     std::vector<std::string> values;
     for (const double s : e->singular_values) values.push_back(fmt::format("{:.3g}", s));
-    table.rows.push_back(
-        {.cells = {text_cell(std::string(name_of(r.coefficient))), number_cell(static_cast<double>(e->rows), 0),
-                   number_cell(e->threshold), text_cell(fmt::format("{}", fmt::join(values, ", "))),
-                   text_cell(unexcited_text(*e)), number_cell(e->condition_number)}});
+    table.rows.push_back({.cells = {text_cell(r.name), number_cell(static_cast<double>(e->rows), 0),
+                                    number_cell(e->threshold), text_cell(fmt::format("{}", fmt::join(values, ", "))),
+                                    text_cell(unexcited_text(*e)), number_cell(e->condition_number)}});
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   for (const CoefficientResult& r : analysis.coefficients) {
     if (!shown(r)) continue;
     const Eigen::MatrixXd& P = r.chosen->covariance;
-    Matrix matrix{.title = fmt::format("{}: correlation of the parameters", name_of(r.coefficient))};
+    Matrix matrix{.title = fmt::format("{}: correlation of the parameters", r.name)};
     for (const auto& p : r.chosen->parameters) matrix.row_names.push_back(p.name);
     matrix.column_names = matrix.row_names;
     for (Eigen::Index i = 0; i < P.rows(); ++i) {
@@ -379,7 +378,7 @@ Section residual_section(const FlightAnalysis& analysis) {
   for (const CoefficientResult& r : analysis.coefficients) {
     for (const estimation::HonestyCheck& check : r.comparison.checks) {
       table.rows.push_back(
-          {.cells = {text_cell(std::string(name_of(r.coefficient))), text_cell(check.name),
+          {.cells = {text_cell(r.name), text_cell(check.name),
                      status_cell(check.passed ? Status::kGood : Status::kCaution), text_cell(check.text)}});
     }
   }
@@ -417,7 +416,7 @@ Section validation_section(const FlightAnalysis& analysis) {
   };
   for (const PredictedQuantity& q : v.quantities) row(q.name, q.fit, q.unit, Status::kNone);
   for (const CoefficientResult& r : analysis.coefficients) {
-    if (r.holdout_fit.count > 0) row(std::string(name_of(r.coefficient)), r.holdout_fit, "1", status_of(r.verdict));
+    if (r.holdout_fit.count > 0) row(r.name, r.holdout_fit, "1", status_of(r.verdict));
   }
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   for (TimeSeries& figure : validation_figures(v)) section.blocks.emplace_back(std::move(figure));
@@ -511,6 +510,37 @@ Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis
   return section;
 }
 
+Section uncertainty_section(const UncertaintyReport& report) {
+  Section section{.title = "Uncertainty of the measured coefficients", .id = "uncertainty"};
+  Table table{
+      .title = "Error of one measured coefficient",
+      .caption =
+          "Propagation of distributions (JCGM 101): 95 % of the errors lie between low and high; sigma is the larger "
+          "end over 1.96. Beside it the linear law of propagation, apart for what differs from sample to sample "
+          "(sensors) and what all samples share (mass, geometry, inertia: subject.sigma). Range: standard deviation of "
+          "the coefficient itself over the operating range.",
+      .columns = {{.name = "Coefficient"},
+                  {.name = "sigma", .group = "Monte Carlo"},
+                  {.name = "95 % low", .group = "Monte Carlo"},
+                  {.name = "95 % high", .group = "Monte Carlo"},
+                  {.name = "mean", .digits = 2, .group = "Monte Carlo"},
+                  {.name = "sigma", .group = "linear"},
+                  {.name = "of sensors", .group = "linear"},
+                  {.name = "of the aircraft's constants", .group = "linear"},
+                  {.name = "Range", .digits = 3}}};
+  for (const CoefficientUncertainty& c : report.coefficients) {
+    const double sigma = c.error.sigma;
+    table.rows.push_back(
+        {.cells = {text_cell(std::string(name_of(c.coefficient))), measured_cell(sigma, sigma),
+                   measured_cell(c.error.low, sigma), measured_cell(c.error.high, sigma), number_cell(c.error.mean),
+                   measured_cell(c.sigma_linear, sigma), measured_cell(c.sigma_sensors, sigma),
+                   measured_cell(c.sigma_body, sigma), number_cell(c.range)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  section.blocks.emplace_back(Paragraph{report.text + "."});
+  return section;
+}
+
 void add_warnings(Document& document, const std::vector<std::string>& warnings) {
   if (warnings.empty()) return;
   Section section{.title = "Warnings", .id = "warnings"};
@@ -569,6 +599,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
     document.sections.push_back(excitation_section(analysis));
     document.sections.push_back(residual_section(analysis));
   }
+  if (analysis.uncertainty.available()) document.sections.push_back(uncertainty_section(analysis.uncertainty));
   document.sections.push_back(sensors_section(study, analysis));
   add_warnings(document, analysis.estimate.warnings);
   if (Section rejected = rejected_section(study, analysis); !rejected.blocks.empty())
