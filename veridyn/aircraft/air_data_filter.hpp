@@ -154,8 +154,8 @@ struct AirDataModel {
     moved.wind = x.wind.template cast<S>() + e.template segment<3>(kWind);
     if constexpr (kHasImuBiases) moved.imu_bias = x.imu_bias.template cast<S>() + e.template segment<6>(kImuBias);
     if constexpr (kHasImuScales) moved.imu_scale = x.imu_scale.template cast<S>() + e.template segment<6>(kImuScale);
-    if constexpr (kAirDataErrors)
-      moved.air_error = x.air_error.template cast<S>() + e.template segment<5>(kAirDataError);
+    moved.air_error = x.air_error.template cast<S>();
+    if constexpr (kAirDataErrors) moved.air_error += e.template segment<5>(kAirDataError);
     return moved;
   }
 

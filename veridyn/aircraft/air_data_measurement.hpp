@@ -23,15 +23,14 @@ struct MeasurementContext {
   Controls<double> controls;          ///< for the accelerometer of the model-based filter
 };
 
-/// Enters the sample `z` of a sensor with standard deviation `sigma` into `filter`. With a `nominal` state, prediction
-/// and Jacobian are taken there (see ExtendedKalmanFilter::propagate_about). Returns whether it was offered to the
-/// filter at all; `nis` then receives its normalised square.
+/// Enters the sample `z` of a sensor with standard deviation `sigma` into `filter`. Returns whether it was offered to
+/// the filter at all; `seen` then receives its innovation.
 template <class Model>
 bool enter_measurement(estimation::ExtendedKalmanFilter<Model>& filter, const Model& model,
                        const MeasurementContext& c, Sensor which, double z, double sigma,
                        estimation::InnovationMonitor& monitor, estimation::SmootherTape<Model>* tape = nullptr,
-                       const typename Model::template State<double>* nominal = nullptr, double* nis = nullptr) {
-  const auto& x = nominal ? *nominal : filter.state();
+                       estimation::Innovation* seen = nullptr) {
+  const auto& x = filter.state();
   Prediction<Model> p;
   double variance = sigma * sigma;
   bool angle = false;
@@ -78,9 +77,8 @@ bool enter_measurement(estimation::ExtendedKalmanFilter<Model>& filter, const Mo
         return false;
       }
   }
-  double nu = angle ? numerics::wrap_angle(z - p.value) : z - p.value;
-  if (nominal) nu -= p.H.dot(Model::template local<double>(*nominal, filter.state()));
-  static_cast<void>(filter.update(c.t, nu, p.H, variance, monitor, tape, nis));
+  const double nu = angle ? numerics::wrap_angle(z - p.value) : z - p.value;
+  static_cast<void>(filter.update(c.t, nu, p.H, variance, monitor, tape, seen));
   return true;
 }
 

@@ -68,10 +68,10 @@ class GuardedFilter {
   void measure(const internal::MeasurementContext& context, internal::Sensor which, double z, double sigma) {
     static_cast<void>(internal::enter_measurement<Free>(free_, free_model_, context, which, z, sigma,
                                                         free_monitors_[which]));
-    double nis = 0.0;
+    estimation::Innovation seen;
     const bool offered = internal::enter_measurement<Based>(based_, based_model_, context, which, z, sigma,
-                                                            based_monitors_[which], nullptr, nullptr, &nis);
-    if (offered && which >= internal::kPitot) guard_.add(static_cast<std::size_t>(which), nis);
+                                                            based_monitors_[which], nullptr, &seen);
+    if (offered && which >= internal::kPitot) guard_.add(static_cast<std::size_t>(which), seen.nis());
   }
 
   /// Closes a window of the guard when its time is over. Call after the samples of a time.

@@ -79,7 +79,8 @@ double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const
                       const DrydenSettings& spectrum) {
   using Model = AirDataModel<0, false>;
   const std::vector<double> no_output;
-  const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &no_output};
+  const RunSetting<Model> setting{
+      .streams = &s, .options = &o, .model = {spectrum, noise_of(s, o)}, .output_t = &no_output};
   FlightRun<Model> run(setting, part, internal::start_of(setting, part), monitors_with(o.gate), 0);
   while (run.advance(nullptr)) {
   }
@@ -349,6 +350,10 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   out.interrupted = solution.count < stamps.size();
   report_sensors(streams, solution, out);
   report_quantities(streams, options, *solution.smoothed, solution.count, out);
+  if (!solution.air_data_errors_converged) {
+    out.warnings.emplace_back(
+        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too narrow");
+  }
   report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
   if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);
   stamps.resize(solution.count);

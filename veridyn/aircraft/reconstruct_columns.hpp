@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/aircraft/air_data_filter.hpp"
@@ -146,14 +147,31 @@ class ResultColumns {
             P(Model::kCoefficientError + k, Model::kCoefficientError + k));
       }
     }
-    if constexpr (Model::kHasAirDataErrors) {
-      for (int k = 0; k < 5; ++k) {
-        put(kFirstAirDataError + static_cast<std::size_t>(k), i, x.air_error(k),
-            P(Model::kAirDataError + k, Model::kAirDataError + k));
-      }
-    }
     for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = gust(static_cast<Eigen::Index>(k));
     density_[i] = density;
+  }
+
+  /// The same value and sigma at all samples.
+  void fill(std::size_t column, double value, double sigma) {
+    std::fill(value_[column].begin(), value_[column].end(), value);
+    std::fill(sigma_[column].begin(), sigma_[column].end(), sigma);
+  }
+
+  /// Adds to all variances what constants of the given correlation contribute: `shifted[k]` are the results with
+  /// constant k moved by one sigma.
+  void widen(std::size_t count, const std::vector<ResultColumns>& shifted, const Eigen::MatrixXd& correlation) {
+    Eigen::VectorXd d(static_cast<Eigen::Index>(shifted.size()));
+    for (std::size_t c = 0; c < kFirstAirDataError; ++c) {
+      if (value_[c].empty()) continue;
+      const bool angle = std::string_view(kColumns[c].unit) == "rad";
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < shifted.size(); ++k) {
+          const double change = shifted[k].value_[c][i] - value_[c][i];
+          d(static_cast<Eigen::Index>(k)) = angle ? numerics::wrap_angle(change) : change;
+        }
+        sigma_[c][i] = std::sqrt(sigma_[c][i] * sigma_[c][i] + std::max(0.0, d.dot(correlation * d)));
+      }
+    }
   }
 
   /// Takes columns `first` and behind of sample `i` from another set of results.

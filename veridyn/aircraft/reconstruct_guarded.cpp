@@ -9,7 +9,8 @@ namespace {
 
 /// Goes through the recording with the guarded filter and writes its estimate.
 template <class Free, class Based>
-GuardTrace replay(const SolveTask& task, ResultColumns* filtered, Progress& progress) {
+GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error, ResultColumns* filtered,
+                  Progress& progress) {
   const FlightStreams& s = *task.streams;
   const ReconstructOptions& o = *task.options;
   const std::vector<double>& stamps = *task.stamps;
@@ -17,7 +18,8 @@ GuardTrace replay(const SolveTask& task, ResultColumns* filtered, Progress& prog
   trace.model_based.assign(stamps.size(), 0);
   trace.nis_ratio.assign(stamps.size(), 0.0);
   const auto subject = std::make_shared<const Subject>(*task.subject);
-  const RunSetting<Free> setting{&s, &o, make_model<Free>(task), &stamps};
+  RunSetting<Free> setting{.streams = &s, .options = &o, .model = make_model<Free>(task), .output_t = &stamps};
+  setting.air_error = air_error;
   constexpr std::size_t kReport = 4096;
   std::size_t done = 0, density = 0;
   for (std::size_t i = 0; i < task.segments.size(); ++i) {
@@ -69,9 +71,9 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   Solution based = solve_model_based(task, progress);
   Solution free = solve_model_free(task, progress);
   ResultColumns* filtered = based.filtered ? &*based.filtered : nullptr;
-  GuardTrace trace = task.options->wants_sensor_errors()
-                         ? replay<AirDataModel<12, true>, ModelBasedAirData<12, true>>(task, filtered, progress)
-                         : replay<AirDataModel<0, false>, ModelBasedAirData<0, false>>(task, filtered, progress);
+  GuardTrace trace = task.options->wants_imu_biases()
+                         ? replay<AirDataModel<12, false>, ModelBasedAirData<12, false>>(task, free.air_error, filtered, progress)
+                         : replay<AirDataModel<0, false>, ModelBasedAirData<0, false>>(task, free.air_error, filtered, progress);
   based.count = std::min(based.count, free.count);
 
   // The model-based smoother is contaminated on both sides of a stretch in which the model was wrong.

@@ -10,9 +10,9 @@ ModelError model_error_of(const Subject& subject, const ReconstructOptions& o) {
 }
 
 Solution solve_model_based(const SolveTask& task, Progress& progress) {
-  // Two instantiations: who asks for any sensor error pays for all of them, in time only.
-  return task.options->wants_sensor_errors() ? solve<ModelBasedAirData<12, true>>(task, progress)
-                                             : solve<ModelBasedAirData<0, false>>(task, progress);
+  // Two instantiations: who asks for any error of the inertial sensors pays for all of them, in time only.
+  return task.options->wants_imu_biases() ? solve<ModelBasedAirData<12, false>>(task, progress)
+                                          : solve<ModelBasedAirData<0, false>>(task, progress);
 }
 
 }  // namespace veridyn::aircraft::internal

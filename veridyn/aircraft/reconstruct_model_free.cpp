@@ -34,13 +34,24 @@ std::array<bool, kColumns.size()> wanted_columns(const ReconstructOptions& o, bo
 
 Solution solve_model_free(const SolveTask& task, Progress& progress) {
   const ReconstructOptions& o = *task.options;
-  if (o.wants_imu_scales()) return solve<AirDataModel<12, true>>(task, progress);
-  if (o.wants_imu_biases()) {
-    return o.wants_air_data_errors() ? solve<AirDataModel<6, true>>(task, progress)
-                                     : solve<AirDataModel<6, false>>(task, progress);
-  }
-  return o.wants_air_data_errors() ? solve<AirDataModel<0, true>>(task, progress)
-                                   : solve<AirDataModel<0, false>>(task, progress);
+  if (o.wants_imu_scales()) return solve<AirDataModel<12, false>>(task, progress);
+  return o.wants_imu_biases() ? solve<AirDataModel<6, false>>(task, progress)
+                              : solve<AirDataModel<0, false>>(task, progress);
+}
+
+std::array<double, 5> air_data_error_priors() {
+  return {kVaneBiasPrior, kVaneBiasPrior, kAlphaScalePrior, kPitotScalePrior, kPitotBiasPrior};
+}
+
+std::vector<int> wanted_air_data_errors(const ReconstructOptions& o) {
+  using Model = AirDataModel<0, false>;
+  std::vector<int> index;
+  if (o.alpha_bias) index.push_back(Model::kAlphaBias);
+  if (o.beta_bias) index.push_back(Model::kBetaBias);
+  if (o.alpha_scale) index.push_back(Model::kAlphaScale);
+  if (o.pitot_scale) index.push_back(Model::kPitotScale);
+  if (o.pitot_bias) index.push_back(Model::kPitotBias);
+  return index;
 }
 
 }  // namespace veridyn::aircraft::internal

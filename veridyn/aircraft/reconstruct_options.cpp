@@ -57,10 +57,6 @@ ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
   read_three("model_error", o.model_error);
   read_three("model_error_walk", o.model_error_walk);
   o.guard = estimation::GuardOptions::read(table.table_or_empty("guard"));
-  if (table.has("iterations")) {
-    o.iterations = static_cast<int>(table.integer_or("iterations", 0));
-    if (*o.iterations < 0 || *o.iterations > 10) table.fail("iterations", "must be 0 to 10");
-  }
   if (table.has("rate")) o.rate_Hz = table.positive("rate", "1/s");
   const std::array<std::string, 2> sensors{"auto", "reference"};
   o.sensors = table.choice_or("sensors", sensors, o.sensors);

@@ -55,8 +55,6 @@ enum class FilterKind {
 ///     turbulence_scale = 1.0   # on the intensities, where they are given
 ///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "gyro_scale", "accel_scale",
 ///                              # "alpha_bias", "beta_bias", "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
-///     iterations = 2           # passes of filter and smoother linearised about the smoothed trajectory before;
-///                              # default 0, and 2 where sensor errors are estimated
 ///     without = []             # sensors not to use: "alpha", "beta", "pitot"
 ///     airspeed_is = "true"     # of a channel `airspeed`: "true" or "equivalent" (indicated by a calibrated tube)
 ///     beta_vane = "sideslip"   # what the channel `beta` is: "sideslip" asin(v/Va) or "flank" atan2(v, u)
@@ -81,7 +79,6 @@ struct ReconstructOptions {
   std::array<double, 3> model_error{0.02, 0.005, 0.01};
   std::array<double, 3> model_error_walk{5e-4, 2e-4, 2e-4};
   estimation::GuardOptions guard;
-  std::optional<int> iterations;
   double rate_Hz = 0.0;
   std::string sensors = "auto";
   std::string turbulence = "auto";
@@ -128,7 +125,6 @@ struct ReconstructOptions {
     return alpha_bias || beta_bias || alpha_scale || pitot_scale || pitot_bias;
   }
   [[nodiscard]] bool wants_sensor_errors() const { return wants_imu_biases() || wants_air_data_errors(); }
-  [[nodiscard]] int passes() const { return iterations.value_or(wants_sensor_errors() ? 2 : 0); }
 };
 
 /// The least standard deviations that `sensors = "auto"` assumes of an ordinary autopilot. Attitude and velocity of its

@@ -20,9 +20,8 @@ struct RunSetting {
   const ReconstructOptions* options;
   Model model;
   const std::vector<double>* output_t;  ///< stamps of results over all segments
-  /// States at every event of the segment, to linearise about; none: the filter's own estimates.
-  const std::vector<typename Model::template State<double>>* nominal = nullptr;
-  bool mark_events = false;  ///< mark every event, by its number, instead of the outputs
+  /// Errors of the air data that are taken as known (see AirDataModel::AirDataErrorIndex).
+  Eigen::Matrix<double, 5, 1> air_error = Eigen::Matrix<double, 5, 1>::Zero();
 };
 
 /// The state at the first output of a segment, before any measurement but those that start it.
@@ -58,13 +57,15 @@ template <class Model>
 
   // u_r = R v_ground scaled to |v_r| = Va, unless vanes say where the air comes from.
   constexpr double kWindow = 1.0;
+  const auto& e = x.air_error = setting.air_error;
   double airspeed = median_within(s.sensors[kPitot], segment.begin, kWindow);
   if (std::isfinite(airspeed) && s.pitot_is_pressure) {
     std::size_t cursor = 0;
-    airspeed = std::sqrt(2.0 * std::max(airspeed, 0.0) / s.density_at(segment.begin, cursor));
+    airspeed = std::sqrt(2.0 * std::max((airspeed - e(Model::kPitotBias)) / (1.0 + e(Model::kPitotScale)), 0.0) / s.density_at(segment.begin, cursor));
   }
-  const double alpha = median_within(s.sensors[kAlpha], segment.begin, kWindow);
-  const double beta = median_within(s.sensors[kBeta], segment.begin, kWindow);
+  const double alpha = (median_within(s.sensors[kAlpha], segment.begin, kWindow) - e(Model::kAlphaBias)) /
+                       (1.0 + e(Model::kAlphaScale));
+  const double beta = median_within(s.sensors[kBeta], segment.begin, kWindow) - e(Model::kBetaBias);
   const Eigen::Vector3d ground = x.attitude.conjugate() * x.velocity;
   if (!std::isfinite(airspeed)) airspeed = ground.norm();
   Eigen::Vector3d direction = ground.norm() > 1.0 ? Eigen::Vector3d(ground.normalized()) : Eigen::Vector3d::UnitX();
@@ -223,7 +224,6 @@ class FlightRun {
  public:
   using Tape = estimation::SmootherTape<Model>;
   using Filter = estimation::ExtendedKalmanFilter<Model>;
-  using State = typename Model::template State<double>;
 
   FlightRun(const RunSetting<Model>& setting, const Segment& segment, const Start<Model>& start,
             const std::array<estimation::InnovationMonitor, kSensors>& monitors, std::size_t first_output)
@@ -239,27 +239,30 @@ class FlightRun {
     const double time = cursor_.next_time();
     if (!std::isfinite(time)) return false;
     propagate_to(time, tape);
-    const State* nominal = setting_->nominal ? &(*setting_->nominal)[events_] : nullptr;
+    if (keep_innovations_) innovations_.clear();
     bool known = false;
     MeasurementContext context;
     cursor_.step_to(time, [&](Sensor which, double z, double sigma) {
       if (!known) context = cursor_.context(*setting_->options, Model::kHasAerodynamics);
       known = true;
-      enter_measurement<Model>(filter_, setting_->model, context, which, z, sigma, monitors_[which], tape, nominal);
+      estimation::Innovation seen;
+      const bool offered = enter_measurement<Model>(filter_, setting_->model, context, which, z, sigma,
+                                                    monitors_[which], tape, &seen);
+      if (keep_innovations_) {
+        seen.accepted = seen.accepted && offered;
+        innovations_.push_back(seen);
+      }
     });
-    if (setting_->mark_events) {
-      filter_.mark(events_, tape);
-    } else if (cursor_.at_output()) {
-      filter_.mark(cursor_.output(), tape);
-    }
-    ++events_;
+    if (cursor_.at_output()) filter_.mark(cursor_.output(), tape);
     return true;
   }
 
   [[nodiscard]] bool at_output() const { return cursor_.at_output(); }
   [[nodiscard]] std::size_t output() const { return cursor_.output(); }
   [[nodiscard]] double time() const { return cursor_.time(); }
-  [[nodiscard]] std::size_t events() const { return events_; }
+  /// The samples of the last event, where `keep_innovations` was called.
+  [[nodiscard]] const std::vector<estimation::Innovation>& innovations() const { return innovations_; }
+  void keep_innovations() { keep_innovations_ = true; }
   [[nodiscard]] const Filter& filter() const { return filter_; }
   [[nodiscard]] const std::array<estimation::InnovationMonitor, kSensors>& monitors() const { return monitors_; }
 
@@ -267,22 +270,18 @@ class FlightRun {
   void propagate_to(double time, Tape* tape) {
     const double dt = time - cursor_.time();
     if (!(dt > 0.0)) return;
-    const State* nominal = setting_->nominal && events_ > 0 ? &(*setting_->nominal)[events_ - 1] : nullptr;
     typename Model::Input u;
     cursor_.fill(u, time);
-    u.airspeed = setting_->model.air_velocity(nominal ? *nominal : filter_.state()).norm();
-    if (nominal) {
-      filter_.propagate_about(setting_->model, *nominal, u, dt, tape);
-    } else {
-      filter_.propagate(setting_->model, u, dt, tape);
-    }
+    u.airspeed = setting_->model.air_velocity(filter_.state()).norm();
+    filter_.propagate(setting_->model, u, dt, tape);
   }
 
   const RunSetting<Model>* setting_;
   EventCursor cursor_;
   Filter filter_;
   std::array<estimation::InnovationMonitor, kSensors> monitors_;
-  std::size_t events_ = 0;
+  std::vector<estimation::Innovation> innovations_;
+  bool keep_innovations_ = false;
 };
 
 }  // namespace veridyn::aircraft::internal

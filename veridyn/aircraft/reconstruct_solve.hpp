@@ -42,6 +42,8 @@ struct Solution {
   /// Covariance of the estimated sensor errors at the end of the longest segment, and their columns.
   std::vector<std::size_t> error_columns;
   Eigen::MatrixXd error_covariance;
+  Eigen::Matrix<double, 5, 1> air_error = Eigen::Matrix<double, 5, 1>::Zero();  ///< as estimated, 0 elsewhere
+  bool air_data_errors_converged = true;
   std::optional<GuardTrace> guard;
 };
 

@@ -9,6 +9,14 @@
 
 namespace veridyn::estimation {
 
+/// One scalar innovation as it was offered.
+struct Innovation {
+  double nu = 0.0;
+  double S = 1.0;  ///< its predicted variance
+  bool accepted = false;
+  [[nodiscard]] double nis() const { return nu * nu / S; }
+};
+
 /// Extended Kalman filter with sequential scalar updates: any subset of sensors, at any rate and time.
 ///
 /// Between measurements the state is propagated by the model and its covariance by the Jacobian from automatic
@@ -43,51 +51,6 @@ class ExtendedKalmanFilter {
     State after;
     const auto F = transition(model, x_, u, dt, after);
     x_ = after;
-    propagate_covariance(model, F, u, dt, tape);
-  }
-
-  /// As `propagate`, but linearised about a nominal trajectory that is at `nominal` now: the state follows
-  /// f(nominal) (+) F (x (-) nominal). With the smoothed trajectory of an earlier pass as the nominal one, and
-  /// innovations taken likewise, filter and smoother are one Gauss-Newton step of the batch problem (Bell 1994, SIAM J.
-  /// Optim. 4:626): information about constants is then that of one trajectory, and not of estimates that scatter about
-  /// it, which makes a plain extended filter too sure of them.
-  void propagate_about(const Model& model, const State& nominal, const typename Model::Input& u, double dt,
-                       SmootherTape<Model>* tape = nullptr) noexcept {
-    State after;
-    const auto F = transition(model, nominal, u, dt, after);
-    Vector error = Model::template local<double>(nominal, x_);
-    error.template head<kDynamic>() = (F * error).eval();
-    x_ = Model::template retract<double>(after, error);
-    propagate_covariance(model, F, u, dt, tape);
-  }
-
-  /// Enters the measurement of innovation `nu` = z - h(x), row `H` and variance `r` > 0, taken at time `t`, if the gate
-  /// of `monitor` lets it in. Returns whether it did; `nis` receives nu^2 / S in either case.
-  bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
-              SmootherTape<Model>* tape = nullptr, double* nis = nullptr) noexcept {
-    const Vector PH = P_.lazyProduct(H);
-    double S = H.dot(PH) + r;
-    if (nis) *nis = nu * nu / S;
-    const auto verdict = monitor.judge(t, nu, S);
-    if (!verdict.accept) return false;
-    S += verdict.extra_variance;
-    r += verdict.extra_variance;
-    const Vector K = PH / S;
-    const Vector half = (0.5 * S) * K - PH;
-    P_ += half.lazyProduct(K.transpose()) + K.lazyProduct(half.transpose());
-    x_ = Model::template retract<double>(x_, K * nu);
-    if (tape) tape->add_update(H, K, S, nu);
-    return true;
-  }
-
-  /// Puts the present state on the tape: the smoother will deliver its smoothed form, under the number `mark`.
-  void mark(std::size_t number, SmootherTape<Model>* tape) const noexcept {
-    if (tape) tape->add_mark(number, x_, P_);
-  }
-
- private:
-  void propagate_covariance(const Model& model, const typename SmootherTape<Model>::TransitionRows& F,
-                            const typename Model::Input& u, double dt, SmootherTape<Model>* tape) noexcept {
     // P F' by the entries of F that are not zero, which are few; P is symmetric, so its columns serve as rows.
     constexpr int D = kDynamic, N = kStates;
     Eigen::Matrix<double, N, D> PF = Eigen::Matrix<double, N, D>::Zero();
@@ -112,6 +75,31 @@ class ExtendedKalmanFilter {
     if (tape) tape->add_transition(F);
   }
 
+  /// Enters the measurement of innovation `nu` = z - h(x), row `H` and variance `r` > 0, taken at time `t`, if the gate
+  /// of `monitor` lets it in. Returns whether it did; `seen` receives the innovation in either case.
+  bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
+              SmootherTape<Model>* tape = nullptr, Innovation* seen = nullptr) noexcept {
+    const Vector PH = P_.lazyProduct(H);
+    double S = H.dot(PH) + r;
+    const auto verdict = monitor.judge(t, nu, S);
+    if (seen) *seen = {nu, S, verdict.accept};
+    if (!verdict.accept) return false;
+    S += verdict.extra_variance;
+    r += verdict.extra_variance;
+    const Vector K = PH / S;
+    const Vector half = (0.5 * S) * K - PH;
+    P_ += half.lazyProduct(K.transpose()) + K.lazyProduct(half.transpose());
+    x_ = Model::template retract<double>(x_, K * nu);
+    if (tape) tape->add_update(H, K, S, nu);
+    return true;
+  }
+
+  /// Puts the present state on the tape: the smoother will deliver its smoothed form, under the number `mark`.
+  void mark(std::size_t number, SmootherTape<Model>* tape) const noexcept {
+    if (tape) tape->add_mark(number, x_, P_);
+  }
+
+ private:
   State x_{};
   Covariance P_ = Covariance::Zero();
 };
