@@ -16,6 +16,7 @@ struct AirDataErrors {
   std::vector<int> index;
   Eigen::Matrix<double, 5, 1> value = Eigen::Matrix<double, 5, 1>::Zero();  ///< 0 where not estimated
   Eigen::MatrixXd covariance;                                              ///< in the order of `index`
+  DrydenSettings spectrum;  ///< with intensities as they fit best
   int iterations = 0;
   bool converged = true;
 };
@@ -40,15 +41,29 @@ struct AirDataErrors {
 /// scatter, and its sigmas come out three to eight times too small. For the same reason the most likely trajectory
 /// (an iterated smoother) is no way out: gain and gust only appear as a product, and their joint mode runs away. With
 /// theta fixed the filter's innovations are as they should be, and the gusts are integrated out, not maximised over.
+///
+/// The intensities of the gusts along the three axes are estimated along with theta, within a factor e^0.3 (1 sigma):
+/// otherwise an angle's fluctuation, sigma_w / Va, would tell the airspeed to a percent to whoever believes that sigma_w
+/// is known to a percent.
 template <class Model>
 [[nodiscard]] AirDataErrors estimate_air_data_errors(const RunSetting<Model>& base, const SolveTask& task) {
   AirDataErrors result;
   result.index = wanted_air_data_errors(*task.options);
-  const auto n = static_cast<Eigen::Index>(result.index.size());
+  const auto errors = static_cast<Eigen::Index>(result.index.size());
+  const Eigen::Index n = errors + 3;
+  constexpr double kIntensityPrior = 0.3;
   const std::array<double, 5> priors = air_data_error_priors();
   const std::vector<double> no_output;
   const auto prior_of = [&](Eigen::Index i) {
     return priors[static_cast<std::size_t>(result.index[static_cast<std::size_t>(i)])];
+  };
+
+  const auto scaled = [&](const Eigen::VectorXd& theta) {
+    DrydenSettings spectrum = base.model.spectrum;
+    spectrum.sigma_u *= std::exp(kIntensityPrior * theta(errors));
+    spectrum.sigma_v *= std::exp(kIntensityPrior * theta(errors + 1));
+    spectrum.sigma_w *= std::exp(kIntensityPrior * theta(errors + 2));
+    return spectrum;
   };
 
   struct Derivatives {
@@ -68,10 +83,12 @@ template <class Model>
       settings[k].options = &options;
       settings[k].output_t = &no_output;
       settings[k].air_error.setZero();
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const double shift = static_cast<Eigen::Index>(k) == i + 1 ? kStep : 0.0;
-        settings[k].air_error(result.index[static_cast<std::size_t>(i)]) = (theta(i) + shift) * prior_of(i);
+      Eigen::VectorXd at = theta;
+      if (k > 0) at(static_cast<Eigen::Index>(k) - 1) += kStep;
+      for (Eigen::Index i = 0; i < errors; ++i) {
+        settings[k].air_error(result.index[static_cast<std::size_t>(i)]) = at(i) * prior_of(i);
       }
+      settings[k].model.spectrum = scaled(at);
     }
     Eigen::VectorXd nu(n), S(n);
     for (const Segment& segment : task.segments) {
@@ -138,12 +155,14 @@ template <class Model>
     theta = tried;
     now = std::move(there);
   }
-  Eigen::VectorXd scale(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  Eigen::VectorXd scale(errors);
+  for (Eigen::Index i = 0; i < errors; ++i) {
     scale(i) = prior_of(i);
     result.value(result.index[static_cast<std::size_t>(i)]) = theta(i) * scale(i);
   }
-  result.covariance = scale.asDiagonal() * now.information.inverse() * scale.asDiagonal();
+  result.covariance =
+      scale.asDiagonal() * now.information.inverse().topLeftCorner(errors, errors) * scale.asDiagonal();
+  result.spectrum = scaled(theta);
   return result;
 }
 

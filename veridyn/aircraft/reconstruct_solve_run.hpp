@@ -117,6 +117,7 @@ template <class Model>
   const AirDataErrors errors = estimate_air_data_errors(setting, task);
   solution.air_data_errors_converged = errors.converged;
   setting.air_error = solution.air_error = errors.value;
+  setting.model.spectrum = errors.spectrum;
   const double parts = static_cast<double>(errors.index.size()) + 1.0;
   run_passes<Model>(task, setting, *solution.smoothed, filtered, solution, progress, 0.0, 1.0 / parts);
   const std::size_t count = solution.count;
