@@ -123,7 +123,7 @@ ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subj
   F(0, 0) = std::exp(-airspeed / (spectrum.Lu * sensors.rate_Hz));
   Pi(0, 0) = 1.0;
   Eigen::Matrix<double, 3, 5> G = Eigen::Matrix<double, 3, 5>::Zero();
-  G(0, 0) = spectrum.sigma_u;
+  G(0, 0) = sensors.airspeed_known ? 0.0 : spectrum.sigma_u;
   const auto pair = [&](int row, int i, double length, double intensity) {
     const double step = airspeed / (length * sensors.rate_Hz);
     F.block<2, 2>(i, i) << std::exp(-step), 0.0, step * std::exp(-step), std::exp(-step);

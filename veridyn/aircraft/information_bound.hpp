@@ -39,6 +39,9 @@ struct BoundSensors {
   double accelerometer = 0.05;                ///< [m/s^2]
   double dynamic_pressure = 10.0;             ///< [Pa]; 0: there is no pitot tube
   double rate_Hz = 100.0;
+  /// Takes the longitudinal gust as known, as the specification's figures do. A filter does not know it: the force
+  /// changes with the airspeed too, and what of a change of force is alpha is then less certain.
+  bool airspeed_known = false;
 };
 
 /// The bound of who knows the aircraft.
@@ -55,8 +58,9 @@ struct ModelBound {
 /// Where the subject's moments and inertia give no complete trim, alpha and thrust are those of balanced forces with
 /// undeflected controls.
 ///
-/// Reproduces the specification's values for UnATRaP in low-altitude moderate turbulence with the reference sensors: at
-/// 15 m/s alpha 0.08 / 0.08 deg, beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17 deg (filter / smoother).
+/// With `airspeed_known` it reproduces the specification's values for UnATRaP in low-altitude moderate turbulence with
+/// the reference sensors: at 15 m/s alpha 0.08 / 0.08 deg, beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17
+/// deg (filter / smoother). With the airspeed unknown, as it is, alpha's are 0.17 / 0.14 and 0.09 / 0.07 deg.
 /// Beyond the linear range (stall) the aircraft tells less than this.
 [[nodiscard]] ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subject, double airspeed,
                                            const BoundSensors& sensors, double air_density = 1.225);
