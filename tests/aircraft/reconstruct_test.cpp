@@ -338,17 +338,6 @@ TEST(Reconstruct, EstimatesBiasesOfInertialSensors) {
   expect("accel_bias_y", 0.2, 0.05);
 }
 
-// Over two minutes of turbulence a vane's bias cannot be told from a mean gust; the sigma printed for it is too small
-// (see the warning), so only the size of the error is held here.
-TEST(Reconstruct, WarnsThatTheSigmasOfAirDataErrorsAreOptimistic) {
-  const MadeFlight f = make_flight({.duration = 40.0});
-  ReconstructOptions o = reference_options();
-  o.alpha_bias = o.pitot_scale = true;
-  const Reconstruction r = run(f.recording, o);
-  EXPECT_LT(std::abs(r.smoothed.at("alpha_bias").value.back()), 10.0 * kDeg);
-  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("optimistic")));
-}
-
 TEST(Reconstruct, UsesEachSensorAtItsOwnTime) {
   const MadeFlight f = make_flight({.duration = 60.0});
   Recording thin = without(f.recording, {"alpha", "beta", "dynamic_pressure", "roll", "pitch", "yaw"});

@@ -161,8 +161,8 @@ class ResultColumns {
   /// constant k moved by one sigma.
   void widen(std::size_t count, const std::vector<ResultColumns>& shifted, const Eigen::MatrixXd& correlation) {
     Eigen::VectorXd d(static_cast<Eigen::Index>(shifted.size()));
-    for (std::size_t c = 0; c < kFirstAirDataError; ++c) {
-      if (value_[c].empty()) continue;
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      if (value_[c].empty() || (c >= kFirstAirDataError && c < kFirstCoefficientError)) continue;
       const bool angle = std::string_view(kColumns[c].unit) == "rad";
       for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t k = 0; k < shifted.size(); ++k) {
