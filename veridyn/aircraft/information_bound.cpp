@@ -151,7 +151,7 @@ ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subj
   measure(air.alpha, sensors.alpha);
   measure(air.beta, sensors.beta);
   measure(Jet(0.5 * air_density) * air.Va * air.Va, sensors.dynamic_pressure);
-  for (int i = 0; i < 3; ++i) measure(force(i), sensors.accelerometer);
+  for (int i = sensors.axial_force ? 0 : 1; i < 3; ++i) measure(force(i), sensors.accelerometer);
 
   // Information form of the update: all measurements of one time at once.
   Matrix5 information = Matrix5::Zero();

@@ -42,6 +42,8 @@ struct BoundSensors {
   /// Takes the longitudinal gust as known, as the specification's figures do. A filter does not know it: the force
   /// changes with the airspeed too, and what of a change of force is alpha is then less certain.
   bool airspeed_known = false;
+  /// Whether the accelerometer along x counts; the specification's figures leave it out.
+  bool axial_force = true;
 };
 
 /// The bound of who knows the aircraft.
@@ -58,7 +60,7 @@ struct ModelBound {
 /// Where the subject's moments and inertia give no complete trim, alpha and thrust are those of balanced forces with
 /// undeflected controls.
 ///
-/// With `airspeed_known` it reproduces the specification's values for UnATRaP in low-altitude moderate turbulence with
+/// With `airspeed_known` and without `axial_force` it reproduces the specification's values for UnATRaP in low-altitude moderate turbulence with
 /// the reference sensors: at 15 m/s alpha 0.08 / 0.08 deg, beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17
 /// deg (filter / smoother). With the airspeed unknown, as it is, alpha's are 0.17 / 0.14 and 0.09 / 0.07 deg.
 /// Beyond the linear range (stall) the aircraft tells less than this.

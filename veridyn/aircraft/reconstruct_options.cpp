@@ -36,6 +36,18 @@ double not_negative_or(const StudyTable& table, const char* key, const char* uni
 
 }  // namespace
 
+const char* to_string(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::kModelFree:
+      return "model-free";
+    case FilterKind::kModelBased:
+      return "model-based";
+    case FilterKind::kGuarded:
+      return "guarded";
+  }
+  return "";
+}
+
 ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
   ReconstructOptions o;
   const std::array<std::string, 3> filters{"model-free", "model-based", "guarded"};

@@ -36,6 +36,8 @@ enum class FilterKind {
   kGuarded      ///< both; the model-based one while its innovations are as they should be (GuardedFilter)
 };
 
+[[nodiscard]] const char* to_string(FilterKind kind);
+
 /// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
 ///
 ///     [reconstruct]
