@@ -48,7 +48,9 @@ int reconstruct(const Options& options) {
   }
   if (analysis.reconstruction.guard) tell(options.common, "guard: " + analysis.reconstruction.guard->statement);
   for (const aircraft::FilterError& e : analysis.reconstruction.comparison) {
-    const auto text = [&](double v) { return fmt::format("{:.3g}{}", aircraft::shown(v, e.unit), aircraft::shown_unit(e.unit)); };
+    const auto text = [&](double v) {
+      return fmt::format("{:.3g}{}", aircraft::shown(v, e.unit), aircraft::shown_unit(e.unit));
+    };
     tell(options.common, fmt::format("  {:<16} RMS error of filter / smoother: model-free {} / {}, model-based {} / {}",
                                      e.quantity, text(e.model_free.filter_rms), text(e.model_free.smoother_rms),
                                      text(e.model_based.filter_rms), text(e.model_based.smoother_rms)));

@@ -366,11 +366,12 @@ Table sensor_error_table(const Reconstruction& rec) {
                           : e.observability == Observability::kWeak     ? Status::kCaution
                                                                         : Status::kBad;
     const std::string unit = shown_unit(e.unit);
-    table.rows.push_back({.cells = {text_cell(e.name), number_cell(shown(e.value, e.unit)),
-                                    number_cell(shown(e.sigma, e.unit)), number_cell(shown(e.prior_sigma, e.unit)),
-                                    text_cell(unit.empty() ? unit : unit.substr(1)),
-                                    number_cell(100.0 * e.information), text_cell(e.correlated_with),
-                                    number_cell(e.correlation), status_cell(status, to_string(e.observability))}});
+    table.rows.push_back(
+        {.cells = {text_cell(e.name), number_cell(aircraft::shown(e.value, e.unit)),
+                   number_cell(aircraft::shown(e.sigma, e.unit)), number_cell(aircraft::shown(e.prior_sigma, e.unit)),
+                   text_cell(unit.empty() ? unit : unit.substr(1)), number_cell(100.0 * e.information),
+                   text_cell(e.correlated_with), number_cell(e.correlation),
+                   status_cell(status, to_string(e.observability))}});
   }
   return table;
 }
@@ -392,14 +393,14 @@ Table comparison_table(const Reconstruction& rec) {
                           {.name = "Error/signal, model-free", .unit = "%", .digits = 3},
                           {.name = "model-based", .unit = "%", .digits = 3}}};
   for (const FilterError& e : rec.comparison) {
-    const auto value = [&](double v) { return number_cell(v > 0.0 ? shown(v, e.unit) : std::nan("")); };
+    const auto value = [&](double v) { return number_cell(v > 0.0 ? aircraft::shown(v, e.unit) : std::nan("")); };
     const auto share = [&](double rms) { return number_cell(100.0 * std::pow(rms / e.signal_sd, 2)); };
     const std::string unit = shown_unit(e.unit);
-    table.rows.push_back({.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)),
-                                    value(e.model_free.filter_rms), value(e.model_free.smoother_rms),
-                                    value(e.model_based.filter_rms), value(e.model_based.smoother_rms),
-                                    value(e.model_based.filter_bound), value(e.model_based.smoother_bound),
-                                    share(e.model_free.smoother_rms), share(e.model_based.smoother_rms)}});
+    table.rows.push_back(
+        {.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)), value(e.model_free.filter_rms),
+                   value(e.model_free.smoother_rms), value(e.model_based.filter_rms), value(e.model_based.smoother_rms),
+                   value(e.model_based.filter_bound), value(e.model_based.smoother_bound),
+                   share(e.model_free.smoother_rms), share(e.model_based.smoother_rms)}});
   }
   return table;
 }
