@@ -83,6 +83,9 @@ file = @LOG@
 
 [reconstruct]
 # turbulence = "auto"            # low_light, low_moderate, medium_light, medium_moderate, or what fits best
+# filter = "model-free"          # "model-based" where the derivatives are known, "guarded" to fall back by itself
+# estimate_file = "estimate.json"  # where the model-based filter takes them from; else from [subject.model]
+# estimate = ["alpha_bias", "beta_bias", "pitot_scale"]   # sensor errors; the report says what the flight determines
 # airspeed_is = "true"           # "equivalent" where the log's airspeed is indicated
 
 [signals]

@@ -37,6 +37,24 @@ int reconstruct(const Options& options) {
     summary["quantities"][q.quantity] = {
         {"sigma", q.sigma}, {"unit", q.unit}, {"observability", aircraft::to_string(q.observability)}};
   }
+  for (const aircraft::SensorErrorReport& e : analysis.reconstruction.sensor_errors) {
+    tell(options.common, fmt::format("  {:<16} {}", e.name, e.statement));
+    summary["sensor_errors"][e.name] = {{"value", e.value},
+                                        {"sigma", e.sigma},
+                                        {"prior_sigma", e.prior_sigma},
+                                        {"unit", e.unit},
+                                        {"information", e.information},
+                                        {"observability", aircraft::to_string(e.observability)}};
+  }
+  if (analysis.reconstruction.guard) tell(options.common, "guard: " + analysis.reconstruction.guard->statement);
+  for (const aircraft::FilterError& e : analysis.reconstruction.comparison) {
+    const auto text = [&](double v) {
+      return fmt::format("{:.3g}{}", aircraft::shown(v, e.unit), aircraft::shown_unit(e.unit));
+    };
+    tell(options.common, fmt::format("  {:<16} RMS error of filter / smoother: model-free {} / {}, model-based {} / {}",
+                                     e.quantity, text(e.model_free.filter_rms), text(e.model_free.smoother_rms),
+                                     text(e.model_based.filter_rms), text(e.model_based.smoother_rms)));
+  }
   for (const std::string& warning : analysis.reconstruction.warnings) tell(options.common, "warning: " + warning);
   tell(options.common, fmt::format("report: {}", (folder / "report.html").string()));
   print_summary(summary, options.common);

@@ -56,9 +56,37 @@ std::string structure_csv(const FlightAnalysis& analysis) {
   return text;
 }
 
+std::string sensor_errors_csv(const Reconstruction& r) {
+  std::string text = "name,value,sigma,prior_sigma,unit,information,correlation,correlated_with,observability\n";
+  for (const SensorErrorReport& e : r.sensor_errors) {
+    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", e.name, e.value, e.sigma, e.prior_sigma, e.unit, e.information,
+                        e.correlation, e.correlated_with, aircraft::to_string(e.observability));
+  }
+  return text;
+}
+
 bool searched_structure(const FlightAnalysis& analysis) {
   return std::any_of(analysis.coefficients.begin(), analysis.coefficients.end(),
                      [](const CoefficientResult& r) { return r.structure.has_value(); });
+}
+
+std::string filter_errors_csv(const Reconstruction& r) {
+  std::string text =
+      "quantity,unit,signal_sd,free_filter_rms,free_smoother_rms,free_filter_bound,free_smoother_bound,"
+      "model_filter_rms,model_smoother_rms,model_filter_bound,model_smoother_bound\n";
+  for (const FilterError& e : r.comparison) {
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", e.quantity, e.unit, e.signal_sd, e.model_free.filter_rms,
+                        e.model_free.smoother_rms, e.model_free.filter_bound, e.model_free.smoother_bound,
+                        e.model_based.filter_rms, e.model_based.smoother_rms, e.model_based.filter_bound,
+                        e.model_based.smoother_bound);
+  }
+  return text;
+}
+
+/// The tables of a reconstruction that there are.
+void write_filter_tables(const std::filesystem::path& folder, const Reconstruction& r) {
+  if (!r.sensor_errors.empty()) write_file(folder / "sensor_errors.csv", sensor_errors_csv(r));
+  if (!r.comparison.empty()) write_file(folder / "filter_errors.csv", filter_errors_csv(r));
 }
 
 /// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
@@ -140,6 +168,7 @@ void write_identification(const std::filesystem::path& folder, const FlightStudy
     io::write_csv(validation_recording(analysis.validation), folder / "validation.csv");
   page.get();
   flight.get();
+  write_filter_tables(folder, analysis.reconstruction);
   write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
   if (!analysis.others.empty()) write_file(folder / "methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) write_file(folder / "structure.csv", structure_csv(analysis));
@@ -159,6 +188,7 @@ void write_reconstruction(const std::filesystem::path& folder, const FlightStudy
   report::write_html(report::reconstruction_report(study, analysis, kIdentifyContext), folder / "report.html");
   io::write_csv(analysis.reconstruction.smoothed, folder / "flight.csv");
   io::write_csv(analysis.reconstruction.filtered, folder / "filter.csv");
+  write_filter_tables(folder, analysis.reconstruction);
   write_run_record(folder, run, options);
 }
 

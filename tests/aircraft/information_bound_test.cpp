@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "veridyn/aircraft/builtin_subjects.hpp"
 #include "veridyn/estimation/kalman_filter.hpp"
 #include "veridyn/estimation/smoother.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -123,6 +124,51 @@ TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
   const auto bound = information_bound(kModerate, kSpeed, kSigma, 100.0);
   EXPECT_NEAR(std::sqrt(filter_square / 2e5) / bound.alpha.filter, 1.0, 0.02);
   EXPECT_NEAR(std::sqrt(smoother_square / 2e5) / bound.alpha.smoother, 1.0, 0.02);
+}
+
+// --- With the aircraft's own derivatives ------------------------------------------------------------------------------
+
+Subject unatrap_without_stall() {
+  Subject s = builtin_subject("unatrap", "test");
+  s.model.stall.reset();
+  return s;
+}
+
+// Section 5 of the specification: UnATRaP, moderate; printed with two decimals.
+TEST(InformationBound, ReproducesTheSpecificationsValuesForAKnownAircraft) {
+  const Subject subject = unatrap_without_stall();
+  const auto at15 = information_bound(kModerate, subject, 15.0, {.airspeed_known = true, .axial_force = false});
+  const auto at20 = information_bound(kModerate, subject, 20.0, {.airspeed_known = true, .axial_force = false});
+  ASSERT_TRUE(at15.usable && at20.usable);
+  EXPECT_NEAR(at15.angles.alpha.filter / kDeg, 0.08, 0.005);
+  EXPECT_NEAR(at15.angles.alpha.smoother / kDeg, 0.08, 0.005);
+  EXPECT_NEAR(at15.angles.beta.filter / kDeg, 0.28, 0.005);
+  EXPECT_NEAR(at15.angles.beta.smoother / kDeg, 0.24, 0.005);
+  EXPECT_NEAR(at20.angles.alpha.filter / kDeg, 0.04, 0.005);
+  EXPECT_NEAR(at20.angles.alpha.smoother / kDeg, 0.04, 0.005);
+  EXPECT_NEAR(at20.angles.beta.filter / kDeg, 0.19, 0.005);
+  EXPECT_NEAR(at20.angles.beta.smoother / kDeg, 0.17, 0.005);
+}
+
+// An accelerometer that tells nothing leaves the bound of who does not know the aircraft, computed by the other recursion.
+TEST(InformationBound, IsTheModelFreeOneWhenTheAccelerometerTellsNothing) {
+  const auto b = information_bound(kModerate, unatrap_without_stall(), 20.0,
+                                   {.accelerometer = 1e6, .dynamic_pressure = 0.0, .airspeed_known = true});
+  const auto free = information_bound(kModerate, 20.0, 0.6 * kDeg, 100.0);
+  // At an angle of attack, alpha also turns with the gust along x, which is known here, and beta's gain is 1/Va still.
+  EXPECT_NEAR(b.angles.alpha.filter / free.alpha.filter, 1.0, 0.01);
+  EXPECT_NEAR(b.angles.alpha.smoother / free.alpha.smoother, 1.0, 0.01);
+  EXPECT_NEAR(b.angles.beta.filter / free.beta.filter, 1.0, 0.01);
+  EXPECT_NEAR(b.angles.beta.smoother / free.beta.smoother, 1.0, 0.01);
+}
+
+TEST(InformationBound, GrowsWhenTheAirspeedIsNotKnown) {
+  const Subject subject = unatrap_without_stall();
+  const auto known = information_bound(kModerate, subject, 15.0, {.airspeed_known = true});
+  const auto unknown = information_bound(kModerate, subject, 15.0, {});
+  EXPECT_GT(unknown.angles.alpha.filter, 1.5 * known.angles.alpha.filter);
+  EXPECT_NEAR(unknown.angles.beta.filter, known.angles.beta.filter, 1e-3 * known.angles.beta.filter);
+  EXPECT_FALSE(information_bound(kModerate, subject, 5.0, {}).usable) << "cannot fly level at 5 m/s";
 }
 
 }  // namespace

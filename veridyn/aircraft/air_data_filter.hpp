@@ -41,20 +41,25 @@ struct AirDataNoise {
 /// the covariance stays stationary for any step. (The dependence of a on the estimated airspeed is not differentiated.)
 ///
 /// The error vector: attitude (body axes, rad) 0..2, velocity 3..5, gust 6..10, slow wind 11..13, then, where asked
-/// for, biases of gyro and accelerometer (6) and errors of the air data (5): `kAlphaBias` [rad], `kBetaBias` [rad],
-/// `kAlphaScale`, `kPitotScale` [-], `kPitotBias` [Pa].
-template <bool kImuBiases, bool kAirDataErrors>
+/// for, `kImuErrors` errors of the inertial sensors (6: biases of gyro and accelerometer; 12: their scale factors
+/// behind them) and errors of the air data (5): `kAlphaBias` [rad], `kBetaBias` [rad], `kAlphaScale`, `kPitotScale`
+/// [-], `kPitotBias` [Pa]. An inertial sensor shows y = (1 + scale) true + bias.
+template <int kImuErrors, bool kAirDataErrors>
 struct AirDataModel {
+  static_assert(kImuErrors == 0 || kImuErrors == 6 || kImuErrors == 12);
   static constexpr int kAttitude = 0;
   static constexpr int kVelocity = 3;
   static constexpr int kGust = 6;
   static constexpr int kWind = 11;
   static constexpr int kImuBias = 14;
-  static constexpr int kAirDataError = kImuBiases ? 20 : 14;
+  static constexpr int kImuScale = 20;
+  static constexpr int kAirDataError = 14 + kImuErrors;
   static constexpr int kStates = kAirDataError + (kAirDataErrors ? 5 : 0);
   static constexpr int kDynamic = 11;
-  static constexpr bool kHasImuBiases = kImuBiases;
+  static constexpr bool kHasImuBiases = kImuErrors > 0;
+  static constexpr bool kHasImuScales = kImuErrors > 6;
   static constexpr bool kHasAirDataErrors = kAirDataErrors;
+  static constexpr bool kHasAerodynamics = false;
 
   enum AirDataErrorIndex { kAlphaBias, kBetaBias, kAlphaScale, kPitotScale, kPitotBias };
 
@@ -68,6 +73,7 @@ struct AirDataModel {
     Eigen::Matrix<Scalar, 5, 1> gust = Eigen::Matrix<Scalar, 5, 1>::Zero();
     Eigen::Matrix<Scalar, 3, 1> wind = Eigen::Matrix<Scalar, 3, 1>::Zero();
     Eigen::Matrix<Scalar, 6, 1> imu_bias = Eigen::Matrix<Scalar, 6, 1>::Zero();
+    Eigen::Matrix<Scalar, 6, 1> imu_scale = Eigen::Matrix<Scalar, 6, 1>::Zero();
     Eigen::Matrix<Scalar, 5, 1> air_error = Eigen::Matrix<Scalar, 5, 1>::Zero();
   };
 
@@ -98,27 +104,44 @@ struct AirDataModel {
     return x.attitude.conjugate() * Eigen::Matrix<S, 3, 1>(x.velocity - x.wind) - gust_velocity(x);
   }
 
+  /// Body rates [rad/s] that a gyro means by `gyro`.
+  template <typename S>
+  [[nodiscard]] static Eigen::Matrix<S, 3, 1> rates(const State<S>& x, const Eigen::Vector3d& gyro) {
+    Eigen::Matrix<S, 3, 1> omega = gyro.template cast<S>();
+    if constexpr (kHasImuBiases) omega -= x.imu_bias.template head<3>();
+    if constexpr (kHasImuScales) {
+      for (int i = 0; i < 3; ++i) omega(i) /= S(1.0) + x.imu_scale(i);
+    }
+    return omega;
+  }
+
   template <typename S>
   [[nodiscard]] State<S> propagate(const State<S>& x, const Input& u, double dt) const {
-    State<S> next = x;
-    Eigen::Matrix<S, 3, 1> omega = u.gyro.template cast<S>();
     Eigen::Matrix<S, 3, 1> force = u.specific_force.template cast<S>();
-    if constexpr (kImuBiases) {
-      omega -= x.imu_bias.template head<3>();
-      force -= x.imu_bias.template tail<3>();
+    if constexpr (kHasImuBiases) force -= x.imu_bias.template tail<3>();
+    if constexpr (kHasImuScales) {
+      for (int i = 0; i < 3; ++i) force(i) /= S(1.0) + x.imu_scale(3 + i);
     }
+    return advance<S>(x, rates<S>(x, u.gyro), force, u.airspeed, dt);
+  }
+
+  /// The same from true rates `omega` and specific force.
+  template <typename S>
+  [[nodiscard]] State<S> advance(const State<S>& x, const Eigen::Matrix<S, 3, 1>& omega,
+                                 const Eigen::Matrix<S, 3, 1>& force, double airspeed, double dt) const {
+    State<S> next = x;
     // Midpoint rule: the attitude half-way turns the specific force.
     const Eigen::Quaternion<S> half = rotation<S>(omega * S(0.5 * dt));
     const Eigen::Quaternion<S> middle = x.attitude * half;
     next.attitude = middle * half;
     next.velocity += (middle * force) * S(dt);
-    next.velocity(2) += kGravity * dt;
-    const Decay d = decay(u.airspeed, dt);
-    next.gust(0) = d.u * x.gust(0);
-    next.gust(1) = d.v * x.gust(1);
-    next.gust(2) = d.v * (x.gust(2) + d.step_v * x.gust(1));
-    next.gust(3) = d.w * x.gust(3);
-    next.gust(4) = d.w * (x.gust(4) + d.step_w * x.gust(3));
+    next.velocity(2) += S(kGravity * dt);
+    const Decay d = decay(airspeed, dt);
+    next.gust(0) = S(d.u) * x.gust(0);
+    next.gust(1) = S(d.v) * x.gust(1);
+    next.gust(2) = S(d.v) * (x.gust(2) + S(d.step_v) * x.gust(1));
+    next.gust(3) = S(d.w) * x.gust(3);
+    next.gust(4) = S(d.w) * (x.gust(4) + S(d.step_w) * x.gust(3));
     return next;
   }
 
@@ -129,9 +152,10 @@ struct AirDataModel {
     moved.velocity = x.velocity.template cast<S>() + e.template segment<3>(kVelocity);
     moved.gust = x.gust.template cast<S>() + e.template segment<5>(kGust);
     moved.wind = x.wind.template cast<S>() + e.template segment<3>(kWind);
-    if constexpr (kImuBiases) moved.imu_bias = x.imu_bias.template cast<S>() + e.template segment<6>(kImuBias);
-    if constexpr (kAirDataErrors)
-      moved.air_error = x.air_error.template cast<S>() + e.template segment<5>(kAirDataError);
+    if constexpr (kHasImuBiases) moved.imu_bias = x.imu_bias.template cast<S>() + e.template segment<6>(kImuBias);
+    if constexpr (kHasImuScales) moved.imu_scale = x.imu_scale.template cast<S>() + e.template segment<6>(kImuScale);
+    moved.air_error = x.air_error.template cast<S>();
+    if constexpr (kAirDataErrors) moved.air_error += e.template segment<5>(kAirDataError);
     return moved;
   }
 
@@ -144,7 +168,8 @@ struct AirDataModel {
     e.template segment<3>(kVelocity) = to.velocity - from.velocity.template cast<S>();
     e.template segment<5>(kGust) = to.gust - from.gust.template cast<S>();
     e.template segment<3>(kWind) = to.wind - from.wind.template cast<S>();
-    if constexpr (kImuBiases) e.template segment<6>(kImuBias) = to.imu_bias - from.imu_bias.template cast<S>();
+    if constexpr (kHasImuBiases) e.template segment<6>(kImuBias) = to.imu_bias - from.imu_bias.template cast<S>();
+    if constexpr (kHasImuScales) e.template segment<6>(kImuScale) = to.imu_scale - from.imu_scale.template cast<S>();
     if constexpr (kAirDataErrors)
       e.template segment<5>(kAirDataError) = to.air_error - from.air_error.template cast<S>();
     return e;
@@ -155,23 +180,35 @@ struct AirDataModel {
   [[nodiscard]] Eigen::Matrix<double, kDynamic, kStates> transition_rows(const State<double>& x, const Input& u,
                                                                          double dt, State<double>& after) const {
     after = propagate<double>(x, u, dt);
-    Eigen::Vector3d omega = u.gyro;
+    const Eigen::Vector3d omega = rates<double>(x, u.gyro);
     Eigen::Vector3d force = u.specific_force;
-    if constexpr (kImuBiases) {
-      omega -= x.imu_bias.template head<3>();
-      force -= x.imu_bias.template tail<3>();
-    }
+    if constexpr (kHasImuBiases) force -= x.imu_bias.template tail<3>();
+    if constexpr (kHasImuScales) force.array() /= 1.0 + x.imu_scale.template tail<3>().array();
     const Eigen::Matrix3d R_half = rotation<double>(omega * (0.5 * dt)).toRotationMatrix();
     const Eigen::Matrix3d R_NB = x.attitude.toRotationMatrix();
     Eigen::Matrix<double, kDynamic, kStates> F = Eigen::Matrix<double, kDynamic, kStates>::Zero();
     F.template block<3, 3>(kAttitude, kAttitude) = R_half.transpose() * R_half.transpose();
     F.template block<3, 3>(kVelocity, kAttitude) = R_NB * cross_matrix(R_half * force) * -dt;
     F.template block<3, 3>(kVelocity, kVelocity).setIdentity();
-    if constexpr (kImuBiases) {
-      F.template block<3, 3>(kAttitude, kImuBias) = right_jacobian(omega * dt) * -dt;
-      F.template block<3, 3>(kVelocity, kImuBias) =
+    if constexpr (kHasImuBiases) {
+      const Eigen::Matrix3d by_rate_attitude = right_jacobian(omega * dt) * -dt;
+      const Eigen::Matrix3d by_rate_velocity =
           R_NB * R_half * cross_matrix(force) * right_jacobian(omega * (0.5 * dt)) * (0.5 * dt * dt);
-      F.template block<3, 3>(kVelocity, kImuBias + 3) = R_NB * R_half * -dt;
+      const Eigen::Matrix3d by_force = R_NB * R_half * -dt;
+      // d(true)/d(bias) = -1/(1 + scale), d(true)/d(scale) = -true/(1 + scale); the minus is in the matrices above.
+      for (int i = 0; i < 3; ++i) {
+        double gyro_gain = 1.0, accel_gain = 1.0;
+        if constexpr (kHasImuScales) {
+          gyro_gain = 1.0 / (1.0 + x.imu_scale(i));
+          accel_gain = 1.0 / (1.0 + x.imu_scale(3 + i));
+          F.template block<3, 1>(kAttitude, kImuScale + i) = by_rate_attitude.col(i) * (omega(i) * gyro_gain);
+          F.template block<3, 1>(kVelocity, kImuScale + i) = by_rate_velocity.col(i) * (omega(i) * gyro_gain);
+          F.template block<3, 1>(kVelocity, kImuScale + 3 + i) = by_force.col(i) * (force(i) * accel_gain);
+        }
+        F.template block<3, 1>(kAttitude, kImuBias + i) = by_rate_attitude.col(i) * gyro_gain;
+        F.template block<3, 1>(kVelocity, kImuBias + i) = by_rate_velocity.col(i) * gyro_gain;
+        F.template block<3, 1>(kVelocity, kImuBias + 3 + i) = by_force.col(i) * accel_gain;
+      }
     }
     const Decay d = decay(u.airspeed, dt);
     F(kGust, kGust) = d.u;
@@ -182,7 +219,8 @@ struct AirDataModel {
     return F;
   }
 
-  void add_process_noise(const State<double>&, const Input& u, double dt, Covariance& P) const {
+  template <class Matrix>
+  void add_process_noise(const State<double>&, const Input& u, double dt, Matrix& P) const {
     const double gyro = noise.gyro * noise.gyro * dt * u.imu_noise_factor;
     const double force = noise.accelerometer * noise.accelerometer * dt * u.imu_noise_factor;
     for (int i = 0; i < 3; ++i) {
@@ -198,7 +236,7 @@ struct AirDataModel {
     P(kWind, kWind) += walk;
     P(kWind + 1, kWind + 1) += walk;
     P(kWind + 2, kWind + 2) += noise.wind_down_walk * noise.wind_down_walk * dt;
-    if constexpr (kImuBiases) {
+    if constexpr (kHasImuBiases) {
       for (int i = 0; i < 3; ++i) {
         if (P(kImuBias + i, kImuBias + i) > 0.0)
           P(kImuBias + i, kImuBias + i) += noise.gyro_bias_walk * noise.gyro_bias_walk * dt;
@@ -272,7 +310,8 @@ struct AirDataModel {
     return Eigen::Matrix3d::Identity() - a * X + b * X * X;
   }
 
-  static void add_pair(Covariance& P, int i, double e, double step) {
+  template <class Matrix>
+  static void add_pair(Matrix& P, int i, double e, double step) {
     const double e2 = e * e;
     P(i, i) += 0.5 * (1.0 - e2);
     const double cross = 0.25 - e2 * (0.5 * step + 0.25);

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "veridyn/aircraft/air_data_calibration.hpp"
+#include "veridyn/aircraft/filter_comparison.hpp"
 #include "veridyn/aircraft/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/estimate_json.hpp"
 #include "veridyn/io/study_data.hpp"
 
 namespace veridyn::aircraft {
@@ -65,11 +67,43 @@ void check_flight(const FlightStudy& study) {
   }
 }
 
+/// The subject with the derivatives of an estimate file, for the model-based filter. Coefficients of which the file has
+/// nothing usable become unknown.
+Subject subject_of_estimate(const Subject& subject, const std::filesystem::path& file) {
+  const estimation::Estimate estimate = io::read_estimate(file);
+  Subject result = subject;
+  std::size_t found = 0;
+  for (auto& model : result.model.coefficients) {
+    if (!model) continue;
+    CoefficientModel taken{model->coefficient, {}, {}};
+    for (const Term& term : model->terms) {
+      const estimation::EstimatedParameter* p = estimate.find(parameter_name(model->coefficient, term));
+      if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+      taken.terms.push_back(term);
+      taken.values.push_back(p->value);
+    }
+    found += taken.size();
+    if (taken.size() > 0) {
+      model = std::move(taken);
+    } else {
+      std::fill(model->values.begin(), model->values.end(), kUnknown);
+    }
+  }
+  if (found == 0) throw InputError(file.string(), "holds no usable parameter of the study's model");
+  return result;
+}
+
 void align_and_reconstruct(FlightStudy& study, FlightAnalysis& analysis, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
   analysis.delays = align_delays(study.mapped, study.delays);
-  analysis.reconstruction = reconstruct(study.mapped.recording, study.reconstruct, progress);
+  const Subject& model = study.filter_subject ? *study.filter_subject : study.subject;
+  analysis.reconstruction = reconstruct(study.mapped.recording, study.reconstruct, progress, &model);
+  if (study.truth && study.reconstruct.compare && study.reconstruct.filter != FilterKind::kModelFree) {
+    progress.stage("comparing the filters with the truth");
+    analysis.reconstruction.comparison =
+        compare_filters(study.mapped.recording, *study.truth, study.reconstruct, model, progress);
+  }
   analysis.interrupted = analysis.reconstruction.interrupted;
 }
 
@@ -163,6 +197,8 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.subject = read_subject(subject);
   result.delays = DelayAlignment::read(root.table_or_empty("delays"));
   result.reconstruct = ReconstructOptions::read(root.table_or_empty("reconstruct"));
+  if (!result.reconstruct.estimate_file.empty())
+    result.filter_subject = subject_of_estimate(result.subject, result.reconstruct.estimate_file);
   result.signals = SignalOptions::read(root.table_or_empty("signals"));
   result.segments = SegmentOptions::read(root.table_or_empty("segments"));
   result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
@@ -195,6 +231,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
     log = io::read_study_data(data);
     result.inputs = data.files(data.has("file") ? "file" : "files");
   }
+  if (!result.reconstruct.estimate_file.empty()) result.inputs.push_back(result.reconstruct.estimate_file);
   result.mapped = map_channels(log, map, throws_of(result.subject, subject));
   if (data.has("calibration")) {
     const std::filesystem::path file = data.file("calibration");

@@ -37,6 +37,7 @@ struct FlightStudy {
   MappedRecording mapped;
   std::optional<Recording> truth;  ///< of a simulated flight
   std::optional<Subject> true_subject;
+  std::optional<Subject> filter_subject;  ///< whose derivatives the model-based filter takes, where not `subject`
   DelayAlignment delays;
   ReconstructOptions reconstruct;
   SignalOptions signals;

@@ -9,9 +9,9 @@
 
 #include "veridyn/aircraft/reconstruct_columns.hpp"
 #include "veridyn/aircraft/reconstruct_run.hpp"
+#include "veridyn/aircraft/reconstruct_solve.hpp"
 #include "veridyn/aircraft/reconstruct_streams.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/estimation/smoother.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -20,27 +20,12 @@ namespace {
 using internal::FlightRun;
 using internal::FlightStreams;
 using internal::kSensors;
+using internal::monitors_with;
+using internal::noise_of;
 using internal::ResultColumns;
 using internal::RunSetting;
 using internal::Segment;
-using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
-
-constexpr double kDeg = M_PI / 180.0;
-
-Monitors monitors_with(const estimation::InnovationGate& gate) {
-  Monitors monitors;
-  monitors.fill(estimation::InnovationMonitor(gate));
-  return monitors;
-}
-
-AirDataNoise noise_of(const FlightStreams& s, const ReconstructOptions& o) {
-  AirDataNoise noise;
-  noise.gyro = s.sigma.gyro * std::sqrt(s.gyro.interval);
-  noise.accelerometer = s.sigma.accelerometer * std::sqrt(s.accel.interval);
-  noise.wind_walk = o.wind_walk;
-  noise.wind_down_walk = o.wind_down_walk;
-  return noise;
-}
+using internal::Solution;
 
 std::vector<double> output_stamps(const FlightStreams& s, const Segment& segment, double rate_Hz) {
   std::vector<double> t;
@@ -92,9 +77,10 @@ Segment typical_part(const FlightStreams& s, std::span<const Segment> segments, 
 /// innovation on the gate, so that a spectrum does not win by refusing.
 double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const Segment& part,
                       const DrydenSettings& spectrum) {
-  using Model = AirDataModel<false, false>;
+  using Model = AirDataModel<0, false>;
   const std::vector<double> no_output;
-  const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &no_output};
+  const RunSetting<Model> setting{
+      .streams = &s, .options = &o, .model = {spectrum, noise_of(s, o)}, .output_t = &no_output};
   FlightRun<Model> run(setting, part, internal::start_of(setting, part), monitors_with(o.gate), 0);
   while (run.advance(nullptr)) {
   }
@@ -142,75 +128,7 @@ void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std:
   }
 }
 
-// --- Filter and smoother --------------------------------------------------------------------------------------------
-
-std::array<bool, internal::kColumns.size()> wanted_columns(const ReconstructOptions& o) {
-  std::array<bool, internal::kColumns.size()> wanted{};
-  std::fill_n(wanted.begin(), internal::kFirstImuBias, true);
-  for (std::size_t k = 0; k < 3; ++k) {
-    wanted[internal::kFirstImuBias + k] = o.gyro_bias;
-    wanted[internal::kFirstImuBias + 3 + k] = o.accel_bias;
-  }
-  const std::array<bool, 5> errors{o.alpha_bias, o.beta_bias, o.alpha_scale, o.pitot_scale, o.pitot_bias};
-  std::copy(errors.begin(), errors.end(), wanted.begin() + internal::kFirstAirDataError);
-  return wanted;
-}
-
-struct Solution {
-  std::optional<ResultColumns> smoothed, filtered;
-  Monitors monitors;
-  std::size_t count = 0;  ///< samples that hold results
-};
-
-template <class Model>
-Solution solve(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
-               const std::vector<double>& stamps, std::span<const std::size_t> first_stamp,
-               const DrydenSettings& spectrum, Progress& progress) {
-  const RunSetting<Model> setting{&s, &o, {spectrum, noise_of(s, o)}, &stamps};
-  Solution solution{.smoothed = ResultColumns(stamps.size(), wanted_columns(o)),
-                    .filtered = {},
-                    .monitors = monitors_with(o.gate),
-                    .count = 0};
-  if (o.keep_filter) solution.filtered.emplace(stamps.size(), wanted_columns(o));
-
-  constexpr std::size_t kBlock = 512;
-  constexpr std::size_t kReport = 4096;
-  const double total = static_cast<double>(2 * stamps.size());
-  std::size_t done = 0;
-  bool going = true;
-  std::size_t cursor = 0;
-  for (std::size_t i = 0; i < segments.size() && going; ++i) {
-    FlightRun<Model> run(setting, segments[i], internal::start_of(setting, segments[i]), solution.monitors,
-                         first_stamp[i]);
-    const auto forward = [&](const FlightRun<Model>& now) {
-      if (!now.at_output()) return true;
-      if (solution.filtered) {
-        solution.filtered->write(now.output(), setting.model, now.filter().state(), now.filter().covariance(),
-                                 s.density_at(now.time(), cursor));
-      }
-      solution.count = now.output() + 1;
-      if (++done % kReport == 0) going = progress.update(static_cast<double>(done) / total);
-      return going;
-    };
-    const auto smoothed = [&](std::size_t number, const typename Model::template State<double>& x,
-                              const typename Model::Covariance& P) {
-      solution.smoothed->write(number, setting.model, x, P, s.density_at(stamps[number], cursor));
-      // Work that is stopped here ends what it has begun: it is a matter of seconds.
-      if (++done % kReport == 0) static_cast<void>(progress.update(static_cast<double>(done) / total));
-    };
-    solution.monitors = estimation::smooth_in_blocks<Model>(run, kBlock, forward, smoothed).monitors();
-  }
-  return solution;
-}
-
 // --- Report ---------------------------------------------------------------------------------------------------------
-
-double shown(double value, const std::string& unit) { return unit.starts_with("rad") ? value / kDeg : value; }
-std::string shown_unit(const std::string& unit) {
-  if (unit == "rad") return " deg";
-  if (unit == "rad/s") return " deg/s";
-  return unit == "1" ? "" : " " + unit;
-}
 
 void report_sensors(const FlightStreams& s, const Solution& solution, Reconstruction& out) {
   for (std::size_t i = 0; i < kSensors; ++i) {
@@ -275,23 +193,6 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
         return o.initial_wind;
       case 8:
         return o.initial_wind_down;
-      case 18:
-      case 19:
-      case 20:
-        return kGyroBiasPrior;
-      case 21:
-      case 22:
-      case 23:
-        return kAccelBiasPrior;
-      case 24:
-      case 25:
-        return kVaneBiasPrior;
-      case 26:
-        return kAlphaScalePrior;
-      case 27:
-        return kPitotScalePrior;
-      case 28:
-        return kPitotBiasPrior;
       default:
         return 0.0;
     }
@@ -304,10 +205,7 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
     q.unit = internal::kColumns[c].unit;
     q.prior_sigma = before;
     q.sigma = numerics::median(first(columns.sigma(c)));
-    const double ratio = q.sigma / before;
-    q.observability = ratio < 0.35  ? Observability::kObservable
-                      : ratio < 0.8 ? Observability::kWeak
-                                    : Observability::kNotObservable;
+    q.observability = observability_of(q.sigma, before);
     q.statement = fmt::format("{} is {}: sigma {:.3g}{} where {:.3g}{} was assumed beforehand", q.quantity,
                               to_string(q.observability), shown(q.sigma, q.unit), shown_unit(q.unit),
                               shown(before, q.unit), shown_unit(q.unit));
@@ -315,27 +213,97 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
   }
 }
 
-}  // namespace
-
-const char* to_string(Observability observability) {
-  switch (observability) {
-    case Observability::kObservable:
-      return "observable";
-    case Observability::kWeak:
-      return "weakly observable";
-    case Observability::kNotObservable:
-      return "not observable";
-  }
-  return "";
+double error_prior(std::size_t column, const ModelError& model) {
+  using namespace internal;
+  if (column < kFirstImuBias + 3) return kGyroBiasPrior;
+  if (column < kFirstImuScale) return kAccelBiasPrior;
+  if (column < kFirstAirDataError) return kImuScalePrior;
+  constexpr std::array<double, 5> kAir{kVaneBiasPrior, kVaneBiasPrior, kAlphaScalePrior, kPitotScalePrior,
+                                       kPitotBiasPrior};
+  if (column < kFirstCoefficientError) return kAir[column - kFirstAirDataError];
+  return model.sigma(column - kFirstCoefficientError);
 }
 
-Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress) {
+void report_sensor_errors(const Solution& solution, const ModelError& model, Reconstruction& out) {
+  std::vector<SensorErrorEstimate> errors;
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < solution.error_columns.size(); ++i) {
+    const std::size_t c = solution.error_columns[i];
+    const double prior = error_prior(c, model);
+    if (!(prior > 0.0)) continue;
+    const auto part = [&](const std::vector<double>& v) { return std::span<const double>(v.data(), solution.count); };
+    errors.push_back({.name = internal::kColumns[c].name,
+                      .unit = internal::kColumns[c].unit,
+                      .value = numerics::median(part(solution.smoothed->value(c))),
+                      .prior_sigma = prior,
+                      .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
+    kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  const auto n = static_cast<Eigen::Index>(kept.size());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = 0; b < n; ++b)
+      covariance(a, b) = solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
+  }
+  out.sensor_errors = judge_sensor_errors(errors, covariance);
+}
+
+void report_guard(const internal::GuardTrace& trace, const std::vector<double>& stamps, std::size_t count,
+                  Reconstruction& out) {
+  GuardReport report;
+  report.falls = trace.falls;
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (trace.model_based[k]) {
+      ++used;
+      continue;
+    }
+    if (k > 0 && !trace.model_based[k - 1] && !report.model_free.empty()) {
+      report.model_free.back().end = stamps[k];
+    } else {
+      report.model_free.push_back({stamps[k], stamps[k]});
+    }
+  }
+  report.model_based_share = count > 0 ? static_cast<double>(used) / static_cast<double>(count) : 0.0;
+  report.statement =
+      report.falls == 0
+          ? std::string("the model-based filter was believed throughout")
+          : fmt::format("the model-based filter was believed {:.0f} % of the time; its innovations contradicted the "
+                        "model {} time{}, first at {:.1f} s",
+                        100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
+                        report.model_free.empty() ? 0.0 : report.model_free.front().begin);
+  if (report.falls > 0) out.warnings.push_back(report.statement);
+  out.guard = std::move(report);
+}
+
+void add_guard_channels(const internal::GuardTrace& trace, const TimeBase& time, std::size_t count,
+                        Recording& filtered) {
+  const std::vector<double> used(trace.model_based.begin(),
+                                 trace.model_based.begin() + static_cast<std::ptrdiff_t>(count));
+  filtered.add(make_channel("model_based", "1", time, used));
+  filtered.add(make_channel("guard_ratio", "1", time,
+                            {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));
+}
+
+}  // namespace
+
+Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,
+                           const Subject* subject) {
   if (mapped.frame == Frame::kFlu) {
     throw InputError(mapped.source, "is in the frame flu; reconstruction of an aircraft needs frd, convert it first");
   }
   Reconstruction out;
-  const FlightStreams streams = internal::load_streams(mapped, options, out.warnings);
+  FlightStreams streams = internal::load_streams(mapped, options, out.warnings);
   out.sigma = streams.sigma;
+  out.filter = options.filter;
+  std::optional<Subject> force_model;
+  if (options.filter != FilterKind::kModelFree) {
+    if (subject == nullptr) {
+      throw InputError(mapped.source, "reconstruct.filter other than \"model-free\" needs a subject with derivatives");
+    }
+    force_model = *subject;
+    internal::load_model_streams(mapped, *force_model, streams, out.warnings);
+  }
   out.density_origin = streams.density_origin;
 
   const std::vector<Segment> segments = internal::find_segments(streams, options.max_gap);
@@ -367,25 +335,27 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   if (stamps.empty()) throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
 
   choose_turbulence(streams, options, segments, out);
-  if (options.wants_air_data_errors()) {
-    out.warnings.emplace_back(
-        "errors of vanes and pitot tube are estimated: their sigmas are optimistic (in two minutes of moderate "
-        "turbulence four times too small), because the filter's linearisation points scatter; take a long record");
-  }
   progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.back() - stamps.front()));
-  const auto run = [&]<class Model>(Model) {
-    return solve<Model>(streams, options, segments, stamps, first_stamp, out.turbulence, progress);
-  };
-  Solution solution;
-  if (options.wants_imu_biases()) {
-    solution = options.wants_air_data_errors() ? run(AirDataModel<true, true>{}) : run(AirDataModel<true, false>{});
-  } else {
-    solution = options.wants_air_data_errors() ? run(AirDataModel<false, true>{}) : run(AirDataModel<false, false>{});
-  }
+  const internal::SolveTask task{.streams = &streams,
+                                 .options = &options,
+                                 .segments = segments,
+                                 .stamps = &stamps,
+                                 .first_stamp = first_stamp,
+                                 .spectrum = out.turbulence,
+                                 .subject = force_model ? &*force_model : nullptr};
+  Solution solution = options.filter == FilterKind::kGuarded      ? internal::solve_guarded(task, progress)
+                      : options.filter == FilterKind::kModelBased ? internal::solve_model_based(task, progress)
+                                                                  : internal::solve_model_free(task, progress);
 
   out.interrupted = solution.count < stamps.size();
   report_sensors(streams, solution, out);
   report_quantities(streams, options, *solution.smoothed, solution.count, out);
+  if (!solution.air_data_errors_converged) {
+    out.warnings.emplace_back(
+        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too narrow");
+  }
+  report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
+  if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);
   stamps.resize(solution.count);
   const TimeBase time = make_time_base(std::move(stamps));
   const auto finish = [&](Recording& recording, ResultColumns& columns) {
@@ -395,6 +365,7 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   };
   finish(out.smoothed, *solution.smoothed);
   if (solution.filtered) finish(out.filtered, *solution.filtered);
+  if (solution.filtered && solution.guard) add_guard_channels(*solution.guard, time, solution.count, out.filtered);
   return out;
 }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/observability.hpp"
 #include "veridyn/aircraft/reconstruct_options.hpp"
+#include "veridyn/aircraft/sensor_errors.hpp"
+#include "veridyn/aircraft/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/estimation/innovation.hpp"
@@ -19,14 +23,6 @@ struct SensorReport {
   estimation::InnovationSummary innovations;
 };
 
-/// How much the data say about a quantity.
-enum class Observability {
-  kObservable,    ///< median posterior sigma below 0.35 of what was assumed beforehand
-  kWeak,          ///< below 0.8
-  kNotObservable  ///< the data add nothing worth naming: the estimate is the assumption
-};
-[[nodiscard]] const char* to_string(Observability observability);
-
 struct QuantityReport {
   std::string quantity;  ///< channel name, "beta"
   std::string unit;
@@ -34,6 +30,26 @@ struct QuantityReport {
   double sigma = 0.0;        ///< median over the record, smoother
   Observability observability = Observability::kObservable;
   std::string statement;  ///< one sentence
+};
+
+/// What the guard of `filter = "guarded"` did.
+struct GuardReport {
+  double model_based_share = 0.0;  ///< of the time
+  std::size_t falls = 0;           ///< changes from the model-based to the model-free filter
+  std::vector<TimeSpan> model_free;  ///< when the model was not believed
+  std::string statement;             ///< one sentence
+};
+
+/// Errors of one filter and its smoother for one quantity, where the truth is known.
+struct FilterError {
+  std::string quantity;   ///< "alpha"
+  std::string unit;       ///< SI
+  double signal_sd = 0.0;  ///< standard deviation of the truth
+  struct Of {
+    double filter_rms = 0.0, smoother_rms = 0.0, smoother_bias = 0.0;
+    double filter_bound = 0.0, smoother_bound = 0.0;  ///< information bound; 0 where there is none
+  };
+  Of model_free, model_based;
 };
 
 /// The motion through the air, and how far to trust it.
@@ -46,7 +62,10 @@ struct QuantityReport {
 /// - `gust_x|y|z`: the gusts in body axes (no sigma of their own);
 /// - `roll`, `pitch`, `yaw`, `vel_north|east|down`; `air_density` as used (no sigma);
 /// - what was asked to be estimated of `gyro_bias_x|y|z`, `accel_bias_x|y|z`, `alpha_bias`, `beta_bias`, `alpha_scale`,
-///   `pitot_scale`, `pitot_bias`.
+///   `pitot_scale`, `pitot_bias`, `gyro_scale_x|y|z`, `accel_scale_x|y|z`;
+/// - of the model-based filter: `CL_error`, `CD_error`, `CY_error`, by how much the coefficients of the model are off;
+/// - of the guarded filter: `model_based` (1 where the estimate is the model-based filter's; `filtered` only) and
+///   `guard_ratio` (squared innovations of the last window over their limit; no sigma).
 /// Each has its `sigma_...` channel: one standard deviation; the 95 % band is +-1.96 sigma. Where gyro or accelerometer
 /// are missing for longer than `max_gap` there are no samples.
 struct Reconstruction {
@@ -55,6 +74,10 @@ struct Reconstruction {
   std::vector<TimeSpan> segments;  ///< stretches without a long gap, each estimated on its own
   std::vector<SensorReport> sensors;
   std::vector<QuantityReport> quantities;
+  std::vector<SensorErrorReport> sensor_errors;  ///< those that were to be estimated
+  std::optional<GuardReport> guard;
+  std::vector<FilterError> comparison;  ///< filled by whoever knows the truth
+  FilterKind filter = FilterKind::kModelFree;
   SensorSigma sigma;              ///< as used
   DrydenSettings turbulence;      ///< as used
   std::string turbulence_origin;  ///< "low_moderate", "auto: low altitude, 1.4 x light"
@@ -76,7 +99,9 @@ struct Reconstruction {
 /// Each segment starts from the first attitude, ground velocity and airspeed: v_r points as the vanes say, without
 /// vanes along the ground velocity, and is scaled to the airspeed; the rest of the ground velocity is wind.
 /// @throws InputError naming a missing channel and what the recording has, or saying that there is too little data.
+/// The model-based and the guarded filter need `subject` with values for CL (and CD, CY as far as known), deflections,
+/// and `thrust` or `throttle`; see ModelBasedAirData and GuardedFilter.
 [[nodiscard]] Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options,
-                                         Progress& progress);
+                                         Progress& progress, const Subject* subject = nullptr);
 
 }  // namespace veridyn::aircraft

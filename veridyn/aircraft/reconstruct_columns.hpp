@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/aircraft/air_data_filter.hpp"
@@ -17,8 +18,8 @@ struct ColumnName {
   const char* unit;
 };
 
-/// In the order of `ResultColumns::write`; the sensor errors last.
-inline constexpr std::array<ColumnName, 29> kColumns{{{"airspeed", "m/s"},
+/// In the order of `ResultColumns::write`; the sensor errors and those of the model last.
+inline constexpr std::array<ColumnName, 38> kColumns{{{"airspeed", "m/s"},
                                                       {"alpha", "rad"},
                                                       {"beta", "rad"},
                                                       {"air_velocity_x", "m/s"},
@@ -42,13 +43,24 @@ inline constexpr std::array<ColumnName, 29> kColumns{{{"airspeed", "m/s"},
                                                       {"accel_bias_x", "m/s^2"},
                                                       {"accel_bias_y", "m/s^2"},
                                                       {"accel_bias_z", "m/s^2"},
+                                                      {"gyro_scale_x", "1"},
+                                                      {"gyro_scale_y", "1"},
+                                                      {"gyro_scale_z", "1"},
+                                                      {"accel_scale_x", "1"},
+                                                      {"accel_scale_y", "1"},
+                                                      {"accel_scale_z", "1"},
                                                       {"alpha_bias", "rad"},
                                                       {"beta_bias", "rad"},
                                                       {"alpha_scale", "1"},
                                                       {"pitot_scale", "1"},
-                                                      {"pitot_bias", "Pa"}}};
+                                                      {"pitot_bias", "Pa"},
+                                                      {"CL_error", "1"},
+                                                      {"CD_error", "1"},
+                                                      {"CY_error", "1"}}};
 inline constexpr std::size_t kFirstImuBias = 18;
-inline constexpr std::size_t kFirstAirDataError = 24;
+inline constexpr std::size_t kFirstImuScale = 24;
+inline constexpr std::size_t kFirstAirDataError = 30;
+inline constexpr std::size_t kFirstCoefficientError = 35;
 
 /// Values and standard deviations of all results at all stamps.
 class ResultColumns {
@@ -123,14 +135,58 @@ class ResultColumns {
         put(kFirstImuBias + static_cast<std::size_t>(k), i, x.imu_bias(k), P(Model::kImuBias + k, Model::kImuBias + k));
       }
     }
-    if constexpr (Model::kHasAirDataErrors) {
-      for (int k = 0; k < 5; ++k) {
-        put(kFirstAirDataError + static_cast<std::size_t>(k), i, x.air_error(k),
-            P(Model::kAirDataError + k, Model::kAirDataError + k));
+    if constexpr (Model::kHasImuScales) {
+      for (int k = 0; k < 6; ++k) {
+        put(kFirstImuScale + static_cast<std::size_t>(k), i, x.imu_scale(k),
+            P(Model::kImuScale + k, Model::kImuScale + k));
+      }
+    }
+    if constexpr (Model::kHasAerodynamics) {
+      for (int k = 0; k < 3; ++k) {
+        put(kFirstCoefficientError + static_cast<std::size_t>(k), i, x.coefficient_error(k),
+            P(Model::kCoefficientError + k, Model::kCoefficientError + k));
       }
     }
     for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = gust(static_cast<Eigen::Index>(k));
     density_[i] = density;
+  }
+
+  /// The same value and sigma at all samples.
+  void fill(std::size_t column, double value, double sigma) {
+    std::fill(value_[column].begin(), value_[column].end(), value);
+    std::fill(sigma_[column].begin(), sigma_[column].end(), sigma);
+  }
+
+  /// Adds to all variances what constants of the given correlation contribute: `shifted[k]` are the results with
+  /// constant k moved by one sigma.
+  void widen(std::size_t count, const std::vector<ResultColumns>& shifted, const Eigen::MatrixXd& correlation) {
+    Eigen::VectorXd d(static_cast<Eigen::Index>(shifted.size()));
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      if (value_[c].empty() || (c >= kFirstAirDataError && c < kFirstCoefficientError)) continue;
+      const bool angle = std::string_view(kColumns[c].unit) == "rad";
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t k = 0; k < shifted.size(); ++k) {
+          const double change = shifted[k].value_[c][i] - value_[c][i];
+          d(static_cast<Eigen::Index>(k)) = angle ? numerics::wrap_angle(change) : change;
+        }
+        sigma_[c][i] = std::sqrt(sigma_[c][i] * sigma_[c][i] + std::max(0.0, d.dot(correlation * d)));
+      }
+    }
+  }
+
+  /// Takes columns `first` and behind of sample `i` from another set of results.
+  void copy_errors(std::size_t i, const ResultColumns& from, std::size_t first = kFirstImuBias) {
+    for (std::size_t c = first; c < kColumns.size(); ++c) {
+      if (value_[c].empty() || from.value_[c].empty()) continue;
+      value_[c][i] = from.value_[c][i];
+      sigma_[c][i] = from.sigma_[c][i];
+    }
+  }
+  /// Takes sample `i` from another set of results.
+  void copy_sample(std::size_t i, const ResultColumns& from) {
+    copy_errors(i, from, 0);
+    for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = from.gust_[k][i];
+    density_[i] = from.density_[i];
   }
 
   /// Moves the first `count` samples into a recording.

@@ -36,8 +36,39 @@ double not_negative_or(const StudyTable& table, const char* key, const char* uni
 
 }  // namespace
 
+const char* to_string(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::kModelFree:
+      return "model-free";
+    case FilterKind::kModelBased:
+      return "model-based";
+    case FilterKind::kGuarded:
+      return "guarded";
+  }
+  return "";
+}
+
 ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
   ReconstructOptions o;
+  const std::array<std::string, 3> filters{"model-free", "model-based", "guarded"};
+  const std::string filter = table.choice_or("filter", filters, "model-free");
+  o.filter = filter == "guarded"       ? FilterKind::kGuarded
+             : filter == "model-based" ? FilterKind::kModelBased
+                                       : FilterKind::kModelFree;
+  if (table.has("estimate_file")) o.estimate_file = table.files("estimate_file").at(0);
+  o.compare = table.flag_or("compare", o.compare);
+  const auto read_three = [&](const char* key, std::array<double, 3>& value) {
+    if (!table.has(key)) return;
+    const std::vector<double> v = table.numbers(key, "1");
+    if (v.size() != 3) table.fail(key, fmt::format("has {} numbers, expected [CL, CD, CY]", v.size()));
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(v[i] >= 0.0)) table.fail(key, fmt::format("holds {}; all must be >= 0", v[i]));
+      value[i] = v[i];
+    }
+  };
+  read_three("model_error", o.model_error);
+  read_three("model_error_walk", o.model_error_walk);
+  o.guard = estimation::GuardOptions::read(table.table_or_empty("guard"));
   if (table.has("rate")) o.rate_Hz = table.positive("rate", "1/s");
   const std::array<std::string, 2> sensors{"auto", "reference"};
   o.sensors = table.choice_or("sensors", sensors, o.sensors);
@@ -50,8 +81,10 @@ ReconstructOptions ReconstructOptions::read(const StudyTable& table) {
     o.turbulence = table.choice_or("turbulence", settings, o.turbulence);
   }
   o.turbulence_scale = table.positive_or("turbulence_scale", "1", o.turbulence_scale);
-  const std::array<std::pair<std::string, bool*>, 7> errors{{{"gyro_bias", &o.gyro_bias},
+  const std::array<std::pair<std::string, bool*>, 9> errors{{{"gyro_bias", &o.gyro_bias},
                                                              {"accel_bias", &o.accel_bias},
+                                                             {"gyro_scale", &o.gyro_scale},
+                                                             {"accel_scale", &o.accel_scale},
                                                              {"alpha_bias", &o.alpha_bias},
                                                              {"beta_bias", &o.beta_bias},
                                                              {"alpha_scale", &o.alpha_scale},

@@ -1,13 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "veridyn/aircraft/air_data_filter.hpp"
+
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/innovation.hpp"
+#include "veridyn/estimation/innovation_guard.hpp"
 
 namespace veridyn::aircraft {
 
@@ -25,9 +29,24 @@ struct SensorSigma {
   double beta = 0.6 * M_PI / 180.0;     ///< rad
 };
 
+/// Which filter delivers the motion through the air.
+enum class FilterKind {
+  kModelFree,   ///< kinematics only (AirDataModel)
+  kModelBased,  ///< the subject's force coefficients are known (ModelBasedAirData)
+  kGuarded      ///< both; the model-based one while its innovations are as they should be (GuardedFilter)
+};
+
+[[nodiscard]] const char* to_string(FilterKind kind);
+
 /// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
 ///
 ///     [reconstruct]
+///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a measurement;
+///                              # "guarded": both side by side, the model-based one as long as its innovations allow
+///     estimate_file = "estimate.json"  # where the derivatives of CL, CD, CY come from; without it the subject's values
+///     compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters' errors too
+///     model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the model is exact
+///     model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)]
 ///     rate = "100 Hz"          # of the results; without it they come at the gyro's stamps
 ///     sensors = "auto"         # "reference": the specification's reference set, right for simulated recordings;
 ///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
@@ -36,9 +55,8 @@ struct SensorSigma {
 ///                              # "auto": spectrum and intensity of the largest innovation likelihood; or a table
 ///                              # { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } as in a simulation
 ///     turbulence_scale = 1.0   # on the intensities, where they are given
-///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "alpha_bias", "beta_bias",
-///                              # "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
-///                              # (sigmas of vane and pitot errors are optimistic, see Reconstruction::warnings)
+///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "gyro_scale", "accel_scale",
+///                              # "alpha_bias", "beta_bias", "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
 ///     without = []             # sensors not to use: "alpha", "beta", "pitot"
 ///     airspeed_is = "true"     # of a channel `airspeed`: "true" or "equivalent" (indicated by a calibrated tube)
 ///     beta_vane = "sideslip"   # what the channel `beta` is: "sideslip" asin(v/Va) or "flank" atan2(v, u)
@@ -53,9 +71,16 @@ struct SensorSigma {
 ///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
 ///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
 ///     alpha = "0.6 deg"        # velocity_down, dynamic_pressure, airspeed, alpha, beta
+///     [reconstruct.guard]      # see estimation::GuardOptions
 ///     [reconstruct.delay]      # how late a sensor's stamps are: velocity, attitude, pitot, alpha, beta
 ///     velocity = "0.1 s"
 struct ReconstructOptions {
+  FilterKind filter = FilterKind::kModelFree;
+  std::filesystem::path estimate_file;  ///< empty: the subject's own values
+  bool compare = true;
+  std::array<double, 3> model_error{0.02, 0.005, 0.01};
+  std::array<double, 3> model_error_walk{5e-4, 2e-4, 2e-4};
+  estimation::GuardOptions guard;
   double rate_Hz = 0.0;
   std::string sensors = "auto";
   std::string turbulence = "auto";
@@ -63,6 +88,8 @@ struct ReconstructOptions {
   DrydenSettings own_turbulence;  ///< where `turbulence` is "study"
   bool gyro_bias = false;
   bool accel_bias = false;
+  bool gyro_scale = false;
+  bool accel_scale = false;
   bool alpha_bias = false;
   bool beta_bias = false;
   bool alpha_scale = false;
@@ -94,10 +121,12 @@ struct ReconstructOptions {
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static ReconstructOptions read(const StudyTable& table);
 
-  [[nodiscard]] bool wants_imu_biases() const { return gyro_bias || accel_bias; }
+  [[nodiscard]] bool wants_imu_biases() const { return gyro_bias || accel_bias || wants_imu_scales(); }
+  [[nodiscard]] bool wants_imu_scales() const { return gyro_scale || accel_scale; }
   [[nodiscard]] bool wants_air_data_errors() const {
     return alpha_bias || beta_bias || alpha_scale || pitot_scale || pitot_bias;
   }
+  [[nodiscard]] bool wants_sensor_errors() const { return wants_imu_biases() || wants_air_data_errors(); }
 };
 
 /// The least standard deviations that `sensors = "auto"` assumes of an ordinary autopilot. Attitude and velocity of its
@@ -107,7 +136,9 @@ struct ReconstructOptions {
 [[nodiscard]] SensorSigma autopilot_floor();
 
 /// What is assumed of sensor errors that are to be estimated, 1 sigma: gyro 1 deg/s, accelerometer 0.5 m/s^2, vane
-/// 5 deg, upwash slope 0.3, pitot scale 0.2 (of the pressure), pitot bias 20 Pa.
+/// 5 deg, upwash slope 0.3, pitot scale 0.2 (of the pressure), pitot bias 20 Pa, scale factors of gyro and
+/// accelerometer 0.05.
+inline constexpr double kImuScalePrior = 0.05;
 inline constexpr double kGyroBiasPrior = M_PI / 180.0;
 inline constexpr double kAccelBiasPrior = 0.5;
 inline constexpr double kVaneBiasPrior = 5.0 * M_PI / 180.0;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "veridyn/aircraft/air_data_filter.hpp"
+#include "veridyn/aircraft/air_data_measurement.hpp"
 #include "veridyn/aircraft/reconstruct_streams.hpp"
 #include "veridyn/estimation/kalman_filter.hpp"
 #include "veridyn/numerics/rotation.hpp"
@@ -20,6 +20,8 @@ struct RunSetting {
   const ReconstructOptions* options;
   Model model;
   const std::vector<double>* output_t;  ///< stamps of results over all segments
+  /// Errors of the air data that are taken as known (see AirDataModel::AirDataErrorIndex).
+  Eigen::Matrix<double, 5, 1> air_error = Eigen::Matrix<double, 5, 1>::Zero();
 };
 
 /// The state at the first output of a segment, before any measurement but those that start it.
@@ -55,13 +57,15 @@ template <class Model>
 
   // u_r = R v_ground scaled to |v_r| = Va, unless vanes say where the air comes from.
   constexpr double kWindow = 1.0;
+  const auto& e = x.air_error = setting.air_error;
   double airspeed = median_within(s.sensors[kPitot], segment.begin, kWindow);
   if (std::isfinite(airspeed) && s.pitot_is_pressure) {
     std::size_t cursor = 0;
-    airspeed = std::sqrt(2.0 * std::max(airspeed, 0.0) / s.density_at(segment.begin, cursor));
+    airspeed = std::sqrt(2.0 * std::max((airspeed - e(Model::kPitotBias)) / (1.0 + e(Model::kPitotScale)), 0.0) / s.density_at(segment.begin, cursor));
   }
-  const double alpha = median_within(s.sensors[kAlpha], segment.begin, kWindow);
-  const double beta = median_within(s.sensors[kBeta], segment.begin, kWindow);
+  const double alpha = (median_within(s.sensors[kAlpha], segment.begin, kWindow) - e(Model::kAlphaBias)) /
+                       (1.0 + e(Model::kAlphaScale));
+  const double beta = median_within(s.sensors[kBeta], segment.begin, kWindow) - e(Model::kBetaBias);
   const Eigen::Vector3d ground = x.attitude.conjugate() * x.velocity;
   if (!std::isfinite(airspeed)) airspeed = ground.norm();
   Eigen::Vector3d direction = ground.norm() > 1.0 ? Eigen::Vector3d(ground.normalized()) : Eigen::Vector3d::UnitX();
@@ -88,6 +92,16 @@ template <class Model>
       diagonal(Model::kImuBias + 3 + i, o.accel_bias ? kAccelBiasPrior : 0.0);
     }
   }
+  if constexpr (Model::kHasImuScales) {
+    for (int i = 0; i < 3; ++i) {
+      diagonal(Model::kImuScale + i, o.gyro_scale ? kImuScalePrior : 0.0);
+      diagonal(Model::kImuScale + 3 + i, o.accel_scale ? kImuScalePrior : 0.0);
+    }
+  }
+  if constexpr (Model::kHasAerodynamics) {
+    for (int i = 0; i < 3; ++i)
+      diagonal(Model::kCoefficientError + i, setting.model.error.sigma(static_cast<std::size_t>(i)));
+  }
   if constexpr (Model::kHasAirDataErrors) {
     const int at = Model::kAirDataError;
     diagonal(at + Model::kAlphaBias, o.alpha_bias ? kVaneBiasPrior : 0.0);
@@ -99,145 +113,175 @@ template <class Model>
   return start;
 }
 
-/// Copyable, so that the smoother can repeat stretches of it.
-template <class Model>
-class FlightRun {
+/// Goes through the samples of all sensors in the order of their stamps.
+class EventCursor {
  public:
-  using Tape = estimation::SmootherTape<Model>;
-  using Filter = estimation::ExtendedKalmanFilter<Model>;
-
   /// `first_output` is the index in `output_t` of the first stamp of the segment.
-  FlightRun(const RunSetting<Model>& setting, const Segment& segment, const Start<Model>& start,
-            const std::array<estimation::InnovationMonitor, kSensors>& monitors, std::size_t first_output)
-      : setting_(&setting), end_(segment.end), t_(segment.begin), filter_(start.x, start.P), monitors_(monitors) {
+  EventCursor(const FlightStreams& streams, const std::vector<double>& output_t, const Segment& segment,
+              std::size_t first_output)
+      : streams_(&streams), output_t_(&output_t), end_(segment.end), t_(segment.begin), next_output_(first_output) {
     for (std::size_t i = 0; i < kSensors; ++i) {
-      const auto& t = setting.streams->sensors[i].t;
+      const auto& t = streams.sensors[i].t;
       // What started the run is not used again.
       const bool used = i <= kVelDown;
       const auto it = used ? std::upper_bound(t.begin(), t.end(), t_) : std::lower_bound(t.begin(), t.end(), t_);
       next_[i] = static_cast<std::size_t>(it - t.begin());
-      monitors_[i].restart();
     }
     const auto after = [&](const std::vector<double>& t) {
       return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), t_) - t.begin());
     };
-    next_gyro_ = after(setting.streams->gyro.t);
-    next_accel_ = after(setting.streams->accel.t);
+    next_gyro_ = after(streams.gyro.t);
+    next_accel_ = after(streams.accel.t);
     gyro_cursor_ = next_gyro_ - 1;
     accel_cursor_ = next_accel_ - 1;
-    next_output_ = first_output;
   }
 
-  /// To the next event; false at the end of the segment.
-  bool advance(Tape* tape) {
-    const FlightStreams& s = *setting_->streams;
+  /// Time of the next event; NaN at the end of the segment.
+  [[nodiscard]] double next_time() const {
     double event = std::numeric_limits<double>::infinity();
     const auto earlier = [&event](const std::vector<double>& t, std::size_t i) {
       if (i < t.size() && t[i] < event) event = t[i];
     };
-    for (std::size_t i = 0; i < kSensors; ++i) earlier(s.sensors[i].t, next_[i]);
-    earlier(s.gyro.t, next_gyro_);
-    earlier(s.accel.t, next_accel_);
-    earlier(*setting_->output_t, next_output_);
-    if (!(event <= end_)) return false;
-
-    propagate_to(event, tape);
-    while (next_gyro_ < s.gyro.t.size() && s.gyro.t[next_gyro_] <= t_) ++next_gyro_;
-    while (next_accel_ < s.accel.t.size() && s.accel.t[next_accel_] <= t_) ++next_accel_;
-    for (std::size_t i = 0; i < kSensors; ++i) {
-      const Stream& stream = s.sensors[i];
-      for (; next_[i] < stream.t.size() && stream.t[next_[i]] <= t_; ++next_[i]) {
-        measure(static_cast<Sensor>(i), stream.v[next_[i]], stream.sigma, tape);
-      }
-    }
-    at_output_ = next_output_ < setting_->output_t->size() && (*setting_->output_t)[next_output_] <= t_;
-    if (at_output_) {
-      filter_.mark(next_output_, tape);
-      ++next_output_;
-    }
-    return true;
+    for (std::size_t i = 0; i < kSensors; ++i) earlier(streams_->sensors[i].t, next_[i]);
+    earlier(streams_->gyro.t, next_gyro_);
+    earlier(streams_->accel.t, next_accel_);
+    earlier(*output_t_, next_output_);
+    return event <= end_ ? event : std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Whether the last `advance` reached an output stamp, and which.
-  [[nodiscard]] bool at_output() const { return at_output_; }
-  [[nodiscard]] std::size_t output() const { return next_output_ - 1; }
-  [[nodiscard]] std::size_t next_output() const { return next_output_; }
-  [[nodiscard]] double time() const { return t_; }
-  [[nodiscard]] const Filter& filter() const { return filter_; }
-  [[nodiscard]] const std::array<estimation::InnovationMonitor, kSensors>& monitors() const { return monitors_; }
-
- private:
-  void propagate_to(double time, Tape* tape) {
-    const double dt = time - t_;
-    if (!(dt > 0.0)) return;
-    const FlightStreams& s = *setting_->streams;
-    typename Model::Input u;
-    const double middle = t_ + 0.5 * dt;
+  /// Inertial measurements, and controls where `with_controls`, for the way from here to `time`.
+  template <class Input>
+  void fill(Input& u, double time) {
+    const double middle = t_ + 0.5 * (time - t_);
+    const FlightStreams& s = *streams_;
     u.gyro = s.gyro.at(middle, gyro_cursor_);
     u.specific_force = s.accel.at(middle, accel_cursor_);
-    u.airspeed = setting_->model.air_velocity(filter_.state()).norm();
     // Across missing samples the line between their neighbours stands for what was not seen.
     constexpr double kMissing = 2.5, kFactor = 1000.0;
     const auto sparse = [&](const VectorStream& v, std::size_t cursor) {
       return cursor + 1 < v.t.size() && v.t[cursor + 1] - v.t[cursor] > kMissing * v.interval;
     };
     if (sparse(s.gyro, gyro_cursor_) || sparse(s.accel, accel_cursor_)) u.imu_noise_factor = kFactor;
-    rate_ = u.gyro - filter_.state().imu_bias.template head<3>();
-    filter_.propagate(setting_->model, u, dt, tape);
-    t_ = time;
+    if constexpr (requires { u.controls; }) {
+      u.controls = s.controls.at(middle, control_cursor_);
+      u.air_density = s.density_at(middle, density_cursor_);
+    }
   }
 
-  void measure(Sensor which, double z, double sigma, Tape* tape) {
-    const auto& x = filter_.state();
-    const Model& model = setting_->model;
-    const ReconstructOptions& o = *setting_->options;
-    Prediction<Model> p;
-    double nu = 0.0;
-    switch (which) {
-      case kRoll:
-      case kPitch:
-      case kYaw: {
-        bool usable = false;
-        p = predict_euler_angle<Model>(x, which - kRoll, usable);
-        if (!usable) return;
-        nu = numerics::wrap_angle(z - p.value);
-        break;
-      }
-      case kVelNorth:
-      case kVelEast:
-      case kVelDown:
-        p = predict_ground_velocity<Model>(x, which - kVelNorth);
-        nu = z - p.value;
-        break;
-      case kPitot:
-        p = setting_->streams->pitot_is_pressure
-                ? predict_dynamic_pressure(model, x, setting_->streams->density_at(t_, density_cursor_))
-                : predict_airspeed(model, x);
-        nu = z - p.value;
-        break;
-      case kAlpha:
-      case kBeta: {
-        const Eigen::Vector3d v = model.air_velocity(x);
-        if (v.norm() < o.min_airspeed) return;
-        const Eigen::Vector3d arm = rate_.cross(o.vane_position);
-        p = which == kAlpha ? predict_alpha(model, x, arm) : predict_beta(model, x, arm, o.beta_is_flank);
-        nu = numerics::wrap_angle(z - p.value);
-        break;
+  /// What a sample at the present time means. The gyro is the one of the last step's middle.
+  [[nodiscard]] MeasurementContext context(const ReconstructOptions& o, bool with_controls) {
+    const FlightStreams& s = *streams_;
+    MeasurementContext c;
+    c.t = t_;
+    c.pitot_is_pressure = s.pitot_is_pressure;
+    c.air_density = s.density_at(t_, density_cursor_);
+    c.vane_position = o.vane_position;
+    c.beta_is_flank = o.beta_is_flank;
+    c.min_airspeed = o.min_airspeed;
+    c.gyro = s.gyro.at(t_, gyro_cursor_);
+    c.gyro_sigma = s.sigma.gyro;
+    if (with_controls) c.controls = s.controls.at(t_, control_cursor_);
+    return c;
+  }
+
+  /// To `time`; calls `sample(sensor, value, sigma)` for each that is due, the attitude first.
+  template <class OnSample>
+  void step_to(double time, OnSample&& sample) {
+    t_ = time;
+    const FlightStreams& s = *streams_;
+    while (next_gyro_ < s.gyro.t.size() && s.gyro.t[next_gyro_] <= t_) ++next_gyro_;
+    while (next_accel_ < s.accel.t.size() && s.accel.t[next_accel_] <= t_) ++next_accel_;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      const Stream& stream = s.sensors[i];
+      for (; next_[i] < stream.t.size() && stream.t[next_[i]] <= t_; ++next_[i]) {
+        sample(static_cast<Sensor>(i), stream.v[next_[i]], stream.sigma);
       }
     }
-    filter_.update(t_, nu, p.H, sigma * sigma, monitors_[which], tape);
+    at_output_ = next_output_ < output_t_->size() && (*output_t_)[next_output_] <= t_;
+    if (at_output_) ++next_output_;
   }
 
-  const RunSetting<Model>* setting_;
+  /// Whether the last step reached an output stamp, and which.
+  [[nodiscard]] bool at_output() const { return at_output_; }
+  [[nodiscard]] std::size_t output() const { return next_output_ - 1; }
+  [[nodiscard]] double time() const { return t_; }
+
+ private:
+  const FlightStreams* streams_;
+  const std::vector<double>* output_t_;
   double end_;
   double t_;
-  Filter filter_;
-  std::array<estimation::InnovationMonitor, kSensors> monitors_;
   std::array<std::size_t, kSensors> next_{};
   std::size_t next_gyro_ = 0, next_accel_ = 0, next_output_ = 0;
   std::size_t gyro_cursor_ = 0, accel_cursor_ = 0, density_cursor_ = 0;
-  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
+  ControlStreams::Cursor control_cursor_;
   bool at_output_ = false;
+};
+
+/// One filter through one segment. Copyable, so that the smoother can repeat stretches of it.
+template <class Model>
+class FlightRun {
+ public:
+  using Tape = estimation::SmootherTape<Model>;
+  using Filter = estimation::ExtendedKalmanFilter<Model>;
+
+  FlightRun(const RunSetting<Model>& setting, const Segment& segment, const Start<Model>& start,
+            const std::array<estimation::InnovationMonitor, kSensors>& monitors, std::size_t first_output)
+      : setting_(&setting),
+        cursor_(*setting.streams, *setting.output_t, segment, first_output),
+        filter_(start.x, start.P),
+        monitors_(monitors) {
+    for (auto& monitor : monitors_) monitor.restart();
+  }
+
+  /// To the next event; false at the end of the segment.
+  bool advance(Tape* tape) {
+    const double time = cursor_.next_time();
+    if (!std::isfinite(time)) return false;
+    propagate_to(time, tape);
+    if (keep_innovations_) innovations_.clear();
+    bool known = false;
+    MeasurementContext context;
+    cursor_.step_to(time, [&](Sensor which, double z, double sigma) {
+      if (!known) context = cursor_.context(*setting_->options, Model::kHasAerodynamics);
+      known = true;
+      estimation::Innovation seen;
+      const bool offered = enter_measurement<Model>(filter_, setting_->model, context, which, z, sigma,
+                                                    monitors_[which], tape, &seen);
+      if (keep_innovations_) {
+        seen.accepted = seen.accepted && offered;
+        innovations_.push_back(seen);
+      }
+    });
+    if (cursor_.at_output()) filter_.mark(cursor_.output(), tape);
+    return true;
+  }
+
+  [[nodiscard]] bool at_output() const { return cursor_.at_output(); }
+  [[nodiscard]] std::size_t output() const { return cursor_.output(); }
+  [[nodiscard]] double time() const { return cursor_.time(); }
+  /// The samples of the last event, where `keep_innovations` was called.
+  [[nodiscard]] const std::vector<estimation::Innovation>& innovations() const { return innovations_; }
+  void keep_innovations() { keep_innovations_ = true; }
+  [[nodiscard]] const Filter& filter() const { return filter_; }
+  [[nodiscard]] const std::array<estimation::InnovationMonitor, kSensors>& monitors() const { return monitors_; }
+
+ private:
+  void propagate_to(double time, Tape* tape) {
+    const double dt = time - cursor_.time();
+    if (!(dt > 0.0)) return;
+    typename Model::Input u;
+    cursor_.fill(u, time);
+    u.airspeed = setting_->model.air_velocity(filter_.state()).norm();
+    filter_.propagate(setting_->model, u, dt, tape);
+  }
+
+  const RunSetting<Model>* setting_;
+  EventCursor cursor_;
+  Filter filter_;
+  std::array<estimation::InnovationMonitor, kSensors> monitors_;
+  std::vector<estimation::Innovation> innovations_;
+  bool keep_innovations_ = false;
 };
 
 }  // namespace veridyn::aircraft::internal

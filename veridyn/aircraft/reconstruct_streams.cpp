@@ -239,9 +239,135 @@ FlightStreams load_streams(const Recording& recording, const ReconstructOptions&
                                            q.velocity_down,
                                            s.pitot_is_pressure ? q.dynamic_pressure : q.airspeed,
                                            q.alpha,
-                                           q.beta};
+                                           q.beta,
+                                           q.accelerometer,
+                                           q.accelerometer,
+                                           q.accelerometer};
   for (std::size_t i = 0; i < kSensors; ++i) s.sensors[i].sigma = sigma[i];
   return s;
+}
+
+Controls<double> ControlStreams::at(double time, Cursor& cursor) const {
+  const auto value = [&](const Stream& s, std::size_t i) {
+    return s.t.empty() ? 0.0 : interpolate(s.t, s.v, time, cursor.position[i]);
+  };
+  Controls<double> c;
+  c.de = value(elevator, 0);
+  c.da = value(aileron, 1);
+  c.dr = value(rudder, 2);
+  c.throttle = value(throttle, 3);
+  c.rotor_speed = value(rotor_speed, 4);
+  return c;
+}
+
+namespace {
+
+constexpr std::array<Coefficient, 3> kForces{Coefficient::kCL, Coefficient::kCD, Coefficient::kCY};
+
+bool uses(const Subject& subject, AeroVariable variable) {
+  for (const Coefficient c : kForces) {
+    const CoefficientModel* model = subject.model.find(c);
+    if (model == nullptr) continue;
+    for (const Term& term : model->terms) {
+      if (term.uses(variable)) return true;
+    }
+  }
+  return false;
+}
+
+/// The accelerometer's readings without what the sensor's place adds: a_cg = a - w' x r - w x (w x r), the angular
+/// acceleration by central differences of the gyro.
+void move_to_centre_of_gravity(FlightStreams& s, const std::array<double, 3>& position) {
+  const Eigen::Vector3d r(position[0], position[1], position[2]);
+  if (r.norm() == 0.0) return;
+  std::size_t before = 0, here = 0, after = 0;
+  const double h = s.gyro.interval;
+  for (std::size_t i = 0; i < s.accel.t.size(); ++i) {
+    const double t = s.accel.t[i];
+    const Eigen::Vector3d w = s.gyro.at(t, here);
+    const Eigen::Vector3d rate = (s.gyro.at(t + h, after) - s.gyro.at(t - h, before)) / (2.0 * h);
+    s.accel.v[i] -= rate.cross(r) + w.cross(w.cross(r));
+  }
+}
+
+}  // namespace
+
+void load_model_streams(const Recording& recording, Subject& subject, FlightStreams& s,
+                        std::vector<std::string>& warnings) {
+  const std::string needing = "reconstruct.filter = \"model-based\"";
+  for (const Coefficient c : {Coefficient::kCl, Coefficient::kCm, Coefficient::kCn}) {
+    subject.model.coefficients[static_cast<std::size_t>(c)].reset();
+  }
+  for (const Coefficient c : kForces) {
+    CoefficientModel* model = subject.model.find(c);
+    if (model == nullptr || model->known()) continue;
+    if (c == Coefficient::kCL) break;
+    subject.model.coefficients[static_cast<std::size_t>(c)].reset();
+  }
+  const CoefficientModel* lift = subject.model.find(Coefficient::kCL);
+  if (lift == nullptr || !lift->known()) {
+    throw InputError(recording.source,
+                     fmt::format("{} needs the derivatives of CL: values in subject.model.CL or an identified CL in "
+                                 "reconstruct.estimate_file",
+                                 needing));
+  }
+  for (const Coefficient c : {Coefficient::kCD, Coefficient::kCY}) {
+    if (subject.model.find(c) == nullptr) {
+      warnings.push_back(fmt::format(
+          "the derivatives of {} are not known: its force is taken as the accelerometer shows it", name_of(c)));
+    }
+  }
+  const auto surface = [&](const char* name, AeroVariable variable, Stream& stream) {
+    stream = scalar(recording, name, "rad", 0.0);
+    if (!stream.t.empty() || !uses(subject, variable)) return;
+    throw InputError(recording.source, fmt::format("has no channel '{}', which the force model of {} depends on", name,
+                                                   needing));
+  };
+  surface("elevator", AeroVariable::kDe, s.controls.elevator);
+  surface("aileron", AeroVariable::kDa, s.controls.aileron);
+  surface("rudder", AeroVariable::kDr, s.controls.rudder);
+
+  Stream thrust = scalar(recording, "thrust", "N", 0.0);
+  Stream throttle = scalar(recording, "throttle", "1", 0.0);
+  if (!thrust.t.empty()) {
+    // A propulsion whose throttle is the thrust.
+    const std::array<double, 3> position = subject.propulsion.position;
+    subject.propulsion = {};
+    subject.propulsion.kind = PropulsionKind::kPolynomial;
+    subject.propulsion.position = position;
+    subject.propulsion.polynomial = {{1, 0, 1.0}};
+    s.controls.throttle = std::move(thrust);
+  } else if (subject.propulsion.kind != PropulsionKind::kNone) {
+    if (throttle.t.empty()) {
+      throw InputError(recording.source, fmt::format("has neither 'thrust' nor 'throttle'; {} needs one", needing));
+    }
+    Stream rotor = throttle;
+    double speed = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < throttle.t.size(); ++i) {
+      const double steady = subject.propulsion.steady_rotor_speed(throttle.v[i]);
+      const bool lags = subject.propulsion.kind == PropulsionKind::kPropeller && std::isfinite(speed);
+      const double step = i > 0 ? throttle.t[i] - throttle.t[i - 1] : 0.0;
+      speed = lags ? steady + (speed - steady) * std::exp(-step / subject.propulsion.time_constant) : steady;
+      rotor.v[i] = speed;
+    }
+    s.controls.throttle = std::move(throttle);
+    s.controls.rotor_speed = std::move(rotor);
+  } else {
+    warnings.push_back(fmt::format("{} has no propulsion model and the recording no thrust: taken as 0", subject.name));
+  }
+
+  move_to_centre_of_gravity(s, subject.imu_position);
+  const std::array<const char*, 3> names{"accel_x", "accel_y", "accel_z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Stream& stream = s.sensors[kAccelX + axis];
+    stream.channel = names[axis];
+    stream.unit = "m/s^2";
+    stream.t = s.accel.t;
+    stream.v.clear();
+    for (const Eigen::Vector3d& a : s.accel.v) stream.v.push_back(a(static_cast<Eigen::Index>(axis)));
+    stream.rate_Hz = s.accel.interval > 0.0 ? 1.0 / s.accel.interval : 0.0;
+    stream.sigma = s.sigma.accelerometer;
+  }
 }
 
 std::vector<Segment> find_segments(const FlightStreams& s, double max_gap) {

@@ -9,6 +9,14 @@
 
 namespace veridyn::estimation {
 
+/// One scalar innovation as it was offered.
+struct Innovation {
+  double nu = 0.0;
+  double S = 1.0;  ///< its predicted variance
+  bool accepted = false;
+  [[nodiscard]] double nis() const { return nu * nu / S; }
+};
+
 /// Extended Kalman filter with sequential scalar updates: any subset of sensors, at any rate and time.
 ///
 /// Between measurements the state is propagated by the model and its covariance by the Jacobian from automatic
@@ -68,12 +76,13 @@ class ExtendedKalmanFilter {
   }
 
   /// Enters the measurement of innovation `nu` = z - h(x), row `H` and variance `r` > 0, taken at time `t`, if the gate
-  /// of `monitor` lets it in. Returns whether it did.
+  /// of `monitor` lets it in. Returns whether it did; `seen` receives the innovation in either case.
   bool update(double t, double nu, const Vector& H, double r, InnovationMonitor& monitor,
-              SmootherTape<Model>* tape = nullptr) noexcept {
+              SmootherTape<Model>* tape = nullptr, Innovation* seen = nullptr) noexcept {
     const Vector PH = P_.lazyProduct(H);
     double S = H.dot(PH) + r;
     const auto verdict = monitor.judge(t, nu, S);
+    if (seen) *seen = {nu, S, verdict.accept};
     if (!verdict.accept) return false;
     S += verdict.extra_variance;
     r += verdict.extra_variance;

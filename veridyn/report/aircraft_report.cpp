@@ -438,11 +438,72 @@ Section rejected_section(const FlightStudy& study, const FlightAnalysis& analysi
   return section;
 }
 
+Table sensor_error_table(const Reconstruction& rec) {
+  Table table{.title = "Errors of the sensors and of the model",
+              .caption =
+                  "What was to be estimated: how much of it this flight determines, and with what it is entangled. "
+                  "Information: share of the precision that the flight adds to what was assumed beforehand.",
+              .columns = {{.name = "Error"},
+                          {.name = "Value", .digits = 3},
+                          {.name = "Sigma", .digits = 2},
+                          {.name = "Assumed beforehand", .digits = 3},
+                          {.name = "Unit"},
+                          {.name = "Information", .unit = "%", .digits = 3},
+                          {.name = "Most correlated with"},
+                          {.name = "Correlation", .digits = 2},
+                          {.name = "Verdict"}}};
+  for (const SensorErrorReport& e : rec.sensor_errors) {
+    const Status status = e.observability == Observability::kObservable ? Status::kGood
+                          : e.observability == Observability::kWeak     ? Status::kCaution
+                                                                        : Status::kBad;
+    const std::string unit = shown_unit(e.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(e.name), number_cell(aircraft::shown(e.value, e.unit)),
+                   number_cell(aircraft::shown(e.sigma, e.unit)), number_cell(aircraft::shown(e.prior_sigma, e.unit)),
+                   text_cell(unit.empty() ? unit : unit.substr(1)), number_cell(100.0 * e.information),
+                   text_cell(e.correlated_with), number_cell(e.correlation),
+                   status_cell(status, to_string(e.observability))}});
+  }
+  return table;
+}
+
+/// Error over signal variance, the source's figure, as numbers.
+Table comparison_table(const Reconstruction& rec) {
+  Table table{.title = "Model-free against model-based filter",
+              .caption =
+                  "Root mean square errors against the truth of the simulated flight, the information bound of a "
+                  "filter that knows the aircraft, and the share of the signal's variance that is error.",
+              .columns = {{.name = "Quantity"},
+                          {.name = "Unit"},
+                          {.name = "Model-free filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Model-based filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Bound, filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Error/signal, model-free", .unit = "%", .digits = 3},
+                          {.name = "model-based", .unit = "%", .digits = 3}}};
+  for (const FilterError& e : rec.comparison) {
+    const auto value = [&](double v) { return number_cell(v > 0.0 ? aircraft::shown(v, e.unit) : std::nan("")); };
+    const auto share = [&](double rms) { return number_cell(100.0 * std::pow(rms / e.signal_sd, 2)); };
+    const std::string unit = shown_unit(e.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)), value(e.model_free.filter_rms),
+                   value(e.model_free.smoother_rms), value(e.model_based.filter_rms), value(e.model_based.smoother_rms),
+                   value(e.model_based.filter_bound), value(e.model_based.smoother_bound),
+                   share(e.model_free.smoother_rms), share(e.model_based.smoother_rms)}});
+  }
+  return table;
+}
+
 Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis) {
   Section section{.title = "Sensors and state estimation", .id = "sensors"};
   const Reconstruction& rec = analysis.reconstruction;
-  section.blocks.emplace_back(
-      FactList{{{"Turbulence assumed", rec.turbulence_origin}, {"Air density from", rec.density_origin}}});
+  FactList facts{{{"Filter", to_string(rec.filter)},
+                  {"Turbulence assumed", rec.turbulence_origin},
+                  {"Air density from", rec.density_origin}}};
+  if (rec.guard) facts.facts.push_back({"Guard", rec.guard->statement});
+  section.blocks.emplace_back(std::move(facts));
   Table channels{
       .title = "Channels",
       .columns = {
@@ -507,6 +568,8 @@ Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis
                    text_cell(q.statement)}});
   }
   section.blocks.emplace_back(std::move(quantities));
+  if (!rec.sensor_errors.empty()) section.blocks.emplace_back(sensor_error_table(rec));
+  if (!rec.comparison.empty()) section.blocks.emplace_back(comparison_table(rec));
   return section;
 }
 
