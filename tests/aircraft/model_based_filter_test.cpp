@@ -19,12 +19,12 @@
 namespace veridyn::aircraft {
 namespace {
 
-using testing::fly;
 using testing::Flown;
+using testing::fly;
+using ::testing::HasSubstr;
 using testing::linear_unatrap;
 using testing::reconstructed;
 using testing::reference_options;
-using ::testing::HasSubstr;
 
 constexpr double kDeg = M_PI / 180.0;
 using Model = ModelBasedAirData<12, false>;
@@ -232,7 +232,8 @@ TEST(ModelBasedFilter, TakesAnUnknownDragFromTheAccelerometer) {
   const Reconstruction r = reconstruct(f.measured, o, quiet, &half);
   o.filter = FilterKind::kModelFree;
   const Reconstruction free = reconstructed(f, o);
-  EXPECT_LT(testing::rms_error(r.smoothed, f.truth, "alpha"), 0.7 * testing::rms_error(free.smoothed, f.truth, "alpha"));
+  EXPECT_LT(testing::rms_error(r.smoothed, f.truth, "alpha"),
+            0.7 * testing::rms_error(free.smoothed, f.truth, "alpha"));
   EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("CD are not known")));
 }
 

@@ -15,8 +15,8 @@ namespace veridyn::aircraft::internal {
 struct AirDataErrors {
   std::vector<int> index;
   Eigen::Matrix<double, 5, 1> value = Eigen::Matrix<double, 5, 1>::Zero();  ///< 0 where not estimated
-  Eigen::MatrixXd covariance;                                              ///< in the order of `index`
-  DrydenSettings spectrum;  ///< with intensities as they fit best
+  Eigen::MatrixXd covariance;                                               ///< in the order of `index`
+  DrydenSettings spectrum;                                                  ///< with intensities as they fit best
   int iterations = 0;
   bool converged = true;
 };
@@ -43,8 +43,8 @@ struct AirDataErrors {
 /// theta fixed the filter's innovations are as they should be, and the gusts are integrated out, not maximised over.
 ///
 /// The intensities of the gusts along the three axes are estimated along with theta, within a factor e^0.3 (1 sigma):
-/// otherwise an angle's fluctuation, sigma_w / Va, would tell the airspeed to a percent to whoever believes that sigma_w
-/// is known to a percent.
+/// otherwise an angle's fluctuation, sigma_w / Va, would tell the airspeed to a percent to whoever believes that
+/// sigma_w is known to a percent.
 template <class Model>
 [[nodiscard]] AirDataErrors estimate_air_data_errors(const RunSetting<Model>& base, const SolveTask& task) {
   AirDataErrors result;
@@ -160,8 +160,7 @@ template <class Model>
     scale(i) = prior_of(i);
     result.value(result.index[static_cast<std::size_t>(i)]) = theta(i) * scale(i);
   }
-  result.covariance =
-      scale.asDiagonal() * now.information.inverse().topLeftCorner(errors, errors) * scale.asDiagonal();
+  result.covariance = scale.asDiagonal() * now.information.inverse().topLeftCorner(errors, errors) * scale.asDiagonal();
   result.spectrum = scaled(theta);
   return result;
 }

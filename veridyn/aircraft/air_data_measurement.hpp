@@ -12,24 +12,23 @@ namespace veridyn::aircraft::internal {
 
 /// What stands between a sample and the state, at the sample's time.
 struct MeasurementContext {
-  double t = 0.0;                     ///< [s]
-  bool pitot_is_pressure = true;      ///< else true airspeed
-  double air_density = 1.225;         ///< [kg/m^3]
+  double t = 0.0;                 ///< [s]
+  bool pitot_is_pressure = true;  ///< else true airspeed
+  double air_density = 1.225;     ///< [kg/m^3]
   Eigen::Vector3d vane_position{0.0, 0.0, 0.0};
   bool beta_is_flank = false;
-  double min_airspeed = 3.0;          ///< below it vanes and force model are not believed [m/s]
+  double min_airspeed = 3.0;            ///< below it vanes and force model are not believed [m/s]
   Eigen::Vector3d gyro{0.0, 0.0, 0.0};  ///< as measured [rad/s]
-  double gyro_sigma = 0.0;            ///< of one sample [rad/s]
-  Controls<double> controls;          ///< for the accelerometer of the model-based filter
+  double gyro_sigma = 0.0;              ///< of one sample [rad/s]
+  Controls<double> controls;            ///< for the accelerometer of the model-based filter
 };
 
 /// Enters the sample `z` of a sensor with standard deviation `sigma` into `filter`. Returns whether it was offered to
 /// the filter at all; `seen` then receives its innovation.
 template <class Model>
-bool enter_measurement(estimation::ExtendedKalmanFilter<Model>& filter, const Model& model,
-                       const MeasurementContext& c, Sensor which, double z, double sigma,
-                       estimation::InnovationMonitor& monitor, estimation::SmootherTape<Model>* tape = nullptr,
-                       estimation::Innovation* seen = nullptr) {
+bool enter_measurement(estimation::ExtendedKalmanFilter<Model>& filter, const Model& model, const MeasurementContext& c,
+                       Sensor which, double z, double sigma, estimation::InnovationMonitor& monitor,
+                       estimation::SmootherTape<Model>* tape = nullptr, estimation::Innovation* seen = nullptr) {
   const auto& x = filter.state();
   Prediction<Model> p;
   double variance = sigma * sigma;

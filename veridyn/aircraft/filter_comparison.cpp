@@ -76,15 +76,17 @@ std::vector<FilterError> compare_filters(const Recording& mapped, const Recordin
   for (const double v : speed.value) airspeed += v / static_cast<double>(speed.size());
   const Channel& rho = free.smoothed.at("air_density");
   if (!rho.empty()) density = rho.value[rho.size() / 2];
-  BoundSensors sensors{.alpha = rate_of("alpha") > 0.0 && o.use_alpha ? free.sigma.alpha : 0.0,
-                       .beta = rate_of("beta") > 0.0 && o.use_beta ? free.sigma.beta : 0.0,
-                       .accelerometer = free.sigma.accelerometer,
-                       .dynamic_pressure =
-                           rate_of("dynamic_pressure") > 0.0 && o.use_pitot ? free.sigma.dynamic_pressure : 0.0,
-                       .rate_Hz = rate_of("accel_x")};
+  BoundSensors sensors{
+      .alpha = rate_of("alpha") > 0.0 && o.use_alpha ? free.sigma.alpha : 0.0,
+      .beta = rate_of("beta") > 0.0 && o.use_beta ? free.sigma.beta : 0.0,
+      .accelerometer = free.sigma.accelerometer,
+      .dynamic_pressure = rate_of("dynamic_pressure") > 0.0 && o.use_pitot ? free.sigma.dynamic_pressure : 0.0,
+      .rate_Hz = rate_of("accel_x")};
   InformationBound kinematic;
-  if (sensors.alpha > 0.0) kinematic.alpha = information_bound(free.turbulence, airspeed, sensors.alpha, rate_of("alpha")).alpha;
-  if (sensors.beta > 0.0) kinematic.beta = information_bound(free.turbulence, airspeed, sensors.beta, rate_of("beta")).beta;
+  if (sensors.alpha > 0.0)
+    kinematic.alpha = information_bound(free.turbulence, airspeed, sensors.alpha, rate_of("alpha")).alpha;
+  if (sensors.beta > 0.0)
+    kinematic.beta = information_bound(free.turbulence, airspeed, sensors.beta, rate_of("beta")).beta;
   ModelBound model;
   if (!free.turbulence.calm()) model = information_bound(free.turbulence, subject, airspeed, sensors, density);
 

@@ -9,18 +9,18 @@
 
 namespace veridyn::aircraft {
 
-/// A model-free and a model-based filter side by side, on board or in a replay: the estimate is the model-based filter's
-/// as long as its innovations are what they should be, and the model-free filter's otherwise.
+/// A model-free and a model-based filter side by side, on board or in a replay: the estimate is the model-based
+/// filter's as long as its innovations are what they should be, and the model-free filter's otherwise.
 ///
-/// New derivatives may come at any time from a recursive identification (`set_model`): the loop is closed, and the guard
-/// keeps it from believing its own mistakes, because the model-free filter never sees the model. Judged are pitot tube,
-/// vanes and accelerometer of the model-based filter, each by itself (InnovationGuard). When the guard ends the trust,
-/// the model-based filter starts anew from the model-free one's state and covariance; it does so again after every
-/// window with an alarm, so that what a wrong model did to it is forgotten, and it is believed again after
+/// New derivatives may come at any time from a recursive identification (`set_model`): the loop is closed, and the
+/// guard keeps it from believing its own mistakes, because the model-free filter never sees the model. Judged are pitot
+/// tube, vanes and accelerometer of the model-based filter, each by itself (InnovationGuard). When the guard ends the
+/// trust, the model-based filter starts anew from the model-free one's state and covariance; it does so again after
+/// every window with an alarm, so that what a wrong model did to it is forgotten, and it is believed again after
 /// `return_after` of sound windows.
 ///
-/// A change of the aircraft is noticed within two windows (2 s by default); until then the estimate is the wrong model's.
-/// `propagate`, `measure` and `judge` do not allocate. Not thread-safe.
+/// A change of the aircraft is noticed within two windows (2 s by default); until then the estimate is the wrong
+/// model's. `propagate`, `measure` and `judge` do not allocate. Not thread-safe.
 template <class Free = AirDataModel<0, false>, class Based = ModelBasedAirData<0, false>>
 class GuardedFilter {
  public:
@@ -29,9 +29,9 @@ class GuardedFilter {
   using Monitors = std::array<estimation::InnovationMonitor, internal::kSensors>;
 
   /// `model_based.subject` is ignored: `subject` is the force model (see internal::load_model_streams).
-  GuardedFilter(const Free& model_free, Based model_based, std::shared_ptr<const Subject> subject,
-                const FreeState& x, const typename Free::Covariance& P, double t,
-                const estimation::GuardOptions& guard = {}, const estimation::InnovationGate& gate = {})
+  GuardedFilter(const Free& model_free, Based model_based, std::shared_ptr<const Subject> subject, const FreeState& x,
+                const typename Free::Covariance& P, double t, const estimation::GuardOptions& guard = {},
+                const estimation::InnovationGate& gate = {})
       : free_model_(model_free),
         based_model_(std::move(model_based)),
         subject_(std::move(subject)),
@@ -66,8 +66,8 @@ class GuardedFilter {
 
   /// A sample `z` of a sensor with standard deviation `sigma`.
   void measure(const internal::MeasurementContext& context, internal::Sensor which, double z, double sigma) {
-    static_cast<void>(internal::enter_measurement<Free>(free_, free_model_, context, which, z, sigma,
-                                                        free_monitors_[which]));
+    static_cast<void>(
+        internal::enter_measurement<Free>(free_, free_model_, context, which, z, sigma, free_monitors_[which]));
     estimation::Innovation seen;
     const bool offered = internal::enter_measurement<Based>(based_, based_model_, context, which, z, sigma,
                                                             based_monitors_[which], nullptr, &seen);

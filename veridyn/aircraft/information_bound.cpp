@@ -146,7 +146,9 @@ ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subj
   const auto force = specific_force<Jet>(forces, v, at, air_density);
   std::vector<std::pair<Vector5, double>> measurements;
   const auto measure = [&](const Jet& y, double sigma) {
-    if (sigma > 0.0) measurements.emplace_back(G.transpose() * y.v, sigma * sigma);
+    Eigen::Vector3d by_gust = y.v;
+    if (sensors.airspeed_known) by_gust -= v0 * (v0.dot(by_gust) / v0.squaredNorm());
+    if (sigma > 0.0) measurements.emplace_back(G.transpose() * by_gust, sigma * sigma);
   };
   measure(air.alpha, sensors.alpha);
   measure(air.beta, sensors.beta);
@@ -156,8 +158,8 @@ ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subj
   // Information form of the update: all measurements of one time at once.
   Matrix5 information = Matrix5::Zero();
   for (const auto& [H, variance] : measurements) information += H * H.transpose() / variance;
-  const int steps =
-      static_cast<int>(std::ceil(40.0 * std::max({spectrum.Lu, spectrum.Lv, spectrum.Lw}) * sensors.rate_Hz / airspeed));
+  const int steps = static_cast<int>(
+      std::ceil(40.0 * std::max({spectrum.Lu, spectrum.Lv, spectrum.Lw}) * sensors.rate_Hz / airspeed));
   Matrix5 before = Pi, after = Pi;
   for (int i = 0; i < steps; ++i) {
     after = (Matrix5::Identity() + before * information).partialPivLu().solve(before);

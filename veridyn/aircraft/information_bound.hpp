@@ -39,7 +39,8 @@ struct BoundSensors {
   double accelerometer = 0.05;                ///< [m/s^2]
   double dynamic_pressure = 10.0;             ///< [Pa]; 0: there is no pitot tube
   double rate_Hz = 100.0;
-  /// Takes the longitudinal gust as known, as the specification's figures do. A filter does not know it: the force
+  /// Takes the airspeed as known (no longitudinal gust, measurements at constant airspeed), as the specification's
+  /// figures do. A filter does not know it: the force
   /// changes with the airspeed too, and what of a change of force is alpha is then less certain.
   bool airspeed_known = false;
   /// Whether the accelerometer along x counts; the specification's figures leave it out.
@@ -56,14 +57,15 @@ struct ModelBound {
 
 /// How well alpha, beta and airspeed can be known by someone who knows the aircraft's own derivatives: as above
 /// (attitude, ground velocity and slow wind exact; Dryden's gusts along the three axes unknown), with an accelerometer
-/// that measures the force of the subject's model, linearised about steady level flight at `airspeed` and `air_density`.
-/// Where the subject's moments and inertia give no complete trim, alpha and thrust are those of balanced forces with
-/// undeflected controls.
+/// that measures the force of the subject's model, linearised about steady level flight at `airspeed` and
+/// `air_density`. Where the subject's moments and inertia give no complete trim, alpha and thrust are those of balanced
+/// forces with undeflected controls.
 ///
-/// With `airspeed_known` and without `axial_force` it reproduces the specification's values for UnATRaP in low-altitude moderate turbulence with
-/// the reference sensors: at 15 m/s alpha 0.08 / 0.08 deg, beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17
-/// deg (filter / smoother). With the airspeed unknown, as it is, alpha's are 0.17 / 0.14 and 0.09 / 0.07 deg.
-/// Beyond the linear range (stall) the aircraft tells less than this.
+/// With `airspeed_known` and without `axial_force` it reproduces the specification's values for UnATRaP in low-altitude
+/// moderate turbulence with the reference sensors: at 15 m/s alpha 0.08 / 0.08 deg (0.075 / 0.074 here, drag counted in
+/// the normal force), beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17 deg (filter / smoother). With the
+/// airspeed unknown, as it is, alpha's are 0.17 / 0.14 and 0.09 / 0.07 deg. Beyond the linear range (stall) the
+/// aircraft tells less than this.
 [[nodiscard]] ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subject, double airspeed,
                                            const BoundSensors& sensors, double air_density = 1.225);
 

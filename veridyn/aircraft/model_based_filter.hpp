@@ -11,14 +11,14 @@
 
 namespace veridyn::aircraft {
 
-/// How far the coefficients of a model may be off, in the order CL, CD, CY: a constant that is not known beforehand, and
-/// how it wanders (alpha and beta come close to their bound only while that is slow).
+/// How far the coefficients of a model may be off, in the order CL, CD, CY: a constant that is not known beforehand,
+/// and how it wanders (alpha and beta come close to their bound only while that is slow).
 struct ModelError {
-  std::array<double, 3> initial{0.02, 0.005, 0.01};    ///< 1 sigma at the start [-]
-  std::array<double, 3> walk{5e-4, 2e-4, 2e-4};        ///< [1/sqrt(s)]
-  std::array<bool, 3> modelled{true, true, true};      ///< false: nothing is known of it, the accelerometer tells it
-  static constexpr double kUnknownInitial = 1.0;       ///< where it is not modelled
-  static constexpr double kUnknownWalk = 0.5;          ///< [1/sqrt(s)]
+  std::array<double, 3> initial{0.02, 0.005, 0.01};  ///< 1 sigma at the start [-]
+  std::array<double, 3> walk{5e-4, 2e-4, 2e-4};      ///< [1/sqrt(s)]
+  std::array<bool, 3> modelled{true, true, true};    ///< false: nothing is known of it, the accelerometer tells it
+  static constexpr double kUnknownInitial = 1.0;     ///< where it is not modelled
+  static constexpr double kUnknownWalk = 0.5;        ///< [1/sqrt(s)]
   [[nodiscard]] double sigma(std::size_t i) const { return modelled[i] ? initial[i] : kUnknownInitial; }
   [[nodiscard]] double density(std::size_t i) const { return modelled[i] ? walk[i] : kUnknownWalk; }
 };
@@ -39,8 +39,8 @@ struct ModelError {
 /// In air at rest d(Va, alpha, beta)/dt is `wind_axes_rate` (a test compares them).
 ///
 /// The Jacobian of `propagate` comes by automatic differentiation; that of the accelerometer too, with respect to v_r,
-/// rates and coefficient errors. The velocity carries white force noise of the accelerometer's size: what the model does
-/// not say of the force from sample to sample.
+/// rates and coefficient errors. The velocity carries white force noise of the accelerometer's size: what the model
+/// does not say of the force from sample to sample.
 ///
 /// The error vector is that of `AirDataModel`, then the errors of CL, CD, CY.
 template <int kImuErrors, bool kAirDataErrors>
@@ -95,8 +95,8 @@ struct ModelBasedAirData : AirDataModel<kImuErrors, kAirDataErrors> {
 
   template <typename S>
   [[nodiscard]] Eigen::Matrix<S, 3, 1> specific_force(const State<S>& x, const Input& u) const {
-    return specific_force<S>(this->template air_velocity<S>(x), Base::template rates<S>(x, u.gyro),
-                             x.coefficient_error, u.controls, u.air_density);
+    return specific_force<S>(this->template air_velocity<S>(x), Base::template rates<S>(x, u.gyro), x.coefficient_error,
+                             u.controls, u.air_density);
   }
 
   template <typename S>
@@ -152,10 +152,11 @@ struct ModelBasedAirData : AirDataModel<kImuErrors, kAirDataErrors> {
 };
 
 /// Accelerometer at the centre of gravity along body axis 0, 1, 2: (1 + scale) f/m + bias [m/s^2]. `gyro` are the
-/// measured rates; their noise enters through the rate derivatives, as `noise_variance` for a gyro of standard deviation
-/// `gyro_sigma` a sample.
+/// measured rates; their noise enters through the rate derivatives, as `noise_variance` for a gyro of standard
+/// deviation `gyro_sigma` a sample.
 template <class Model>
-[[nodiscard]] Prediction<Model> predict_specific_force(const Model& model, const typename Model::template State<double>& x,
+[[nodiscard]] Prediction<Model> predict_specific_force(const Model& model,
+                                                       const typename Model::template State<double>& x,
                                                        const typename Model::Input& u, int axis, double gyro_sigma,
                                                        double& noise_variance) {
   using Jet = ceres::Jet<double, 9>;

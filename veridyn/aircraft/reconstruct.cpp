@@ -243,7 +243,8 @@ void report_sensor_errors(const Solution& solution, const ModelError& model, Rec
   Eigen::MatrixXd covariance(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b)
-      covariance(a, b) = solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
+      covariance(a, b) =
+          solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
   }
   out.sensor_errors = judge_sensor_errors(errors, covariance);
 }
@@ -268,10 +269,11 @@ void report_guard(const internal::GuardTrace& trace, const std::vector<double>& 
   report.statement =
       report.falls == 0
           ? std::string("the model-based filter was believed throughout")
-          : fmt::format("the model-based filter was believed {:.0f} % of the time; its innovations contradicted the "
-                        "model {} time{}, first at {:.1f} s",
-                        100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
-                        report.model_free.empty() ? 0.0 : report.model_free.front().begin);
+          : fmt::format(
+                "the model-based filter was believed {:.0f} % of the time; its innovations contradicted the "
+                "model {} time{}, first at {:.1f} s",
+                100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
+                report.model_free.empty() ? 0.0 : report.model_free.front().begin);
   if (report.falls > 0) out.warnings.push_back(report.statement);
   out.guard = std::move(report);
 }
@@ -352,7 +354,8 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   report_quantities(streams, options, *solution.smoothed, solution.count, out);
   if (!solution.air_data_errors_converged) {
     out.warnings.emplace_back(
-        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too narrow");
+        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
+        "narrow");
   }
   report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
   if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);

@@ -34,16 +34,16 @@ struct QuantityReport {
 
 /// What the guard of `filter = "guarded"` did.
 struct GuardReport {
-  double model_based_share = 0.0;  ///< of the time
-  std::size_t falls = 0;           ///< changes from the model-based to the model-free filter
+  double model_based_share = 0.0;    ///< of the time
+  std::size_t falls = 0;             ///< changes from the model-based to the model-free filter
   std::vector<TimeSpan> model_free;  ///< when the model was not believed
   std::string statement;             ///< one sentence
 };
 
 /// Errors of one filter and its smoother for one quantity, where the truth is known.
 struct FilterError {
-  std::string quantity;   ///< "alpha"
-  std::string unit;       ///< SI
+  std::string quantity;    ///< "alpha"
+  std::string unit;        ///< SI
   double signal_sd = 0.0;  ///< standard deviation of the truth
   struct Of {
     double filter_rms = 0.0, smoother_rms = 0.0, smoother_bias = 0.0;
@@ -101,7 +101,7 @@ struct Reconstruction {
 /// @throws InputError naming a missing channel and what the recording has, or saying that there is too little data.
 /// The model-based and the guarded filter need `subject` with values for CL (and CD, CY as far as known), deflections,
 /// and `thrust` or `throttle`; see ModelBasedAirData and GuardedFilter.
-[[nodiscard]] Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options,
-                                         Progress& progress, const Subject* subject = nullptr);
+[[nodiscard]] Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,
+                                         const Subject* subject = nullptr);
 
 }  // namespace veridyn::aircraft

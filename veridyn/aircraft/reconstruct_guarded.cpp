@@ -53,8 +53,7 @@ GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_
           filtered->write(k, filter.based_model(), filter.based_filter().state(), filter.based_filter().covariance(),
                           rho);
         } else {
-          filtered->write(k, filter.free_model(), filter.free_filter().state(), filter.free_filter().covariance(),
-                          rho);
+          filtered->write(k, filter.free_model(), filter.free_filter().state(), filter.free_filter().covariance(), rho);
         }
       }
       if (++done % kReport == 0 && !progress.update(static_cast<double>(done) / static_cast<double>(stamps.size())))
@@ -71,9 +70,10 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   Solution based = solve_model_based(task, progress);
   Solution free = solve_model_free(task, progress);
   ResultColumns* filtered = based.filtered ? &*based.filtered : nullptr;
-  GuardTrace trace = task.options->wants_imu_biases()
-                         ? replay<AirDataModel<12, false>, ModelBasedAirData<12, false>>(task, free.air_error, filtered, progress)
-                         : replay<AirDataModel<0, false>, ModelBasedAirData<0, false>>(task, free.air_error, filtered, progress);
+  GuardTrace trace =
+      task.options->wants_imu_biases()
+          ? replay<AirDataModel<12, false>, ModelBasedAirData<12, false>>(task, free.air_error, filtered, progress)
+          : replay<AirDataModel<0, false>, ModelBasedAirData<0, false>>(task, free.air_error, filtered, progress);
   based.count = std::min(based.count, free.count);
 
   // The model-based smoother is contaminated on both sides of a stretch in which the model was wrong.

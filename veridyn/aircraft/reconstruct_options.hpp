@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "veridyn/aircraft/air_data_filter.hpp"
-
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/innovation.hpp"
 #include "veridyn/estimation/innovation_guard.hpp"
@@ -41,14 +40,15 @@ enum class FilterKind {
 /// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
 ///
 ///     [reconstruct]
-///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a measurement;
+///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a
+///     measurement;
 ///                              # "guarded": both side by side, the model-based one as long as its innovations allow
-///     estimate_file = "estimate.json"  # where the derivatives of CL, CD, CY come from; without it the subject's values
-///     compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters' errors too
-///     model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the model is exact
-///     model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)]
-///     rate = "100 Hz"          # of the results; without it they come at the gyro's stamps
-///     sensors = "auto"         # "reference": the specification's reference set, right for simulated recordings;
+///     estimate_file = "estimate.json"  # where the derivatives of CL, CD, CY come from; without it the subject's
+///     values compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters'
+///     errors too model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the
+///     model is exact model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)] rate = "100 Hz"          #
+///     of the results; without it they come at the gyro's stamps sensors = "auto"         # "reference": the
+///     specification's reference set, right for simulated recordings;
 ///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
 ///                              # autopilot's errors that are not white amount to (values in `autopilot_floor()`)
 ///     turbulence = "auto"      # "none" | "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |

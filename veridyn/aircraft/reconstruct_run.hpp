@@ -61,10 +61,11 @@ template <class Model>
   double airspeed = median_within(s.sensors[kPitot], segment.begin, kWindow);
   if (std::isfinite(airspeed) && s.pitot_is_pressure) {
     std::size_t cursor = 0;
-    airspeed = std::sqrt(2.0 * std::max((airspeed - e(Model::kPitotBias)) / (1.0 + e(Model::kPitotScale)), 0.0) / s.density_at(segment.begin, cursor));
+    airspeed = std::sqrt(2.0 * std::max((airspeed - e(Model::kPitotBias)) / (1.0 + e(Model::kPitotScale)), 0.0) /
+                         s.density_at(segment.begin, cursor));
   }
-  const double alpha = (median_within(s.sensors[kAlpha], segment.begin, kWindow) - e(Model::kAlphaBias)) /
-                       (1.0 + e(Model::kAlphaScale));
+  const double alpha =
+      (median_within(s.sensors[kAlpha], segment.begin, kWindow) - e(Model::kAlphaBias)) / (1.0 + e(Model::kAlphaScale));
   const double beta = median_within(s.sensors[kBeta], segment.begin, kWindow) - e(Model::kBetaBias);
   const Eigen::Vector3d ground = x.attitude.conjugate() * x.velocity;
   if (!std::isfinite(airspeed)) airspeed = ground.norm();
@@ -246,8 +247,8 @@ class FlightRun {
       if (!known) context = cursor_.context(*setting_->options, Model::kHasAerodynamics);
       known = true;
       estimation::Innovation seen;
-      const bool offered = enter_measurement<Model>(filter_, setting_->model, context, which, z, sigma,
-                                                    monitors_[which], tape, &seen);
+      const bool offered =
+          enter_measurement<Model>(filter_, setting_->model, context, which, z, sigma, monitors_[which], tape, &seen);
       if (keep_innovations_) {
         seen.accepted = seen.accepted && offered;
         innovations_.push_back(seen);

@@ -96,8 +96,8 @@ template <class Model>
   static_assert(!Model::kHasAirDataErrors, "errors of the air data are estimated by likelihood, outside of the filter");
   const ReconstructOptions& o = *task.options;
   const std::size_t size = task.stamps->size();
-  RunSetting<Model> setting{.streams = task.streams, .options = &o, .model = make_model<Model>(task),
-                            .output_t = task.stamps};
+  RunSetting<Model> setting{
+      .streams = task.streams, .options = &o, .model = make_model<Model>(task), .output_t = task.stamps};
   const auto wanted = wanted_columns(o, Model::kHasAerodynamics);
   Solution solution;
   solution.smoothed.emplace(size, wanted);
@@ -124,7 +124,8 @@ template <class Model>
   // What the errors leave uncertain in everything else: the estimate's derivative by each, by a shift of one sigma.
   const auto m = static_cast<Eigen::Index>(errors.index.size());
   const Eigen::VectorXd sigma = errors.covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd correlation = sigma.cwiseInverse().asDiagonal() * errors.covariance * sigma.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd correlation =
+      sigma.cwiseInverse().asDiagonal() * errors.covariance * sigma.cwiseInverse().asDiagonal();
   std::vector<ResultColumns> smoothed_shifts, filtered_shifts;
   for (Eigen::Index i = 0; i < m; ++i) {
     setting.air_error = errors.value;

@@ -320,8 +320,8 @@ void load_model_streams(const Recording& recording, Subject& subject, FlightStre
   const auto surface = [&](const char* name, AeroVariable variable, Stream& stream) {
     stream = scalar(recording, name, "rad", 0.0);
     if (!stream.t.empty() || !uses(subject, variable)) return;
-    throw InputError(recording.source, fmt::format("has no channel '{}', which the force model of {} depends on", name,
-                                                   needing));
+    throw InputError(recording.source,
+                     fmt::format("has no channel '{}', which the force model of {} depends on", name, needing));
   };
   surface("elevator", AeroVariable::kDe, s.controls.elevator);
   surface("aileron", AeroVariable::kDa, s.controls.aileron);

@@ -17,20 +17,7 @@ namespace veridyn::aircraft::internal {
 /// Scalar sensors in the order in which those of one time stamp are processed: the attitude first, because the rest
 /// depends on it most.
 /// The accelerometer's axes are measurements for the model-based filter only; for the other their streams are empty.
-enum Sensor {
-  kRoll,
-  kPitch,
-  kYaw,
-  kVelNorth,
-  kVelEast,
-  kVelDown,
-  kPitot,
-  kAlpha,
-  kBeta,
-  kAccelX,
-  kAccelY,
-  kAccelZ
-};
+enum Sensor { kRoll, kPitch, kYaw, kVelNorth, kVelEast, kVelDown, kPitot, kAlpha, kBeta, kAccelX, kAccelY, kAccelZ };
 inline constexpr std::size_t kSensors = 12;
 
 /// Finite samples of a scalar sensor; delays taken off the stamps.
@@ -86,8 +73,8 @@ struct FlightStreams {
 /// of gravity, deflections, thrust. `subject` becomes the force model to filter with: without moments, and with a
 /// propulsion that turns recorded thrust into thrust where there is a channel `thrust`.
 /// @throws InputError naming a channel or a parameter that the model of CL, CD and CY needs and that is missing.
-void load_model_streams(const Recording& recording, Subject& subject,
-                        FlightStreams& streams, std::vector<std::string>& warnings);
+void load_model_streams(const Recording& recording, Subject& subject, FlightStreams& streams,
+                        std::vector<std::string>& warnings);
 
 /// A stretch over which gyro and accelerometer have no gap longer than `max_gap`, from where attitude and ground
 /// velocity are known.

@@ -20,9 +20,7 @@ const char* to_string(Observability observability) {
 
 Observability observability_of(double sigma, double prior_sigma) {
   const double ratio = sigma / prior_sigma;
-  return ratio < 0.35 ? Observability::kObservable
-         : ratio < 0.8 ? Observability::kWeak
-                       : Observability::kNotObservable;
+  return ratio < 0.35 ? Observability::kObservable : ratio < 0.8 ? Observability::kWeak : Observability::kNotObservable;
 }
 
 double shown(double value, const std::string& unit) { return unit.starts_with("rad") ? value * 180.0 / M_PI : value; }
@@ -73,8 +71,8 @@ std::vector<SensorErrorReport> judge_sensor_errors(const std::vector<SensorError
     }
     constexpr double kEntangled = 0.9;
     if (std::abs(r.correlation) > kEntangled) {
-      r.statement += fmt::format("; told apart from {} only poorly (correlation {:.2f})", r.correlated_with,
-                                 r.correlation);
+      r.statement +=
+          fmt::format("; told apart from {} only poorly (correlation {:.2f})", r.correlated_with, r.correlation);
     }
     reports.push_back(std::move(r));
   }
