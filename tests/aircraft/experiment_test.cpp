@@ -31,8 +31,8 @@ ExperimentOptions options_of(const std::string& more) {
 
 TEST(Experiment, HasExactRowsAndNoiseOfTheStatedSize) {
   Progress silent;
-  const ExperimentOptions o = options_of(
-      "[experiment]\ncoefficient = \"Cm\"\nrate = 100\nsnr = 20\nregressor_snr = 10\nspans = [5, 55]\n");
+  const ExperimentOptions o =
+      options_of("[experiment]\ncoefficient = \"Cm\"\nrate = 100\nsnr = 20\nregressor_snr = 10\nspans = [5, 55]\n");
   const ExactRows rows = exact_rows(o, silent);
   ASSERT_EQ(rows.regressors.rows(), 5000);
   // The rows are those of the linear model: no stall in this flight.
@@ -97,8 +97,7 @@ TEST(TrackingExperiment, SettlesWhereItIsExcitedAndNeverWhereItIsBiased) {
                             "forgetting = \"constant\"\n";
   const Study parsed = Study::parse(study, "test.toml");
   const ExperimentOptions o = ExperimentOptions::read(parsed.root());
-  const TrackingExperiment e =
-      run_tracking_experiment(o, read_trackers(parsed.root().table("experiment")), silent);
+  const TrackingExperiment e = run_tracking_experiment(o, read_trackers(parsed.root().table("experiment")), silent);
   // GTLS ends nearer to the truth than OLS, whose errors the noise on the regressors makes systematic.
   const auto error = [&](std::size_t tracker) {
     const TrackHistory& h = e.runs[tracker][0].history;

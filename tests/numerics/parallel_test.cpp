@@ -34,7 +34,8 @@ TEST(ParallelFor, ThrowsTheExceptionOfAnItemOnceAllThreadsHaveEnded) {
 
 TEST(ParallelFor, StopsWhenAskedTo) {
   std::atomic<int> done = 0;
-  EXPECT_FALSE(parallel_for(100000, 2, [&](std::size_t) { ++done; }, [](std::size_t n) { return n < 10; }));
+  EXPECT_FALSE(parallel_for(
+      100000, 2, [&](std::size_t) { ++done; }, [](std::size_t n) { return n < 10; }));
   EXPECT_LT(done, 100000);
 }
 

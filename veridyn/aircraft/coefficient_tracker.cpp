@@ -120,14 +120,26 @@ bool CoefficientTracker::moves_held_direction(std::span<const double> x) const {
   return false;
 }
 
-std::optional<estimation::Change> CoefficientTracker::update(double t, std::span<const double> x, double z) {
+/// Variance of the row's residual over that which W gives.
+double CoefficientTracker::noise_ratio(const Eigen::MatrixXd& row_W) const {
+  const Eigen::Index n = row_W.rows();
+  estimation::SmallVector h(n);
+  h.head(n - 1) = regression_.theta();
+  h(n - 1) = -1.0;
+  const double usual = h.dot(W_ * h);
+  return usual > 0.0 ? h.dot(row_W * h) / usual : 1.0;
+}
+
+std::optional<estimation::Change> CoefficientTracker::update(double t, std::span<const double> x, double z,
+                                                             const Eigen::MatrixXd* row_W) {
   // Before the update: it may turn the direction into an excited one.
   const bool moves_held = options_.detect_changes && moves_held_direction(x);
   const estimation::RecursiveUpdate u = regression_.update(x, z);
   std::optional<estimation::Change> change;
   if (u.accepted) {
     least_lambda_ = std::min(least_lambda_, u.lambda);
-    const double normalised = u.innovation / u.innovation_sigma;
+    double normalised = u.innovation / u.innovation_sigma;
+    if (row_W != nullptr) normalised /= std::sqrt(noise_ratio(*row_W));
     if (std::isfinite(normalised)) {
       innovation_power_ += normalised * normalised;
       ++innovations_;

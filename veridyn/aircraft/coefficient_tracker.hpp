@@ -65,8 +65,13 @@ class CoefficientTracker {
   /// Hybrid start; see RecursiveRegression::start.
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);
 
-  /// Takes a row [x, z] of time `t` [s]. Beyond the history nothing is allocated. @return the change that it reveals
-  std::optional<estimation::Change> update(double t, std::span<const double> x, double z);
+  /// Takes a row [x, z] of time `t` [s]. Beyond the history nothing is allocated.
+  /// @param row_W error covariance of this row where it is known: errors that grow with the signal (a coefficient has
+  /// those
+  ///   of the dynamic pressure) are then not taken for a change. Null: W.
+  /// @return the change that the row reveals
+  std::optional<estimation::Change> update(double t, std::span<const double> x, double z,
+                                           const Eigen::MatrixXd* row_W = nullptr);
 
   [[nodiscard]] const CoefficientModel& model() const { return model_; }
   [[nodiscard]] const std::vector<std::string>& names() const { return regression_.names(); }
@@ -79,6 +84,7 @@ class CoefficientTracker {
  private:
   void remember(double t);
   [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
+  [[nodiscard]] double noise_ratio(const Eigen::MatrixXd& row_W) const;
 
   CoefficientModel model_;
   TrackOptions options_;
