@@ -4,9 +4,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <string>
+#include <thread>
 
 #include "veridyn/core/files.hpp"
 #include "veridyn/io/csv.hpp"
@@ -132,6 +135,47 @@ TEST_F(Program, ExportsABuiltInSubjectForOtherPrograms) {
   expect_refusal(
       "export " + file("unknown.toml", "[subject]\nbuiltin = \"aerosonde\"\nmodel = { CL = [\"1\"] }\n") + out(),
       "these have no value: CL_0");
+}
+
+TEST_F(Program, FollowsALogThatIsStillBeingWritten) {
+  const std::string flight = file("flight.toml",
+                                  "seed = 1\n[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 80\nairspeed = 20\n"
+                                  "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 0\nduration = 80\n"
+                                  "surfaces = [\"elevator\"]\n");
+  ASSERT_EQ(run("simulate " + flight + " --quiet --out " + (folder_ / "sim").string()).exit_code, 0);
+  const std::string log = read_file(folder_ / "sim" / "recording.csv");
+  const std::string study =
+      file("study.toml",
+           "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"live.csv\"\n[reconstruct]\nsensors = \"reference\"\n"
+           "turbulence = \"none\"\n[delays]\nautomatic = false\n[track]\ncoefficients = [\"CL\", \"Cm\"]\n");
+  // Pieces that end in the middle of a line, the first of them before there is a whole header.
+  std::thread writer([&] {
+    std::size_t at = 0;
+    for (const double share : {0.00005, 0.1, 0.35, 0.5, 0.9, 1.0}) {
+      const auto end = static_cast<std::size_t>(share * static_cast<double>(log.size()));
+      std::ofstream(folder_ / "live.csv", std::ios::app | std::ios::binary) << log.substr(at, end - at);
+      at = end;
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    }
+  });
+  const Outcome live = run("track " + study + " --live --interval 0.2 --idle 3 --json" + out());
+  writer.join();
+  ASSERT_EQ(live.exit_code, 0) << live.text;
+  const auto streamed = io::read_estimate(folder_ / "out" / "estimate.json");
+  ASSERT_EQ(run("track " + study + " --quiet --out " + (folder_ / "replay").string()).exit_code, 0);
+  const auto replayed = io::read_estimate(folder_ / "replay" / "estimate.json");
+  ASSERT_NE(streamed.find("CL_alpha"), nullptr);
+  for (const char* name : {"CL_alpha", "Cm_alpha", "Cm_de"})
+    EXPECT_NEAR(streamed.find(name)->value, replayed.find(name)->value, 0.05 * replayed.find(name)->sigma) << name;
+  for (const char* name : {"track.csv", "changes.csv", "report.html", "run.json"})
+    EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+}
+
+TEST_F(Program, ReproducesAPublishedResult) {
+  const Outcome row = run("reproduce aircraft --only 02_Cl" + out());
+  EXPECT_EQ(row.exit_code, 0) << row.text;
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "report.html"));
+  EXPECT_EQ(run("reproduce aircraft --only nothing" + out()).exit_code, 2);
 }
 
 TEST_F(Program, GivesTheSameBytesForTheSameSeed) {

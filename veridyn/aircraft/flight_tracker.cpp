@@ -86,15 +86,17 @@ void FlightTracker::take(std::size_t index, double time, const FlightSignals& si
   }
   const double z = select(regressed_coefficients(sample, subject_, rho, torque), c.model.coefficient);
   if (!finite || !std::isfinite(z)) return;
+  Eigen::MatrixXd W = row_error_covariance(c.model, signals, k, subject_);
   if (c.tracker) {
-    if (const auto change = c.tracker->update(time, {x.data(), n}, z)) found.push_back({c.model.coefficient, *change});
+    W(W.rows() - 1, W.cols() - 1) += c.equation_error;
+    if (const auto change = c.tracker->update(time, {x.data(), n}, z, &W))
+      found.push_back({c.model.coefficient, *change});
     return;
   }
   Learning& learning = learning_[index];
   learning.time.push_back(time);
   learning.rows.insert(learning.rows.end(), x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
   learning.rows.push_back(z);
-  const Eigen::MatrixXd W = row_error_covariance(c.model, signals, k, subject_);
   learning.W = learning.count == 0 ? W : Eigen::MatrixXd(learning.W + W);
   ++learning.count;
   if (static_cast<double>(learning.count) >= kLearnSeconds * rate_) begin(index, found);
@@ -137,7 +139,8 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
     Eigen::VectorXd h(n + 1);
     h << theta, -1.0;
     const double beyond = fit("residual_sd") * fit("residual_sd") - h.dot(W * h);
-    if (beyond > 0.0) W(n, n) += beyond;
+    c.equation_error = std::max(0.0, beyond);
+    W(n, n) += c.equation_error;
   }
   c.tracker.emplace(c.model, W, options_, rate_, names);
   if (complete) c.tracker->start(theta, P, fit("samples"), fit("residual_sd"));

@@ -15,6 +15,7 @@ struct TrackedCoefficient {
   CoefficientModel model;
   std::string obstacle = {};                       ///< why it cannot be followed at all, or empty
   std::string start = {};                          ///< where it began: "batch estimate", "no estimate"
+  double equation_error = 0.0;                     ///< variance of z that the batch estimate left beyond the sensors
   std::optional<CoefficientTracker> tracker = {};  ///< from the moment its noise is known
 };
 

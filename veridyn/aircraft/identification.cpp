@@ -230,7 +230,7 @@ class CoefficientIdentification {
     // What the log does not have cannot be chosen.
     std::erase_if(all.terms, [&](const Term& term) {
       const CoefficientModel single{result.coefficient, {term}, {kUnknown}};
-      return !obstacle(single, signals_, subject_).empty();
+      return !identification_obstacle(single, signals_, subject_).empty();
     });
     all.values.assign(all.terms.size(), kUnknown);
     const RegressionData data = coefficient_data(all, signals_, segments_.of(result.axis).identification, subject_);

@@ -244,8 +244,8 @@ class Expectations {
     const double to = holds.number("to", "s");
     const TrackHistory& h = e.runs[tracker_of("holds", name)][0].history;
     const auto n = static_cast<int>(e.rows.names.size());
-    std::size_t first = 0;
-    while (first < h.time.size() && h.excited[first] < n) ++first;
+    const double from = holds.number("from", "s");
+    const auto first = static_cast<std::size_t>(std::lower_bound(h.time.begin(), h.time.end(), from) - h.time.begin());
     std::size_t poor = 0, held = 0, all = 0;
     double worst = 0.0;
     for (std::size_t k = first; k < h.time.size() && h.time[k] <= to; ++k) {
@@ -259,10 +259,10 @@ class Expectations {
       return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(1, all));
     };
     add(share(held) >= kHeldShare && share(poor) > 0.1,
-        fmt::format(
-            "{}: until {:.0f} s it says that a direction is not excited in {:.0f} % of the time, and no parameter's "
-            "error moves the coefficient by more than 5 % of its deviation in {:.1f} % of it (worst {:.1f} %)",
-            name, to, 100.0 * share(poor), 100.0 * share(held), 100.0 * worst));
+        fmt::format("{}: from {:.0f} to {:.0f} s it says that a direction is not excited in {:.0f} % of the time, and "
+                    "no parameter's "
+                    "error moves the coefficient by more than 5 % of its deviation in {:.1f} % of it (worst {:.1f} %)",
+                    name, from, to, 100.0 * share(poor), 100.0 * share(held), 100.0 * worst));
   }
 
   static double median(const std::vector<double>& sorted) { return sorted[sorted.size() / 2]; }

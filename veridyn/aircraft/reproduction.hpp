@@ -44,8 +44,9 @@ struct ReproductionCheck {
 ///     no_false_alarm = ["variable"]            # neither detector nor forgetting before the first change
 ///     detects = ["variable"]     # every change within `detection_window`, in every repetition
 ///     detection_window = "30 s"
-///     holds = { tracker = "PCA-GTLS", to = "480 s" }   # settled or within its bands in 90 % of the time until then,
-///                                # though a direction was unexcited in more than a tenth of it
+///     holds = { tracker = "PCA-GTLS", from = "50 s", to = "300 s" }   # no parameter's error moves the coefficient by
+///                                # more than 5 % of its deviation in 90 % of that time, though a direction was
+///                                unexcited # in more than a tenth of it
 ///     cut_off = { tracker = "constant", seconds = 99.8 }      # time to 5 % weight, printed to a tenth of a second
 struct Reproduction {
   std::string title;
