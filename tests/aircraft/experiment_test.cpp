@@ -1,5 +1,6 @@
 #include "veridyn/aircraft/experiment.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ surfaces = ["elevator"]
 )toml";
 
 ExperimentOptions options_of(const std::string& more) {
-  return ExperimentOptions::read(Study::parse(kFlight + more, "test.toml").root());
+  return ExperimentOptions::read(Study::parse(fmt::format("{}{}", kFlight, more), "test.toml").root());
 }
 
 TEST(Experiment, HasExactRowsAndNoiseOfTheStatedSize) {
@@ -71,9 +72,10 @@ TEST(Experiment, NamesTheKeyThatIsWrong) {
 TEST(Reproduction, SaysNoWhenAResultDoesNotShow) {
   Progress silent;
   // Ordinary least squares with exact regressors is not biased: the study claims that it is.
-  const std::string study = std::string("title = \"wrong\"\n") + kFlight +
-                            "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 30\nsnr = 30\n"
-                            "[expect]\nbiased = \"OLS\"\n";
+  const std::string study =
+      fmt::format("title = \"wrong\"\n{}{}", kFlight,
+                  "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 30\nsnr = 30\n"
+                  "[expect]\nbiased = \"OLS\"\n");
   const Reproduction result = reproduce(Study::parse(study, "test.toml").root(), silent);
   ASSERT_EQ(result.checks.size(), 1u);
   EXPECT_FALSE(result.passed());
@@ -81,20 +83,21 @@ TEST(Reproduction, SaysNoWhenAResultDoesNotShow) {
 
 TEST(Reproduction, RefusesAMisspeltExpectation) {
   Progress silent;
-  const std::string study = std::string("title = \"wrong\"\n") + kFlight +
-                            "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 3\n"
-                            "[expect]\nunbiassed = \"OLS\"\n";
+  const std::string study = fmt::format("title = \"wrong\"\n{}{}", kFlight,
+                                        "[experiment]\ncoefficient = \"CL\"\nmethods = [\"OLS\"]\nseeds = 3\n"
+                                        "[expect]\nunbiassed = \"OLS\"\n");
   EXPECT_THROW((void)reproduce(Study::parse(study, "test.toml").root(), silent), InputError);
 }
 
 TEST(TrackingExperiment, SettlesWhereItIsExcitedAndNeverWhereItIsBiased) {
   Progress silent;
-  const std::string study = std::string(kFlight) +
-                            "[experiment]\ncoefficient = \"Cm\"\nseeds = 2\nrate = 50\nsnr = 30\nregressor_snr = 15\n"
-                            "[[experiment.tracker]]\nname = \"OLS\"\nmethod = \"OLS\"\nlambda = 1.0\n"
-                            "forgetting = \"constant\"\n"
-                            "[[experiment.tracker]]\nname = \"GTLS\"\nmethod = \"GTLS\"\nlambda = 1.0\n"
-                            "forgetting = \"constant\"\n";
+  const std::string study =
+      fmt::format("{}{}", kFlight,
+                  "[experiment]\ncoefficient = \"Cm\"\nseeds = 2\nrate = 50\nsnr = 30\nregressor_snr = 15\n"
+                  "[[experiment.tracker]]\nname = \"OLS\"\nmethod = \"OLS\"\nlambda = 1.0\n"
+                  "forgetting = \"constant\"\n"
+                  "[[experiment.tracker]]\nname = \"GTLS\"\nmethod = \"GTLS\"\nlambda = 1.0\n"
+                  "forgetting = \"constant\"\n");
   const Study parsed = Study::parse(study, "test.toml");
   const ExperimentOptions o = ExperimentOptions::read(parsed.root());
   const TrackingExperiment e = run_tracking_experiment(o, read_trackers(parsed.root().table("experiment")), silent);

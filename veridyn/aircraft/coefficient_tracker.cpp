@@ -75,7 +75,7 @@ TrackOptions TrackOptions::read(const StudyTable& table) {
     }
   }
   if (table.has("estimate")) o.estimate_file = table.files("estimate").at(0).string();
-  const std::vector<std::string> sources{"auto", "sensors", "filter"};
+  const std::vector<std::string> sources{"filter", "sensors"};
   o.air_data = table.choice_or("air_data", sources, o.air_data);
   o.history_Hz = table.positive_or("history_rate", "Hz", o.history_Hz);
   return o;
@@ -143,12 +143,13 @@ std::optional<estimation::Change> CoefficientTracker::update(double t, std::span
     if (std::isfinite(normalised)) {
       innovation_power_ += normalised * normalised;
       ++innovations_;
-      // Before the estimate has a covariance its innovations say nothing about the aircraft; neither do they where the
-      // row moves along a combination of parameters that is not known.
-      if (options_.detect_changes && regression_.usable() && !moves_held) change = detector_.update(t, normalised);
+      // Innovations tell of the aircraft once everything was excited: what was not is held at a prior, and later at
+      // what it was. They do not where the row moves along a combination of parameters that is not known now.
+      if (options_.detect_changes && watching_ && !moves_held) change = detector_.update(t, normalised);
     }
   }
   if (change) changes_.push_back(*change);
+  watching_ = watching_ || (regression_.usable() && regression_.excited_directions() >= regression_.parameters());
   if (first_) next_s_ = t;
   first_ = false;
   if (t >= next_s_ - 1e-9) remember(t);

@@ -21,7 +21,9 @@ struct TrackOptions {
   /// `FlightSignals::stride`). 0: lambda is given.
   double memory_s = 100.0;
   /// `forgetting = "variable"` or "constant"; `lambda`, `lambda_min`, `K_a`, `K_b`, `gamma`, `row_weight`.
-  estimation::ForgettingOptions forgetting{.variable = true};
+  /// The noise is averaged over 500 n rows, so that a trigger lasts until the estimate has followed, and at least 33
+  /// rows are remembered: fewer fit noise while no linear model holds, as in a stall.
+  estimation::ForgettingOptions forgetting{.variable = true, .lambda_min = 0.97, .K_b = 500.0};
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   bool detect_changes = true;    ///< `detect_changes`
   /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
@@ -29,9 +31,9 @@ struct TrackOptions {
   estimation::ChangeDetectionOptions detection = {};
   std::vector<Coefficient> coefficients = {};  ///< `coefficients`; empty: all that the subject models
   std::string estimate_file;                   ///< `estimate`: estimate.json to start from (hybrid start)
-  /// `air_data`: "sensors" takes airspeed and flow angles from pitot and vanes, "filter" from the causal state
-  /// estimate, "auto" from the sensors where there are a pitot and both vanes.
-  std::string air_data = "auto";
+  /// `air_data`: "filter" takes airspeed from the causal state estimate (and flow angles where there is no vane),
+  /// "sensors" from pitot and vanes.
+  std::string air_data = "filter";
   double history_Hz = 5.0;  ///< `history_rate`: of what is kept for the report
 
   /// @throws InputError naming file, line and key.
@@ -96,6 +98,7 @@ class CoefficientTracker {
   TrackHistory history_;
   double next_s_ = 0.0;
   bool first_ = true;
+  bool watching_ = false;  ///< every direction was excited once
   double least_lambda_ = 1.0;
   double innovation_power_ = 0.0;
   std::uint64_t innovations_ = 0;

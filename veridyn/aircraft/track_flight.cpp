@@ -28,13 +28,6 @@ FlightTracker make_tracker(const FlightStudy& study) {
   return FlightTracker(study.subject, study.track, study.segments.min_airspeed_mps, start ? &*start : nullptr);
 }
 
-std::string choose_air_data(const std::string& wanted, const Recording& recording) {
-  if (wanted != "auto") return wanted;
-  const bool pitot = recording.find("dynamic_pressure") != nullptr || recording.find("airspeed") != nullptr;
-  const bool vanes = recording.find("alpha") != nullptr && recording.find("beta") != nullptr;
-  return pitot && vanes ? "sensors" : "filter";
-}
-
 }  // namespace
 
 TrackedFlight::TrackedFlight(const FlightStudy& study) : tracker_(make_tracker(study)) {}
@@ -45,7 +38,7 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
   require_channels(mapped, needed, "tracking");
   const TimeSpan span = mapped.recording.at("gyro_x").span();
   end_ = std::max(end_, span.end);
-  if (air_data_.empty()) air_data_ = choose_air_data(study.track.air_data, mapped.recording);
+  air_data_ = study.track.air_data;
   const bool by_sensors = air_data_ == "sensors";
   const double begin = std::isfinite(tracker_.last_time())
                            ? tracker_.last_time() - (by_sensors ? kWarmSensors_s : kWarmFilter_s)
