@@ -113,6 +113,13 @@ file = @LOG@
 
 [validate]
 # period = "5 s"                 # the model is started anew this often
+
+# `veridyn track study.toml` follows the parameters on line, replayed or live (docs/tracking.md).
+[track]
+# memory = "100 s"               # a sample counts 5 % after this time
+# forgetting = "variable"        # shorter memory while innovations are large
+# false_alarm_interval = "36000 s"
+# estimate = "estimate.json"     # start from an earlier identification
 )toml";
 
 /// The template with the log's path as TOML text, so that it is found from the study's folder.

@@ -357,6 +357,12 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
         "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
         "narrow");
   }
+  if (!force_model && options.wants_air_data_errors()) {
+    out.warnings.emplace_back(
+        "errors of vanes and pitot tube found without a model of the aircraft are biased when pilot or autopilot "
+        "answer "
+        "the gusts, which then look like errors of the sensors; reconstruct.filter = \"model-based\" is not misled so");
+  }
   report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
   if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);
   stamps.resize(solution.count);
