@@ -107,7 +107,7 @@ void write_results(const Options& options, const Study& study, const FlightStudy
   write_run_record(folder, run, options.common);
   tell(options.common, estimate.verdict);
   tell(options.common,
-       fmt::format("{} changes found; report: {}", tracker.changes().size(), (folder / "report.html").string()));
+       fmt::format("changes found: {}; report: {}", tracker.changes().size(), (folder / "report.html").string()));
   nlohmann::ordered_json summary;
   summary["verdict"] = estimate.verdict;
   summary["folder"] = folder.string();

@@ -46,24 +46,29 @@ TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
   const TrackHistory& h = c.tracker->history();
   TimeSeries figure;
   figure.title = fmt::format("{} over time", name_of(c.model.coefficient));
-  figure.caption = "Bands are 95 %. Grey: some combination of parameters stays below the threshold and is held.";
+  figure.caption =
+      "Bands are 95 %; values beyond four times the last one are not drawn. Grey: some combination of parameters stays "
+      "below the threshold and is held.";
   figure.samples = h.time;
   for (std::size_t i = 0; i < c.model.size(); ++i) {
     Panel panel{.label = c.tracker->names()[i], .unit = c.model.terms[i].parameter_unit(), .height = 110};
     Line line{.name = "on line", .y = h.value[i]};
+    std::vector<double> truth = true_values(study, c.model.coefficient, c.model.terms[i], h.time);
+    // Wild values before there are data, and while no linear model holds, would hide everything else.
+    double largest = std::max(std::abs(h.value[i].back()), 1e-3);
+    for (const double v : truth) largest = std::max(largest, std::abs(v));
+    const double limit = 4.0 * largest;
     Band band;
     for (std::size_t k = 0; k < h.time.size(); ++k) {
-      // A band wider than the bound of what is known says nothing and hides the rest.
       const double sigma = h.sigma[i][k];
-      const bool shown = std::isfinite(sigma) && sigma < 3.0 * std::max(std::abs(h.value[i].back()), 1e-3);
-      if (!shown) line.y[k] = std::isfinite(sigma) ? line.y[k] : kNaN;
-      band.low.push_back(shown ? h.value[i][k] - 1.96 * sigma : kNaN);
-      band.high.push_back(shown ? h.value[i][k] + 1.96 * sigma : kNaN);
+      const bool shown = std::isfinite(sigma) && std::abs(line.y[k]) <= limit;
+      if (!shown) line.y[k] = kNaN;
+      band.low.push_back(shown ? std::max(-limit, line.y[k] - 1.96 * sigma) : kNaN);
+      band.high.push_back(shown ? std::min(limit, line.y[k] + 1.96 * sigma) : kNaN);
     }
     line.band = std::move(band);
     panel.lines.push_back(std::move(line));
-    if (auto truth = true_values(study, c.model.coefficient, c.model.terms[i], h.time); !truth.empty())
-      panel.lines.push_back({.name = "truth", .y = std::move(truth), .role = Role::kReference});
+    if (!truth.empty()) panel.lines.push_back({.name = "truth", .y = std::move(truth), .role = Role::kReference});
     figure.panels.push_back(std::move(panel));
   }
   if (!h.singular_value.empty()) {
@@ -152,10 +157,12 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
   const std::size_t changes = tracker.changes().size();
   document.verdict.level = changes == 0 ? Level::kGood : Level::kCaution;
   document.verdict.word = changes == 0 ? "No change" : "The aircraft changed";
-  document.verdict.headline = changes == 0 ? "No coefficient changed during the flight."
-                                           : fmt::format("{} changes were found, the first at {:.1f} s in {}.", changes,
-                                                         tracker.changes().front().change.detected_s,
-                                                         name_of(tracker.changes().front().coefficient));
+  document.verdict.headline =
+      changes == 0
+          ? "No coefficient changed during the flight."
+          : fmt::format("{} found, the first at {:.1f} s in {}.",
+                        changes == 1 ? std::string("One change was") : fmt::format("{} changes were", changes),
+                        tracker.changes().front().change.detected_s, name_of(tracker.changes().front().coefficient));
   document.verdict.lines = {
       estimate.verdict, options.detect_changes
                             ? fmt::format("Stated rate of false alarms: one per {:.1f} hours of unchanged flight for "
