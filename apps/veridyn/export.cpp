@@ -46,7 +46,7 @@ int export_model(const Options& options) {
   std::optional<estimation::Estimate> estimate;
   if (!options.estimate.empty()) {
     estimate = io::read_estimate(options.estimate);
-    subject = aircraft::estimated_subject(subject, *estimate);
+    subject = aircraft::estimated_subject(subject, *estimate, options.estimate);
   }
   const auto wanted = [&](const char* format) { return options.format == "all" || options.format == format; };
   // Everything is composed before the first file is written.

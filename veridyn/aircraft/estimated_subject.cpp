@@ -8,23 +8,24 @@
 
 namespace veridyn::aircraft {
 
-CoefficientModel estimated_coefficient(const CoefficientModel& structure, const estimation::Estimate& estimate) {
+CoefficientModel estimated_coefficient(const CoefficientModel& structure, const std::vector<std::string>& names,
+                                       const estimation::Estimate& estimate) {
   CoefficientModel model{structure.coefficient, {}, {}};
-  for (const Term& term : structure.terms) {
-    const estimation::EstimatedParameter* p = estimate.find(parameter_name(structure.coefficient, term));
+  for (std::size_t i = 0; i < structure.size(); ++i) {
+    const estimation::EstimatedParameter* p = estimate.find(names[i]);
     if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
-    model.terms.push_back(term);
+    model.terms.push_back(structure.terms[i]);
     model.values.push_back(p->value);
   }
   return model;
 }
 
-Subject estimated_subject(const Subject& subject, const estimation::Estimate& estimate) {
+Subject estimated_subject(const Subject& subject, const estimation::Estimate& estimate, const std::string& place) {
   Subject result = subject;
   bool any = false;
   for (auto& coefficient : result.model.coefficients) {
     if (!coefficient) continue;
-    CoefficientModel model = estimated_coefficient(*coefficient, estimate);
+    CoefficientModel model = estimated_coefficient(*coefficient, coefficient->parameter_names(), estimate);
     if (model.size() > 0) {
       coefficient = std::move(model);
       any = true;
@@ -32,7 +33,7 @@ Subject estimated_subject(const Subject& subject, const estimation::Estimate& es
       std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
     }
   }
-  if (!any) throw InputError(estimate.subject, "the estimate holds no usable parameter of the subject's model");
+  if (!any) throw InputError(place, "holds no usable parameter of the study's model");
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/air_data_calibration.hpp"
+#include "veridyn/aircraft/estimated_subject.hpp"
 #include "veridyn/aircraft/filter_comparison.hpp"
 #include "veridyn/aircraft/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
@@ -65,32 +66,6 @@ void check_flight(const FlightStudy& study) {
             "the aircraft never flies: the {} stays below {:.1f} m/s, {} needs {:.1f} m/s (key segments.min_airspeed)",
             what, std::ceil(10.0 * highest) / 10.0, study.subject.name, least));
   }
-}
-
-/// The subject with the derivatives of an estimate file, for the model-based filter. Coefficients of which the file has
-/// nothing usable become unknown.
-Subject subject_of_estimate(const Subject& subject, const std::filesystem::path& file) {
-  const estimation::Estimate estimate = io::read_estimate(file);
-  Subject result = subject;
-  std::size_t found = 0;
-  for (auto& model : result.model.coefficients) {
-    if (!model) continue;
-    CoefficientModel taken{model->coefficient, {}, {}};
-    for (const Term& term : model->terms) {
-      const estimation::EstimatedParameter* p = estimate.find(parameter_name(model->coefficient, term));
-      if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
-      taken.terms.push_back(term);
-      taken.values.push_back(p->value);
-    }
-    found += taken.size();
-    if (taken.size() > 0) {
-      model = std::move(taken);
-    } else {
-      std::fill(model->values.begin(), model->values.end(), kUnknown);
-    }
-  }
-  if (found == 0) throw InputError(file.string(), "holds no usable parameter of the study's model");
-  return result;
 }
 
 void align_and_reconstruct(FlightStudy& study, FlightAnalysis& analysis, Progress& progress) {
@@ -197,8 +172,8 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   result.subject = read_subject(subject);
   result.delays = DelayAlignment::read(root.table_or_empty("delays"));
   result.reconstruct = ReconstructOptions::read(root.table_or_empty("reconstruct"));
-  if (!result.reconstruct.estimate_file.empty())
-    result.filter_subject = subject_of_estimate(result.subject, result.reconstruct.estimate_file);
+  if (const std::filesystem::path& estimate = result.reconstruct.estimate_file; !estimate.empty())
+    result.filter_subject = estimated_subject(result.subject, io::read_estimate(estimate), estimate.string());
   result.signals = SignalOptions::read(root.table_or_empty("signals"));
   result.segments = SegmentOptions::read(root.table_or_empty("segments"));
   result.identify = IdentifyOptions::read(root.table_or_empty("identify"));

@@ -580,16 +580,10 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
     if (structure == nullptr) continue;
-    // Terms that the estimate dropped (refit_significant) are absent there; a coefficient of which it knows nothing is
-    // left out.
-    CoefficientModel model{structure->coefficient, {}, {}};
-    for (const Term& term : structure->terms) {
-      const estimation::EstimatedParameter* p =
-          estimate.find(regressed_parameter_name(structure->coefficient, term, subject));
-      if (p == nullptr || p->status == ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
-      model.terms.push_back(term);
-      model.values.push_back(p->value);
-    }
+    std::vector<std::string> names;
+    for (const Term& term : structure->terms)
+      names.push_back(regressed_parameter_name(structure->coefficient, term, subject));
+    const CoefficientModel model = estimated_coefficient(*structure, names, estimate);
     if (model.size() > 0) results.push_back(identification.evaluate(model));
   }
   if (results.empty()) {

@@ -4,13 +4,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -127,44 +126,31 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
   const auto n = static_cast<Eigen::Index>(inputs.names.size());
   std::vector<std::vector<double>> error(outputs, std::vector<double>(options.draws));
   const std::size_t blocks = (options.draws + kBlock - 1) / kBlock;
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
+  const auto threads = static_cast<int>(options.threads);
+  const auto draw = [&](std::size_t block) {
     Eigen::MatrixXd x(n, static_cast<Eigen::Index>(kBlock)), noise = x, e = x;
     std::vector<double> true_output(outputs), measured_output(outputs);
-    for (std::size_t block = next++; block < blocks; block = next++) {
-      numerics::RandomStream random(options.seed, static_cast<std::uint64_t>(block));
-      sampler.truth(random, x);
-      sampler.error(random, noise, e);
-      e += x;
-      const std::size_t begin = block * kBlock;
-      const std::size_t count = std::min(kBlock, options.draws - begin);
-      for (std::size_t k = 0; k < count; ++k) {
-        const auto column = static_cast<Eigen::Index>(k);
-        f(x.col(column).data(), true_output.data());
-        f(e.col(column).data(), measured_output.data());
-        for (std::size_t o = 0; o < outputs; ++o) error[o][begin + k] = measured_output[o] - true_output[o];
-      }
+    numerics::RandomStream random(options.seed, static_cast<std::uint64_t>(block));
+    sampler.truth(random, x);
+    sampler.error(random, noise, e);
+    e += x;
+    const std::size_t begin = block * kBlock;
+    const std::size_t count = std::min(kBlock, options.draws - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      f(x.col(column).data(), true_output.data());
+      f(e.col(column).data(), measured_output.data());
+      for (std::size_t o = 0; o < outputs; ++o) error[o][begin + k] = measured_output[o] - true_output[o];
     }
   };
-  const auto in_parallel = [&](auto&& task) {
-    const unsigned wanted = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-    const auto count = static_cast<unsigned>(std::min<std::size_t>(wanted, blocks));
-    std::vector<std::jthread> helpers;
-    for (unsigned i = 1; i < count; ++i) helpers.emplace_back(task);
-    task();
-  };
-  in_parallel(work);
+  numerics::parallel_for(blocks, threads, draw);
 
   MonteCarloResult result;
   result.draws = options.draws;
   result.correlation_change = sampler.correlation_change();
   result.outputs.resize(outputs);
-  std::atomic<std::size_t> next_output{0};
-  in_parallel([&] {
-    for (std::size_t o = next_output++; o < outputs; o = next_output++) {
-      result.outputs[o] = describe(error[o], options.coverage);
-    }
-  });
+  numerics::parallel_for(outputs, threads,
+                         [&](std::size_t o) { result.outputs[o] = describe(error[o], options.coverage); });
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/report/track_panels.hpp"
+
 namespace veridyn::report {
 namespace {
 
@@ -160,17 +162,7 @@ TimeSeries tracking_figure(const Reproduction& r) {
     figure.panels.push_back(std::move(panel));
   }
   const TrackHistory& last = e.runs.back()[0].history;
-  if (!last.singular_value.empty()) {
-    Panel panel{.label = "log10 singular values", .unit = "1"};
-    const auto log10_of = [](std::vector<double> values) {
-      for (double& v : values) v = v > 0.0 ? std::log10(v) : kNaN;
-      return values;
-    };
-    for (std::size_t i = 0; i < last.singular_value.size(); ++i)
-      panel.lines.push_back({.name = fmt::format("s{}", i + 1), .y = log10_of(last.singular_value[i])});
-    panel.lines.push_back({.name = "threshold", .y = log10_of(last.threshold), .role = Role::kReference});
-    figure.panels.push_back(std::move(panel));
-  }
+  if (!last.singular_value.empty()) figure.panels.push_back(singular_value_panel(last));
   Panel memory{.label = "lambda", .unit = "1"};
   Panel suspicion{.label = "suspicion (1: alarm)", .unit = "1"};
   for (std::size_t m = 0; m < e.trackers.size(); ++m) {

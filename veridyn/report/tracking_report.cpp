@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/report/track_panels.hpp"
+
 namespace veridyn::report {
 namespace {
 
@@ -71,17 +73,7 @@ TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
     if (!truth.empty()) panel.lines.push_back({.name = "truth", .y = std::move(truth), .role = Role::kReference});
     figure.panels.push_back(std::move(panel));
   }
-  if (!h.singular_value.empty()) {
-    Panel panel{.label = "log10 singular values", .unit = "1"};
-    const auto log10_of = [](std::vector<double> values) {
-      for (double& v : values) v = v > 0.0 ? std::log10(v) : kNaN;
-      return values;
-    };
-    for (std::size_t i = 0; i < h.singular_value.size(); ++i)
-      panel.lines.push_back({.name = fmt::format("s{}", i + 1), .y = log10_of(h.singular_value[i])});
-    panel.lines.push_back({.name = "threshold", .y = log10_of(h.threshold), .role = Role::kReference});
-    figure.panels.push_back(std::move(panel));
-  }
+  if (!h.singular_value.empty()) figure.panels.push_back(singular_value_panel(h));
   figure.panels.push_back({.label = "lambda", .unit = "1", .lines = {{.name = "lambda", .y = h.lambda}}, .height = 90});
   figure.panels.push_back({.label = "innovation / sigma",
                            .unit = "1",
