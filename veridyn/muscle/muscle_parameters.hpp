@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <numbers>
+#include <string>
+#include <variant>
+
+namespace veridyn::muscle {
+
+/// Shape of the curves of Thelen (2003). Defaults are the class defaults of OpenSim; arm26 sets all of them otherwise.
+struct ThelenCurves {
+  double tendon_strain = 0.04;            ///< FmaxTendonStrain, strain of the tendon at F0
+  double passive_strain = 0.6;            ///< FmaxMuscleStrain, passive fibre strain at F0
+  double active_width = 0.45;             ///< KshapeActive, gamma
+  double passive_exponent = 5.0;          ///< KshapePassive
+  double Af = 0.25;                       ///< shape of the force-velocity curve
+  double Flen = 1.4;                      ///< greatest force of a lengthening fibre, of F0
+  double extrapolation_threshold = 0.95;  ///< fv_linear_extrap_threshold
+};
+
+/// The form of OpenSim <= 2 (`Thelen2003Muscle_Deprecated`): constant time constants, damping, an older tendon.
+struct DeprecatedThelenCurves {
+  double tendon_strain = 0.033;
+  double passive_strain = 0.6;
+  double active_width = 0.5;
+  double passive_exponent = 4.0;
+  double Af = 0.3;
+  double Flen = 1.8;
+  double damping = 0.05;
+  double Vmax0 = 5.0;  ///< greatest shortening speed at zero activation [L0/s]
+};
+
+/// Corner values of the curves of Millard et al. (2013) as OpenSim's four curve classes name them.
+struct MillardCurves {
+  // ActiveForceLengthCurve
+  double min_norm_active_fiber_length = 0.4441;
+  double transition_norm_fiber_length = 0.73;
+  double max_norm_active_fiber_length = 1.8123;
+  double shallow_ascending_slope = 0.8616;
+  double minimum_value = 0.1;  ///< used by the undamped form only; 0 when damped
+  // ForceVelocityCurve
+  double concentric_slope_at_vmax = 0.0;
+  double concentric_slope_near_vmax = 0.25;
+  double isometric_slope = 5.0;
+  double eccentric_slope_at_vmax = 0.0;
+  double eccentric_slope_near_vmax = 0.15;
+  double max_eccentric_velocity_force_multiplier = 1.4;
+  double concentric_curviness = 0.6;
+  double eccentric_curviness = 0.9;
+  // FiberForceLengthCurve; a value < 0 stands for "derived from the strains"
+  double strain_at_zero_force = 0.0;
+  double strain_at_one_norm_force = 0.7;
+  double stiffness_at_low_force = -1.0;
+  double stiffness_at_one_norm_force = -1.0;
+  double fiber_curviness = -1.0;
+  // TendonForceLengthCurve
+  double tendon_strain_at_one_norm_force = 0.049;
+  double tendon_stiffness_at_one_norm_force = -1.0;
+  double norm_force_at_toe_end = -1.0;
+  double tendon_curviness = -1.0;
+};
+
+/// De Groote et al. (2016) as OpenSim adjusts it.
+struct DeGrooteFregly2016Curves {
+  double active_force_width_scale = 1.0;
+  double passive_fiber_strain_at_one_norm_force = 0.6;
+  double tendon_strain_at_one_norm_force = 0.049;
+  bool ignore_passive_fiber_force = false;
+  double activation_smoothing = 0.1;  ///< b of the activation law's tanh
+};
+
+using MuscleCurves = std::variant<ThelenCurves, DeprecatedThelenCurves, MillardCurves, DeGrooteFregly2016Curves>;
+
+/// The parameters of one musculotendon unit that an estimator may want to know; templated so that derivatives with
+/// respect to them come from automatic differentiation.
+template <typename Scalar>
+struct MusculotendonParameters {
+  Scalar max_isometric_force{1000.0};        ///< F0 [N]
+  Scalar optimal_fiber_length{0.1};          ///< L0 [m]
+  Scalar tendon_slack_length{0.2};           ///< LS [m]
+  Scalar pennation_angle_at_optimal{0.0};    ///< phi0 [rad]
+  Scalar max_contraction_velocity{10.0};     ///< Vmax [L0/s]
+  Scalar activation_time_constant{0.015};    ///< [s]
+  Scalar deactivation_time_constant{0.050};  ///< [s]
+
+  template <typename Other>
+  [[nodiscard]] MusculotendonParameters<Other> cast() const {
+    return {Other(max_isometric_force),        Other(optimal_fiber_length),     Other(tendon_slack_length),
+            Other(pennation_angle_at_optimal), Other(max_contraction_velocity), Other(activation_time_constant),
+            Other(deactivation_time_constant)};
+  }
+};
+
+/// One muscle as a file describes it, without its path.
+struct MuscleParameters {
+  std::string name;
+  MusculotendonParameters<double> musculotendon;
+  MuscleCurves curves;
+  double fiber_damping = 0.0;  ///< beta, of F0 per Vmax L0 (Millard, De Groote)
+  double minimum_activation = 0.01;
+  double maximum_pennation_angle = 1.4706289056333368;  ///< acos(0.1) [rad]
+  double default_activation = 0.05;
+  double default_fiber_length = 0.1;  ///< [m]
+  double min_control = 0.01;
+  double max_control = 1.0;
+  bool rigid_tendon = false;                ///< ignore_tendon_compliance
+  bool ignore_activation_dynamics = false;  ///< activation = excitation
+};
+
+}  // namespace veridyn::muscle
