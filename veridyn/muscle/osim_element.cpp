@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/log.hpp"
 
 namespace veridyn::muscle::osim {
 namespace {
@@ -66,12 +67,12 @@ pugi::xml_node Document::defaults(const char* type) const { return defaults_.chi
 
 std::string Document::place(pugi::xml_node node) const {
   std::string object = node.name();
-  if (const char* name = node.attribute("name").value(); *name != '\0') object += fmt::format(" '{}'", shortened(name));
+  if (const char* name = node.attribute("name").value(); *name != '\0') object += fmt::format(" '{}'", io::internal::printable(shortened(name)));
   return fmt::format("{}:{}: {}", name_, line_of(text_, node.offset_debug()), object);
 }
 
 void Element::fail(std::string_view property, std::string_view what) const {
-  throw InputError(place(), fmt::format("{}: {}", property, what));
+  throw InputError(place(), io::internal::printable(fmt::format("{}: {}", property, what)));
 }
 
 pugi::xml_node Element::property(const char* name) const {
