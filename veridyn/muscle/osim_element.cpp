@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/log.hpp"
 
 namespace veridyn::muscle::osim {
 namespace {
@@ -32,6 +31,14 @@ std::vector<std::string> split(std::string_view text) {
 std::string shortened(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   return std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "..." : "");
+}
+
+/// Texts of a damaged file go into messages of one line.
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte > 0x7e) c = '?';
+  }
+  return text;
 }
 
 }  // namespace
@@ -67,12 +74,13 @@ pugi::xml_node Document::defaults(const char* type) const { return defaults_.chi
 
 std::string Document::place(pugi::xml_node node) const {
   std::string object = node.name();
-  if (const char* name = node.attribute("name").value(); *name != '\0') object += fmt::format(" '{}'", io::internal::printable(shortened(name)));
+  if (const char* name = node.attribute("name").value(); *name != '\0')
+    object += fmt::format(" '{}'", one_line(shortened(name)));
   return fmt::format("{}:{}: {}", name_, line_of(text_, node.offset_debug()), object);
 }
 
 void Element::fail(std::string_view property, std::string_view what) const {
-  throw InputError(place(), io::internal::printable(fmt::format("{}: {}", property, what)));
+  throw InputError(place(), one_line(fmt::format("{}: {}", property, what)));
 }
 
 pugi::xml_node Element::property(const char* name) const {
