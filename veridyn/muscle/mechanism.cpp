@@ -119,7 +119,8 @@ void check(const Model& model, const std::vector<int>& joint_of_body) {
 
 }  // namespace
 
-Mechanism::Mechanism(const Model& model) : coordinate_link_(model.coordinates.size(), -1), gravity_(model.gravity) {
+Mechanism::Mechanism(const Model& model)
+    : coordinate_link_(model.coordinates.size(), -1), chain_length_(model.coordinates.size()), gravity_(model.gravity) {
   for (const Coordinate& c : model.coordinates) coordinate_names_.push_back(c.name);
   const std::size_t bodies = model.bodies.size();
   if (bodies == 0) throw InputError(fmt::format("model '{}'", model.name), "it has no ground body");
@@ -179,6 +180,7 @@ Mechanism::Mechanism(const Model& model) : coordinate_link_(model.coordinates.si
           }
           coordinate_link_[at(c)] = links();
           link.ancestors.push_back(c);
+          chain_length_[at(c)] = link.ancestors.size();
           topological_.push_back(c);
         }
         bodies_[b] = {links(), child};
@@ -192,6 +194,8 @@ Mechanism::Mechanism(const Model& model) : coordinate_link_(model.coordinates.si
       throw InputError(fmt::format("coordinate '{}'", model.coordinates[c].name), "it belongs to no joint");
     }
   }
+  row_.push_back(0);
+  for (const std::size_t length : chain_length_) row_.push_back(row_.back() + length);
 }
 
 bool Mechanism::moves(int coordinate, int link_index) const {

@@ -78,6 +78,15 @@ class Mechanism {
   /// Coordinates that move this link, the ground's side first.
   [[nodiscard]] std::span<const int> ancestors(int link_index) const { return link(link_index).ancestors; }
   [[nodiscard]] bool moves(int coordinate, int link_index) const;
+  /// Coordinates that move what this coordinate moves, ground's side first; this one is the last. Every shorter
+  /// beginning of it is the same list of the coordinate it ends with.
+  [[nodiscard]] std::span<const int> chain(int coordinate) const {
+    const auto c = static_cast<std::size_t>(coordinate);
+    return {links_[static_cast<std::size_t>(coordinate_link_[c])].ancestors.data(), chain_length_[c]};
+  }
+  /// Where the row of this coordinate begins when rows as long as their chains are stored one after another; the total
+  /// for `coordinates()`.
+  [[nodiscard]] std::size_t row(int coordinate) const { return row_[static_cast<std::size_t>(coordinate)]; }
   [[nodiscard]] const std::string& coordinate_name(int coordinate) const {
     return coordinate_names_[static_cast<std::size_t>(coordinate)];
   }
@@ -91,6 +100,8 @@ class Mechanism {
   std::vector<int> coordinate_link_;
   std::vector<std::string> coordinate_names_;
   std::vector<int> topological_;
+  std::vector<std::size_t> chain_length_;
+  std::vector<std::size_t> row_;
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
 };
 

@@ -44,4 +44,64 @@ template <typename Scalar>
   return {V.angular.cross(axis.angular), V.angular.cross(axis.linear) + V.linear.cross(axis.angular)};
 }
 
+/// Rate of change of a momentum `P` that is carried along with velocity `V`: V x* P.
+template <typename Scalar>
+[[nodiscard]] SpatialVector<Scalar> cross_force(const SpatialVector<Scalar>& V, const SpatialVector<Scalar>& P) {
+  return {V.angular.cross(P.angular) + V.linear.cross(P.linear), V.angular.cross(P.linear)};
+}
+
+/// A symmetric 3 x 3 matrix by its six numbers.
+template <typename Scalar>
+struct Symmetric3 {
+  Scalar xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+
+  [[nodiscard]] Vector3<Scalar> operator*(const Vector3<Scalar>& v) const {
+    return {xx * v.x() + xy * v.y() + xz * v.z(), xy * v.x() + yy * v.y() + yz * v.z(),
+            xz * v.x() + yz * v.y() + zz * v.z()};
+  }
+  [[nodiscard]] Scalar trace() const { return xx + yy + zz; }
+  Symmetric3& operator+=(const Symmetric3& o) {
+    xx += o.xx, xy += o.xy, xz += o.xz, yy += o.yy, yz += o.yz, zz += o.zz;
+    return *this;
+  }
+  [[nodiscard]] Matrix3<Scalar> matrix() const {
+    Matrix3<Scalar> m;
+    m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return m;
+  }
+};
+
+/// Mass, first and second moment of mass about the ground's origin, ground axes. Inertias of bodies add as they are.
+template <typename Scalar>
+struct RigidInertia {
+  double mass = 0.0;
+  Vector3<Scalar> moment = Vector3<Scalar>::Zero();  ///< mass x mass centre
+  Symmetric3<Scalar> inertia;
+
+  /// Of a body with `inertia` about its mass centre at `center`.
+  [[nodiscard]] static RigidInertia of(double mass, const Vector3<Scalar>& center, const Symmetric3<Scalar>& inertia) {
+    RigidInertia I;
+    I.mass = mass;
+    I.moment = mass * center;
+    const Scalar x2 = I.moment.x() * center.x(), y2 = I.moment.y() * center.y(), z2 = I.moment.z() * center.z();
+    I.inertia.xx = inertia.xx + y2 + z2;
+    I.inertia.yy = inertia.yy + x2 + z2;
+    I.inertia.zz = inertia.zz + x2 + y2;
+    I.inertia.xy = inertia.xy - I.moment.x() * center.y();
+    I.inertia.xz = inertia.xz - I.moment.x() * center.z();
+    I.inertia.yz = inertia.yz - I.moment.y() * center.z();
+    return I;
+  }
+  /// Momentum of the motion V, or force of the acceleration V.
+  [[nodiscard]] SpatialVector<Scalar> operator*(const SpatialVector<Scalar>& V) const {
+    return {inertia * V.angular + moment.cross(V.linear), mass * V.linear - moment.cross(V.angular)};
+  }
+  RigidInertia& operator+=(const RigidInertia& o) {
+    mass += o.mass;
+    moment += o.moment;
+    inertia += o.inertia;
+    return *this;
+  }
+};
+
 }  // namespace veridyn::muscle
