@@ -46,8 +46,8 @@ template <typename Scalar>
   }
   const double u2 = ux * ux + uy * uy;
   const double along = -(px * ux + py * uy);
-  if (!long_way && (!(along > 0.0 && along < u2) || !(cross * cross < cylinder.radius * cylinder.radius * u2)))
-    return result;
+  result.meets = along > 0.0 && along < u2 && cross * cross < cylinder.radius * cylinder.radius * u2;
+  if (!long_way && !result.meets) return result;
 
   const Scalar p2 = p.x() * p.x() + p.y() * p.y();
   const Scalar q2 = q.x() * q.x() + q.y() * q.y();

@@ -30,19 +30,21 @@ struct WrapResult {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
   WrapStatus status = WrapStatus::kStraight;
-  Vector3 r1;               ///< where the path reaches the object [m]
-  Vector3 r2;               ///< where it leaves it [m]
+  Vector3 r1 = Vector3::Zero();               ///< where the path reaches the object [m]
+  Vector3 r2 = Vector3::Zero();               ///< where it leaves it [m]
   Scalar length{};          ///< |P r1| + surface + |r2 Q| [m]
   Scalar surface_length{};  ///< [m]
-  Vector3 direction1;       ///< unit, from P to r1
-  Vector3 direction2;       ///< unit, from r2 to Q
+  Vector3 direction1 = Vector3::Zero();       ///< unit, from P to r1
+  Vector3 direction2 = Vector3::Zero();       ///< unit, from r2 to Q
   /// dL/dP and dL/dQ: -direction1 and direction2 unless an end dips into the object.
-  Vector3 gradient_p;
-  Vector3 gradient_q;
+  Vector3 gradient_p = Vector3::Zero();
+  Vector3 gradient_q = Vector3::Zero();
   /// How much of the wrap counts, 0..1: below 1 in the bands where it fades out. Its value only; see `wrap_weight`.
   double weight = 1.0;
   /// How deep an end lies inside, in radii; 0 outside.
   double depth = 0.0;
+  /// The straight segment itself meets the object; false: only the wall of a quadrant makes it go round.
+  bool meets = true;
 
   [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
 };
