@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/muscle/model_trees.hpp"
+#include "tests/muscle/reference_table.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::muscle {
@@ -198,8 +199,8 @@ TEST(Mechanism, NamesWhatIsWrongWithTheTree) {
 
 // Poses and velocities that OpenSim 4.5.2 computed.
 TEST(Mechanism, MatchesOpenSimOnArm26) {
-  const test::TextTable states = test::read_reference("opensim/g_arm26_inverse_dynamics.csv");
-  const test::TextTable bodies = test::read_reference("opensim/g_arm26_bodies.csv");
+  const test::ReferenceTable states = test::read_reference("opensim/g_arm26_inverse_dynamics.csv");
+  const test::ReferenceTable bodies = test::read_reference("opensim/g_arm26_bodies.csv");
   if (states.rows.empty() || bodies.rows.empty()) GTEST_SKIP() << "no reference/opensim under " << VERIDYN_SHARED_DIR;
   const Model model = test::arm26_skeleton();
   const Mechanism mechanism(model);

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
-#include <fstream>
-#include <numbers>
-#include <sstream>
-#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace veridyn::muscle::test {
 namespace {
@@ -137,6 +134,7 @@ Joint& add_joint(Model& model, TreeJoint kind, int parent, int child, numerics::
   switch (kind) {
     case TreeJoint::kPin:
       rotation(0, z + random_vector(0.4, random));
+      joint.rotation[2].axis = x;  // Simbody wants no two axes to be parallel, even without motion
       break;
     case TreeJoint::kSlider:
       translation(0, x + random_vector(0.4, random));
@@ -148,6 +146,7 @@ Joint& add_joint(Model& model, TreeJoint kind, int parent, int child, numerics::
     case TreeJoint::kPlanar:
       // Coordinates in another order than the axes.
       rotation(0, z);
+      joint.rotation[2].axis = x;
       translation(0, x);
       translation(1, y);
       break;
@@ -256,29 +255,6 @@ Eigen::VectorXd random_state(std::size_t size, double magnitude, numerics::Rando
   Eigen::VectorXd v(static_cast<Eigen::Index>(size));
   for (double& x : v) x = random.uniform(-magnitude, magnitude);
   return v;
-}
-
-const std::string& TextTable::text(std::size_t row, const std::string& name) const {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::out_of_range("no column " + name);
-  return rows.at(row).at(static_cast<std::size_t>(found - names.begin()));
-}
-
-double TextTable::number(std::size_t row, const std::string& name) const { return std::stod(text(row, name)); }
-
-TextTable read_reference(const std::string& path) {
-  TextTable table;
-  std::ifstream file(fmt::format("{}/reference/{}", VERIDYN_SHARED_DIR, path));
-  const auto split = [](const std::string& line) {
-    std::vector<std::string> cells;
-    std::stringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    return cells;
-  };
-  std::string line;
-  if (std::getline(file, line)) table.names = split(line);
-  while (std::getline(file, line)) table.rows.push_back(split(line));
-  return table;
 }
 
 }  // namespace veridyn::muscle::test

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <cstddef>
 
 #include "veridyn/muscle/model.hpp"
 #include "veridyn/numerics/random.hpp"
 
-/// Models that the tests of multibody dynamics share, built by hand, and the tables they are compared with.
+/// Models that the tests of multibody dynamics share, built by hand.
 namespace veridyn::muscle::test {
 
 /// The skeleton of OpenSim's arm26 (Holzbaur et al. 2005): a welded base, shoulder and elbow.
@@ -35,17 +34,7 @@ Joint& add_weld(Model& model, int parent, int child, numerics::RandomStream& ran
 /// spline knees, a three-axis back; 23 coordinates.
 [[nodiscard]] Model gait_like();
 
-/// Uniform in [-size, size].
+/// Uniform in [-magnitude, magnitude].
 [[nodiscard]] Eigen::VectorXd random_state(std::size_t size, double magnitude, numerics::RandomStream& random);
-
-/// A comma-separated table with names in its first row, below the folder of others' data; without rows when it is not
-/// there.
-struct TextTable {
-  std::vector<std::string> names;
-  std::vector<std::vector<std::string>> rows;
-  [[nodiscard]] const std::string& text(std::size_t row, const std::string& name) const;
-  [[nodiscard]] double number(std::size_t row, const std::string& name) const;
-};
-[[nodiscard]] TextTable read_reference(const std::string& path);
 
 }  // namespace veridyn::muscle::test

@@ -58,6 +58,8 @@ struct MillardCurves {
   double tendon_stiffness_at_one_norm_force = -1.0;
   double norm_force_at_toe_end = -1.0;
   double tendon_curviness = -1.0;
+
+  [[nodiscard]] bool operator==(const MillardCurves&) const = default;
 };
 
 /// De Groote et al. (2016) as OpenSim adjusts it.
