@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -24,7 +25,7 @@ std::vector<MuscleParameters> arm(const MuscleCurves& curves, bool rigid) {
   std::vector<MuscleParameters> muscles;
   for (const auto& [F0, L0, LS, phi0] : kArm26) {
     MuscleParameters p;
-    p.name = "m" + std::to_string(muscles.size());
+    p.name = std::to_string(muscles.size());
     p.musculotendon = {F0, L0, LS, phi0, 10.0, 0.01, 0.04};
     p.curves = curves;
     p.fiber_damping = std::holds_alternative<MillardCurves>(curves) ? 0.1 : 0.0;
@@ -34,25 +35,31 @@ std::vector<MuscleParameters> arm(const MuscleCurves& curves, bool rigid) {
   return muscles;
 }
 
-// Fibres near equilibrium, as in a simulation: strain of the tendon off by up to a thousandth.
+// Fibres near equilibrium, as in a simulation: the tendon's strain is off by up to a thousandth. Along a motion each
+// muscle's state changes little from one call to the next, as an integrator asks; else every call is another state.
 template <typename Scalar>
 struct States {
-  explicit States(const MuscleGroup<double>& group) {
+  explicit States(const MuscleGroup<double>& group, bool motion = true) {
     std::mt19937_64 generator(3);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::uniform_real_distribution<double> random(0.0, 1.0);
     std::vector<double> a(kMuscles), lMT(kMuscles), lM(kMuscles);
     for (std::size_t s = 0; s < kStates; ++s) {
+      const auto uniform = [&](std::size_t i, double phase) {
+        if (!motion) return random(generator);
+        return 0.5 + 0.5 * std::sin(2.0 * 3.14159 *
+                                    (static_cast<double>(s) / kStates + 0.13 * static_cast<double>(i) + phase));
+      };
       for (std::size_t i = 0; i < kMuscles; ++i) {
-        a[i] = 0.02 + 0.9 * uniform(generator);
-        lMT[i] = kArm26[i][2] + kArm26[i][1] * (0.7 + 0.5 * uniform(generator));
+        a[i] = 0.02 + 0.9 * uniform(i, 0.0);
+        lMT[i] = kArm26[i][2] + kArm26[i][1] * (0.7 + 0.5 * uniform(i, 0.37));
       }
       group.equilibrium(a, lMT, lM);
       for (std::size_t i = 0; i < kMuscles; ++i) {
-        u.emplace_back(uniform(generator));
+        u.emplace_back(uniform(i, 0.1));
         activation.emplace_back(a[i]);
         path.emplace_back(lMT[i]);
-        speed.emplace_back(0.2 * (uniform(generator) - 0.5));
-        fiber.emplace_back(lM[i] + 2e-3 * kArm26[i][2] * (uniform(generator) - 0.5));
+        speed.emplace_back(0.2 * (uniform(i, 0.2) - 0.5));
+        fiber.emplace_back(lM[i] + 2e-3 * kArm26[i][2] * (uniform(i, 0.6) - 0.5));
       }
     }
   }
@@ -64,11 +71,11 @@ struct States {
 };
 
 template <typename Scalar>
-void run_rates(benchmark::State& state, const MuscleCurves& curves, bool rigid = false) {
+void run_rates(benchmark::State& state, const MuscleCurves& curves, bool rigid = false, bool motion = true) {
   const std::vector<MuscleParameters> parameters = arm(curves, rigid);
   const MuscleGroup<double> plain(parameters);
   const MuscleGroup<Scalar> group(parameters);
-  const States<Scalar> states(plain);
+  const States<Scalar> states(plain, motion);
   std::array<Scalar, kMuscles> rate, velocity, force;
   std::size_t s = 0;
   for (auto _ : state) {
@@ -112,6 +119,9 @@ void equilibrium(benchmark::State& state, const MuscleCurves& curves) {
 void rates(benchmark::State& state, const MuscleCurves& curves, bool rigid = false) {
   run_rates<double>(state, curves, rigid);
 }
+void rates_at_random(benchmark::State& state, const MuscleCurves& curves) {
+  run_rates<double>(state, curves, false, false);
+}
 void rates_with_derivatives(benchmark::State& state, const MuscleCurves& curves) {
   run_rates<ceres::Jet<double, 8>>(state, curves);
 }
@@ -121,6 +131,8 @@ BENCHMARK_CAPTURE(rates, millard, MillardCurves{});
 BENCHMARK_CAPTURE(rates, degroote, DeGrooteFregly2016Curves{});
 BENCHMARK_CAPTURE(rates, thelen_rigid, kThelen, true);
 BENCHMARK_CAPTURE(rates, millard_rigid, MillardCurves{}, true);
+BENCHMARK_CAPTURE(rates_at_random, thelen, kThelen);
+BENCHMARK_CAPTURE(rates_at_random, millard, MillardCurves{});
 BENCHMARK_CAPTURE(rates_with_derivatives, thelen_eight, kThelen);
 BENCHMARK_CAPTURE(rates_with_derivatives, millard_eight, MillardCurves{});
 BENCHMARK_CAPTURE(forces, thelen, kThelen);

@@ -71,6 +71,22 @@ class QuinticBezierCurve {
     return {low + t4 * high, (slope_low + t4 * slope_high) * at.cells_per_unit};
   }
 
+  /// With the curvature as well, to about 1e-7: enough to steer an iteration by.
+  [[nodiscard]] FunctionValue<double> tabulated_with_curvature(double x) const {
+    if (x <= begin_) return {y_begin_ + slope_below_ * (x - begin_), slope_below_, 0.0};
+    if (!(x < end_)) return {y_end_ + slope_above_ * (x - end_), slope_above_, 0.0};
+    if (!tabulated_) return exact(x);
+    const Lookup at = look_up(x);
+    const double* c = at.coefficient;
+    const double t = at.t, t2 = t * t, t4 = t2 * t2, per = at.cells_per_unit;
+    const double low = (c[0] + c[1] * t) + t2 * (c[2] + c[3] * t);
+    const double high = (c[4] + c[5] * t) + t2 * (c[6] + c[7] * t);
+    const double slope_low = (c[1] + 2.0 * c[2] * t) + t2 * (3.0 * c[3] + 4.0 * c[4] * t);
+    const double slope_high = (5.0 * c[5] + 6.0 * c[6] * t) + 7.0 * c[7] * t2;
+    const double bend = (2.0 * c[2] + 6.0 * c[3] * t) + t2 * (12.0 * c[4] + 20.0 * c[5] * t);
+    return {low + t4 * high, (slope_low + t4 * slope_high) * per, bend * per * per};
+  }
+
   template <typename Scalar>
   [[nodiscard]] Scalar value(const Scalar& x) const {
     if constexpr (DualNumber<Scalar>) {
