@@ -1,4 +1,4 @@
-// veridyn inspect FILE: what a log holds.
+// veridyn inspect FILE: what a log holds, or a model.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/veridyn/inspect_model.hpp"
 #include "apps/veridyn/options.hpp"
 #include "apps/veridyn/output.hpp"
 #include "veridyn/aircraft/channel_map.hpp"
@@ -20,6 +21,8 @@ struct Options {
   bool all = false;
   bool events = false;
   bool parameters = false;
+  std::string pose;
+  bool as_opensim = false;
   CommonOptions common;
 };
 
@@ -49,6 +52,7 @@ double gap_time(const Channel& channel) {
 }
 
 int inspect(const Options& options) {
+  if (is_model(options.file)) return inspect_model(options.file, options.pose, options.as_opensim, options.common);
   io::Log log = io::read_log(options.file);
   const std::string format = log.format;
   const io::LogDamage damage = log.damage;
@@ -124,12 +128,23 @@ int inspect(const Options& options) {
 
 void add_inspect(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      program.add_subcommand("inspect", "what a log file holds: channels, units, rates, gaps, span, damage");
-  verb->add_option("FILE", options->file, "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, CSV")->required();
+  CLI::App* verb = program.add_subcommand(
+      "inspect", "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles");
+  verb->add_option(
+          "FILE", options->file,
+          "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV; OpenSim model .osim, or the "
+          "built-in model 'arm'")
+      ->required();
   verb->add_flag("--events", options->events, "list flight modes and messages");
   verb->add_flag("--parameters", options->parameters, "list the autopilot's parameters");
-  add_common(*verb, options->common, "", "veridyn inspect flight.bin");
+  verb->add_option(
+      "--pose", options->pose,
+      "of a model: print muscle lengths, moment arms and generalised forces as CSV, for the poses of a .csv, "
+      ".mot or .sto file or for one pose 'elbow_flexion=90 deg,...'");
+  verb->add_flag("--as-opensim", options->as_opensim, "with --pose: wrap paths as OpenSim does, jumps included");
+  add_common(*verb, options->common, "",
+             "veridyn inspect flight.bin\n  veridyn inspect arm26.osim\n  veridyn inspect arm --pose "
+             "\"elbow_flexion=90 deg\"");
   verb->callback([options, &exit_code] { exit_code = inspect(*options); });
 }
 

@@ -43,7 +43,8 @@ TEST(ReadLog, RefusesWhatItCannotReadInOneSentence) {
   EXPECT_EQ(message_of([&] { (void)read_log(folder.write("zero.bin", std::string(5000, '\0'))); }),
             place +
                 "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are "
-                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB (.mat) and CSV with a header row");
+                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB (.mat), OpenSim storage (.sto, .mot) and "
+                "CSV with a header row");
   EXPECT_THAT(
       message_of([&] { (void)read_log(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10))); }),
       HasSubstr("not a known log; known are"));

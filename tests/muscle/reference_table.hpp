@@ -1,5 +1,6 @@
 #pragma once
 
+<<<<<<< HEAD
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -59,3 +60,23 @@ class ReferenceTable {
 #define VERIDYN_SKIP_WITHOUT(name)                      \
   if (!::veridyn::muscle::ReferenceTable::exists(name)) \
   GTEST_SKIP() << "no " << ::veridyn::muscle::ReferenceTable::path(name)
+=======
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace veridyn::muscle::test {
+
+/// A comma-separated table with names in its first row and cells of text.
+struct ReferenceTable {
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+  [[nodiscard]] const std::string& text(std::size_t row, const std::string& name) const;
+  [[nodiscard]] double number(std::size_t row, const std::string& name) const;
+};
+
+/// Results of other programs: a table in the folder `reference` of others' data. Without rows when it is not there.
+[[nodiscard]] ReferenceTable read_reference(const std::string& path);
+
+}  // namespace veridyn::muscle::test
+>>>>>>> wt-multibody

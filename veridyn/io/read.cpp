@@ -10,12 +10,13 @@
 #include "veridyn/io/dataflash_text.hpp"
 #include "veridyn/io/mapped_file.hpp"
 #include "veridyn/io/mat.hpp"
+#include "veridyn/io/storage.hpp"
 #include "veridyn/io/ulog.hpp"
 
 namespace veridyn::io {
 namespace {
 
-enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kCsv };
+enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kCsv };
 
 Format by_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -25,6 +26,7 @@ Format by_extension(const std::filesystem::path& path) {
   if (extension == ".log") return Format::kDataFlashText;
   if (extension == ".ulg" || extension == ".ulog") return Format::kULog;
   if (extension == ".mat") return Format::kMat;
+  if (extension == ".sto" || extension == ".mot") return Format::kStorage;
   if (extension == ".csv" || extension == ".tsv" || extension == ".txt") return Format::kCsv;
   return Format::kUnknown;
 }
@@ -34,6 +36,7 @@ Format by_content(std::string_view bytes) {
   if (is_mat(bytes)) return Format::kMat;
   if (is_dataflash(bytes)) return Format::kDataFlash;
   if (is_dataflash_text(bytes)) return Format::kDataFlashText;
+  if (is_storage(bytes)) return Format::kStorage;
   return Format::kUnknown;
 }
 
@@ -55,6 +58,8 @@ const char* name_of(Format format) {
       return "PX4 ULog";
     case Format::kMat:
       return "MATLAB";
+    case Format::kStorage:
+      return "OpenSim storage";
     case Format::kCsv:
       return "CSV";
     case Format::kUnknown:
@@ -79,7 +84,7 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
     throw InputError(
         path.string(),
         fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
-                    "(.mat) and CSV with a header row",
+                    "(.mat), OpenSim storage (.sto, .mot) and CSV with a header row",
                     claim));
   }
   Log log;
@@ -95,6 +100,9 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
       break;
     case Format::kMat:
       log = read_mat_file(path);
+      break;
+    case Format::kStorage:
+      log = read_storage_log(bytes, path.string());
       break;
     case Format::kCsv:
     case Format::kUnknown:

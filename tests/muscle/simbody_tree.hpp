@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace veridyn::muscle::test {
+
+/// A tree of joints without any type of ours: Simbody's headers need C++17, ours C++20. See `simbody_description.hpp`.
+struct TreeDescription {
+  struct Frame {
+    Eigen::Matrix3d rotation;
+    Eigen::Vector3d translation;
+  };
+  struct Body {
+    double mass;
+    Eigen::Vector3d mass_center;
+    Eigen::Matrix3d inertia;  ///< about the mass centre
+  };
+  struct Axis {
+    Eigen::Vector3d direction;
+    int coordinate;  ///< -1: none
+    /// Value, slope and curvature.
+    std::function<std::array<double, 3>(double)> function;
+  };
+  struct Joint {
+    int parent, child;
+    Frame parent_frame, child_frame;
+    std::vector<int> coordinates;
+    std::array<Axis, 6> axes;  ///< rotations, translations
+  };
+  Eigen::Vector3d gravity;
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::size_t coordinates = 0;
+};
+
+/// Bodies and joints as a Simbody system (Sherman, Seth & Delp 2011), each joint a FunctionBased mobilizer:
+/// what OpenSim makes of a CustomJoint.
+class SimbodyTree {
+ public:
+  explicit SimbodyTree(const TreeDescription& tree);
+  ~SimbodyTree();
+  SimbodyTree(const SimbodyTree&) = delete;
+  SimbodyTree& operator=(const SimbodyTree&) = delete;
+
+  /// Vectors by the coordinates of the model.
+  void set_state(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot);
+  /// With the coordinate forces tau and gravity.
+  [[nodiscard]] Eigen::VectorXd accelerations(const Eigen::VectorXd& tau);
+  /// Realizes to accelerations with no forces but gravity, after a change of state: for time measurements.
+  void realize_accelerations();
+  [[nodiscard]] Eigen::MatrixXd mass_matrix() const;
+  [[nodiscard]] Eigen::VectorXd inverse_dynamics(const Eigen::VectorXd& qddot) const;
+  [[nodiscard]] TreeDescription::Frame body_pose(int body) const;
+  /// Of the body's mass centre, and the angular velocity, in ground.
+  [[nodiscard]] Eigen::Vector3d mass_center_velocity(int body) const;
+  [[nodiscard]] Eigen::Vector3d angular_velocity(int body) const;
+
+ private:
+  struct System;
+  std::unique_ptr<System> system_;
+};
+
+}  // namespace veridyn::muscle::test

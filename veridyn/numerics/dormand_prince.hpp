@@ -1,0 +1,211 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "veridyn/core/assert.hpp"
+#include "veridyn/numerics/ode.hpp"
+
+namespace veridyn::numerics {
+
+/// How an error-controlled integration chooses its steps.
+struct StepControl {
+  double tolerance = 1e-6;     ///< largest error of a step in any component, as a part of the component's scale
+  double first_step = 0.0;     ///< 0: chosen from the first derivative
+  double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
+  double largest_step = 0.0;   ///< 0: the interval
+  long max_steps = 1000000;    ///< accepted and rejected, in all calls since `restart()`
+};
+
+namespace internal {
+inline double value_of(double x) { return x; }
+template <typename Jet>
+auto value_of(const Jet& x) -> decltype(x.a) {
+  return x.a;
+}
+}  // namespace internal
+
+/// The fifth-order method of Dormand & Prince (1980) with fourth-order error estimate, PI step control and the
+/// fourth-order continuous extension of Hairer, Norsett & Wanner (1993, II.6), for derivatives so cheap that the
+/// stepper must cost nothing: it is a template on the derivative, keeps its stages, and does not allocate while it
+/// steps. The last stage of a step is the first of the next, over calls of `advance` too.
+///
+/// `Scalar` is double or a Jet. With Jets the steps are those of the values, so that the derivatives are those of the
+/// numerical solution at fixed steps.
+template <typename Scalar>
+class DormandPrince {
+ public:
+  explicit DormandPrince(std::size_t size) : n_(size), work_(kArrays * size) {}
+
+  /// The derivative jumps here (an input steps, the state was set): forget the last stage. `keep_step` keeps the size
+  /// of the next step.
+  void restart(bool keep_step = false) {
+    fresh_ = true;
+    if (!keep_step) step_ = 0.0;
+    last_error_ = 1e-4;
+  }
+
+  /// Integrates x' = f(t, x) from `t` to `end` > t, changing `t` and `x`.
+  ///
+  /// `f(t, const Scalar* x, Scalar* rate)` returns false when the derivative does not exist there: the step is then
+  /// tried again at a quarter of its size. `scale[i]` > 0 is the size of component i. After each accepted step
+  /// `on_step(begin, end)` is called, in which `interpolate` gives the state anywhere between; it returns false to
+  /// stop there.
+  /// @returns kReached also when `on_step` stopped it; then t < end.
+  template <typename F, typename OnStep>
+  IntegrationEnd advance(F&& f, double& t, Scalar* x, double end, std::span<const double> scale,
+                         const StepControl& control, OnStep&& on_step) {
+    VERIDYN_ASSERT(scale.size() == n_ && end >= t);
+    const double interval = end - t;
+    if (interval == 0.0) return IntegrationEnd::kReached;
+    const double smallest = control.smallest_step > 0.0 ? control.smallest_step : 1e-13 * interval;
+    const double largest = control.largest_step > 0.0 ? control.largest_step : interval;
+    if (fresh_) {
+      if (!f(t, x, stage(0)) || !finite(stage(0))) return IntegrationEnd::kNotFinite;
+      fresh_ = false;
+      steps_ = 0;
+      if (step_ <= 0.0)
+        step_ = control.first_step > 0.0 ? control.first_step : guess(x, scale, control.tolerance, interval);
+    }
+    while (t < end) {
+      if (steps_++ >= control.max_steps) return IntegrationEnd::kStepLimit;
+      double h = std::min(step_, largest);
+      const bool last = t + 1.0001 * h >= end;  // a hair too short makes a useless last step
+      if (last) h = end - t;
+      if (!try_step(f, t, x, h)) {
+        if (h <= smallest) return IntegrationEnd::kNotFinite;
+        step_ = 0.25 * h;
+        continue;
+      }
+      const double error = error_of(x, scale) / control.tolerance;
+      // PI control (Gustafsson 1991) with Hairer's constants for this method.
+      constexpr double kBeta = 0.04;
+      const double power = std::pow(std::max(error, 1e-10), 0.2 - 0.75 * kBeta);
+      if (!(error <= 1.0)) {
+        if (h <= smallest) return IntegrationEnd::kStepSize;
+        step_ = h / std::min(5.0, std::isfinite(power) ? power / 0.9 : 5.0);
+        continue;
+      }
+      const double factor = std::clamp(power / std::pow(last_error_, kBeta) / 0.9, 0.1, 5.0);
+      last_error_ = std::max(error, 1e-4);
+      const double next = h / factor;
+      // A step cut short by the end says little about the next one.
+      step_ = last ? std::max(step_, next) : next;
+      begin_ = t;
+      h_ = h;
+      start_ = x;
+      const double reached = last ? end : t + h;
+      const bool go_on = on_step(t, reached);
+      std::copy(stage(kEnd), stage(kEnd) + n_, x);
+      std::copy(stage(6), stage(6) + n_, stage(0));
+      t = reached;
+      if (!go_on) return IntegrationEnd::kReached;
+    }
+    return IntegrationEnd::kReached;
+  }
+
+  /// The state at `time` within the step that `on_step` was told of; call it there only. Fourth order.
+  void interpolate(double time, Scalar* out) const {
+    const double s = (time - begin_) / h_;
+    const double r = 1.0 - s;
+    constexpr double d1 = -12715105075.0 / 11282082432.0, d3 = 87487479700.0 / 32700410799.0,
+                     d4 = -10690763975.0 / 1880347072.0, d5 = 701980252875.0 / 199316789632.0,
+                     d6 = -1453857185.0 / 822651844.0, d7 = 69997945.0 / 29380423.0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Scalar difference = stage(kEnd)[i] - start_[i];
+      const Scalar bulge = h_ * stage(0)[i] - difference;
+      const Scalar tail = difference - h_ * stage(6)[i] - bulge;
+      const Scalar correction = h_ * (d1 * stage(0)[i] + d3 * stage(2)[i] + d4 * stage(3)[i] + d5 * stage(4)[i] +
+                                      d6 * stage(5)[i] + d7 * stage(6)[i]);
+      out[i] = start_[i] + s * (difference + r * (bulge + s * (tail + r * correction)));
+    }
+  }
+
+  /// Accepted and rejected steps since `restart()`.
+  [[nodiscard]] long steps() const { return steps_; }
+  /// Of the next step.
+  [[nodiscard]] double step_size() const { return step_; }
+
+ private:
+  static constexpr std::size_t kEnd = 7, kArrays = 9;
+  [[nodiscard]] Scalar* stage(std::size_t i) { return work_.data() + i * n_; }
+  [[nodiscard]] const Scalar* stage(std::size_t i) const { return work_.data() + i * n_; }
+
+  bool finite(const Scalar* x) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n_; ++i) sum += internal::value_of(x[i]) * 0.0;
+    return sum == 0.0;
+  }
+
+  double guess(const Scalar* x, std::span<const double> scale, double tolerance, double interval) const {
+    double size = 0.0, rate = 0.0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      size = std::max(size, std::abs(internal::value_of(x[i])) / scale[i]);
+      rate = std::max(rate, std::abs(internal::value_of(stage(0)[i])) / scale[i]);
+    }
+    const double h = rate > 0.0 ? 0.1 * std::pow(tolerance, 0.2) * std::max(size, 1.0) / rate : 1e-3 * interval;
+    return std::min(h, interval);
+  }
+
+  template <typename F>
+  bool try_step(F& f, double t, const Scalar* x, double h) {
+    Scalar* const y = stage(8);
+    Scalar *k1 = stage(0), *k2 = stage(1), *k3 = stage(2), *k4 = stage(3), *k5 = stage(4), *k6 = stage(5),
+           *k7 = stage(6);
+    for (std::size_t i = 0; i < n_; ++i) y[i] = x[i] + (h * 0.2) * k1[i];
+    if (!f(t + h * 0.2, y, k2)) return false;
+    for (std::size_t i = 0; i < n_; ++i) y[i] = x[i] + h * ((3.0 / 40.0) * k1[i] + (9.0 / 40.0) * k2[i]);
+    if (!f(t + h * 0.3, y, k3)) return false;
+    for (std::size_t i = 0; i < n_; ++i) {
+      y[i] = x[i] + h * ((44.0 / 45.0) * k1[i] - (56.0 / 15.0) * k2[i] + (32.0 / 9.0) * k3[i]);
+    }
+    if (!f(t + h * 0.8, y, k4)) return false;
+    for (std::size_t i = 0; i < n_; ++i) {
+      y[i] = x[i] + h * ((19372.0 / 6561.0) * k1[i] - (25360.0 / 2187.0) * k2[i] + (64448.0 / 6561.0) * k3[i] -
+                         (212.0 / 729.0) * k4[i]);
+    }
+    if (!f(t + h * (8.0 / 9.0), y, k5)) return false;
+    for (std::size_t i = 0; i < n_; ++i) {
+      y[i] = x[i] + h * ((9017.0 / 3168.0) * k1[i] - (355.0 / 33.0) * k2[i] + (46732.0 / 5247.0) * k3[i] +
+                         (49.0 / 176.0) * k4[i] - (5103.0 / 18656.0) * k5[i]);
+    }
+    if (!f(t + h, y, k6)) return false;
+    Scalar* const end = stage(kEnd);
+    for (std::size_t i = 0; i < n_; ++i) {
+      end[i] = x[i] + h * ((35.0 / 384.0) * k1[i] + (500.0 / 1113.0) * k3[i] + (125.0 / 192.0) * k4[i] -
+                           (2187.0 / 6784.0) * k5[i] + (11.0 / 84.0) * k6[i]);
+    }
+    if (!finite(end) || !f(t + h, end, k7) || !finite(k7)) return false;
+    h_ = h;
+    return true;
+  }
+
+  /// Largest estimated error of the step in units of the scale.
+  double error_of(const Scalar*, std::span<const double> scale) const {
+    constexpr double e1 = 71.0 / 57600.0, e3 = -71.0 / 16695.0, e4 = 71.0 / 1920.0, e5 = -17253.0 / 339200.0,
+                     e6 = 22.0 / 525.0, e7 = -1.0 / 40.0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const auto v = [&](std::size_t s) { return internal::value_of(stage(s)[i]); };
+      const double error = h_ * (e1 * v(0) + e3 * v(2) + e4 * v(3) + e5 * v(4) + e6 * v(5) + e7 * v(6));
+      largest = std::max(largest, std::abs(error) / scale[i]);
+    }
+    return largest;
+  }
+
+  std::size_t n_;
+  std::vector<Scalar> work_;  ///< stages k1 to k7, the end of the step, a scratch state
+  const Scalar* start_ = nullptr;
+  double begin_ = 0.0;
+  double h_ = 0.0;
+  double step_ = 0.0;
+  double last_error_ = 1e-4;
+  long steps_ = 0;
+  bool fresh_ = true;
+};
+
+}  // namespace veridyn::numerics
