@@ -23,11 +23,18 @@ const std::array<Kind, 2>& kinds() {
   return kKinds;
 }
 
+std::map<std::string, Musculotendon<double>> arm(const MuscleCurves& curves) {
+  std::map<std::string, Musculotendon<double>> muscles;
+  for (const MuscleParameters& p : arm26_muscles(curves)) muscles.emplace(p.name, p);
+  return muscles;
+}
+
 TEST(MusculotendonReference, RatesOfSixHundredStatesAreThoseOfOpenSim) {
   for (const Kind& kind : kinds()) {
     const std::string file = fmt::format("b2_arm26_muscle_rates_{}.csv", kind.name);
     VERIDYN_SKIP_WITHOUT(file);
     const ReferenceTable t(file);
+    const std::map<std::string, Musculotendon<double>> muscles = arm(kind.curves);
     std::map<std::string, double> worst;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < t.rows(); ++i) {
@@ -35,7 +42,7 @@ TEST(MusculotendonReference, RatesOfSixHundredStatesAreThoseOfOpenSim) {
       ++compared;
       const MuscleParameters p = arm26_muscle(t.text(i, "muscle"), kind.curves);
       const auto& m = p.musculotendon;
-      const Musculotendon<double> muscle(p);
+      const Musculotendon<double>& muscle = muscles.at(p.name);
       const double u = t.number(i, "excitation"), a = t.number(i, "activation_state");
       const double lM = t.number(i, "fiber_length_state_m"), lMT = t.number(i, "path_length_m");
       const MuscleDetails d = muscle.details(u, a, lM, lMT, t.number(i, "path_speed_m_s"));
@@ -75,11 +82,12 @@ TEST(MusculotendonReference, EquilibriumForcesAreThoseOfOpenSim) {
     const std::string file = fmt::format("b_arm26_equilibrium_{}.csv", kind.name);
     VERIDYN_SKIP_WITHOUT(file);
     const ReferenceTable t(file);
+    const std::map<std::string, Musculotendon<double>> muscles = arm(kind.curves);
     double force = 0.0, length = 0.0;
     int most = 0;
     for (std::size_t i = 0; i < t.rows(); ++i) {
       const MuscleParameters p = arm26_muscle(t.text(i, "muscle"), kind.curves);
-      const Musculotendon<double> muscle(p);
+      const Musculotendon<double>& muscle = muscles.at(p.name);
       const auto e = muscle.equilibrium(t.number(i, "activation"), t.number(i, "path_length_m"));
       EXPECT_EQ(e.end, EquilibriumEnd::kFound);
       most = std::max(most, e.evaluations);

@@ -113,8 +113,9 @@ class DeGrooteFregly2016 {
     const double v = value_of(free), rest = value_of((F - A) * Scalar(1.0 / damping));
     const double bound = std::abs(v) < std::abs(rest) ? v : rest;
     const auto curve = [this](double x) {
-      const double t = kVelocity[1] * x + kVelocity[2];
-      return CurveValue{force_velocity(x), kVelocity[0] * kVelocity[1] / std::sqrt(t * t + 1.0)};
+      const double t = kVelocity[1] * x + kVelocity[2], square = t * t + 1.0, root = std::sqrt(square);
+      const double slope = kVelocity[0] * kVelocity[1] / root;
+      return FunctionValue<double>{force_velocity(x), slope, -slope * kVelocity[1] * t / square};
     };
     return damped_velocity(A, damping, F, std::min(bound, 0.0), std::max(bound, 0.0), 0.5 * bound, curve);
   }

@@ -80,7 +80,7 @@ class Millard2012 {
       if (high < low) high = low;
     }
     return damped_velocity(A, damping, F, low, high, start(A0, F0, damping, low, high),
-                           [this](double v) { return curves_->velocity.value_and_slope(v); });
+                           [this](double v) { return curves_->velocity.tabulated_with_curvature(v); });
   }
 
   template <typename Scalar>

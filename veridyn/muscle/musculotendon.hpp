@@ -364,11 +364,15 @@ template <typename Curves>
     ++root.evaluations;
     (g.value < 0.0 ? low : high) = x;
     double next = x - g.value / g.slope;
+    // Newton's error is of the order of the square of its step.
+    if (std::abs(next - x) <= 1e-11 * x) {
+      x = std::clamp(next, low, high);
+      break;
+    }
     // A step that leaves the bracket, or is not half the last one, is replaced by halving.
-    if (!(next >= low && next <= high) || std::abs(next - x) > 0.5 * last) next = 0.5 * (low + high);
+    if (!(next > low && next < high) || std::abs(next - x) > 0.5 * last) next = 0.5 * (low + high);
     last = std::abs(next - x);
     x = next;
-    if (g.value == 0.0 || last <= 2e-16 * x) break;
   }
   root.lM = x;
   root.slope = balance(curves, k, a, x, lMT).slope;

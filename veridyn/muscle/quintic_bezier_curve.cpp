@@ -34,13 +34,13 @@ Quintic quintic(const std::array<double, 6>& p, double u) {
 // x(u) = x, u in [0, 1]: Newton's method kept inside a shrinking bracket.
 double parameter_at(const QuinticBezierPiece& piece, double x, double start) {
   double low = 0.0, high = 1.0, u = start;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const Quintic at = quintic(piece.x, u);
     (at.value < x ? low : high) = u;
-    double next = u - (at.value - x) / at.first;
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    if (std::abs(next - u) < 1e-16 || low == high) return next;
-    u = next;
+    const double next = u - (at.value - x) / at.first;
+    // Newton's error is of the order of the square of its step.
+    if (std::abs(next - u) < 1e-9) return std::clamp(next, 0.0, 1.0);
+    u = next > low && next < high ? next : 0.5 * (low + high);
   }
   return u;
 }
@@ -148,15 +148,15 @@ void QuinticBezierCurve::tabulate() {
   }
   const auto solve = powers.partialPivLu();
 
-  constexpr double kGoal = 4e-15, kLimit = 1e-12;
-  constexpr int kMaxCells = 512;
+  constexpr double kGoal = 3e-14, kLimit = 1e-12;
+  constexpr int kMaxCells = 1024;
   table_error_ = 0.0;
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     const QuinticBezierPiece& piece = pieces_[p];
     const double width = piece.x[5] - piece.x[0];
     std::vector<double> best;
-    double best_error = kNever;
-    for (int cells = 8; cells <= kMaxCells && best_error > kGoal; cells *= 2) {
+    double best_error = kNever, last_error = kNever;
+    for (int cells = 16; cells <= kMaxCells && best_error > kGoal; cells *= 2) {
       std::vector<double> table(static_cast<std::size_t>(8 * cells));
       double error = 0.0, u = 0.0;
       for (int cell = 0; cell < cells; ++cell) {
@@ -178,20 +178,26 @@ void QuinticBezierCurve::tabulate() {
             value = value * t + c(j);
           }
           const double scale = std::max(1.0, std::abs(qy.value));
-          // A thousand times laxer on the slope, per cell width's change of the value: it follows from the value's.
+          // Ten times laxer on the slope in units of the value per cell: it follows from the values.
           error = std::max({error, std::abs(value - qy.value) / scale,
-                            1e-3 * std::abs(slope - qy.first / qx.first * width / cells) / scale});
+                            0.1 * std::abs(slope - qy.first / qx.first * width / cells) / scale});
         }
         u = std::min(u, 1.0);
       }
+      // Rounding is reached when smaller cells no longer help.
+      const bool rounding = error < kLimit && error > 0.1 * last_error;
+      last_error = error;
       if (error < best_error) {
         best_error = error;
         best = std::move(table);
       }
+      if (rounding) break;
     }
-    if (!(best_error < kLimit))
-      throw InputError("muscle curve", fmt::format("its corner from x = {:.6g} to x = {:.6g} is too sharp to tabulate",
-                                                   piece.x[0], piece.x[5]));
+    if (!(best_error < kLimit)) {
+      tabulated_ = false;
+      table_error_ = 0.0;
+      return;
+    }
     const auto cells = static_cast<int>(best.size() / 8);
     first_cell_[p] = static_cast<int>(coefficient_.size() / 8);
     last_cell_[p] = cells - 1;

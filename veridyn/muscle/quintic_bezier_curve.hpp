@@ -27,8 +27,9 @@ struct QuinticBezierPiece {
 ///
 /// `value` and `value_and_slope` read a table made on construction: each piece is cut in equal cells (as many as it
 /// takes) with a polynomial of degree 7 in each. `table_error()` is the greatest difference to the exact curve that was
-/// found between the nodes, in the greater of 1 and the value: below 1e-12 or construction fails; the default curves
-/// come to 3e-15. `exact` solves x(u) = x by Newton's method and gives the second derivative as well.
+/// found between the nodes, in the greater of 1 and the value: below 1e-12, with the default curves 3e-14 (the slope
+/// follows to 1e-10). Corners too sharp for that (a curviness below 0.1 in the force-velocity curve) are not tabulated;
+/// every evaluation then is `exact`, which solves x(u) = x by Newton's method and gives the second derivative as well.
 class QuinticBezierCurve {
  public:
   /// The zero function on [0, 1].
@@ -46,6 +47,7 @@ class QuinticBezierCurve {
   [[nodiscard]] double slope_above() const { return slope_above_; }
   [[nodiscard]] double value_at_begin() const { return y_begin_; }
   [[nodiscard]] double value_at_end() const { return y_end_; }
+  [[nodiscard]] bool tabulated() const { return tabulated_; }
   [[nodiscard]] double table_error() const { return table_error_; }
 
   [[nodiscard]] FunctionValue<double> exact(double x) const;
@@ -55,6 +57,10 @@ class QuinticBezierCurve {
   [[nodiscard]] CurveValue value_and_slope(double x) const {
     if (x <= begin_) return {y_begin_ + slope_below_ * (x - begin_), slope_below_};
     if (!(x < end_)) return {y_end_ + slope_above_ * (x - end_), slope_above_};
+    if (!tabulated_) {
+      const FunctionValue<double> f = exact(x);
+      return {f.value, f.slope};
+    }
     const Lookup at = look_up(x);
     const double* c = at.coefficient;
     const double t = at.t, t2 = t * t, t4 = t2 * t2;
@@ -63,6 +69,22 @@ class QuinticBezierCurve {
     const double slope_low = (c[1] + 2.0 * c[2] * t) + t2 * (3.0 * c[3] + 4.0 * c[4] * t);
     const double slope_high = (5.0 * c[5] + 6.0 * c[6] * t) + 7.0 * c[7] * t2;
     return {low + t4 * high, (slope_low + t4 * slope_high) * at.cells_per_unit};
+  }
+
+  /// With the curvature as well, to about 1e-7: enough to steer an iteration by.
+  [[nodiscard]] FunctionValue<double> tabulated_with_curvature(double x) const {
+    if (x <= begin_) return {y_begin_ + slope_below_ * (x - begin_), slope_below_, 0.0};
+    if (!(x < end_)) return {y_end_ + slope_above_ * (x - end_), slope_above_, 0.0};
+    if (!tabulated_) return exact(x);
+    const Lookup at = look_up(x);
+    const double* c = at.coefficient;
+    const double t = at.t, t2 = t * t, t4 = t2 * t2, per = at.cells_per_unit;
+    const double low = (c[0] + c[1] * t) + t2 * (c[2] + c[3] * t);
+    const double high = (c[4] + c[5] * t) + t2 * (c[6] + c[7] * t);
+    const double slope_low = (c[1] + 2.0 * c[2] * t) + t2 * (3.0 * c[3] + 4.0 * c[4] * t);
+    const double slope_high = (5.0 * c[5] + 6.0 * c[6] * t) + 7.0 * c[7] * t2;
+    const double bend = (2.0 * c[2] + 6.0 * c[3] * t) + t2 * (12.0 * c[4] + 20.0 * c[5] * t);
+    return {low + t4 * high, (slope_low + t4 * slope_high) * per, bend * per * per};
   }
 
   template <typename Scalar>
@@ -103,6 +125,7 @@ class QuinticBezierCurve {
   double begin_ = 0.0, end_ = 1.0, y_begin_ = 0.0, y_end_ = 0.0;
   double slope_below_ = 0.0, slope_above_ = 0.0;
   double table_error_ = 0.0;
+  bool tabulated_ = true;
   std::vector<double> coefficient_;  ///< eight a cell, ascending powers of the cell's -1/2 <= t <= 1/2
   std::vector<QuinticBezierPiece> pieces_;
 };
