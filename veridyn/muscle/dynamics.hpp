@@ -131,10 +131,8 @@ void Dynamics<Scalar>::set_state(const Scalar* q, const Scalar* qdot) {
     const Matrix3<Scalar>& R = pose.rotation;
     center_[i] = pose.position + internal::rotate(R, link.mass_center);
     // R I R', its upper half
-    const Vector3<Scalar> x = internal::rotate(R, link.inertia.col(0));
-    const Vector3<Scalar> y = internal::rotate(R, link.inertia.col(1));
-    const Vector3<Scalar> z = internal::rotate(R, link.inertia.col(2));
-    const auto entry = [&](int a, int b) { return x(a) * R(b, 0) + y(a) * R(b, 1) + z(a) * R(b, 2); };
+    const Matrix3<Scalar> RI = internal::rotate(R, link.inertia);
+    const auto entry = [&](int a, int b) { return RI(a, 0) * R(b, 0) + RI(a, 1) * R(b, 1) + RI(a, 2) * R(b, 2); };
     inertia_[i] = {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
   }
 }
