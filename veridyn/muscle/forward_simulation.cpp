@@ -12,113 +12,184 @@
 namespace veridyn::muscle {
 namespace {
 
-/// Fills the rows of a trajectory and finds its events while the integrator goes along.
+using Stepper = numerics::DormandPrince<double>;
+
+/// Signals at an instant. Held ones keep the value that `begin_piece` found until the piece ends.
+class DriveState {
+ public:
+  DriveState(const Drive& drive, std::size_t muscles, std::size_t coordinates)
+      : drive_(drive), excitation_(muscles), reserve_(drive.reserve.size() > 0 ? coordinates : 0) {}
+
+  void begin_piece(double time) {
+    drive_.excitation.evaluate(time, excitation_.data());
+    if (!reserve_.empty()) drive_.reserve.evaluate(time, reserve_.data());
+  }
+  [[nodiscard]] double piece_end(double time) const {
+    double end = std::numeric_limits<double>::infinity();
+    for (const ControlSignals* signals : {&drive_.excitation, &drive_.reserve}) {
+      if (signals->interpolation() == Interpolation::kHold) end = std::min(end, signals->next_break(time));
+    }
+    return end;
+  }
+  [[nodiscard]] SystemInputs at(double time) {
+    if (drive_.excitation.interpolation() == Interpolation::kLinear)
+      drive_.excitation.evaluate(time, excitation_.data());
+    if (!reserve_.empty() && drive_.reserve.interpolation() == Interpolation::kLinear) {
+      drive_.reserve.evaluate(time, reserve_.data());
+    }
+    return {excitation_, reserve_};
+  }
+
+ private:
+  const Drive& drive_;
+  std::vector<double> excitation_, reserve_;
+};
+
+/// Rows of the trajectory and its events, taken while the integrator goes along.
 class Recorder {
  public:
   Recorder(const MusculoskeletalSystem& system, const ForwardOptions& options, MuscleTrajectory& trajectory)
-      : system_(system), evaluator_(system), options_(options), t_(trajectory), state_(system.layout().size) {
-    const auto rows = static_cast<Eigen::Index>(std::floor((options.end - options.begin) * options.rate_Hz + 1e-9)) + 1;
-    const auto n = static_cast<Eigen::Index>(system.coordinates());
-    const auto m = static_cast<Eigen::Index>(system.muscles().size());
-    for (auto* matrix : {&t_.q, &t_.qdot, &t_.reserve}) matrix->setZero(rows, n);
-    for (auto* matrix : {&t_.excitation, &t_.activation, &t_.fiber_length, &t_.tendon_force, &t_.path_length}) {
-      matrix->setZero(rows, m);
-    }
-    t_.time.reserve(static_cast<std::size_t>(rows));
-    rows_ = static_cast<std::size_t>(rows);
-    events_.resize(2 * system.muscles().size());
-    before_.resize(events_.size());
+      : system_(system),
+        between_(system),
+        options_(options),
+        t_(trajectory),
+        state_(system.layout().size),
+        rate_(state_.size()),
+        before_(2 * system.muscles().size()),
+        after_(before_.size()),
+        middle_(before_.size()) {
+    const double span = options.end - options.begin;
+    last_row_ =
+        options.rate_Hz > 0.0 ? static_cast<std::size_t>(std::floor(span * options.rate_Hz * (1.0 + 1e-12) + 1e-9)) : 0;
   }
 
-  [[nodiscard]] double next_time() const {
-    if (t_.time.size() == rows_) return std::numeric_limits<double>::infinity();
-    return options_.begin + static_cast<double>(t_.time.size()) / options_.rate_Hz;
+  void start(SystemEvaluator<double>& evaluator, const double* x, const SystemInputs& inputs) {
+    between_ = evaluator;
+    static_cast<void>(between_.derivative(x, inputs, rate_.data()));
+    append(options_.begin, between_, inputs);
+    event_functions(between_, before_);
   }
 
-  void row(double time, const double* x, std::span<const double> excitation, std::span<const double> reserve) {
-    evaluate(x, excitation, reserve);
-    const auto i = static_cast<Eigen::Index>(t_.time.size());
-    t_.time.push_back(time);
-    const auto copy = [i](estimation::RowMatrix& to, std::span<const double> from) {
-      for (std::size_t k = 0; k < from.size(); ++k) to(i, static_cast<Eigen::Index>(k)) = from[k];
-    };
-    copy(t_.q, evaluator_.q());
-    copy(t_.qdot, evaluator_.qdot());
-    copy(t_.excitation, excitation);
-    copy(t_.activation, evaluator_.activation());
-    copy(t_.fiber_length, evaluator_.fiber_length());
-    copy(t_.tendon_force, evaluator_.tendon_force());
-    copy(t_.path_length, evaluator_.path_length());
-    copy(t_.reserve, reserve);
-  }
-
-  /// Signs of the event functions at the beginning of everything.
-  void arm(const double* x, std::span<const double> excitation, std::span<const double> reserve) {
-    event_functions(x, excitation, reserve);
-    before_ = events_;
-  }
-
-  /// Looks for changes of sign over a step; the instant comes from bisection on the integrator's interpolant.
-  template <typename Stepper>
-  void look_for_events(const Stepper& stepper, double begin, double end, const double* x_end,
-                       std::span<const double> excitation, std::span<const double> reserve) {
-    event_functions(x_end, excitation, reserve);
-    const std::vector<double> after = events_;
-    for (std::size_t k = 0; k < after.size(); ++k) {
-      if ((before_[k] > 0.0) == (after[k] > 0.0)) continue;
-      double a = begin, b = end;
-      for (int i = 0; i < 40; ++i) {
-        const double middle = 0.5 * (a + b);
-        stepper.interpolate(middle, state_.data());
-        event_functions(state_.data(), excitation, reserve);
-        ((events_[k] > 0.0) == (before_[k] > 0.0) ? a : b) = middle;
+  /// After an accepted step, at whose end `evaluator` stands: its last evaluation was the derivative there.
+  void step(const Stepper& stepper, const SystemEvaluator<double>& evaluator, DriveState& drive, double begin,
+            double end) {
+    if (options_.rate_Hz > 0.0) {
+      while (t_.time.size() <= last_row_) {
+        const double sample = options_.begin + static_cast<double>(t_.time.size()) / options_.rate_Hz;
+        if (sample > end + 1e-12) break;
+        const SystemInputs inputs = drive.at(std::min(sample, end));
+        evaluate_between(stepper, std::min(sample, end), inputs);
+        append(sample, between_, inputs);
       }
-      const bool now_positive = after[k] > 0.0;
-      using Kind = MuscleEvent::Kind;
-      const Kind kind = k % 2 == 0 ? (now_positive ? Kind::kFiberFree : Kind::kFiberShortest)
-                                   : (now_positive ? Kind::kTendonTaut : Kind::kTendonSlack);
-      constexpr std::size_t kMostEvents = 10000;
-      if (t_.events.size() < kMostEvents) t_.events.push_back({b, static_cast<int>(k / 2), kind});
+    } else {
+      append(end, evaluator, drive.at(end));
     }
-    before_ = after;
+    event_functions(evaluator, after_);
+    for (std::size_t k = 0; k < after_.size(); ++k) {
+      if ((before_[k] > 0.0) != (after_[k] > 0.0)) locate(stepper, drive, k, begin, end);
+    }
+    std::swap(before_, after_);
   }
 
-  double* scratch() { return state_.data(); }
+  void finish() {
+    // Rows were gathered one after the other; now they become matrices.
+    const auto n = static_cast<Eigen::Index>(system_.coordinates()),
+               m = static_cast<Eigen::Index>(system_.muscles().size());
+    const auto rows = static_cast<Eigen::Index>(t_.time.size());
+    const auto fill = [&](estimation::RowMatrix& matrix, const std::vector<double>& values, Eigen::Index columns) {
+      matrix = Eigen::Map<const estimation::RowMatrix>(values.data(), rows, columns);
+    };
+    fill(t_.q, q_, n);
+    fill(t_.qdot, qdot_, n);
+    fill(t_.reserve, reserve_, n);
+    fill(t_.excitation, excitation_, m);
+    fill(t_.activation, activation_, m);
+    fill(t_.fiber_length, fiber_, m);
+    fill(t_.tendon_force, force_, m);
+    fill(t_.path_length, path_, m);
+  }
 
  private:
-  void evaluate(const double* x, std::span<const double> excitation, std::span<const double> reserve) {
-    rate_.resize(state_.size());
-    static_cast<void>(evaluator_.derivative(x, {excitation, {}, reserve}, rate_.data()));
+  void evaluate_between(const Stepper& stepper, double time, const SystemInputs& inputs) {
+    stepper.interpolate(time, state_.data());
+    static_cast<void>(between_.derivative(state_.data(), inputs, rate_.data()));
   }
 
-  void event_functions(const double* x, std::span<const double> excitation, std::span<const double> reserve) {
-    evaluate(x, excitation, reserve);
-    system_.muscles().events(
-        {excitation, evaluator_.activation(), evaluator_.fiber_length(), evaluator_.path_length(), evaluator_.path_speed()},
-        events_);
-    // A rigid tendon has one event, not two.
-    for (std::size_t m = 0; m < system_.muscles().size(); ++m) {
-      if (!system_.muscles().has_fiber_state(m)) events_[2 * m] = 1.0;
+  void append(double time, const SystemEvaluator<double>& e, const SystemInputs& inputs) {
+    const std::size_t n = system_.coordinates();
+    t_.time.push_back(time);
+    q_.insert(q_.end(), e.q(), e.q() + n);
+    qdot_.insert(qdot_.end(), e.qdot(), e.qdot() + n);
+    const auto add = [](std::vector<double>& to, std::span<const double> from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    if (inputs.coordinate_force.empty()) {
+      reserve_.resize(reserve_.size() + n, 0.0);
+    } else {
+      add(reserve_, inputs.coordinate_force);
     }
+    add(excitation_, inputs.excitation);
+    add(activation_, e.activation());
+    add(force_, e.tendon_force());
+    add(path_, e.path_length());
+    for (std::size_t m = 0; m < system_.muscles().size(); ++m) {
+      fiber_.push_back(system_.muscles().has_fiber_state(m) ? e.fiber_length()[m] : rigid_fiber(m, e.path_length()[m]));
+    }
+  }
+
+  /// What a rigid tendon leaves of the path to the fibre.
+  [[nodiscard]] double rigid_fiber(std::size_t m, double path) const {
+    const MusculotendonParameters<double>& p = system_.muscles().settings(m).musculotendon;
+    return std::hypot(std::max(0.0, path - p.tendon_slack_length),
+                      p.optimal_fiber_length * std::sin(p.pennation_angle_at_optimal));
+  }
+
+  void event_functions(const SystemEvaluator<double>& e, std::vector<double>& value) const {
+    system_.muscles().events({{}, e.activation(), e.fiber_length(), e.path_length(), e.path_speed()}, value);
+    for (std::size_t m = 0; m < system_.muscles().size(); ++m) {
+      if (!system_.muscles().has_fiber_state(m)) value[2 * m] = 1.0;  // of a rigid tendon both are the same
+    }
+  }
+
+  /// Bisection on the integrator's interpolant.
+  void locate(const Stepper& stepper, DriveState& drive, std::size_t k, double begin, double end) {
+    constexpr std::size_t kMostEvents = 10000;
+    if (t_.events.size() >= kMostEvents) return;
+    double a = begin, b = end;
+    for (int i = 0; i < 40 && b - a > 1e-12; ++i) {
+      const double middle = 0.5 * (a + b);
+      evaluate_between(stepper, middle, drive.at(middle));
+      event_functions(between_, middle_);
+      ((middle_[k] > 0.0) == (before_[k] > 0.0) ? a : b) = middle;
+    }
+    using Kind = MuscleEvent::Kind;
+    const bool positive = after_[k] > 0.0;
+    const Kind kind = k % 2 == 0 ? (positive ? Kind::kFiberFree : Kind::kFiberShortest)
+                                 : (positive ? Kind::kTendonTaut : Kind::kTendonSlack);
+    t_.events.push_back({b, static_cast<int>(k / 2), kind});
   }
 
   const MusculoskeletalSystem& system_;
-  SystemEvaluator<double> evaluator_;
+  SystemEvaluator<double> between_;
   const ForwardOptions& options_;
   MuscleTrajectory& t_;
-  std::size_t rows_ = 0;
-  std::vector<double> state_, rate_, events_, before_;
+  std::size_t last_row_ = 0;
+  std::vector<double> state_, rate_, before_, after_, middle_;
+  std::vector<double> q_, qdot_, reserve_, excitation_, activation_, fiber_, force_, path_;
 };
 
 void check_start(const Model& model, const StartState& start) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     const Coordinate& c = model.coordinates[i];
-    const double q = start.q(static_cast<Eigen::Index>(i)), v = start.qdot(static_cast<Eigen::Index>(i));
-    if (!std::isfinite(q) || !std::isfinite(v)) throw InputError(model.name, fmt::format("start of coordinate '{}' is not a finite number", c.name));
+    const double q = start.q(static_cast<Eigen::Index>(i)), speed = start.qdot(static_cast<Eigen::Index>(i));
+    if (!std::isfinite(q) || !std::isfinite(speed)) {
+      throw InputError(model.name, fmt::format("start of coordinate '{}' is not a finite number", c.name));
+    }
     const double slack = 1e-6 * (1.0 + c.high - c.low);
     if (q < c.low - slack || q > c.high + slack) {
-      throw InputError(model.name, fmt::format("start of coordinate '{}' = {:.6g} {} is outside its range {:.6g} .. {:.6g}", c.name, q,
-                                               c.unit(), c.low, c.high));
+      throw InputError(model.name,
+                       fmt::format("start of coordinate '{}' = {:.6g} {} is outside its range {:.6g} .. {:.6g}", c.name,
+                                   q, c.unit(), c.low, c.high));
     }
   }
 }
@@ -137,30 +208,18 @@ SimulationEnd end_of(numerics::IntegrationEnd end) {
   return SimulationEnd::kDiverged;
 }
 
-/// The state furthest out of its usual size, for the message.
+/// The state furthest out of its usual size.
 std::string worst_state(const MusculoskeletalSystem& system, const Eigen::VectorXd& x) {
-  const StateLayout& layout = system.layout();
-  double worst = 0.0;
-  std::size_t index = 0;
-  for (std::size_t i = 0; i < layout.size; ++i) {
+  std::size_t worst = 0;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < system.layout().size; ++i) {
     const double size = std::abs(x(static_cast<Eigen::Index>(i))) / system.scales()[i];
-    if (size > worst || !std::isfinite(size)) {
-      worst = size;
-      index = i;
-      if (!std::isfinite(size)) break;
+    if (size > largest) {
+      largest = size;
+      worst = i;
     }
   }
-  if (index < 2 * layout.free_coordinates) {
-    const auto free = static_cast<int>(index % layout.free_coordinates);
-    const int c = system.reduction().free_coordinates()[static_cast<std::size_t>(free)];
-    return fmt::format("{} of coordinate '{}'", index < layout.free_coordinates ? "value" : "speed",
-                       system.model().coordinates[static_cast<std::size_t>(c)].name);
-  }
-  for (std::size_t m = 0; m < system.muscles().size(); ++m) {
-    if (layout.activation[m] == static_cast<int>(index)) return fmt::format("activation of '{}'", system.model().muscles[m].name());
-    if (layout.fiber_length[m] == static_cast<int>(index)) return fmt::format("fibre length of '{}'", system.model().muscles[m].name());
-  }
-  return "a state";
+  return fmt::format("{} is {:.4g}", system.state_name(worst), x(static_cast<Eigen::Index>(worst)));
 }
 
 }  // namespace
@@ -199,81 +258,69 @@ StartState default_start(const Model& model) {
   StartState start;
   start.q = model.default_pose();
   start.qdot.setZero(start.q.size());
-  for (std::size_t i = 0; i < model.coordinates.size(); ++i) start.qdot(static_cast<Eigen::Index>(i)) = model.coordinates[i].default_speed;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+    start.qdot(static_cast<Eigen::Index>(i)) = model.coordinates[i].default_speed;
+  }
   return start;
 }
 
-MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
-                                  const ControlSignals& excitation, const ForwardOptions& options, Progress& progress) {
-  return simulate_forward(system, start, excitation, ControlSignals(std::vector<double>(system.coordinates(), 0.0)), options, progress);
-}
-
-MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
-                                  const ControlSignals& excitation, const ControlSignals& reserve,
+MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start, const Drive& drive,
                                   const ForwardOptions& options, Progress& progress) {
   check_start(system.model(), start);
-  MuscleTrajectory result;
   const StateLayout& layout = system.layout();
+  MuscleTrajectory result;
+  DriveState signals(drive, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
-  std::vector<double> u(system.muscles().size()), f(system.coordinates());
-  excitation.evaluate(options.begin, u.data());
-  reserve.evaluate(options.begin, f.data());
   Eigen::VectorXd x(static_cast<Eigen::Index>(layout.size));
-  system.reduction().select(start.q.data(), x.data());
-  system.reduction().select(start.qdot.data(), x.data() + layout.free_coordinates);
-  evaluator.set_motion(x.data(), x.data() + layout.free_coordinates);
-  evaluator.start_muscles(start.activation.size() > 0 ? start.activation.data() : u.data(), x.data());
-  for (std::size_t m = 0; m < u.size() && start.fiber_length.size() > 0; ++m) {
+  for (std::size_t i = 0; i < layout.free; ++i) {
+    x(static_cast<Eigen::Index>(i)) = start.q(system.reduction().free()[i]);
+    x(static_cast<Eigen::Index>(layout.free + i)) = start.qdot(system.reduction().free()[i]);
+  }
+  evaluator.hold(start.q.data());
+  evaluator.set_motion(x.data(), x.data() + layout.free);
+  signals.begin_piece(options.begin);
+  evaluator.start_muscles(
+      start.activation.size() > 0 ? start.activation.data() : signals.at(options.begin).excitation.data(), x.data());
+  for (std::size_t m = 0; m < system.muscles().size() && start.fiber_length.size() > 0; ++m) {
     if (layout.fiber_length[m] >= 0) x(layout.fiber_length[m]) = start.fiber_length(static_cast<Eigen::Index>(m));
   }
 
   Recorder recorder(system, options, result);
-  recorder.row(options.begin, x.data(), u, f);
-  recorder.arm(x.data(), u, f);
-  numerics::DormandPrince<double> stepper(layout.size);
-  const numerics::StepControl control{.tolerance = options.accuracy, .smallest_step = 1e-12 * (options.end - options.begin), .max_steps = options.max_steps};
-  const bool held = excitation.interpolation() == Interpolation::kHold;
-  double t = options.begin;
-  std::vector<double> now(u.size());
+  recorder.start(evaluator, x.data(), signals.at(options.begin));
+  const double span = options.end - options.begin;
+  const numerics::StepControl control{
+      .tolerance = options.accuracy, .smallest_step = 1e-12 * span, .max_steps = options.max_steps};
   const auto derivative = [&](double time, const double* state, double* rate) {
-    if (!held) {
-      excitation.evaluate(time, now.data());
-      return evaluator.derivative(state, {now, {}, f}, rate);
-    }
-    return evaluator.derivative(state, {u, {}, f}, rate);
+    return evaluator.derivative(state, signals.at(time), rate);
   };
   constexpr double kFarAway = 1e4;
   double shown = options.begin;
-  bool stopped = false;
+  double t = options.begin;
+  Stepper stepper(layout.size);
   while (t < options.end && result.end == SimulationEnd::kCompleted) {
-    const double piece_end = std::min({options.end, held ? excitation.next_break(t) : options.end, reserve.next_break(t)});
-    const auto on_step = [&](double begin, double end) {
-      for (double sample = recorder.next_time(); sample <= end + 1e-12; sample = recorder.next_time()) {
-        stepper.interpolate(std::min(sample, end), recorder.scratch());
-        if (!held) excitation.evaluate(sample, now.data());
-        recorder.row(sample, recorder.scratch(), held ? u : now, f);
-      }
-      stepper.interpolate(end, recorder.scratch());
-      std::vector<double>& state_at_end = final_;
-      state_at_end.assign(recorder.scratch(), recorder.scratch() + layout.size);
-      recorder.look_for_events(stepper, begin, end, state_at_end.data(), held ? u : now, f);
-      for (std::size_t i = 0; i < layout.free_coordinates; ++i) {
-        if (std::abs(state_at_end[i]) > kFarAway) result.end = SimulationEnd::kDiverged;
-      }
-      if (end - shown > 0.01 * (options.end - options.begin)) {
-        shown = end;
-        stopped = !progress.update((end - options.begin) / (options.end - options.begin));
-      }
-      return !stopped && result.end == SimulationEnd::kCompleted;
-    };
-    const numerics::IntegrationEnd end = stepper.advance(derivative, t, x.data(), piece_end, system.scales(), control, on_step);
+    const double piece_end = std::min(options.end, signals.piece_end(t));
+    const numerics::IntegrationEnd end =
+        stepper.advance(derivative, t, x.data(), piece_end, system.scales(), control, [&](double from, double to) {
+          recorder.step(stepper, evaluator, signals, from, to);
+          for (std::size_t i = 0; i < layout.free; ++i) {
+            if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) result.end = SimulationEnd::kDiverged;
+          }
+          if (to - shown > 0.01 * span) {
+            shown = to;
+            if (!progress.update((to - options.begin) / span)) result.end = SimulationEnd::kInterrupted;
+          }
+          return result.end == SimulationEnd::kCompleted;
+        });
     if (end != numerics::IntegrationEnd::kReached) result.end = end_of(end);
-    if (stopped) result.end = SimulationEnd::kInterrupted;
-    if (t >= options.end || result.end != SimulationEnd::kCompleted) break;
-    excitation.evaluate(t, u.data());
-    reserve.evaluate(t, f.data());
+    signals.begin_piece(t);
     stepper.restart(true);
   }
+  recorder.finish();
+  result.end_time = t;
+  result.steps = stepper.steps();
+  result.evaluations = evaluator.evaluations();
+  result.final_state = x;
+  if (!result.usable()) result.trouble = worst_state(system, x);
   return result;
 }
 

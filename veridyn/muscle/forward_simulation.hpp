@@ -26,7 +26,7 @@ struct StartState {
 struct ForwardOptions {
   double begin = 0.0;
   double end = 1.0;
-  double rate_Hz = 200.0;  ///< of the rows of the result
+  double rate_Hz = 200.0;  ///< of the rows of the result; 0: a row at each step of the integrator
   /// Largest error of a step in units of `MusculoskeletalSystem::scales`; OpenSim's tools take 1e-5 for their own norm.
   double accuracy = 1e-5;
   long max_steps = 1000000;
@@ -56,8 +56,7 @@ struct MuscleTrajectory {
   estimation::RowMatrix fiber_length;  ///< [m]; of a rigid tendon what the path leaves
   estimation::RowMatrix tendon_force;  ///< [N]
   estimation::RowMatrix path_length;   ///< [m]
-  /// Generalised forces that held or helped: of locked and prescribed coordinates zero; of reserves in CMC [N m or N].
-  estimation::RowMatrix reserve;
+  estimation::RowMatrix reserve;       ///< extra generalised forces, samples x coordinates [N m or N]
   std::vector<MuscleEvent> events;
   SimulationEnd end = SimulationEnd::kCompleted;
   double end_time = 0.0;
@@ -70,17 +69,18 @@ struct MuscleTrajectory {
   [[nodiscard]] std::string message() const;
 };
 
-/// Integrates the system from `start` under `excitation`, with the error-controlled Dormand-Prince method. Instants at
-/// which held controls jump are ends of steps. Slack tendons and shortest fibres are located on the way as events.
-/// Never throws on a diverging simulation and always ends: the result says how.
-/// @throws InputError for a start outside a clamped coordinate's range or with NaN, naming the coordinate.
-[[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
-                                                const ControlSignals& excitation, const ForwardOptions& options,
-                                                Progress& progress);
+/// What drives a simulation.
+struct Drive {
+  ControlSignals excitation;  ///< by muscle
+  /// Generalised forces by coordinate, such as the reserves of computed muscle control; none when empty.
+  ControlSignals reserve;
+};
 
-/// The same with extra generalised forces (by coordinate) as functions of time, such as the reserves of CMC.
+/// Integrates the system from `start`, with the error-controlled Dormand-Prince method. Instants at which held signals
+/// jump are ends of steps. Slack tendons and shortest fibres are located on the way as events. Never throws on a
+/// diverging simulation and always ends: the result says how.
+/// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.
 [[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
-                                                const ControlSignals& excitation, const ControlSignals& reserve,
-                                                const ForwardOptions& options, Progress& progress);
+                                                const Drive& drive, const ForwardOptions& options, Progress& progress);
 
 }  // namespace veridyn::muscle

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "veridyn/muscle/model.hpp"
+#include "veridyn/muscle/scalar.hpp"
 
 /// What the four wrap primitives share.
 ///
@@ -49,12 +50,7 @@ struct WrapResult {
   [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
 };
 
-/// The value part of a scalar: decisions are taken in double, derivatives follow.
-[[nodiscard]] inline double value_of(double x) { return x; }
-template <typename Jet>
-[[nodiscard]] inline double value_of(const Jet& x) {
-  return value_of(x.a);
-}
+/// The value part of a vector: decisions are taken in double, derivatives follow.
 template <typename Scalar>
 [[nodiscard]] Eigen::Vector3d values_of(const Eigen::Matrix<Scalar, 3, 1>& v) {
   return {value_of(v.x()), value_of(v.y()), value_of(v.z())};
