@@ -137,7 +137,13 @@ class PathSolver {
           r = muscle::wrap(object.cylinder, p, q);
           break;
         case WrapShape::kEllipsoid:
-          r = muscle::wrap(object.ellipsoid, p, q);
+          if (side_ == 0) {
+            r = muscle::wrap(object.ellipsoid, p, q);
+          } else {
+            WrapEllipsoid one_side = object.ellipsoid;
+            one_side.side = side_;
+            r = muscle::wrap(one_side, p, q);
+          }
           break;
         case WrapShape::kTorus:
           r = muscle::wrap(object.torus, p, q);
@@ -277,6 +283,28 @@ class PathSolver {
 
   /// Puts the wraps of `mask` on the path of points: w_.nodes, w_.result. Returns the number of nodes.
   std::size_t solve(const Path& path, unsigned mask) {
+    const std::size_t n = settle(path, mask);
+    if (path.wraps.size() < 2 || paths_.mode_ == WrapMode::kAsOpenSim) return n;
+    double spread = 1.0;
+    for (std::size_t k = 0; k < n; ++k)
+      if (w_.nodes[k].wrap >= 0)
+        spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)].spread);
+    if (spread >= 0.7) return n;
+    // Objects solved one after the other may settle on the longer of two sides: try both.
+    side_ = 1;
+    const double length1 = muscle::value_of(measure<false>(path, settle(path, mask), Scalar(1.0)));
+    side_ = -1;
+    std::size_t best = settle(path, mask);
+    const double length2 = muscle::value_of(measure<false>(path, best, Scalar(1.0)));
+    if (length1 < length2) {
+      side_ = 1;
+      best = settle(path, mask);
+    }
+    side_ = 0;
+    return best;
+  }
+
+  std::size_t settle(const Path& path, unsigned mask) {
     std::copy_n(w_.stations.begin(), n_stations_, w_.nodes.begin());
     std::size_t n = n_stations_;
     if (path.wraps.size() == 1) {
@@ -289,14 +317,13 @@ class PathSolver {
     if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
     // Jets keep on for their derivatives after the values stand.
     int more = std::is_same_v<Scalar, double> ? 0 : 8;
-    bool alone = true;  // no two objects on one segment: the first pass is final
     for (int pass = 0; pass < 60; ++pass) {
       double moved = 0.0;
       for (std::size_t i = 0; i < path.wraps.size(); ++i) {
         if ((mask >> i & 1u) == 0) continue;
         const MusclePaths::Wrap& wrap = path.wraps[i];
         const bool was_there = remove(static_cast<int>(i), n);
-        const std::size_t at = choose(path, i, wrap, n, pass, alone);
+        const std::size_t at = choose(path, i, wrap, n);
         if (at < n) {
           insert(path, i, at, n);
           if (was_there) {
@@ -311,8 +338,7 @@ class PathSolver {
           moved = 1.0;
         }
       }
-      if (alone) break;
-      if (pass > 0 && moved < 1e-11 && more-- <= 0) break;
+      if (moved == 0.0 || (pass > 0 && moved < 1e-11 && more-- <= 0)) break;
     }
     return n;
   }
@@ -328,8 +354,7 @@ class PathSolver {
   }
 
   /// Segment of the path as it is on which wrap i acts (n: none), with its result in w_.result[i].
-  std::size_t choose(const Path& path, std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n, int pass,
-                     bool& alone) {
+  std::size_t choose(const Path& path, std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n) {
     const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
     std::size_t best = n;
     double least = 1e300;
@@ -352,7 +377,6 @@ class PathSolver {
       } else {
         // Only the ends of a fading object's own segment fade it: here it counts whole.
         r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
-        if (!points) alone = false;
       }
       if (!r.wrapped()) continue;
       const double longer = value_of(r.length) - value_of(Vector(b.x - a.x)).norm();
@@ -364,7 +388,6 @@ class PathSolver {
       if (r.meets) break;
     }
     (void)path;
-    (void)pass;
     return best;
   }
 
@@ -556,7 +579,6 @@ class PathSolver {
   }
 
   std::size_t solve_as_opensim(const Path& path, std::size_t n) {
-    bool alone = false;
     double last = 1e300;
     std::size_t order[2] = {0, 1};
     for (int pass = 0; pass < 8; ++pass) {
@@ -565,7 +587,7 @@ class PathSolver {
         const std::size_t i = slot < 2 ? order[slot] : slot;
         remove(static_cast<int>(i), n);
         w_.result[i].status = WrapStatus::kStraight;
-        const std::size_t at = choose(path, i, path.wraps[i], n, pass, alone);
+        const std::size_t at = choose(path, i, path.wraps[i], n);
         if (at < n) insert(path, i, at, n);
         if (slot < 2 && at == n && w_.first_segment[i] < 0) status[slot] = inside_somewhere(path, i, n);
         if (slot < 2 && at < n) status[slot] = WrapStatus::kWrapped;
@@ -597,6 +619,7 @@ class PathSolver {
   PathWorkspace<Scalar>& w_;
   std::size_t n_stations_ = 0;
   unsigned done_ = 0;
+  int side_ = 0;
 };
 
 template <typename Scalar>

@@ -87,9 +87,9 @@ template <typename Scalar>
   result.r2.z() = q.z() - slope * d2;
   const double overrun = std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) -
                          cylinder.half_length;
-  if (overrun > 0.0) {
+  if (overrun > kEndStart * cylinder.radius) {
     if (overrun >= kEndFade * cylinder.radius) return result;
-    result.weight *= internal::fade(overrun / (kEndFade * cylinder.radius));
+    result.weight *= internal::fade((overrun / cylinder.radius - kEndStart) / (kEndFade - kEndStart));
   }
   result.status = WrapStatus::kWrapped;
   const Scalar flat = planar * per_length;
@@ -132,7 +132,8 @@ template <typename Scalar>
   }
   const Scalar z1 = abs(path.r1.z()), z2 = abs(path.r2.z());
   const Scalar overrun = (z1 < z2 ? z1 : z2) - Scalar(cylinder.half_length);
-  return weight * internal::fade(Scalar(overrun / Scalar(kEndFade * cylinder.radius)));
+  return weight *
+         internal::fade(Scalar((overrun / Scalar(cylinder.radius) - Scalar(kEndStart)) / Scalar(kEndFade - kEndStart)));
 }
 
 }  // namespace veridyn::muscle

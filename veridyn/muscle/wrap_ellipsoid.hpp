@@ -123,6 +123,9 @@ namespace veridyn::muscle {
 struct WrapEllipsoid {
   Eigen::Vector3d radii = Eigen::Vector3d::Zero();
   WrapQuadrant quadrant;
+  /// +1, -1: of several shortest geodesics the one on this side of the quadrant's plane if there is one; 0: the
+  /// shortest of all.
+  int side = 0;
 };
 
 namespace internal {
@@ -273,13 +276,23 @@ template <typename Scalar>
   internal::GeodesicSolution solution = internal::solve_geodesic(a, pv, qv, near);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
-    return x[ellipsoid.quadrant.axis] * ellipsoid.quadrant.sign < 0.0;
+    const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
+    return x[ellipsoid.quadrant.axis] * sign < 0.0;
   };
-  if (near2 < 0.01 || !solution.converged) {
+  // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
+  if (near2 < 0.01 || !solution.converged || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0) {
+    const auto good = [&](const internal::GeodesicSolution& s) {
+      return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
+    };
     const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
-    for (const Eigen::Vector3d& toward : {Eigen::Vector3d(-near), beside, Eigen::Vector3d(-beside)}) {
+    bool have = good(solution);
+    for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
+                                          Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
       const internal::GeodesicSolution other = internal::solve_geodesic(a, pv, qv, toward);
-      if (other.converged && (!solution.converged || other.length < solution.length)) solution = other;
+      if (!good(other) && !(other.converged && !solution.converged)) continue;
+      if (have && !(other.length < solution.length)) continue;
+      solution = other;
+      have = good(other);
     }
   }
   if (!solution.converged) {
@@ -300,7 +313,8 @@ template <typename Scalar>
     result.surface_length = Scalar(from.s) + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
   };
   last_step(solution);
-  if (ellipsoid.quadrant.sign != 0 && inactive(values_of(result.r1)) && inactive(values_of(result.r2)) &&
+  result.spread = solution.jacobi / solution.length;
+  if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) && inactive(values_of(result.r2)) &&
       inactive(solution.middle)) {
     const internal::GeodesicSolution other =
         internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));

@@ -12,8 +12,9 @@
 /// change (dL/dP = -direction1, dL/dQ = direction2), and closed forms or Newton's method find it to rounding.
 ///
 /// Where OpenSim's path jumps, ours blends: an end that dips into an object (OpenSim drops the wrap at once) shrinks
-/// the object so that the end lies on its surface and fades the wrap out over a depth of `kInsideFade` of the radius;
-/// a cylinder's wrap fades out over `kEndFade` of its radius beyond its ends. Beyond these bands lengths are OpenSim's.
+/// the object so that the end lies on its surface and fades the wrap out over a depth of `kInsideFade` of the radius; a
+/// cylinder's wrap fades out between `kEndStart` and `kEndFade` of its radius beyond its ends. Beyond these bands
+/// lengths are OpenSim's.
 namespace veridyn::muscle {
 
 enum class WrapStatus {
@@ -24,7 +25,8 @@ enum class WrapStatus {
 };
 
 inline constexpr double kInsideFade = 0.03;  ///< [radii]
-inline constexpr double kEndFade = 0.5;      ///< [radii of the cylinder]
+inline constexpr double kEndStart = 0.1;     ///< [radii of the cylinder]
+inline constexpr double kEndFade = 0.6;      ///< [radii of the cylinder]
 
 template <typename Scalar>
 struct WrapResult {
@@ -46,6 +48,9 @@ struct WrapResult {
   double depth = 0.0;
   /// The straight segment itself meets the object; false: only the wall of a quadrant makes it go round.
   bool meets = true;
+  /// How far neighbouring paths from P have spread at Q, per length: 1 on flat and once curved surfaces; small where the
+  /// surface focuses them and another path may be as short.
+  double spread = 1.0;
 
   [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
 };
