@@ -350,7 +350,7 @@ template <typename Curves>
   double low = k.minimum_length, high = fiber(0.5 * k.LS);
   CurveValue g = balance(curves, k, a, low, lMT);
   root.evaluations = 1;
-  if (!std::isfinite(g.value)) return {std::nan(""), 1.0, EquilibriumEnd::kNotFinite, 1};
+  if (std::isnan(g.value)) return {std::nan(""), 1.0, EquilibriumEnd::kNotFinite, 1};
   if (g.value >= 0.0) return {low, g.slope, EquilibriumEnd::kSlackTendon, 1};
   // Only a tendon that pulls when slack can leave no root so far.
   while (balance(curves, k, a, high, lMT).value < 0.0 && root.evaluations < 60) {
