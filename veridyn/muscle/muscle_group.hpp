@@ -105,6 +105,15 @@ class MuscleGroup {
     });
   }
 
+  /// The same with each muscle's own activation, with derivatives if the scalar carries them.
+  void rigid_parts(std::span<const Scalar> activation, std::span<const Scalar> path_length,
+                   std::span<const Scalar> path_speed, std::span<RigidTendonParts<Scalar>> parts) const {
+    for_each([&](const auto& m) {
+      const std::size_t i = m.muscle;
+      parts[i] = rigid_tendon_parts(m.curves, m.constants, activation[i], path_length[i], path_speed[i]);
+    });
+  }
+
   /// One muscle's forces at its own activation, as if its tendon were rigid.
   [[nodiscard]] RigidTendonForces rigid_forces(std::size_t muscle, double a, double lMT,
                                                double vMT) const requires std::same_as<Scalar, double> {
