@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/muscle/model_trees.hpp"
 #include "tests/muscle/reference_table.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/muscle/osim_reader.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -197,21 +200,28 @@ TEST(Mechanism, NamesWhatIsWrongWithTheTree) {
   EXPECT_THAT(message_of(unused), AllOf(HasSubstr("'orphan'"), HasSubstr("no joint")));
 }
 
-// Poses and velocities that OpenSim 4.5.2 computed.
-TEST(Mechanism, MatchesOpenSimOnArm26) {
-  const test::ReferenceTable states = test::read_reference("opensim/g_arm26_inverse_dynamics.csv");
-  const test::ReferenceTable bodies = test::read_reference("opensim/g_arm26_bodies.csv");
-  if (states.rows.empty() || bodies.rows.empty()) GTEST_SKIP() << "no reference/opensim under " << VERIDYN_SHARED_DIR;
-  const Model model = test::arm26_skeleton();
+// Poses and velocities that OpenSim 4.5.2 computed; the leg has spline joints.
+class OpenSimBodies : public testing::TestWithParam<const char*> {};
+
+TEST_P(OpenSimBodies, HaveOurPosesAndVelocities) {
+  const std::string name = GetParam();
+  const std::string file = fmt::format("{}/data/opensim/{}.osim", VERIDYN_SHARED_DIR, name);
+  const test::ReferenceTable states = test::read_reference(fmt::format("opensim/g_{}_inverse_dynamics.csv", name));
+  const test::ReferenceTable bodies = test::read_reference(fmt::format("opensim/g_{}_bodies.csv", name));
+  if (states.rows.empty() || bodies.rows.empty() || !std::filesystem::exists(file)) {
+    GTEST_SKIP() << "no " << file << " or its reference";
+  }
+  const Model model = read_osim(file);
   const Mechanism mechanism(model);
   Kinematics<double> k(mechanism);
   std::size_t compared = 0;
   for (std::size_t row = 0; row < bodies.rows.size(); ++row) {
     const std::string& state = bodies.text(row, "case");
-    Eigen::Vector2d q, qdot;
+    Eigen::VectorXd q(mechanism.coordinates()), qdot(mechanism.coordinates());
     for (std::size_t s = 0; s < states.rows.size(); ++s) {
       if (states.text(s, "case") != state) continue;
       const int c = model.coordinate(states.text(s, "coordinate"));
+      ASSERT_GE(c, 0);
       q(c) = states.number(s, "q_rad_or_m");
       qdot(c) = states.number(s, "qdot");
     }
@@ -225,18 +235,20 @@ TEST(Mechanism, MatchesOpenSimOnArm26) {
     const char* const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i) {
       const std::string axis = axes[i];
+      // 15 digits are stored.
       EXPECT_NEAR(pose.position(i), bodies.number(row, axis + "_m"), 1e-13);
-      EXPECT_NEAR(velocity(i), bodies.number(row, "com_v" + axis + "_m_s"), 1e-12);
-      EXPECT_NEAR(V.angular(i), bodies.number(row, "omega_" + axis + "_rad_s"), 1e-12);
+      EXPECT_NEAR(velocity(i), bodies.number(row, fmt::format("com_v{}_m_s", axis)), 1e-12);
+      EXPECT_NEAR(V.angular(i), bodies.number(row, fmt::format("omega_{}_rad_s", axis)), 1e-12);
       for (int j = 0; j < 3; ++j) {
-        const std::string entry = fmt::format("R{}{}", i + 1, j + 1);
-        EXPECT_NEAR(pose.rotation(i, j), bodies.number(row, entry), 1e-13);
+        EXPECT_NEAR(pose.rotation(i, j), bodies.number(row, fmt::format("R{}{}", i + 1, j + 1)), 1e-13);
       }
     }
     ++compared;
   }
   EXPECT_GE(compared, 40U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Models, OpenSimBodies, testing::Values("arm26", "leg6dof9musc"));
 
 }  // namespace
 }  // namespace veridyn::muscle

@@ -48,6 +48,11 @@ class Dynamics {
   void update_mass_rows();
   /// M(a, b) for a coordinate b on the chain of a, after `update_mass_rows`.
   [[nodiscard]] const Scalar* mass_row(int coordinate) const { return rows_.data() + mechanism_->row(coordinate); }
+  /// What M(c, c) was summed from, without cancellation, after `update_mass_rows`: pivots below `kSingularPivot` of it
+  /// are rounding.
+  [[nodiscard]] Scalar mass_scale(int coordinate) const {
+    return pivot_scale(kinematics_.columns[at(coordinate)], composite_[at(mechanism_->link_of_coordinate(coordinate))]);
+  }
   /// The whole symmetric matrix. Calls `update_mass_rows`.
   void mass_matrix(Matrix& M);
 
@@ -71,8 +76,7 @@ class Dynamics {
   static constexpr double kSingularPivot = 1e-12;
 
  private:
-  [[nodiscard]] std::size_t at(int index) const { return static_cast<std::size_t>(index); }
-  /// Of the rounding in S . I S: pivots far below it are noise.
+  [[nodiscard]] static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   [[nodiscard]] static Scalar pivot_scale(const SpatialVector<Scalar>& S, const RigidInertia<Scalar>& I) {
     return I.inertia.trace() * S.angular.squaredNorm() + I.mass * S.linear.squaredNorm();
   }
@@ -131,10 +135,8 @@ void Dynamics<Scalar>::set_state(const Scalar* q, const Scalar* qdot) {
     const Matrix3<Scalar>& R = pose.rotation;
     center_[i] = pose.position + internal::rotate(R, link.mass_center);
     // R I R', its upper half
-    const Vector3<Scalar> x = internal::rotate(R, link.inertia.col(0));
-    const Vector3<Scalar> y = internal::rotate(R, link.inertia.col(1));
-    const Vector3<Scalar> z = internal::rotate(R, link.inertia.col(2));
-    const auto entry = [&](int a, int b) { return x(a) * R(b, 0) + y(a) * R(b, 1) + z(a) * R(b, 2); };
+    const Matrix3<Scalar> RI = internal::rotate(R, link.inertia);
+    const auto entry = [&](int a, int b) { return RI(a, 0) * R(b, 0) + RI(a, 1) * R(b, 1) + RI(a, 2) * R(b, 2); };
     inertia_[i] = {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
   }
 }
@@ -233,8 +235,7 @@ Factorization Dynamics<Scalar>::forward_dynamics_factorized(const Scalar* tau, c
     const std::span<const int> chain = mechanism_->chain(k);
     const std::size_t depth = chain.size() - 1;
     Scalar* const row = rows_.data() + mechanism_->row(k);
-    const std::size_t link = at(mechanism_->link_of_coordinate(k));
-    if (!(row[depth] > kSingularPivot * pivot_scale(kinematics_.columns[at(k)], composite_[link]))) return {k};
+    if (!(row[depth] > kSingularPivot * mass_scale(k))) return {k};
     const Scalar inverse = Scalar(1.0) / row[depth];
     row[depth] = inverse;
     for (std::size_t d = depth; d-- > 0;) {

@@ -15,8 +15,16 @@ bool moves(const TransformAxis& axis) { return axis.coordinate >= 0 && !axis.fun
 
 double constant_of(const TransformAxis& axis) { return axis.function.evaluate(0.0).value; }
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  return (Eigen::Matrix3d() << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0).finished();
+/// A rotation that takes z to `axis`; the identity for z itself.
+Eigen::Matrix3d z_along(const Eigen::Vector3d& axis) {
+  if (axis.z() == 1.0) return Eigen::Matrix3d::Identity();
+  Eigen::Index least = 0;
+  axis.cwiseAbs().minCoeff(&least);
+  Eigen::Matrix3d R;
+  R.col(2) = axis;
+  R.col(0) = Eigen::Vector3d::Unit(least).cross(axis).normalized();
+  R.col(1) = axis.cross(R.col(0));
+  return R;
 }
 
 Eigen::Vector3d unit_axis(const TransformAxis& axis, const Joint& joint) {
@@ -40,8 +48,8 @@ JointAxis compile(const TransformAxis& from, bool rotational) {
 
 /// Fills link.axes and link.origin; returns where the child body's frame stands in the link.
 ///
-/// The link's own frame is the one after the last moving rotation, so that constant rotations after it (and all of them
-/// when none moves) become part of the bodies' places and cost nothing.
+/// The link's own frame is the one after the last moving rotation, with z along its axis, so that constant rotations
+/// after it (and all of them when none moves) become part of the bodies' places and cost nothing.
 Placement compile_joint(const Joint& joint, const Placement& parent_in_link, Link& link) {
   const Placement base = parent_in_link * joint.parent_frame;
   link.origin = base.translation;
@@ -57,15 +65,11 @@ Placement compile_joint(const Joint& joint, const Placement& parent_in_link, Lin
   Eigen::Matrix3d before = base.rotation;  // constant rotations since the last moving one
   for (const TransformAxis& rotation : joint.rotation) {
     if (moves(rotation)) {
-      const Eigen::Vector3d unit = unit_axis(rotation, joint);
-      const Eigen::Matrix3d K = cross_matrix(unit);
+      const Eigen::Matrix3d Z = z_along(unit_axis(rotation, joint));
       JointAxis axis = compile(rotation, true);
-      axis.axis = before * unit;
-      axis.constant = before * (Eigen::Matrix3d::Identity() + K * K);
-      axis.sine = before * K;
-      axis.cosine = -before * K * K;
+      axis.before = before * Z;
       link.axes.push_back(std::move(axis));
-      before.setIdentity();
+      before = Z.transpose();
     } else if (const double angle = constant_of(rotation); angle != 0.0) {
       before = before * Eigen::AngleAxisd(angle, unit_axis(rotation, joint)).toRotationMatrix();
     }

@@ -23,8 +23,8 @@ struct Pose {
   }
 };
 
-/// One moving axis of a joint, compiled: its function and, for a rotation, the constants of
-/// R_after = R_before (constant + sine sin(angle) + cosine cos(angle)).
+/// One moving axis of a joint, compiled. A rotation turns the frame `before` (which has its z along the axis) about z,
+/// so that it mixes two columns of a matrix only.
 struct JointAxis {
   int coordinate = 0;
   bool rotational = true;
@@ -32,9 +32,8 @@ struct JointAxis {
   double slope = 1.0;
   double intercept = 0.0;
   PiecewisePolynomial function;
-  /// Translation: in the parent link. Rotation: in the frame that the rotations before it have made of the parent's.
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  Eigen::Matrix3d constant, sine, cosine;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< of a translation, in the parent link
+  Eigen::Matrix3d before = Eigen::Matrix3d::Identity();  ///< of a rotation, in the frame after the rotation before it
 };
 
 /// Bodies that are welded together and move as one; link 0 is the ground with all that is welded to it.
@@ -165,22 +164,29 @@ Kinematics<Scalar>::Kinematics(const Mechanism& mechanism)
 
 namespace internal {
 
-template <typename Scalar>
-Matrix3<Scalar> axis_rotation(const JointAxis& axis, const Scalar& angle) {
-  using std::cos;
-  using std::sin;
-  const Scalar s = sin(angle), c = cos(angle);
-  Matrix3<Scalar> R;
-  for (int i = 0; i < 9; ++i) {
-    R.data()[i] = Scalar(axis.constant.data()[i]) + s * axis.sine.data()[i] + c * axis.cosine.data()[i];
-  }
-  return R;
-}
-
-/// a x b for a double-valued b: half the work for Jets.
+/// Products with constants: half the work for Jets.
 template <typename Scalar>
 Vector3<Scalar> rotate(const Matrix3<Scalar>& R, const Eigen::Vector3d& v) {
   return R.col(0) * v.x() + R.col(1) * v.y() + R.col(2) * v.z();
+}
+template <typename Scalar>
+Matrix3<Scalar> rotate(const Matrix3<Scalar>& R, const Eigen::Matrix3d& A) {
+  Matrix3<Scalar> product;
+  for (int i = 0; i < 3; ++i) product.col(i) = R.col(0) * A(0, i) + R.col(1) * A(1, i) + R.col(2) * A(2, i);
+  return product;
+}
+
+/// frame Rz(angle)
+template <typename Scalar>
+void turn_about_z(const Matrix3<Scalar>& frame, const Scalar& angle, Matrix3<Scalar>& turned) {
+  using std::cos;
+  using std::sin;
+  const Scalar s = sin(angle), c = cos(angle);
+  for (int i = 0; i < 3; ++i) {
+    turned(i, 0) = c * frame(i, 0) + s * frame(i, 1);
+    turned(i, 1) = c * frame(i, 1) - s * frame(i, 0);
+    turned(i, 2) = frame(i, 2);
+  }
 }
 
 }  // namespace internal
@@ -192,20 +198,29 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
     const Link& link = mechanism.link(i);
     const Pose<Scalar>& parent = k.pose[static_cast<std::size_t>(link.parent)];
     Pose<Scalar>& pose = k.pose[static_cast<std::size_t>(i)];
-    pose.position = parent.position + internal::rotate(parent.rotation, link.origin);
+    const bool grounded = link.parent == 0;  // nothing to turn
+    if (grounded) {
+      pose.position = link.origin.cast<Scalar>();
+    } else {
+      pose.position = parent.position + internal::rotate(parent.rotation, link.origin);
+    }
     if (link.simple) {
       const JointAxis& axis = link.axes[0];
       SpatialVector<Scalar>& column = k.columns[static_cast<std::size_t>(axis.coordinate)];
       const Scalar amount = axis.slope * q[axis.coordinate] + axis.intercept;
-      const Vector3<Scalar> direction = internal::rotate(parent.rotation, axis.axis);
       if (axis.rotational) {
-        pose.rotation.noalias() = parent.rotation * internal::axis_rotation(axis, amount);
-        column.angular = axis.slope * direction;
+        if (grounded) {
+          internal::turn_about_z(Matrix3<Scalar>(axis.before.cast<Scalar>()), amount, pose.rotation);
+        } else {
+          internal::turn_about_z(internal::rotate(parent.rotation, axis.before), amount, pose.rotation);
+        }
+        column.angular = axis.slope * pose.rotation.col(2);
         column.linear = pose.position.cross(column.angular);
       } else {
         pose.rotation = parent.rotation;
-        pose.position += amount * direction;
-        column.linear = axis.slope * direction;
+        column.linear = internal::rotate(parent.rotation, axis.axis);
+        pose.position += amount * column.linear;
+        column.linear *= Scalar(axis.slope);
       }
       continue;
     }
@@ -221,15 +236,14 @@ void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Sc
       }
       motion->slope = f.slope;
       motion->curvature = f.curvature;
-      const Vector3<Scalar> direction = internal::rotate(pose.rotation, axis.axis);
       if (axis.rotational) {
         // Translations come first, so that the position is final here.
-        motion->unit.angular = direction;
-        motion->unit.linear = pose.position.cross(direction);
-        pose.rotation = (pose.rotation * internal::axis_rotation(axis, f.value)).eval();
+        internal::turn_about_z(internal::rotate(pose.rotation, axis.before), f.value, pose.rotation);
+        motion->unit.angular = pose.rotation.col(2);
+        motion->unit.linear = pose.position.cross(motion->unit.angular);
       } else {
-        motion->unit.linear = direction;
-        pose.position += f.value * direction;
+        motion->unit.linear = internal::rotate(pose.rotation, axis.axis);
+        pose.position += f.value * motion->unit.linear;
       }
       ++motion;
     }
@@ -254,6 +268,10 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
       const int c = link.axes[0].coordinate;
       const SpatialVector<Scalar>& column = k.columns[static_cast<std::size_t>(c)];
       const SpatialVector<Scalar> relative{column.angular * qdot[c], column.linear * qdot[c]};
+      if (link.parent == 0) {
+        V = relative;
+        continue;
+      }
       bias = cross_motion(parent, relative);
       V.angular = parent.angular + relative.angular;
       V.linear = parent.linear + relative.linear;

@@ -16,7 +16,7 @@ concept DualNumber = requires(const Scalar& x) {
 template <typename Scalar>
 [[nodiscard]] constexpr double value_of(const Scalar& x) {
   if constexpr (DualNumber<Scalar>)
-    return x.a;
+    return value_of(x.a);
   else
     return x;
 }

@@ -18,7 +18,7 @@ struct StepControl {
   double first_step = 0.0;     ///< 0: chosen from the first derivative
   double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
   double largest_step = 0.0;   ///< 0: the interval
-  long max_steps = 1000000;    ///< accepted and rejected, in all calls since `restart()`
+  long max_steps = 1000000;    ///< accepted and rejected, of this object
 };
 
 namespace internal {
@@ -67,7 +67,6 @@ class DormandPrince {
     if (fresh_) {
       if (!f(t, x, stage(0)) || !finite(stage(0))) return IntegrationEnd::kNotFinite;
       fresh_ = false;
-      steps_ = 0;
       if (step_ <= 0.0)
         step_ = control.first_step > 0.0 ? control.first_step : guess(x, scale, control.tolerance, interval);
     }
@@ -125,7 +124,7 @@ class DormandPrince {
     }
   }
 
-  /// Accepted and rejected steps since `restart()`.
+  /// Accepted and rejected steps so far.
   [[nodiscard]] long steps() const { return steps_; }
   /// Of the next step.
   [[nodiscard]] double step_size() const { return step_; }

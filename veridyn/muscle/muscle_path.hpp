@@ -1,0 +1,169 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/muscle/mechanism.hpp"
+#include "veridyn/muscle/model.hpp"
+#include "veridyn/muscle/wrap_cylinder.hpp"
+#include "veridyn/muscle/wrap_ellipsoid.hpp"
+#include "veridyn/muscle/wrap_sphere.hpp"
+#include "veridyn/muscle/wrap_torus.hpp"
+
+namespace veridyn::muscle {
+
+enum class WrapMode {
+  kTaut,       ///< a taut string: continuous lengths, moment arms that are their derivatives
+  kAsOpenSim,  ///< OpenSim's own constructions, to compare with; double only (`wrap_opensim.hpp`)
+};
+
+template <typename Scalar>
+struct PathWorkspace;
+
+/// The musculotendon paths of a model, compiled: lengths L(q) and their derivatives dL/dq. A muscle's moment arm about a
+/// coordinate is -dL/dq, in OpenSim's sign (positive where tension raises the coordinate).
+///
+/// Points are fixed, conditional or moving as in the file. Wrap objects are tried on every segment of their range; the
+/// first that meets the object wraps, otherwise the one that a quadrant's wall lengthens least. Objects that share a
+/// segment are solved together until all tangent points stand still.
+///
+/// What is the same for every pose (segments within a link) is computed once here, what several muscles share
+/// (segments, wraps of one pair of points) once per pose. Immutable, used by many threads at once; no call below
+/// allocates, throws, or returns NaN for finite input.
+class MusclePaths {
+ public:
+  /// @throws InputError naming muscle and point or wrap object where a path has fewer than two points, refers to what
+  /// is not there, or a wrap object has no positive size.
+  MusclePaths(const Model& model, const Mechanism& mechanism, WrapMode mode = WrapMode::kTaut);
+
+  /// dL/dq of `muscle` with respect to `coordinate` can be other than zero.
+  struct Pair {
+    int muscle = 0;
+    int coordinate = 0;
+  };
+
+  [[nodiscard]] int muscles() const { return static_cast<int>(muscles_.size()); }
+  [[nodiscard]] int coordinates() const { return coordinates_; }
+  [[nodiscard]] WrapMode mode() const { return mode_; }
+  /// All pairs, muscle after muscle: the order of `PathWorkspace::gradient`.
+  [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
+  [[nodiscard]] std::size_t first_pair(int muscle) const { return muscles_[static_cast<std::size_t>(muscle)].pairs[0]; }
+  [[nodiscard]] std::size_t end_pair(int muscle) const { return muscles_[static_cast<std::size_t>(muscle)].pairs[1]; }
+
+  /// Lengths [m] at the pose q whose `update_positions` filled `kinematics`.
+  template <typename Scalar>
+  void lengths(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace) const;
+  /// Lengths and `gradient`.
+  template <typename Scalar>
+  void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace) const;
+  /// Lengthening speeds [m/s] at the pose last evaluated: speeds[m] = sum dL/dq qdot.
+  template <typename Scalar>
+  void speeds(const PathWorkspace<Scalar>& workspace, const Scalar* qdot, Scalar* speeds) const;
+
+  /// One muscle's path as a polyline in ground, for drawings: its active points and, on each wrap, `arc_points` points
+  /// between the tangent points (on the surface, along a section of it).
+  [[nodiscard]] std::vector<Eigen::Vector3d> polyline(const Kinematics<double>& kinematics, const double* q, int muscle,
+                                                      int arc_points = 16) const;
+  /// Names of the wrap objects that the path touches, in its order.
+  [[nodiscard]] std::vector<std::string> touched(const Kinematics<double>& kinematics, const double* q,
+                                                 int muscle) const;
+  /// One line per path point that lies inside a wrap object of its own path at this pose, naming muscle, point and
+  /// object: there is no wrap there and the path goes straight.
+  [[nodiscard]] std::vector<std::string> points_inside(const Kinematics<double>& kinematics, const double* q) const;
+
+ private:
+  template <typename Scalar>
+  friend struct PathWorkspace;
+  template <typename Scalar>
+  friend class PathSolver;
+
+  struct Point {
+    int link = 0;
+    Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the link; of a moving point: unused
+    int moving = -1;
+  };
+  struct MovingPoint {
+    int point = 0;
+    Placement in_link;  ///< of its body
+    std::array<int, 3> coordinate{-1, -1, -1};
+    std::array<PiecewisePolynomial, 3> location;
+  };
+  struct Object {
+    std::string name;
+    WrapObject description;
+    int link = 0;
+    Placement in_link;
+    WrapShape shape = WrapShape::kSphere;
+    WrapSphere sphere;
+    WrapCylinder cylinder;
+    WrapEllipsoid ellipsoid;
+    WrapTorus torus;
+  };
+  /// A straight piece between two links, shared by all muscles that have it.
+  struct Segment {
+    int a = 0, b = 0;
+    std::array<std::size_t, 2> terms{};  ///< in terms_
+  };
+  /// Contribution of a segment to dL/dq of one coordinate.
+  struct Term {
+    int coordinate = 0;
+    int sign = 0;     ///< of the rigid motion: +1 it moves b, -1 it moves a, 0 neither
+    int moving = -1;  ///< else: a moving point's axis, 3 index + axis
+  };
+  /// A pair of points and an object, shared by all muscles that have it.
+  struct Span {
+    int a = 0, b = 0, object = 0;
+  };
+  struct Wrap {
+    int object = 0;
+    int first = 0, last = 0;  ///< points of the path, inclusive
+    EllipsoidMethod method = EllipsoidMethod::kHybrid;
+    std::vector<int> spans;  ///< by segment first..last-1, -1: can never wrap; empty where points are conditional
+  };
+  struct PathStation {
+    int point = 0;
+    int condition = -1;  ///< coordinate, -1: always there
+    double low = 0.0, high = 0.0;
+    std::string name;
+  };
+  struct Path {
+    std::string name;
+    std::vector<PathStation> stations;
+    std::vector<Wrap> wraps;
+    bool plain = true;    ///< no wraps, no conditions
+    double constant = 0.0;  ///< length of the segments within links
+    std::vector<int> segments;  ///< plain, or by station for the straight parts of a path without conditions; -1: constant
+    std::vector<std::array<std::size_t, 2>> adds;  ///< plain: term -> pair
+    std::array<std::size_t, 2> pairs{};
+  };
+
+  int point(int link, const Eigen::Vector3d& location);
+  int segment(int a, int b);
+  [[nodiscard]] std::vector<int> coordinates_of(const Path& path) const;
+  [[nodiscard]] bool moves(int coordinate, int link) const {
+    return moves_[static_cast<std::size_t>(link) * static_cast<std::size_t>(coordinates_) +
+                  static_cast<std::size_t>(coordinate)] != 0;
+  }
+
+  WrapMode mode_;
+  int coordinates_ = 0;
+  std::vector<std::uint8_t> moves_;  ///< links x coordinates
+  std::vector<Point> points_;
+  std::vector<MovingPoint> moving_;
+  std::vector<Object> objects_;
+  std::vector<Segment> segments_;
+  std::vector<Term> terms_;
+  std::vector<Span> spans_;
+  std::vector<Path> muscles_;
+  std::vector<Pair> pairs_;
+  std::size_t most_stations_ = 0;
+  std::size_t most_wraps_ = 0;
+};
+
+}  // namespace veridyn::muscle
+
+#include "veridyn/muscle/muscle_path_solver.hpp"

@@ -1,0 +1,647 @@
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "veridyn/core/assert.hpp"
+#include "veridyn/muscle/muscle_path.hpp"
+#include "veridyn/muscle/wrap_opensim.hpp"
+
+/// Evaluation of compiled paths: templates of `muscle_path.hpp`.
+namespace veridyn::muscle {
+
+enum class PathFlag : std::uint8_t {
+  kFine = 0,
+  kFading = 1,  ///< a wrap counts in part: an end dips into its object, or a cylinder ends
+  kInside = 2,  ///< a point lies inside a wrap object: straight there
+  kFailed = 3,  ///< a geodesic did not converge: straight there
+};
+
+/// Results and scratch of `MusclePaths`, made once, used by one thread.
+template <typename Scalar>
+struct PathWorkspace {
+  explicit PathWorkspace(const MusclePaths& paths)
+      : length(paths.muscles_.size()),
+        gradient(paths.pairs_.size()),
+        flag(paths.muscles_.size(), PathFlag::kFine),
+        position(paths.points_.size()),
+        moving_slope(3 * paths.moving_.size()),
+        segment_length(paths.segments_.size()),
+        term(paths.terms_.size()),
+        object(paths.objects_.size()),
+        span(paths.spans_.size()),
+        span_known(paths.spans_.size(), 0),
+        stations(paths.most_stations_),
+        nodes(paths.most_stations_ + 2 * paths.most_wraps_),
+        result(paths.most_wraps_),
+        first(paths.most_wraps_),
+        first_segment(paths.most_wraps_),
+        before(2 * paths.most_wraps_),
+        with(paths.pairs_.size()) {
+    for (std::size_t i = 0; i < paths.points_.size(); ++i)
+      position[i] = paths.points_[i].location.template cast<Scalar>();
+  }
+
+  std::vector<Scalar> length;    ///< by muscle [m]
+  std::vector<Scalar> gradient;  ///< dL/dq by pair [m/rad or 1]
+  std::vector<PathFlag> flag;    ///< by muscle
+
+  using Vector = Vector3<Scalar>;
+  struct Frame {
+    Matrix3<Scalar> rotation;
+    Vector position;
+  };
+  struct Node {
+    Vector x;
+    int link = 0;
+    int point = -1;    ///< of a path point
+    int station = -1;  ///< of a path point
+    int wrap = -1;     ///< of a tangent point
+  };
+  std::vector<Vector> position;
+  std::vector<Vector> moving_slope;
+  std::vector<Scalar> segment_length;
+  std::vector<Scalar> term;
+  std::vector<Frame> object;
+  std::vector<WrapResult<Scalar>> span;
+  std::vector<std::uint8_t> span_known;
+  std::vector<Node> stations;
+  std::vector<Node> nodes;
+  std::vector<WrapResult<Scalar>> result;
+  std::vector<WrapResult<Scalar>> first;
+  std::vector<int> first_segment;
+  std::vector<Vector> before;
+  std::vector<Scalar> with;
+};
+
+template <typename Scalar>
+class PathSolver {
+ public:
+  using Vector = Vector3<Scalar>;
+  using Node = typename PathWorkspace<Scalar>::Node;
+  using Path = MusclePaths::Path;
+
+  PathSolver(const MusclePaths& paths, const Kinematics<Scalar>& kinematics, const Scalar* q,
+             PathWorkspace<Scalar>& workspace)
+      : paths_(paths), kinematics_(kinematics), q_(q), w_(workspace) {
+    std::fill(w_.span_known.begin(), w_.span_known.end(), std::uint8_t{0});
+    place();
+  }
+
+  template <bool kGradient>
+  void all() {
+    segments<kGradient>();
+    if constexpr (kGradient) std::fill(w_.gradient.begin(), w_.gradient.end(), Scalar(0.0));
+    for (std::size_t m = 0; m < paths_.muscles_.size(); ++m) {
+      const Path& path = paths_.muscles_[m];
+      if (path.plain) {
+        Scalar length(path.constant);
+        for (const int s : path.segments) length += w_.segment_length[static_cast<std::size_t>(s)];
+        w_.length[m] = length;
+        if constexpr (kGradient)
+          for (const auto& [term, pair] : path.adds) w_.gradient[pair] += w_.term[term];
+      } else {
+        w_.flag[m] = PathFlag::kFine;
+        w_.length[m] = general<kGradient>(path, w_.flag[m]);
+      }
+    }
+  }
+
+  /// The nodes of one path as solved (in the workspace), their number.
+  std::size_t nodes_of(int muscle) {
+    PathFlag flag = PathFlag::kFine;
+    const Path& path = paths_.muscles_[static_cast<std::size_t>(muscle)];
+    stations(path);
+    detect(path, flag);
+    return solve(path, ~0u);
+  }
+  const WrapResult<Scalar>& result(std::size_t wrap) const { return w_.result[wrap]; }
+
+  WrapResult<Scalar> wrap_between(const MusclePaths::Object& object, int index, const MusclePaths::Wrap& wrap,
+                                  bool single, const Vector& p_ground, const Vector& q_ground) {
+    const auto& frame = w_.object[static_cast<std::size_t>(index)];
+    const Vector p = frame.rotation.transpose() * (p_ground - frame.position);
+    const Vector q = frame.rotation.transpose() * (q_ground - frame.position);
+    WrapResult<Scalar> r;
+    if (paths_.mode_ == WrapMode::kAsOpenSim) {
+      r = as_opensim(object, wrap, single, p, q);
+    } else {
+      switch (object.shape) {
+        case WrapShape::kSphere:
+          r = muscle::wrap(object.sphere, p, q);
+          break;
+        case WrapShape::kCylinder:
+          r = muscle::wrap(object.cylinder, p, q);
+          break;
+        case WrapShape::kEllipsoid:
+          if (side_ == 0) {
+            r = muscle::wrap(object.ellipsoid, p, q);
+          } else {
+            WrapEllipsoid one_side = object.ellipsoid;
+            one_side.side = side_;
+            r = muscle::wrap(one_side, p, q);
+          }
+          break;
+        case WrapShape::kTorus:
+          r = muscle::wrap(object.torus, p, q);
+          break;
+      }
+    }
+    if (!r.wrapped()) return r;
+    r.r1 = frame.rotation * r.r1 + frame.position;
+    r.r2 = frame.rotation * r.r2 + frame.position;
+    r.direction1 = frame.rotation * r.direction1;
+    r.direction2 = frame.rotation * r.direction2;
+    r.gradient_p = frame.rotation * r.gradient_p;
+    r.gradient_q = frame.rotation * r.gradient_q;
+    return r;
+  }
+
+ private:
+  void place() {
+    for (std::size_t i = 0; i < paths_.points_.size(); ++i) {
+      const MusclePaths::Point& point = paths_.points_[i];
+      if (point.link == 0 || point.moving >= 0) continue;
+      w_.position[i] = kinematics_.pose[static_cast<std::size_t>(point.link)] * point.location;
+    }
+    for (std::size_t i = 0; i < paths_.moving_.size(); ++i) {
+      const MusclePaths::MovingPoint& moving = paths_.moving_[i];
+      const Pose<Scalar>& pose =
+          kinematics_.pose[static_cast<std::size_t>(paths_.points_[static_cast<std::size_t>(moving.point)].link)];
+      Vector location = pose * moving.in_link.translation;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const Vector direction = pose.rotation * moving.in_link.rotation.col(axis).template cast<Scalar>();
+        const int c = moving.coordinate[a];
+        const FunctionValue<Scalar> f = moving.location[a].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
+        location += direction * f.value;
+        w_.moving_slope[3 * i + a] = direction * f.slope;
+      }
+      w_.position[static_cast<std::size_t>(moving.point)] = location;
+    }
+    for (std::size_t i = 0; i < paths_.objects_.size(); ++i) {
+      const MusclePaths::Object& object = paths_.objects_[i];
+      const Pose<Scalar>& pose = kinematics_.pose[static_cast<std::size_t>(object.link)];
+      w_.object[i].rotation = pose.rotation * object.in_link.rotation.template cast<Scalar>();
+      w_.object[i].position = pose * object.in_link.translation;
+    }
+  }
+
+  template <bool kGradient>
+  void segments() {
+    using std::sqrt;
+    for (std::size_t i = 0; i < paths_.segments_.size(); ++i) {
+      const MusclePaths::Segment& s = paths_.segments_[i];
+      const Vector& a = w_.position[static_cast<std::size_t>(s.a)];
+      const Vector u = w_.position[static_cast<std::size_t>(s.b)] - a;
+      const Scalar length = sqrt(u.squaredNorm());
+      w_.segment_length[i] = length;
+      if constexpr (kGradient) {
+        const Vector d = u / length;
+        const Vector m = a.cross(d);
+        for (std::size_t t = s.terms[0]; t < s.terms[1]; ++t) {
+          const MusclePaths::Term& term = paths_.terms_[t];
+          if (term.moving >= 0) {
+            const Scalar along = d.dot(w_.moving_slope[static_cast<std::size_t>(term.moving)]);
+            w_.term[t] = term.sign > 0 ? along : Scalar(-along);
+          } else {
+            const SpatialVector<Scalar>& column = kinematics_.columns[static_cast<std::size_t>(term.coordinate)];
+            const Scalar along = column.angular.dot(m) + column.linear.dot(d);
+            w_.term[t] = term.sign > 0 ? along : Scalar(-along);
+          }
+        }
+      }
+    }
+  }
+
+  /// Active points of a path into w_.stations.
+  void stations(const Path& path) {
+    n_stations_ = 0;
+    for (std::size_t i = 0; i < path.stations.size(); ++i) {
+      const MusclePaths::PathStation& station = path.stations[i];
+      if (station.condition >= 0) {
+        // OpenSim's own margin.
+        const double value = value_of(q_[station.condition]);
+        if (!(value >= station.low - 1e-5 && value <= station.high + 1e-5)) continue;
+      }
+      Node& node = w_.stations[n_stations_++];
+      node.x = w_.position[static_cast<std::size_t>(station.point)];
+      node.link = paths_.points_[static_cast<std::size_t>(station.point)].link;
+      node.point = station.point;
+      node.station = static_cast<int>(i);
+      node.wrap = -1;
+    }
+  }
+
+  /// What each object does to the path of points alone: w_.first, w_.first_segment (-1: nothing).
+  bool detect(const Path& path, PathFlag& flag) {
+    bool any = false;
+    for (std::size_t i = 0; i < path.wraps.size(); ++i) {
+      const MusclePaths::Wrap& wrap = path.wraps[i];
+      const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+      w_.first_segment[i] = -1;
+      double least = 1e300;
+      for (std::size_t k = 0; k + 1 < n_stations_; ++k) {
+        const Node& a = w_.stations[k];
+        const Node& b = w_.stations[k + 1];
+        if (a.station < wrap.first || b.station > wrap.last) continue;
+        WrapResult<Scalar> fresh;
+        const WrapResult<Scalar>* r = &fresh;
+        if (!wrap.spans.empty()) {
+          const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
+          if (s < 0) continue;
+          const auto index = static_cast<std::size_t>(s);
+          if (!w_.span_known[index]) {
+            w_.span[index] = wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x);
+            w_.span_known[index] = 1;
+          }
+          r = &w_.span[index];
+        } else {
+          fresh = wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x);
+        }
+        if (r->status == WrapStatus::kInside) flag = std::max(flag, PathFlag::kInside);
+        if (r->status == WrapStatus::kFailed) flag = std::max(flag, PathFlag::kFailed);
+        if (!r->wrapped()) continue;
+        const double longer = value_of(r->length) - value_of(Vector(b.x - a.x)).norm();
+        if (r->meets || longer < least) {
+          w_.first[i] = *r;
+          w_.first_segment[i] = static_cast<int>(k);
+          least = longer;
+          any = true;
+        }
+        if (r->meets) break;
+      }
+      if (w_.first_segment[i] >= 0 && w_.first[i].weight < 1.0) flag = std::max(flag, PathFlag::kFading);
+    }
+    return any;
+  }
+  static Eigen::Vector3d value_of(const Vector& v) { return values_of(v); }
+  static double value_of(const Scalar& v) { return muscle::value_of(v); }
+
+  /// Puts the wraps of `mask` on the path of points: w_.nodes, w_.result. Returns the number of nodes.
+  std::size_t solve(const Path& path, unsigned mask) {
+    const std::size_t n = settle(path, mask);
+    if (path.wraps.size() < 2 || paths_.mode_ == WrapMode::kAsOpenSim) return n;
+    double spread = 1.0;
+    for (std::size_t k = 0; k < n; ++k)
+      if (w_.nodes[k].wrap >= 0)
+        spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)].spread);
+    if (spread >= 0.7) return n;
+    // Objects solved one after the other may settle on the longer of two sides: try both.
+    side_ = 1;
+    const double length1 = muscle::value_of(measure<false>(path, settle(path, mask), Scalar(1.0)));
+    side_ = -1;
+    std::size_t best = settle(path, mask);
+    const double length2 = muscle::value_of(measure<false>(path, best, Scalar(1.0)));
+    if (length1 < length2) {
+      side_ = 1;
+      best = settle(path, mask);
+    }
+    side_ = 0;
+    return best;
+  }
+
+  std::size_t settle(const Path& path, unsigned mask) {
+    std::copy_n(w_.stations.begin(), n_stations_, w_.nodes.begin());
+    std::size_t n = n_stations_;
+    if (path.wraps.size() == 1) {
+      if ((mask & 1u) != 0 && w_.first_segment[0] >= 0) {
+        w_.result[0] = w_.first[0];
+        insert(path, 0, static_cast<std::size_t>(w_.first_segment[0]), n);
+      }
+      return n;
+    }
+    if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
+    // Jets keep on for their derivatives after the values stand.
+    int more = std::is_same_v<Scalar, double> ? 0 : 8;
+    for (int pass = 0; pass < 60; ++pass) {
+      double moved = 0.0;
+      for (std::size_t i = 0; i < path.wraps.size(); ++i) {
+        if ((mask >> i & 1u) == 0) continue;
+        const MusclePaths::Wrap& wrap = path.wraps[i];
+        const bool was_there = remove(static_cast<int>(i), n);
+        const std::size_t at = choose(path, i, wrap, n);
+        if (at < n) {
+          insert(path, i, at, n);
+          if (was_there) {
+            moved = std::max({moved, value_of(Vector(w_.result[i].r1 - w_.before[2 * i])).norm(),
+                              value_of(Vector(w_.result[i].r2 - w_.before[2 * i + 1])).norm()});
+          } else {
+            moved = 1.0;
+          }
+          w_.before[2 * i] = w_.result[i].r1;
+          w_.before[2 * i + 1] = w_.result[i].r2;
+        } else if (was_there) {
+          moved = 1.0;
+        }
+      }
+      if (moved == 0.0 || (pass > 0 && moved < 1e-11 && more-- <= 0)) break;
+    }
+    return n;
+  }
+
+  bool remove(int wrap, std::size_t& n) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (w_.nodes[j].wrap != wrap) continue;
+      for (std::size_t k = j; k + 2 < n; ++k) w_.nodes[k] = w_.nodes[k + 2];
+      n -= 2;
+      return true;
+    }
+    return false;
+  }
+
+  /// Segment of the path as it is on which wrap i acts (n: none), with its result in w_.result[i].
+  std::size_t choose(const Path& path, std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n) {
+    const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+    std::size_t best = n;
+    double least = 1e300;
+    std::size_t k = 0;
+    while (k < n && (w_.nodes[k].station < 0 || w_.nodes[k].station < wrap.first)) ++k;
+    for (; k + 1 < n; ++k) {
+      const Node& a = w_.nodes[k];
+      const Node& b = w_.nodes[k + 1];
+      if (a.station >= 0 && a.station >= wrap.last) break;
+      if (b.station > wrap.last) break;
+      if (a.wrap >= 0 && a.wrap == b.wrap) continue;
+      const bool points = a.station >= 0 && b.station >= 0;
+      WrapResult<Scalar> r;
+      if (points && !wrap.spans.empty()) {
+        const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
+        if (s < 0) continue;
+        r = w_.span[static_cast<std::size_t>(s)];
+        if (!w_.span_known[static_cast<std::size_t>(s)])
+          r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
+      } else {
+        // Only the ends of a fading object's own segment fade it: here it counts whole.
+        r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
+      }
+      if (!r.wrapped()) continue;
+      const double longer = value_of(r.length) - value_of(Vector(b.x - a.x)).norm();
+      if (r.meets || longer < least) {
+        w_.result[i] = r;
+        best = k;
+        least = longer;
+      }
+      if (r.meets) break;
+    }
+    (void)path;
+    return best;
+  }
+
+  void insert(const Path& path, std::size_t i, std::size_t at, std::size_t& n) {
+    for (std::size_t k = n; k-- > at + 1;) w_.nodes[k + 2] = w_.nodes[k];
+    const int link = paths_.objects_[static_cast<std::size_t>(path.wraps[i].object)].link;
+    for (std::size_t j = 0; j < 2; ++j) {
+      Node& node = w_.nodes[at + 1 + j];
+      node.x = j == 0 ? w_.result[i].r1 : w_.result[i].r2;
+      node.link = link;
+      node.point = -1;
+      node.station = -1;
+      node.wrap = static_cast<int>(i);
+    }
+    n += 2;
+  }
+
+  template <bool kGradient>
+  Scalar general(const Path& path, PathFlag& flag) {
+    stations(path);
+    if (n_stations_ < 2) return Scalar(0.0);
+    const bool any = detect(path, flag);
+    unsigned mask = ~0u;
+    if (!any) mask = 0;
+    std::size_t fading = path.wraps.size();
+    for (std::size_t i = 0; any && i < path.wraps.size(); ++i)
+      if (w_.first_segment[i] >= 0 && w_.first[i].weight < 1.0) fading = i;
+    if (fading == path.wraps.size() || paths_.mode_ == WrapMode::kAsOpenSim)
+      return measure<kGradient>(path, solve(path, mask), Scalar(1.0));
+    return blended<kGradient>(path, mask, Scalar(1.0));
+  }
+
+  /// Length with the fading objects of `mask` blended, its gradient times `factor` added.
+  template <bool kGradient>
+  Scalar blended(const Path& path, unsigned mask, const Scalar& factor) {
+    for (std::size_t i = 0; i < path.wraps.size(); ++i) {
+      if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0 || w_.first[i].weight >= 1.0) continue;
+      if ((done_ >> i & 1u) != 0) continue;
+      done_ |= 1u << i;
+      const MusclePaths::Wrap& wrap = path.wraps[i];
+      const Node a = w_.stations[static_cast<std::size_t>(w_.first_segment[i])];
+      const Node b = w_.stations[static_cast<std::size_t>(w_.first_segment[i]) + 1];
+      Vector slope_a, slope_b;
+      const Scalar weight = weight_of(wrap.object, a.x, b.x, slope_a, slope_b);
+      const Scalar with = blended<kGradient>(path, mask, Scalar(factor * weight));
+      const Scalar without = blended<kGradient>(path, mask & ~(1u << i), Scalar(factor * (Scalar(1.0) - weight)));
+      if constexpr (kGradient) {
+        const Scalar change = factor * (with - without);
+        const int link = paths_.objects_[static_cast<std::size_t>(wrap.object)].link;
+        add_string(path, change, a.x, slope_a, link, a.link);
+        add_string(path, change, b.x, slope_b, link, b.link);
+        add_moving(path, change, a.point, slope_a);
+        add_moving(path, change, b.point, slope_b);
+      }
+      done_ &= ~(1u << i);
+      return without + weight * (with - without);
+    }
+    return measure<kGradient>(path, solve(path, mask), factor);
+  }
+
+  /// Weight of an object for a segment of the path and its slopes with respect to the ends, in ground.
+  Scalar weight_of(int object, const Vector& a, const Vector& b, Vector& slope_a, Vector& slope_b) {
+    using Jet = ceres::Jet<Scalar, 6>;
+    const auto& frame = w_.object[static_cast<std::size_t>(object)];
+    const Vector p = frame.rotation.transpose() * (a - frame.position);
+    const Vector q = frame.rotation.transpose() * (b - frame.position);
+    Vector3<Jet> pj, qj;
+    for (int i = 0; i < 3; ++i) {
+      pj[i] = Jet(p[i]);
+      qj[i] = Jet(q[i]);
+      pj[i].v.setZero();
+      qj[i].v.setZero();
+      pj[i].v[i] = Scalar(1.0);
+      qj[i].v[3 + i] = Scalar(1.0);
+    }
+    const MusclePaths::Object& o = paths_.objects_[static_cast<std::size_t>(object)];
+    Jet weight;
+    switch (o.shape) {
+      case WrapShape::kSphere:
+        weight = wrap_weight(o.sphere, pj, qj);
+        break;
+      case WrapShape::kCylinder:
+        weight = wrap_weight(o.cylinder, pj, qj);
+        break;
+      case WrapShape::kEllipsoid:
+        weight = wrap_weight(o.ellipsoid, pj, qj);
+        break;
+      case WrapShape::kTorus:
+        weight = wrap_weight(o.torus, pj, qj);
+        break;
+    }
+    slope_a = frame.rotation * Vector(weight.v.template head<3>());
+    slope_b = frame.rotation * Vector(weight.v.template tail<3>());
+    return weight.a;
+  }
+
+  /// Length of the nodes, and its gradient times `factor`.
+  template <bool kGradient>
+  Scalar measure(const Path& path, std::size_t n, const Scalar& factor) {
+    using std::sqrt;
+    Scalar length(0.0);
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+      const Node& a = w_.nodes[k];
+      const Node& b = w_.nodes[k + 1];
+      if (a.wrap >= 0 && a.wrap == b.wrap) {
+        const WrapResult<Scalar>& r = w_.result[static_cast<std::size_t>(a.wrap)];
+        length += r.surface_length;
+        if constexpr (kGradient) {
+          if (r.depth > 0.0 && paths_.mode_ == WrapMode::kTaut) {
+            // An end that shrinks the object: an extra force there, its opposite on the object.
+            const Node& p = w_.nodes[k - 1];
+            const Node& q = w_.nodes[k + 2];
+            const Vector extra_p = r.gradient_p + r.direction1;
+            const Vector extra_q = r.gradient_q - r.direction2;
+            add_string(path, factor, p.x, extra_p, a.link, p.link);
+            add_string(path, factor, q.x, extra_q, a.link, q.link);
+            if (p.point >= 0) add_moving(path, factor, p.point, extra_p);
+            if (q.point >= 0) add_moving(path, factor, q.point, extra_q);
+          }
+        }
+        continue;
+      }
+      const Vector u = b.x - a.x;
+      const Scalar l2 = u.squaredNorm();
+      if (!(value_of(l2) > 0.0)) continue;
+      const Scalar l = sqrt(l2);
+      length += l;
+      if constexpr (kGradient) {
+        const bool moving = (a.point >= 0 && is_moving(a.point)) || (b.point >= 0 && is_moving(b.point));
+        if (a.link == b.link && !moving) continue;
+        const Vector d = u / l;
+        if (a.link != b.link) add_string(path, factor, a.x, d, a.link, b.link);
+        if (moving) {
+          if (a.point >= 0) add_moving(path, factor, a.point, Vector(-d));
+          if (b.point >= 0) add_moving(path, factor, b.point, d);
+        }
+      }
+    }
+    return length;
+  }
+
+  bool is_moving(int point) const { return paths_.points_[static_cast<std::size_t>(point)].moving >= 0; }
+
+  /// A covector g along a line through x that grows with the motion of `to` and against that of `from`.
+  void add_string(const Path& path, const Scalar& factor, const Vector& x, const Vector& g, int from, int to) {
+    const Vector m = x.cross(g);
+    for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k) {
+      const int c = paths_.pairs_[k].coordinate;
+      const int sign = static_cast<int>(paths_.moves(c, to)) - static_cast<int>(paths_.moves(c, from));
+      if (sign == 0) continue;
+      const SpatialVector<Scalar>& column = kinematics_.columns[static_cast<std::size_t>(c)];
+      const Scalar along = factor * (column.angular.dot(m) + column.linear.dot(g));
+      w_.gradient[k] += sign > 0 ? along : Scalar(-along);
+    }
+  }
+
+  void add_moving(const Path& path, const Scalar& factor, int point, const Vector& g) {
+    const int index = paths_.points_[static_cast<std::size_t>(point)].moving;
+    if (index < 0) return;
+    const MusclePaths::MovingPoint& moving = paths_.moving_[static_cast<std::size_t>(index)];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (moving.coordinate[axis] < 0) continue;
+      for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k) {
+        if (paths_.pairs_[k].coordinate != moving.coordinate[axis]) continue;
+        w_.gradient[k] += factor * g.dot(w_.moving_slope[3 * static_cast<std::size_t>(index) + axis]);
+      }
+    }
+  }
+
+  // OpenSim's own way ------------------------------------------------------------------------------------------------
+
+  WrapResult<Scalar> as_opensim(const MusclePaths::Object& object, const MusclePaths::Wrap& wrap, bool single,
+                                const Vector& p, const Vector& q) {
+    WrapResult<Scalar> r;
+    const OpenSimWrap o = wrap_as_opensim(object.description, wrap.method, single, values_of(p), values_of(q));
+    if (o.action == OpenSimWrapAction::kInside) r.status = WrapStatus::kInside;
+    if (!o.wraps()) return r;
+    r.status = WrapStatus::kWrapped;
+    r.meets = o.action == OpenSimWrapAction::kMandatory;
+    r.r1 = o.r1.cast<Scalar>();
+    r.r2 = o.r2.cast<Scalar>();
+    r.surface_length = Scalar(o.surface_length);
+    r.direction1 = (r.r1 - p).normalized();
+    r.direction2 = (q - r.r2).normalized();
+    r.gradient_p = -r.direction1;
+    r.gradient_q = r.direction2;
+    r.length = (r.r1 - p).norm() + r.surface_length + (q - r.r2).norm();
+    return r;
+  }
+
+  std::size_t solve_as_opensim(const Path& path, std::size_t n) {
+    double last = 1e300;
+    std::size_t order[2] = {0, 1};
+    for (int pass = 0; pass < 8; ++pass) {
+      WrapStatus status[2] = {WrapStatus::kStraight, WrapStatus::kStraight};
+      for (std::size_t slot = 0; slot < path.wraps.size(); ++slot) {
+        const std::size_t i = slot < 2 ? order[slot] : slot;
+        remove(static_cast<int>(i), n);
+        w_.result[i].status = WrapStatus::kStraight;
+        const std::size_t at = choose(path, i, path.wraps[i], n);
+        if (at < n) insert(path, i, at, n);
+        if (slot < 2 && at == n && w_.first_segment[i] < 0) status[slot] = inside_somewhere(path, i, n);
+        if (slot < 2 && at < n) status[slot] = WrapStatus::kWrapped;
+      }
+      const double length = muscle::value_of(measure<false>(path, n, Scalar(1.0)));
+      if (std::abs(length - last) < 0.0005) break;
+      last = length;
+      if (pass == 0 && status[0] == WrapStatus::kStraight && status[1] == WrapStatus::kInside) {
+        std::swap(order[0], order[1]);
+        remove(0, n);
+      }
+    }
+    return n;
+  }
+  WrapStatus inside_somewhere(const Path& path, std::size_t i, std::size_t n) {
+    const MusclePaths::Wrap& wrap = path.wraps[i];
+    const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
+    WrapStatus status = WrapStatus::kStraight;
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+      if (w_.nodes[k].wrap >= 0 && w_.nodes[k].wrap == w_.nodes[k + 1].wrap) continue;
+      status = wrap_between(object, wrap.object, wrap, false, w_.nodes[k].x, w_.nodes[k + 1].x).status;
+    }
+    return status;
+  }
+
+  const MusclePaths& paths_;
+  const Kinematics<Scalar>& kinematics_;
+  const Scalar* q_;
+  PathWorkspace<Scalar>& w_;
+  std::size_t n_stations_ = 0;
+  unsigned done_ = 0;
+  int side_ = 0;
+};
+
+template <typename Scalar>
+void MusclePaths::lengths(const Kinematics<Scalar>& kinematics, const Scalar* q,
+                          PathWorkspace<Scalar>& workspace) const {
+  PathSolver<Scalar>(*this, kinematics, q, workspace).template all<false>();
+}
+
+template <typename Scalar>
+void MusclePaths::evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q,
+                           PathWorkspace<Scalar>& workspace) const {
+  PathSolver<Scalar>(*this, kinematics, q, workspace).template all<true>();
+}
+
+template <typename Scalar>
+void MusclePaths::speeds(const PathWorkspace<Scalar>& workspace, const Scalar* qdot, Scalar* speeds) const {
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
+    Scalar speed(0.0);
+    for (std::size_t k = muscles_[m].pairs[0]; k < muscles_[m].pairs[1]; ++k)
+      speed += workspace.gradient[k] * qdot[pairs_[k].coordinate];
+    speeds[m] = speed;
+  }
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,356 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/muscle/wrap_result.hpp"
+
+/// Wrapping over an ellipsoid along its geodesic.
+///
+/// A geodesic x(s) of x'Ax = 1, A = diag(1/a_i^2), has x'' = -(t'At / |Ax|^2) Ax, and Joachimsthal's invariant
+/// C = (t'At) |Ax|^2 makes that x'' = -C |Ax|^-4 Ax: no velocity on the right, so Nystroem's formulas apply. The
+/// deviation J of neighbouring geodesics obeys J'' = -K J with K = |Ax|^-4 / (a b c)^2: the same factor, a fourth
+/// component of the same system. J = |P r1|, J' = 1 where the path reaches the surface (the cone of tangents from P is
+/// rolled onto it), and J + |r2 Q| J' is how far the end at Q moves per radian of the start: the slope of Newton's
+/// method for the one unknown, the direction in which the path leaves P. J stays positive on a shortest path.
+namespace veridyn::muscle::internal {
+
+/// One shot: the geodesic that starts where angle `alpha` on the circle of tangent points from P says, of length `s`.
+template <typename Scalar>
+struct GeodesicShot {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  Vector3 r1, r2, t1, t2;
+  Scalar length1;
+  Scalar jacobi, jacobi_slope;
+  Vector3 r1_slope;       ///< dr1 / dalpha
+  Scalar angle_slope;     ///< d(angle at P) / dalpha
+  Scalar visibility;      ///< Q'A r2 - 1: zero where Q lies in the tangent plane of r2
+  Vector3 sideways;       ///< unit, in the tangent plane of r2, across the geodesic
+  Vector3 normal2;        ///< A r2
+};
+
+/// Frame of the circle of tangent points from P, in coordinates x / a where the ellipsoid is the unit sphere.
+template <typename Scalar>
+struct TangentCircle {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  Vector3 center, e1, e2;  ///< e1, e2 of the circle's radius
+};
+
+template <typename Scalar>
+TangentCircle<Scalar> tangent_circle(const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& toward) {
+  using std::sqrt;
+  TangentCircle<Scalar> circle;
+  const Scalar p2 = p.squaredNorm();
+  circle.center = p / p2;
+  const Scalar radius = sqrt(Scalar(1.0) - Scalar(1.0) / p2);
+  const Eigen::Matrix<Scalar, 3, 1> across = toward - p * (p.dot(toward) / p2);
+  circle.e1 = across * (radius / sqrt(across.squaredNorm()));
+  circle.e2 = p.cross(circle.e1) / sqrt(p2);
+  return circle;
+}
+
+/// Nystroem's method of order five with four evaluations (Hairer, Norsett, Wanner, Solving ODEs I, table II.14.2) for
+/// the geodesic and its Jacobi field.
+template <typename Scalar>
+void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::Matrix<Scalar, 3, 1>& inverse_square,
+                        const Scalar& s, int steps, Eigen::Matrix<Scalar, 4, 1>& y, Eigen::Matrix<Scalar, 4, 1>& v) {
+  using Vector4 = Eigen::Matrix<Scalar, 4, 1>;
+  const auto f = [&](const Vector4& at) -> Vector4 {
+    const Scalar n0 = at[0] * inverse_square[0];
+    const Scalar n1 = at[1] * inverse_square[1];
+    const Scalar n2 = at[2] * inverse_square[2];
+    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
+    const Scalar w = Scalar(-1.0) / (n * n);
+    return (lambda.cwiseProduct(at) * w).eval();
+  };
+  const Scalar h = s / Scalar(static_cast<double>(steps));
+  const Scalar hh = h * h;
+  for (int i = 0; i < steps; ++i) {
+    const Vector4 k1 = f(y);
+    const Vector4 k2 = f((y + v * (h * Scalar(0.2)) + k1 * (hh * Scalar(1.0 / 50.0))).eval());
+    const Vector4 k3 =
+        f((y + v * (h * Scalar(2.0 / 3.0)) + (k2 * Scalar(7.0) - k1) * (hh * Scalar(1.0 / 27.0))).eval());
+    const Vector4 k4 =
+        f((y + v * h + (k1 * Scalar(21.0) - k2 * Scalar(4.0) + k3 * Scalar(18.0)) * (hh * Scalar(1.0 / 70.0))).eval());
+    y += v * h + (k1 * Scalar(14.0) + k2 * Scalar(100.0) + k3 * Scalar(54.0)) * (hh * Scalar(1.0 / 336.0));
+    v += (k1 * Scalar(14.0) + k2 * Scalar(125.0) + k3 * Scalar(162.0) + k4 * Scalar(35.0)) * (h * Scalar(1.0 / 336.0));
+  }
+}
+
+template <typename Scalar>
+GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Eigen::Matrix<Scalar, 3, 1>& p,
+                           const Eigen::Matrix<Scalar, 3, 1>& q, const TangentCircle<Scalar>& circle,
+                           const Scalar& cos_alpha, const Scalar& sin_alpha, const Scalar& s, int steps) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  GeodesicShot<Scalar> shot;
+  const Vector3 as = a.cast<Scalar>();
+  const Vector3 inverse_square = a.cwiseProduct(a).cwiseInverse().cast<Scalar>();
+  shot.r1 = (circle.center + circle.e1 * cos_alpha + circle.e2 * sin_alpha).cwiseProduct(as);
+  shot.r1_slope = (circle.e2 * cos_alpha - circle.e1 * sin_alpha).cwiseProduct(as);
+  const Vector3 to_r1 = shot.r1 - p;
+  shot.length1 = sqrt(to_r1.squaredNorm());
+  shot.t1 = to_r1 / shot.length1;
+  const Vector3 n1 = shot.r1.cwiseProduct(inverse_square);
+  const Scalar n1_square = n1.squaredNorm();
+  const Vector3 b1 = n1.cross(shot.t1) / sqrt(n1_square);
+  shot.angle_slope = shot.r1_slope.dot(b1) / shot.length1;
+  const Scalar invariant = n1_square * shot.t1.dot(shot.t1.cwiseProduct(inverse_square));
+  const double abc = a.x() * a.y() * a.z();
+  Eigen::Matrix<Scalar, 4, 1> lambda;
+  lambda << invariant * inverse_square.x(), invariant * inverse_square.y(), invariant * inverse_square.z(),
+      Scalar(1.0 / (abc * abc));
+  Eigen::Matrix<Scalar, 4, 1> y, v;
+  y << shot.r1.x(), shot.r1.y(), shot.r1.z(), shot.length1;
+  v << shot.t1.x(), shot.t1.y(), shot.t1.z(), Scalar(1.0);
+  integrate_geodesic<Scalar>(lambda, inverse_square, s, steps, y, v);
+  shot.r2 = y.template head<3>();
+  shot.t2 = v.template head<3>();
+  shot.jacobi = y[3];
+  shot.jacobi_slope = v[3];
+  shot.normal2 = shot.r2.cwiseProduct(inverse_square);
+  shot.visibility = shot.normal2.dot(q) - Scalar(1.0);
+  shot.sideways = shot.normal2.cross(shot.t2) / sqrt(shot.normal2.squaredNorm());
+  return shot;
+}
+
+}  // namespace veridyn::muscle::internal
+
+namespace veridyn::muscle {
+
+/// An ellipsoid x^2/a^2 + y^2/b^2 + z^2/c^2 = 1 about the origin.
+struct WrapEllipsoid {
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();
+  WrapQuadrant quadrant;
+  /// +1, -1: of several shortest geodesics the one on this side of the quadrant's plane if there is one; 0: the
+  /// shortest of all.
+  int side = 0;
+};
+
+namespace internal {
+
+/// Shape of a solution in double: what a last step in any scalar starts from.
+struct GeodesicSolution {
+  bool converged = false;
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();  ///< in x / a: direction of alpha = 0
+  double alpha = 0.0;
+  double s = 0.0;
+  double length = 0.0;
+  double jacobi = 0.0;  ///< at Q: positive on a shortest path
+  int steps = 4;
+  int iterations = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+};
+
+/// Correction of (angle at P, s) that a shot asks for, and |r2 Q|.
+template <typename Scalar>
+struct ShotCorrection {
+  Scalar angle, s, length2, jacobi;
+};
+
+template <typename Scalar>
+ShotCorrection<Scalar> correction(const GeodesicShot<Scalar>& shot, const Eigen::Vector3d& inverse_square,
+                                  const Eigen::Matrix<Scalar, 3, 1>& q) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  ShotCorrection<Scalar> c;
+  const Vector3 to_q = q - shot.r2;
+  const Scalar miss = to_q.dot(shot.sideways);
+  c.length2 = to_q.dot(shot.t2);
+  c.jacobi = shot.jacobi + c.length2 * shot.jacobi_slope;
+  c.angle = miss / c.jacobi;
+  // Along the geodesic, Q'A r2 - 1 vanishes to second order in s where Q is near the surface: solve the quadratic.
+  const Vector3 inverse = inverse_square.cast<Scalar>();
+  const Vector3 aq = q.cwiseProduct(inverse);
+  const Scalar value = shot.visibility + shot.jacobi * c.angle * shot.sideways.dot(aq);
+  const Scalar slope = shot.t2.dot(aq);
+  const Scalar bend =
+      -shot.t2.dot(shot.t2.cwiseProduct(inverse)) / shot.normal2.squaredNorm() * shot.normal2.dot(aq);
+  const Scalar discriminant = slope * slope - Scalar(2.0) * bend * value;
+  if (value_of(bend) >= 0.0) {
+    c.s = -value / slope;
+  } else if (value_of(discriminant) > 0.0) {
+    c.s = (sqrt(discriminant) - slope) / bend;
+  } else {
+    c.s = -slope / bend;  // nearest approach
+  }
+  return c;
+}
+
+/// Newton's method from the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
+inline GeodesicSolution solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                                       const Eigen::Vector3d& toward) {
+  GeodesicSolution solution;
+  const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
+  const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
+  const TangentCircle<double> far_circle = tangent_circle<double>(qs, toward);
+  const Eigen::Vector3d y1 = circle.center + circle.e1;
+  const Eigen::Vector3d y2 = far_circle.center + far_circle.e1;
+  Eigen::Vector3d y_slope = y1 - ps;
+  y_slope = (y_slope - y1 * y_slope.dot(y1)).normalized();
+  const double arc = std::max(0.0, std::atan2(y2.dot(y_slope), y2.dot(y1)));
+  // Length of the ellipse between them by Gauss's three points.
+  double s = 0.0;
+  constexpr double kNode = 0.774596669241483377;
+  for (const double node : {-kNode, 0.0, kNode}) {
+    const double u = 0.5 * arc * (1.0 + node);
+    const Eigen::Vector3d tangent = (y_slope * std::cos(u) - y1 * std::sin(u)).cwiseProduct(a);
+    s += (node == 0.0 ? 8.0 : 5.0) / 18.0 * arc * tangent.norm();
+  }
+  solution.toward = toward;
+  solution.steps = std::clamp(1 + static_cast<int>(arc / 0.12), 2, 60);
+  const double size = a.maxCoeff();
+  const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
+  double alpha = 0.0;
+  for (int i = 0; i < 30; ++i) {
+    const GeodesicShot<double> shot =
+        shoot<double>(a, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
+    const ShotCorrection<double> c = correction<double>(shot, inverse_square, q);
+    solution.iterations = i + 1;
+    if (!std::isfinite(c.angle) || !std::isfinite(c.s)) return solution;
+    // Where J < 0 the length has a maximum: the other direction leads to a shortest path.
+    const double towards_less = c.jacobi > 0.0 ? c.angle : -c.angle;
+    const double d_alpha = std::clamp(towards_less / shot.angle_slope, -0.5, 0.5);
+    const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
+    solution.alpha = alpha;
+    solution.s = s;
+    solution.length = shot.length1 + s + c.length2;
+    solution.jacobi = c.jacobi;
+    solution.middle = shot.r1 + shot.r2;
+    // What is left after the last step is the square of this.
+    if (std::abs(d_alpha) < 1e-6 && std::abs(d_s) < 1e-6 * size) {
+      solution.converged = c.jacobi > 0.0;
+      return solution;
+    }
+    alpha += d_alpha;
+    s = std::max(0.0, s + d_s);
+  }
+  return solution;
+}
+
+}  // namespace internal
+
+/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
+/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
+///
+/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
+/// the solution). Accurate to about 1e-9 of the radii.
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  WrapResult<Scalar> result;
+  const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
+  Eigen::Vector3d ps = pv.cwiseQuotient(ellipsoid.radii), qs = qv.cwiseQuotient(ellipsoid.radii);
+  const Eigen::Vector3d u = qs - ps;
+  const double u2 = u.squaredNorm();
+  const double along = -ps.dot(u);
+  if (!(along > 0.0 && along < u2)) return result;
+  Eigen::Vector3d near = ps + u * (along / u2);
+  double near2 = near.squaredNorm();
+  if (!(near2 < 1.0)) return result;
+
+  // An end inside shrinks the ellipsoid until it lies just outside.
+  const double nearest2 = std::min(ps.squaredNorm(), qs.squaredNorm());
+  const bool inside = nearest2 * (1.0 - internal::kSurfaceGap) * (1.0 - internal::kSurfaceGap) < 1.0;
+  const bool p_inside = ps.squaredNorm() <= qs.squaredNorm();
+  double scale = 1.0;
+  if (inside) {
+    scale = std::sqrt(nearest2) * (1.0 - internal::kSurfaceGap);
+    result.depth = 1.0 - scale;
+    if (result.depth >= kInsideFade) {
+      result.status = WrapStatus::kInside;
+      return result;
+    }
+    result.weight = internal::fade(result.depth / kInsideFade);
+    if (!(near2 < scale * scale)) return result;
+  }
+  const Eigen::Vector3d a = ellipsoid.radii * scale;
+  if (near2 < 1e-24) {
+    near = Eigen::Vector3d::Unit(ellipsoid.quadrant.sign != 0 ? ellipsoid.quadrant.axis : 0);
+    if (ellipsoid.quadrant.sign < 0) near = -near;
+    if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
+  }
+  internal::GeodesicSolution solution = internal::solve_geodesic(a, pv, qv, near);
+  // Where the segment passes near the centre either side may be the shorter.
+  const auto inactive = [&](const Eigen::Vector3d& x) {
+    const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
+    return x[ellipsoid.quadrant.axis] * sign < 0.0;
+  };
+  // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
+  if (near2 < 0.01 || !solution.converged || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0) {
+    const auto good = [&](const internal::GeodesicSolution& s) {
+      return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
+    };
+    const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
+    bool have = good(solution);
+    for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
+                                          Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
+      const internal::GeodesicSolution other = internal::solve_geodesic(a, pv, qv, toward);
+      if (!good(other) && !(other.converged && !solution.converged)) continue;
+      if (have && !(other.length < solution.length)) continue;
+      solution = other;
+      have = good(other);
+    }
+  }
+  if (!solution.converged) {
+    result.status = WrapStatus::kFailed;
+    return result;
+  }
+  const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
+  const auto last_step = [&](const internal::GeodesicSolution& from) {
+    const internal::TangentCircle<Scalar> circle =
+        internal::tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
+    const internal::GeodesicShot<Scalar> shot =
+        internal::shoot<Scalar>(a, p, q, circle, Scalar(std::cos(from.alpha)), Scalar(std::sin(from.alpha)),
+                                Scalar(from.s), from.steps);
+    const auto c = internal::correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
+    const Scalar d_alpha = c.angle / shot.angle_slope;
+    result.r1 = shot.r1 + shot.r1_slope * d_alpha;
+    result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
+    result.surface_length = Scalar(from.s) + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
+  };
+  last_step(solution);
+  result.spread = solution.jacobi / solution.length;
+  if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) && inactive(values_of(result.r2)) &&
+      inactive(solution.middle)) {
+    const internal::GeodesicSolution other =
+        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));
+    if (other.converged && !inactive(other.middle)) last_step(other);
+  }
+  const Vector3 in = result.r1 - p;
+  const Vector3 out = q - result.r2;
+  const Scalar length1 = sqrt(in.squaredNorm());
+  const Scalar length2 = sqrt(out.squaredNorm());
+  result.status = WrapStatus::kWrapped;
+  result.direction1 = in / length1;
+  result.direction2 = out / length2;
+  result.length = length1 + result.surface_length + length2;
+  result.gradient_p = -result.direction1;
+  result.gradient_q = result.direction2;
+  if (inside) {
+    // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
+    const Scalar growth =
+        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - internal::kSurfaceGap) / scale);
+    const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
+    const Vector3& end = p_inside ? p : q;
+    const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
+    (p_inside ? result.gradient_p : result.gradient_q) += slope;
+  }
+  return result;
+}
+
+/// Weight of a wrap as a function of its ends, to be differentiated; equals `wrap(...).weight`.
+template <typename Scalar>
+[[nodiscard]] Scalar wrap_weight(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                 const Eigen::Matrix<Scalar, 3, 1>& q) {
+  using std::sqrt;
+  const auto radii = ellipsoid.radii.cast<Scalar>().eval();
+  const Scalar p2 = p.cwiseQuotient(radii).squaredNorm(), q2 = q.cwiseQuotient(radii).squaredNorm();
+  const Scalar depth = Scalar(1.0) - sqrt(p2 < q2 ? p2 : q2) * Scalar(1.0 - internal::kSurfaceGap);
+  return internal::fade(Scalar(depth / Scalar(kInsideFade)));
+}
+
+}  // namespace veridyn::muscle

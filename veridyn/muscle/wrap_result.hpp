@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "veridyn/muscle/model.hpp"
+#include "veridyn/muscle/scalar.hpp"
+
+/// What the four wrap primitives share.
+///
+/// Each answers for one straight segment P Q in the object's own frame. A wrapped length |P r1| + surface + |r2 Q| is
+/// the length of a taut string: stationary in the tangent points, so that unit tension does exactly the work of its
+/// change (dL/dP = -direction1, dL/dQ = direction2), and closed forms or Newton's method find it to rounding.
+///
+/// Where OpenSim's path jumps, ours blends: an end that dips into an object (OpenSim drops the wrap at once) shrinks
+/// the object so that the end lies on its surface and fades the wrap out over a depth of `kInsideFade` of the radius; a
+/// cylinder's wrap fades out between `kEndStart` and `kEndFade` of its radius beyond its ends. Beyond these bands
+/// lengths are OpenSim's.
+namespace veridyn::muscle {
+
+enum class WrapStatus {
+  kStraight,  ///< the segment misses the object, or passes it on a side where it does not wrap
+  kWrapped,
+  kInside,  ///< an end lies deep inside the object: the segment is left straight
+  kFailed,  ///< the geodesic iteration did not converge: the segment is left straight
+};
+
+inline constexpr double kInsideFade = 0.03;  ///< [radii]
+inline constexpr double kEndStart = 0.1;     ///< [radii of the cylinder]
+inline constexpr double kEndFade = 0.6;      ///< [radii of the cylinder]
+
+template <typename Scalar>
+struct WrapResult {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+
+  WrapStatus status = WrapStatus::kStraight;
+  Vector3 r1 = Vector3::Zero();               ///< where the path reaches the object [m]
+  Vector3 r2 = Vector3::Zero();               ///< where it leaves it [m]
+  Scalar length{};          ///< |P r1| + surface + |r2 Q| [m]
+  Scalar surface_length{};  ///< [m]
+  Vector3 direction1 = Vector3::Zero();       ///< unit, from P to r1
+  Vector3 direction2 = Vector3::Zero();       ///< unit, from r2 to Q
+  /// dL/dP and dL/dQ: -direction1 and direction2 unless an end dips into the object.
+  Vector3 gradient_p = Vector3::Zero();
+  Vector3 gradient_q = Vector3::Zero();
+  /// How much of the wrap counts, 0..1: below 1 in the bands where it fades out. Its value only; see `wrap_weight`.
+  double weight = 1.0;
+  /// How deep an end lies inside, in radii; 0 outside.
+  double depth = 0.0;
+  /// The straight segment itself meets the object; false: only the wall of a quadrant makes it go round.
+  bool meets = true;
+  /// How far neighbouring paths from P have spread at Q, per length: 1 on flat and once curved surfaces; small where the
+  /// surface focuses them and another path may be as short.
+  double spread = 1.0;
+
+  [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
+};
+
+/// The value part of a vector: decisions are taken in double, derivatives follow.
+template <typename Scalar>
+[[nodiscard]] Eigen::Vector3d values_of(const Eigen::Matrix<Scalar, 3, 1>& v) {
+  return {value_of(v.x()), value_of(v.y()), value_of(v.z())};
+}
+
+namespace internal {
+
+/// Keeps an end off the surface by this part of the radius, where tangent points and derivatives are still well
+/// conditioned.
+inline constexpr double kSurfaceGap = 1e-6;
+
+/// 1 at x <= 0, 0 at x >= 1, slope zero at both.
+template <typename Scalar>
+[[nodiscard]] Scalar fade(const Scalar& x) {
+  if (!(x > Scalar(0.0))) return Scalar(1.0);
+  if (!(x < Scalar(1.0))) return Scalar(0.0);
+  return Scalar(1.0) - x * x * (Scalar(3.0) - Scalar(2.0) * x);
+}
+
+}  // namespace internal
+}  // namespace veridyn::muscle
