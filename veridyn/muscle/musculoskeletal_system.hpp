@@ -28,9 +28,9 @@ enum class PathSource {
 struct SystemOptions {
   PathSource paths = PathSource::kExact;
   /// Coordinates held at their start value, beside those that the model locks.
-  std::vector<std::string> locked;
+  std::vector<std::string> locked{};
   /// Coordinates that the model locks and that move all the same.
-  std::vector<std::string> unlocked;
+  std::vector<std::string> unlocked{};
   /// Go on although forces or constraints of the model are not understood.
   bool without_unsupported = false;
 };
