@@ -216,7 +216,7 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
     solution.length = solution.shot.length1 + s + c.length2;
     solution.jacobi = c.jacobi;
     const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
-    if (is_fine && step < 3e-6 && c.reached) {
+    if (is_fine && step < 1e-6 && c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
@@ -266,7 +266,8 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
 /// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
 ///
 /// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
-/// the solution). Accurate to about 1e-7 of the radii. `nearby`: the solution is left there, and one that is there
+/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
+/// square of that. `nearby`: the solution is left there, and one that is there
 /// already (`converged`) starts the search.
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
