@@ -56,26 +56,43 @@ TangentCircle<Scalar> tangent_circle(const Eigen::Matrix<Scalar, 3, 1>& p, const
 template <typename Scalar>
 void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::Matrix<Scalar, 3, 1>& inverse_square,
                         const Scalar& s, int steps, Eigen::Matrix<Scalar, 4, 1>& y, Eigen::Matrix<Scalar, 4, 1>& v) {
-  using Vector4 = Eigen::Matrix<Scalar, 4, 1>;
-  const auto f = [&](const Vector4& at) -> Vector4 {
-    const Scalar n0 = at[0] * inverse_square[0];
-    const Scalar n1 = at[1] * inverse_square[1];
-    const Scalar n2 = at[2] * inverse_square[2];
-    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
-    const Scalar w = Scalar(-1.0) / (n * n);
-    return (lambda.cwiseProduct(at) * w).eval();
-  };
+  // With V = h v and K = h^2 f no step size is left in the formulas. Four scalars, not a matrix: nothing is shuffled.
   const Scalar h = s / Scalar(static_cast<double>(steps));
-  const Scalar hh = h * h;
+  const Scalar hh = -h * h;
+  const Scalar l0 = lambda[0] * hh, l1 = lambda[1] * hh, l2 = lambda[2] * hh, l3 = lambda[3] * hh;
+  const Scalar i0 = inverse_square[0], i1 = inverse_square[1], i2 = inverse_square[2];
+  const auto f = [&](const Scalar* at, Scalar* k) {
+    const Scalar n0 = at[0] * i0, n1 = at[1] * i1, n2 = at[2] * i2;
+    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
+    const Scalar w = Scalar(1.0) / (n * n);
+    k[0] = l0 * at[0] * w;
+    k[1] = l1 * at[1] * w;
+    k[2] = l2 * at[2] * w;
+    k[3] = l3 * at[3] * w;
+  };
+  Scalar x[4], u[4], at[4], k1[4], k2[4], k3[4], k4[4];
+  for (int c = 0; c < 4; ++c) {
+    x[c] = y[c];
+    u[c] = v[c] * h;
+  }
   for (int i = 0; i < steps; ++i) {
-    const Vector4 k1 = f(y);
-    const Vector4 k2 = f((y + v * (h * Scalar(0.2)) + k1 * (hh * Scalar(1.0 / 50.0))).eval());
-    const Vector4 k3 =
-        f((y + v * (h * Scalar(2.0 / 3.0)) + (k2 * Scalar(7.0) - k1) * (hh * Scalar(1.0 / 27.0))).eval());
-    const Vector4 k4 =
-        f((y + v * h + (k1 * Scalar(21.0) - k2 * Scalar(4.0) + k3 * Scalar(18.0)) * (hh * Scalar(1.0 / 70.0))).eval());
-    y += v * h + (k1 * Scalar(14.0) + k2 * Scalar(100.0) + k3 * Scalar(54.0)) * (hh * Scalar(1.0 / 336.0));
-    v += (k1 * Scalar(14.0) + k2 * Scalar(125.0) + k3 * Scalar(162.0) + k4 * Scalar(35.0)) * (h * Scalar(1.0 / 336.0));
+    f(x, k1);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * 0.2 + k1[c] * (1.0 / 50.0));
+    f(at, k2);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * (2.0 / 3.0) - k1[c] * (1.0 / 27.0)) + k2[c] * (7.0 / 27.0);
+    f(at, k3);
+    for (int c = 0; c < 4; ++c)
+      at[c] = x[c] + (u[c] + k1[c] * (21.0 / 70.0) - k2[c] * (4.0 / 70.0)) + k3[c] * (18.0 / 70.0);
+    f(at, k4);
+    for (int c = 0; c < 4; ++c) {
+      x[c] += u[c] + (k1[c] * (14.0 / 336.0) + k2[c] * (100.0 / 336.0) + k3[c] * (54.0 / 336.0));
+      u[c] += k1[c] * (14.0 / 336.0) + k2[c] * (125.0 / 336.0) + k3[c] * (162.0 / 336.0) + k4[c] * (35.0 / 336.0);
+    }
+  }
+  const Scalar per_h = Scalar(1.0) / h;
+  for (int c = 0; c < 4; ++c) {
+    y[c] = x[c];
+    v[c] = u[c] * per_h;
   }
 }
 
@@ -216,14 +233,16 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
     solution.length = solution.shot.length1 + s + c.length2;
     solution.jacobi = c.jacobi;
     const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
-    if (is_fine && step < 1e-6 && c.reached) {
+    // Next to the surface the last correction is less linear.
+    const bool clear = std::min(solution.shot.length1, c.length2) > 0.2 * radius;
+    if (is_fine && step < (clear ? 1e-4 : 1e-6) && c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
     }
     if (step < 5e-3) is_fine = true;
     alpha += d_alpha;
-    s = std::max(0.0, s + d_s);
+    s = std::max(1e-12 * size, s + d_s);
   }
 }
 
