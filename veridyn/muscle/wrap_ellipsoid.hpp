@@ -209,7 +209,7 @@ inline constexpr double kCoarseStep = 0.35;
 /// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
 /// correction is left to the caller; what remains after it is its square.
 inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                   const TangentCircle<double>& circle, SolvedGeodesic& solution) {
+                   const TangentCircle<double>& circle, double tolerance, SolvedGeodesic& solution) {
   const double size = a.maxCoeff();
   const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
   const double radius = a.minCoeff();
@@ -235,7 +235,7 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
     const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
     // Next to the surface the last correction is less linear.
     const bool clear = std::min(solution.shot.length1, c.length2) > 0.2 * radius;
-    if (is_fine && step < (clear ? 1e-4 : 1e-6) && c.reached) {
+    if (is_fine && step < (clear ? tolerance : 1e-2 * tolerance) && c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
@@ -248,7 +248,7 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
 
 /// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
 inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const Eigen::Vector3d& toward) {
+                                     const Eigen::Vector3d& toward, double tolerance) {
   SolvedGeodesic solution;
   const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
   const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
@@ -265,17 +265,17 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
   const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
   solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
   solution.toward = toward;
-  newton(a, p, q, circle, solution);
+  newton(a, p, q, circle, tolerance, solution);
   return solution;
 }
 
 /// From a converged solution for nearby ends, on the same side.
 inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const GeodesicSolution& nearby) {
+                                     const GeodesicSolution& nearby, double tolerance) {
   SolvedGeodesic solution;
   static_cast<GeodesicSolution&>(solution) = nearby;
   const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
-  newton(a, p, q, circle, solution);
+  newton(a, p, q, circle, tolerance, solution);
   return solution;
 }
 
@@ -325,10 +325,12 @@ template <typename Scalar>
     if (ellipsoid.quadrant.sign < 0) near = -near;
     if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
   }
+  // Derivatives are taken at the last shot: it has to be closer to the solution for them.
+  constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-4 : 1e-7;
   internal::SolvedGeodesic solution;
   const bool warm = nearby != nullptr && nearby->converged;
-  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby);
-  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near);
+  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby, tolerance);
+  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near, tolerance);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
     const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
@@ -344,7 +346,7 @@ template <typename Scalar>
     bool have = good(solution);
     for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
                                           Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward);
+      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward, tolerance);
       if (!good(other) && !(other.converged && !solution.converged)) continue;
       if (have && !(other.length < solution.length)) continue;
       solution = other;
@@ -380,7 +382,8 @@ template <typename Scalar>
   result.spread = solution.jacobi / solution.length;
   if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
       inactive(values_of(result.r2)) && inactive(solution.middle)) {
-    const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));
+    const internal::SolvedGeodesic other =
+        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
     if (other.converged && !inactive(other.middle)) last_step(other);
   }
   const Vector3 in = result.r1 - p;
