@@ -163,7 +163,7 @@ PoseTable read_poses(const Model& model, const std::string& text) {
 
 std::string pose_csv(const MusculoskeletalSystem& system, const PoseTable& poses) {
   const Model& model = system.model();
-  const auto pairs = system.paths().pairs();
+  const auto pairs = system.pairs();
   // An arm about a coordinate that others follow takes their motion along.
   std::vector<int> leader(model.coordinates.size(), -1);
   const auto couplers = system.reduction().couplers();
