@@ -203,6 +203,11 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
     study.inputs.push_back(path);
     for (const std::string& name : study.motion.beyond_range)
       study.warnings.push_back(fmt::format("the wished '{}' leaves its range", name));
+    for (const int c : study.system->reduction().driven()) {
+      if (study.method == MuscleMethod::kComputedMuscleControl && study.motion.coordinate[static_cast<std::size_t>(c)])
+        study.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
+                                             study.system->model().coordinates[static_cast<std::size_t>(c)].name));
+    }
   }
   study.begin = motion.number_or("begin", "s", file ? study.motion.begin : 0.0);
   study.end = study.begin + motion.positive_or("duration", "s", file ? study.motion.end - study.begin : 1.0);
@@ -410,6 +415,10 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
     const Coordinate& coordinate = model.coordinates[c];
     check_not_coupled(table, "coordinate", c, study);
     if (study.motion.coordinate[c]) table.fail("coordinate", fmt::format("'{}' has its motion from motion.file", name));
+    if (study.method == MuscleMethod::kComputedMuscleControl &&
+        study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kDriven) {
+      table.fail("coordinate", fmt::format("'{}' is locked and cannot follow a ramp; motion.start sets it", name));
+    }
     Ramp ramp;
     const Ramp* before = ramps[c].empty() ? nullptr : &ramps[c].back();
     ramp.from = before != nullptr ? before->to : study.start.q(static_cast<Eigen::Index>(c));

@@ -94,10 +94,12 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
   const ControlSignals& excitation = result.drive->excitation;
   const ControlSignals& reserve = result.drive->reserve;
   std::vector<int> reserved;
-  if (reserve.size() > 0 && study.reserve_force > 0.0) {
+  if (reserve.size() > 0) {
     const std::span<const int> free = study.system->reduction().free();
     reserved.assign(free.begin(), free.end());
   }
+  // Without reserves of their own, what control lacked is in newtons or newton metres.
+  const double reserve_unit = study.reserve_force > 0.0 ? study.reserve_force : 1.0;
   io::Storage storage;
   storage.source = "controls.sto";
   storage.name = "controls";
@@ -117,7 +119,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     if (!reserved.empty()) reserve.evaluate(value_at, r.data());
     storage.time.push_back(time);
     storage.values.insert(storage.values.end(), u.begin(), u.end());
-    for (const int c : reserved) storage.values.push_back(r[static_cast<std::size_t>(c)] / study.reserve_force);
+    for (const int c : reserved) storage.values.push_back(r[static_cast<std::size_t>(c)] / reserve_unit);
   };
   constexpr double kJust = 1e-9;  // before a jump [s]
   for (std::size_t i = 0; i < times.size(); ++i) {
