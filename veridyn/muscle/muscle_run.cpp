@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/error.hpp"
 #include "veridyn/muscle/inverse_dynamics.hpp"
 #include "veridyn/muscle/wished_motion.hpp"
 
