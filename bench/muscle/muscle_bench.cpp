@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/muscle/muscle_group.hpp"
+#include "veridyn/muscle/static_optimization.hpp"
 
 namespace {
 using namespace veridyn::muscle;
@@ -140,6 +141,32 @@ BENCHMARK_CAPTURE(forces, millard, MillardCurves{});
 BENCHMARK_CAPTURE(equilibrium, thelen, kThelen);
 BENCHMARK_CAPTURE(equilibrium, millard, MillardCurves{});
 BENCHMARK_CAPTURE(equilibrium, degroote, DeGrooteFregly2016Curves{});
+
+// One frame of arm26: six muscles, two coordinates with reserves, each frame from the last one.
+void static_optimization(benchmark::State& state, double exponent, StaticForce force) {
+  std::vector<MuscleParameters> muscles = arm(kThelen, false);
+  StaticOptimizer optimizer(muscles, {.exponent = exponent, .force = force, .reserve = {1.0, 1.0}});
+  Eigen::MatrixXd arms(6, 2);
+  arms << -0.02, -0.025, 0.0, -0.025, 0.0, -0.025, 0.03, 0.03, 0.025, 0.035, 0.0, 0.02;
+  Eigen::VectorXd length(6), speed(6), required(2);
+  StaticOptimizationFrame frame;
+  std::size_t s = 0;
+  for (auto _ : state) {
+    const double phase = 2.0 * 3.14159 * static_cast<double>(s) / 200.0;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const auto& [F0, L0, LS, phi0] = kArm26[static_cast<std::size_t>(i)];
+      length(i) = LS + L0 * (1.0 + 0.15 * std::sin(phase + 0.7 * static_cast<double>(i)));
+      speed(i) = 0.1 * std::cos(phase + 0.7 * static_cast<double>(i));
+    }
+    required << 2.0 + 2.0 * std::sin(phase), 1.5 + 2.0 * std::cos(phase);
+    optimizer.solve(arms, length, speed, required, frame);
+    benchmark::DoNotOptimize(frame.activation.data());
+    s = (s + 1) % 200;
+  }
+}
+BENCHMARK_CAPTURE(static_optimization, squares_as_opensim, 2.0, StaticForce::kAsOpenSim);
+BENCHMARK_CAPTURE(static_optimization, cubes_as_opensim, 3.0, StaticForce::kAsOpenSim);
+BENCHMARK_CAPTURE(static_optimization, squares_with_passive, 2.0, StaticForce::kWithPassive);
 
 void bezier_value(benchmark::State& state) {
   const Millard2012 m;

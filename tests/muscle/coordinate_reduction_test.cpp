@@ -101,12 +101,15 @@ TEST(CoordinateReduction, SpeedsAndBiasesAreTimeDerivativesThroughTheCouplers) {
 }
 
 // The same accelerations and driving forces from the other formulation: all coordinates, constraints with multipliers.
+// With couplers among the free coordinates, and without (where the tree's own factorisation is used).
 TEST(ReducedDynamics, IsTheSolutionWithLagrangeMultipliers) {
   RandomStream random(33, "multipliers");
-  for (int trial = 0; trial < 20; ++trial) {
-    const ConstrainedTree tree(random);
+  for (int trial = 0; trial < 30; ++trial) {
+    ConstrainedTree tree(random);
+    if (trial % 2 == 1) tree.model.couplers.erase(tree.model.couplers.begin(), tree.model.couplers.begin() + 2);
     const Mechanism mechanism(tree.model);
     const CoordinateReduction reduction(tree.model, tree.prescribed);
+    ASSERT_EQ(reduction.free_are_uncoupled(), trial % 2 == 1);
     ReducedDynamics<double> reduced(mechanism, reduction);
     const std::size_t nz = reduction.free().size();
     const Eigen::VectorXd z = test::random_state(nz, 1.0, random), zdot = test::random_state(nz, 2.0, random);

@@ -49,6 +49,43 @@ TEST(Dynamics, ArticulatedBodiesAndFactorizedMassMatrixAgree) {
   }
 }
 
+TEST(Dynamics, GeneralizedForcesDoTheWorkOfTheForcesOnTheLinks) {
+  RandomStream random(17, "power");
+  for (int trial = 0; trial < 10; ++trial) {
+    const RandomCase c(test::random_tree(8, random), random);
+    Dynamics<double> d(c.mechanism);
+    d.set_state(c.q.data(), c.qdot.data());
+    std::vector<SpatialVector<double>> applied(static_cast<std::size_t>(c.mechanism.links()));
+    double power = 0.0;
+    for (std::size_t i = 1; i < applied.size(); ++i) {
+      // A force at a point of the link: its moment is about the ground's origin.
+      const Eigen::Vector3d point = d.kinematics().pose[i] * Eigen::Vector3d(0.1, -0.2, 0.3);
+      applied[i].linear = test::random_vector(20.0, random);
+      applied[i].angular = point.cross(applied[i].linear);
+      power += applied[i].linear.dot(d.kinematics().velocity[i].at(point));
+    }
+    Eigen::VectorXd tau(c.q.size());
+    d.generalized_forces(applied.data(), tau.data());
+    EXPECT_NEAR(tau.dot(c.qdot), power, 1e-12 * tau.norm() * c.qdot.norm());
+  }
+}
+
+// Moments are about the ground's origin: what that costs in digits far away from it.
+TEST(Dynamics, IsPreciseTenMetresFromTheOrigin) {
+  RandomStream random(18, "far");
+  Model near = test::arm26_skeleton(), far = near;
+  far.joints[0].parent_frame.translation += Eigen::Vector3d(10.0, 0.0, -3.0);
+  const RandomCase a(near, random);
+  const Mechanism far_mechanism(far);
+  Dynamics<double> d(a.mechanism), e(far_mechanism);
+  d.set_state(a.q.data(), a.qdot.data());
+  e.set_state(a.q.data(), a.qdot.data());
+  Eigen::Vector2d near_qddot, far_qddot;
+  ASSERT_TRUE(d.forward_dynamics(a.tau.data(), nullptr, near_qddot.data()).usable());
+  ASSERT_TRUE(e.forward_dynamics(a.tau.data(), nullptr, far_qddot.data()).usable());
+  EXPECT_LT((near_qddot - far_qddot).norm(), 1e-11 * near_qddot.norm());
+}
+
 TEST(Dynamics, MassMatrixIsThatOfTheKineticEnergyAndPositiveDefinite) {
   RandomStream random(12, "mass");
   for (int trial = 0; trial < 30; ++trial) {
@@ -283,6 +320,14 @@ TEST(Dynamics, NamesTheCoordinateAlongWhichNothingHasInertia) {
   e.set_state(q.data(), qdot.data());
   EXPECT_EQ(e.forward_dynamics_factorized(tau.data(), nullptr, qddot.data()).singular_coordinate, 2);
   EXPECT_EQ(e.forward_dynamics_articulated(tau.data(), nullptr, qddot.data()).singular_coordinate, 2);
+  // A coordinate of a joint that no axis uses.
+  Model idle = test::pendulum(3);
+  idle.joints[2].rotation[0].function = PiecewisePolynomial::constant(0.4);
+  const Mechanism stuck(idle);
+  Dynamics<double> s(stuck);
+  s.set_state(q.data(), qdot.data());
+  EXPECT_EQ(s.forward_dynamics_factorized(tau.data(), nullptr, qddot.data()).singular_coordinate, 2);
+  EXPECT_EQ(s.forward_dynamics_articulated(tau.data(), nullptr, qddot.data()).singular_coordinate, 2);
   // A massless link between massive ones is fine: OpenSim's knees have them.
   Model between = test::pendulum(3);
   between.bodies[2].mass = 0.0;

@@ -32,12 +32,12 @@ std::map<std::string, Musculotendon<double>> arm(const MuscleCurves& curves) {
 TEST(MusculotendonReference, RatesOfSixHundredStatesAreThoseOfOpenSim) {
   for (const Kind& kind : kinds()) {
     const std::string file = fmt::format("b2_arm26_muscle_rates_{}.csv", kind.name);
-    VERIDYN_SKIP_WITHOUT(file);
-    const ReferenceTable t(file);
+    const test::ReferenceTable t = test::read_reference("opensim/" + file);
+    if (t.rows.empty()) GTEST_SKIP() << "no reference/opensim/" << file << " in the folder of others\' data";
     const std::map<std::string, Musculotendon<double>> muscles = arm(kind.curves);
     std::map<std::string, double> worst;
     std::size_t compared = 0;
-    for (std::size_t i = 0; i < t.rows(); ++i) {
+    for (std::size_t i = 0; i < t.rows.size(); ++i) {
       if (t.text(i, "status") != "ok") continue;
       ++compared;
       const MuscleParameters p = arm26_muscle(t.text(i, "muscle"), kind.curves);
@@ -80,12 +80,12 @@ TEST(MusculotendonReference, RatesOfSixHundredStatesAreThoseOfOpenSim) {
 TEST(MusculotendonReference, EquilibriumForcesAreThoseOfOpenSim) {
   for (const Kind& kind : kinds()) {
     const std::string file = fmt::format("b_arm26_equilibrium_{}.csv", kind.name);
-    VERIDYN_SKIP_WITHOUT(file);
-    const ReferenceTable t(file);
+    const test::ReferenceTable t = test::read_reference("opensim/" + file);
+    if (t.rows.empty()) GTEST_SKIP() << "no reference/opensim/" << file << " in the folder of others\' data";
     const std::map<std::string, Musculotendon<double>> muscles = arm(kind.curves);
     double force = 0.0, length = 0.0;
     int most = 0;
-    for (std::size_t i = 0; i < t.rows(); ++i) {
+    for (std::size_t i = 0; i < t.rows.size(); ++i) {
       const MuscleParameters p = arm26_muscle(t.text(i, "muscle"), kind.curves);
       const Musculotendon<double>& muscle = muscles.at(p.name);
       const auto e = muscle.equilibrium(t.number(i, "activation"), t.number(i, "path_length_m"));
@@ -95,11 +95,17 @@ TEST(MusculotendonReference, EquilibriumForcesAreThoseOfOpenSim) {
                        std::abs(e.tendon_force - t.number(i, "tendon_force_N")) / p.musculotendon.max_isometric_force);
       length = std::max(length, std::abs(e.fiber_length - t.number(i, "fiber_length_m")));
     }
-    fmt::print("b {}: {} states, force {:.1e} F0, fibre {:.1e} m, at most {} evaluations\n", kind.name, t.rows(), force,
-               length, most);
+    fmt::print("b {}: {} states, force {:.1e} F0, fibre {:.1e} m, at most {} evaluations\n", kind.name, t.rows.size(),
+               force, length, most);
     EXPECT_LT(force, 1e-6);
     EXPECT_LT(length, 1e-7);
   }
+}
+
+std::vector<double> numbers(const test::ReferenceTable& t, const std::string& column) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < t.rows.size(); ++i) values.push_back(t.number(i, column));
+  return values;
 }
 
 // Excitations of the three scenarios.
@@ -119,19 +125,19 @@ TEST(MusculotendonReference, MusclesDrivenByRecordedPathsFollowOpenSimForASecond
   for (const Kind& kind : kinds())
     for (int scenario = 1; scenario <= 3; ++scenario) {
       const std::string file = fmt::format("c_arm26_forward_{}_s{}.csv", kind.name, scenario);
-      VERIDYN_SKIP_WITHOUT(file);
-      const ReferenceTable t(file);
-      const std::vector<double> time = t.numbers("time_s");
+      const test::ReferenceTable t = test::read_reference("opensim/" + file);
+      if (t.rows.empty()) GTEST_SKIP() << "no reference/opensim/" << file << " in the folder of others\' data";
+      const std::vector<double> time = numbers(t, "time_s");
       double length = 0.0, force = 0.0, activation = 0.0;
       std::size_t k = 0;
       for (const MuscleParameters& p : arm26_muscles(kind.curves)) {
         const Musculotendon<double> muscle(p);
-        const std::vector<double> path = t.numbers(p.name + "_path_length_m");
+        const std::vector<double> path = numbers(t, p.name + "_path_length_m");
         const auto lMT = PiecewisePolynomial::simm_spline(time, path);
         Eigen::VectorXd x(2);
         x << t.number(0, p.name + "_activation"), t.number(0, p.name + "_fiber_length_m");
         // From row to row, so that excitation steps and rows coincide with step ends.
-        for (std::size_t i = 1; i < t.rows(); ++i) {
+        for (std::size_t i = 1; i < t.rows.size(); ++i) {
           const double from = time[i - 1], to = time[i], middle = 0.5 * (from + to);
           const auto rates = [&](double s, const Eigen::VectorXd& y, Eigen::VectorXd& rate) {
             const double u = excitation(scenario, k, scenario == 2 ? middle : s);

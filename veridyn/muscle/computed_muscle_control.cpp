@@ -56,6 +56,8 @@ class Controller {
         optimal_(muscles_),
         activation_(muscles_),
         fiber_(muscles_),
+        demand_(wish_.size()),
+        planned_speed_(wish_.size()),
         z_(wish_.size()),
         zdot_(wish_.size()),
         zddot_(wish_.size()),
@@ -141,6 +143,7 @@ class Controller {
   std::size_t muscles_;
   double reserve_optimal_ = 1.0;
   std::vector<double> low_, high_, excitation_, force_low_, force_high_, force_, optimal_, activation_, fiber_;
+  std::vector<double> demand_, planned_speed_;  ///< accelerations of the last window's end, speeds it should have left
   std::vector<double> z_, zdot_, zddot_, moment_, qddot_, reserve_;
   std::array<std::vector<double>, MuscleWindow::kNodes> nodes_;
 };
@@ -154,6 +157,8 @@ void Controller::start_muscles(double* x) {
     zddot_[f] = w.second;
     x[f] = w.value;
     x[wish_.size() + f] = w.first;
+    demand_[f] = w.second;
+    planned_speed_[f] = w.first;
   }
   require();
   const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
@@ -188,7 +193,9 @@ bool Controller::plan(double t, double end, const double* x) {
       const numerics::SplineValue now = wish_.at(f, t), then = wish_.at(f, t + s);
       z_[f] = then.value + (x[f] - now.value) + s * (speed[f] - now.first);
       zdot_[f] = then.first + (speed[f] - now.first);
-      zddot_[f] = then.second + options_.kv * (now.first - speed[f]) + options_.kp * (now.value - x[f]);
+      // What the last window fell short of in speed is made up in this one.
+      const double shortfall = (planned_speed_[f] - speed[f]) / (end - t);
+      zddot_[f] = then.second + options_.kv * (now.first - speed[f]) + options_.kp * (now.value - x[f]) + shortfall;
     }
     if (k + 1 < MuscleWindow::kNodes) {
       ahead_.set_motion(z_.data(), zdot_.data());
@@ -196,6 +203,10 @@ bool Controller::plan(double t, double end, const double* x) {
       require();  // the last node: the window's end
     }
     std::copy(ahead_.path_length().begin(), ahead_.path_length().end(), nodes_[k].begin());
+  }
+  for (std::size_t f = 0; f < n; ++f) {
+    planned_speed_[f] = speed[f] + 0.5 * (end - t) * (demand_[f] + zddot_[f]);
+    demand_[f] = zddot_[f];
   }
   const StateLayout& layout = system_.layout();
   for (std::size_t m = 0; m < muscles_; ++m) {

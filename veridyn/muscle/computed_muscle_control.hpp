@@ -45,7 +45,9 @@ struct ControlResult {
 
 /// Computed muscle control (Thelen & Anderson 2006): the excitations with which the muscles follow a motion.
 ///
-/// In each window of length T: (1) wished accelerations qddot_ref(t + T) + kv (qdot_ref - qdot) + kp (q_ref - q); (2)
+/// In each window of length T: (1) wished accelerations qddot_ref(t + T) + kv (qdot_ref - qdot) + kp (q_ref - q), plus
+/// what the last window fell short of in speed, over T (forces meet their wish at the end of a window but grow towards
+/// it late: without this the motion lags by a third of a window, as OpenSim's does); (2)
 /// the muscles alone, along the reference path shifted by the present error, with least and greatest excitation: the
 /// forces they can reach by t + T; (3) min sum (F/F_opt)^2 + sum (reserve/optimal)^2 subject to the wished
 /// accelerations and these bounds, F_opt the active force along a rigid tendon at full activation; (4) for each muscle

@@ -60,6 +60,7 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
       --left;
       free_root_[to] = free_root_[from];
       driven_root_[to] = driven_root_[from];
+      if (free_root_[to] >= 0) free_are_uncoupled_ = false;
       couplers_.push_back({coupler.independent, coupler.dependent, coupler.function});
     }
     if (left < before) continue;
@@ -70,6 +71,7 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
     throw InputError(place(static_cast<int>(c)),
                      fmt::format("coupler '{}' makes it depend on itself", setter[c]->name));
   }
+  for (const int root : driven_root_) follows_driven_.push_back(root >= 0 ? 1 : 0);
 }
 
 std::vector<DrivenMotion<double>> CoordinateReduction::default_motion() const {

@@ -45,6 +45,10 @@ class CoordinateReduction {
   /// The same in `driven()`.
   [[nodiscard]] int driven_root(int coordinate) const { return driven_root_[static_cast<std::size_t>(coordinate)]; }
   [[nodiscard]] bool all_free() const { return free_.size() == roles_.size(); }
+  /// No coordinate is coupled to a free one: the equations are those of the tree without the rest.
+  [[nodiscard]] bool free_are_uncoupled() const { return free_are_uncoupled_; }
+  /// By coordinate: 1 where it follows a driven one (or is one), else 0.
+  [[nodiscard]] const char* follows_driven() const { return follows_driven_.data(); }
 
   /// Driven coordinates resting at their default values.
   [[nodiscard]] std::vector<DrivenMotion<double>> default_motion() const;
@@ -62,6 +66,8 @@ class CoordinateReduction {
   std::vector<int> free_, driven_, free_root_, driven_root_;
   std::vector<Coupler> couplers_;
   std::vector<double> defaults_;  ///< of driven coordinates
+  std::vector<char> follows_driven_;
+  bool free_are_uncoupled_ = true;
 };
 
 /// What `expand` finds: by coordinate.
@@ -173,9 +179,16 @@ Factorization ReducedDynamics<Scalar>::forward_dynamics(const Scalar* tau, const
   }
   dynamics_.inverse_dynamics(state_.bias.data(), applied, residual_.data());
   dynamics_.update_mass_rows();
+  const auto n = static_cast<int>(scale_.size());
+  if (reduction_->free_are_uncoupled()) {
+    for (int c = 0; c < mechanism.coordinates(); ++c) qddot_(c) = tau[c] - residual_(c);
+    const Factorization result = dynamics_.solve_mass(reduction_->follows_driven(), qddot_.data());
+    for (int i = 0; i < n; ++i) zddot[i] = qddot_(reduction_->free()[static_cast<std::size_t>(i)]);
+    qddot_ += state_.bias;
+    return result;
+  }
   mass_.setZero();
   scale_.setZero();
-  const auto n = static_cast<int>(scale_.size());
   for (int i = 0; i < n; ++i) zddot[i] = Scalar(0.0);
   for (int c = 0; c < mechanism.coordinates(); ++c) {
     const int i = reduction_->free_root(c);

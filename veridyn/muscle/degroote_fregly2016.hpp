@@ -117,7 +117,9 @@ class DeGrooteFregly2016 {
       const double slope = kVelocity[0] * kVelocity[1] / root;
       return FunctionValue<double>{force_velocity(x), slope, -slope * kVelocity[1] * t / square};
     };
-    return damped_velocity(A, damping, F, std::min(bound, 0.0), std::max(bound, 0.0), 0.5 * bound, curve);
+    const DampedVelocity begin{value_of(A),          value_of(F),          damping,
+                               std::min(bound, 0.0), std::max(bound, 0.0), 0.5 * bound};
+    return damped_velocity(A, F, begin, curve);
   }
 
   template <typename Scalar>

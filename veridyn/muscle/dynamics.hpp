@@ -56,9 +56,13 @@ class Dynamics {
   /// The whole symmetric matrix. Calls `update_mass_rows`.
   void mass_matrix(Matrix& M);
 
+  /// Solves M x = b in place by M = L' D L along the tree, without fill-in, after `update_mass_rows`, whose rows it
+  /// uses up. Coordinates with `fixed` (by coordinate; nullptr: none) are left out of the equations and get x = 0.
+  Factorization solve_mass(const char* fixed, Scalar* x);
+
   /// qddot for the coordinate forces tau, by articulated bodies.
   Factorization forward_dynamics_articulated(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* qddot);
-  /// The same by factorising the mass matrix M = L' D L along the tree, without fill-in.
+  /// The same by factorising the mass matrix.
   Factorization forward_dynamics_factorized(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* qddot);
   /// The faster of the two at every size that was measured (bench/muscle/multibody_bench.cpp).
   Factorization forward_dynamics(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* qddot) {
@@ -227,11 +231,18 @@ Factorization Dynamics<Scalar>::forward_dynamics_factorized(const Scalar* tau, c
                                                             Scalar* qddot) {
   inverse_dynamics(nullptr, applied, work_.data());
   update_mass_rows();
+  for (std::size_t c = 0; c < work_.size(); ++c) qddot[c] = tau[c] - work_[c];
+  return solve_mass(nullptr, qddot);
+}
+
+template <typename Scalar>
+Factorization Dynamics<Scalar>::solve_mass(const char* fixed, Scalar* x) {
   const std::span<const int> order = mechanism_->topological_coordinates();
-  for (const int c : order) qddot[c] = tau[c] - work_[at(c)];
+  const auto skip = [fixed](int c) { return fixed != nullptr && fixed[c] != 0; };
   // From the tips to the ground: row k leaves the rows of its ancestors, whose chains are beginnings of its own.
   for (std::size_t o = order.size(); o-- > 0;) {
     const int k = order[o];
+    if (skip(k)) continue;
     const std::span<const int> chain = mechanism_->chain(k);
     const std::size_t depth = chain.size() - 1;
     Scalar* const row = rows_.data() + mechanism_->row(k);
@@ -240,20 +251,27 @@ Factorization Dynamics<Scalar>::forward_dynamics_factorized(const Scalar* tau, c
     row[depth] = inverse;
     for (std::size_t d = depth; d-- > 0;) {
       const int i = chain[d];
+      if (skip(i)) continue;
       const Scalar factor = row[d] * inverse;
       Scalar* const ancestor = rows_.data() + mechanism_->row(i);
       for (std::size_t j = 0; j <= d; ++j) ancestor[j] -= factor * row[j];
-      qddot[i] -= factor * qddot[k];
+      x[i] -= factor * x[k];
       row[d] = factor;
     }
   }
   for (const int k : order) {
+    if (skip(k)) {
+      x[k] = Scalar(0.0);
+      continue;
+    }
     const std::span<const int> chain = mechanism_->chain(k);
     const std::size_t depth = chain.size() - 1;
     const Scalar* const row = rows_.data() + mechanism_->row(k);
-    Scalar x = qddot[k] * row[depth];
-    for (std::size_t d = 0; d < depth; ++d) x -= row[d] * qddot[chain[d]];
-    qddot[k] = x;
+    Scalar sum = x[k] * row[depth];
+    for (std::size_t d = 0; d < depth; ++d) {
+      if (!skip(chain[d])) sum -= row[d] * x[chain[d]];
+    }
+    x[k] = sum;
   }
   return {};
 }

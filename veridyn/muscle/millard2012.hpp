@@ -69,18 +69,22 @@ class Millard2012 {
       if (A < Scalar(kLeastActive)) A = Scalar(kLeastActive);
       return curves_->inverse_velocity.value(F / A);
     }
+    return damped_velocity(A, F, damped_balance(value_of(A), value_of(F), damping), quick_velocity_curve());
+  }
+
+  /// The damped balance A fV(v) + damping v = F, ready to be iterated with `quick_velocity_curve`.
+  [[nodiscard]] DampedVelocity damped_balance(double A, double F, double damping) const {
     // fV lies between 0 and its greatest value, so damping v between F - A fmax and F.
-    const double A0 = value_of(A), F0 = value_of(F), per = 1.0 / damping;
-    double low = (F0 - A0 * curves_->velocity.value_at_end()) * per, high = F0 * per;
-    if (F0 < A0) {
-      high = std::min(high, 0.0);
-      if (low > high) low = high;
-    } else {
-      low = std::max(low, 0.0);
-      if (high < low) high = low;
-    }
-    return damped_velocity(A, damping, F, low, high, start(A0, F0, damping, low, high),
-                           [this](double v) { return curves_->velocity.tabulated_with_curvature(v); });
+    const double per = 1.0 / damping;
+    double low = (F - A * curves_->velocity.value_at_end()) * per, high = F * per;
+    if (F < A)
+      high = std::max(low, std::min(high, 0.0));
+    else
+      low = std::min(high, std::max(low, 0.0));
+    return {A, F, damping, low, high, start(A, F, damping, low, high)};
+  }
+  [[nodiscard]] auto quick_velocity_curve() const {
+    return [this](double v) { return curves_->velocity.tabulated_with_curvature(v); };
   }
 
   template <typename Scalar>

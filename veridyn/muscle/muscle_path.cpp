@@ -89,9 +89,8 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     const int sizes = object.shape == WrapShape::kEllipsoid ? 3 : (object.shape == WrapShape::kSphere ? 1 : 2);
     for (int i = 0; i < sizes; ++i)
       if (!(object.dimensions[i] > 0.0))
-        throw InputError(model.name,
-                         fmt::format("wrap object {}: its dimensions must be positive, one is {}", object.name,
-                                     object.dimensions[i]));
+        throw InputError(model.name, fmt::format("wrap object {}: its dimensions must be positive, one is {}",
+                                                 object.name, object.dimensions[i]));
     const Mechanism::BodyPlace& place = mechanism.body(object.body);
     Object compiled;
     compiled.name = object.name;
@@ -161,8 +160,8 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
 
   const Kinematics<double> rest(mechanism);
   for (Path& path : muscles_) {
-    const bool conditional = std::any_of(path.stations.begin(), path.stations.end(),
-                                         [](const PathStation& s) { return s.condition >= 0; });
+    const bool conditional =
+        std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
     if (!conditional) {
       for (Wrap& wrap : path.wraps) {
         for (int i = wrap.first; i < wrap.last; ++i) {
@@ -239,8 +238,8 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
     const Eigen::Vector3d d2 = r.direction2 * r.surface_length / 3.0;
     for (int i = 1; i <= arc_points; ++i) {
       const double t = static_cast<double>(i) / (arc_points + 1), u = 1.0 - t;
-      const Eigen::Vector3d x = u * u * u * r.r1 + 3.0 * u * u * t * (r.r1 + d1) + 3.0 * u * t * t * (r.r2 - d2) +
-                                t * t * t * r.r2;
+      const Eigen::Vector3d x =
+          u * u * u * r.r1 + 3.0 * u * u * t * (r.r1 + d1) + 3.0 * u * t * t * (r.r2 - d2) + t * t * t * r.r2;
       Eigen::Vector3d local = frame.rotation.transpose() * (x - frame.position);
       if (object.shape == WrapShape::kSphere) local *= object.sphere.radius / local.norm();
       if (object.shape == WrapShape::kEllipsoid) local /= local.cwiseQuotient(object.ellipsoid.radii).norm();
@@ -251,8 +250,7 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
   return line;
 }
 
-std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinematics, const double* q,
-                                              int muscle) const {
+std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinematics, const double* q, int muscle) const {
   PathWorkspace<double> workspace(*this);
   PathSolver<double> solver(*this, kinematics, q, workspace);
   const std::size_t n = solver.nodes_of(muscle);
@@ -276,11 +274,12 @@ std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& ki
       const auto& frame = workspace.object[static_cast<std::size_t>(wrap.object)];
       for (int i = wrap.first; i <= wrap.last; ++i) {
         const PathStation& station = path.stations[static_cast<std::size_t>(i)];
-        const Eigen::Vector3d local = frame.rotation.transpose() *
-                                      (workspace.position[static_cast<std::size_t>(station.point)] - frame.position);
+        const Eigen::Vector3d local =
+            frame.rotation.transpose() * (workspace.position[static_cast<std::size_t>(station.point)] - frame.position);
         if (on_path(local, object.description))
-          lines.push_back(fmt::format("muscle {}: point {} lies inside its wrap object {}; the path goes straight there",
-                                      path.name, station.name, object.name));
+          lines.push_back(
+              fmt::format("muscle {}: point {} lies inside its wrap object {}; the path goes straight there", path.name,
+                          station.name, object.name));
       }
     }
   }

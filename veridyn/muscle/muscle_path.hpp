@@ -24,8 +24,8 @@ enum class WrapMode {
 template <typename Scalar>
 struct PathWorkspace;
 
-/// The musculotendon paths of a model, compiled: lengths L(q) and their derivatives dL/dq. A muscle's moment arm about a
-/// coordinate is -dL/dq, in OpenSim's sign (positive where tension raises the coordinate).
+/// The musculotendon paths of a model, compiled: lengths L(q) and their derivatives dL/dq. A muscle's moment arm about
+/// a coordinate is -dL/dq, in OpenSim's sign (positive where tension raises the coordinate).
 ///
 /// Points are fixed, conditional or moving as in the file. Wrap objects are tried on every segment of their range; the
 /// first that meets the object wraps, otherwise the one that a quadrant's wall lengthens least. Objects that share a
@@ -134,9 +134,10 @@ class MusclePaths {
     std::string name;
     std::vector<PathStation> stations;
     std::vector<Wrap> wraps;
-    bool plain = true;    ///< no wraps, no conditions
+    bool plain = true;      ///< no wraps, no conditions
     double constant = 0.0;  ///< length of the segments within links
-    std::vector<int> segments;  ///< plain, or by station for the straight parts of a path without conditions; -1: constant
+    std::vector<int>
+        segments;  ///< plain, or by station for the straight parts of a path without conditions; -1: constant
     std::vector<std::array<std::size_t, 2>> adds;  ///< plain: term -> pair
     std::array<std::size_t, 2> pairs{};
   };

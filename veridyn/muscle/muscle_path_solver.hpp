@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -36,11 +34,13 @@ struct PathWorkspace {
         span_known(paths.spans_.size(), 0),
         stations(paths.most_stations_),
         nodes(paths.most_stations_ + 2 * paths.most_wraps_),
+        other_nodes(nodes.size()),
         result(paths.most_wraps_),
+        other_result(paths.most_wraps_),
         first(paths.most_wraps_),
         first_segment(paths.most_wraps_),
         before(2 * paths.most_wraps_),
-        with(paths.pairs_.size()) {
+        nearby(paths.most_wraps_) {
     for (std::size_t i = 0; i < paths.points_.size(); ++i)
       position[i] = paths.points_[i].location.template cast<Scalar>();
   }
@@ -70,11 +70,13 @@ struct PathWorkspace {
   std::vector<std::uint8_t> span_known;
   std::vector<Node> stations;
   std::vector<Node> nodes;
+  std::vector<Node> other_nodes;
   std::vector<WrapResult<Scalar>> result;
+  std::vector<WrapResult<Scalar>> other_result;
   std::vector<WrapResult<Scalar>> first;
   std::vector<int> first_segment;
   std::vector<Vector> before;
-  std::vector<Scalar> with;
+  std::vector<internal::GeodesicSolution> nearby;
 };
 
 template <typename Scalar>
@@ -121,7 +123,8 @@ class PathSolver {
   const WrapResult<Scalar>& result(std::size_t wrap) const { return w_.result[wrap]; }
 
   WrapResult<Scalar> wrap_between(const MusclePaths::Object& object, int index, const MusclePaths::Wrap& wrap,
-                                  bool single, const Vector& p_ground, const Vector& q_ground) {
+                                  bool single, const Vector& p_ground, const Vector& q_ground,
+                                  internal::GeodesicSolution* nearby = nullptr) {
     const auto& frame = w_.object[static_cast<std::size_t>(index)];
     const Vector p = frame.rotation.transpose() * (p_ground - frame.position);
     const Vector q = frame.rotation.transpose() * (q_ground - frame.position);
@@ -138,11 +141,11 @@ class PathSolver {
           break;
         case WrapShape::kEllipsoid:
           if (side_ == 0) {
-            r = muscle::wrap(object.ellipsoid, p, q);
+            r = muscle::wrap(object.ellipsoid, p, q, nearby);
           } else {
             WrapEllipsoid one_side = object.ellipsoid;
             one_side.side = side_;
-            r = muscle::wrap(one_side, p, q);
+            r = muscle::wrap(one_side, p, q, nearby);
           }
           break;
         case WrapShape::kTorus:
@@ -157,6 +160,10 @@ class PathSolver {
     r.direction2 = frame.rotation * r.direction2;
     r.gradient_p = frame.rotation * r.gradient_p;
     r.gradient_q = frame.rotation * r.gradient_q;
+    if (r.weight < Scalar(1.0)) {
+      r.weight_p = frame.rotation * r.weight_p;
+      r.weight_q = frame.rotation * r.weight_q;
+    }
     return r;
   }
 
@@ -274,7 +281,7 @@ class PathSolver {
         }
         if (r->meets) break;
       }
-      if (w_.first_segment[i] >= 0 && w_.first[i].weight < 1.0) flag = std::max(flag, PathFlag::kFading);
+      if (w_.first_segment[i] >= 0 && w_.first[i].weight < Scalar(1.0)) flag = std::max(flag, PathFlag::kFading);
     }
     return any;
   }
@@ -290,18 +297,27 @@ class PathSolver {
       if (w_.nodes[k].wrap >= 0)
         spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)].spread);
     if (spread >= 0.7) return n;
-    // Objects solved one after the other may settle on the longer of two sides: try both.
-    side_ = 1;
-    const double length1 = muscle::value_of(measure<false>(path, settle(path, mask), Scalar(1.0)));
-    side_ = -1;
-    std::size_t best = settle(path, mask);
-    const double length2 = muscle::value_of(measure<false>(path, best, Scalar(1.0)));
-    if (length1 < length2) {
-      side_ = 1;
-      best = settle(path, mask);
+    // Objects solved one after the other may settle on the longer of two sides: try the other one too.
+    const double length = muscle::value_of(measure<false>(path, n, Scalar(1.0)));
+    double other_length = length;
+    std::size_t other_n = n;
+    std::swap(w_.nodes, w_.other_nodes);
+    std::swap(w_.result, w_.other_result);
+    for (const int side : {1, -1}) {
+      side_ = side;
+      const std::size_t count = settle(path, mask);
+      const double l = muscle::value_of(measure<false>(path, count, Scalar(1.0)));
+      if (l < other_length - 1e-12) {
+        other_length = l;
+        other_n = count;
+        std::swap(w_.nodes, w_.other_nodes);
+        std::swap(w_.result, w_.other_result);
+      }
     }
     side_ = 0;
-    return best;
+    std::swap(w_.nodes, w_.other_nodes);
+    std::swap(w_.result, w_.other_result);
+    return other_n;
   }
 
   std::size_t settle(const Path& path, unsigned mask) {
@@ -315,6 +331,7 @@ class PathSolver {
       return n;
     }
     if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
+    for (std::size_t i = 0; i < path.wraps.size(); ++i) w_.nearby[i].converged = false;
     // Jets keep on for their derivatives after the values stand.
     int more = std::is_same_v<Scalar, double> ? 0 : 8;
     for (int pass = 0; pass < 60; ++pass) {
@@ -338,7 +355,7 @@ class PathSolver {
           moved = 1.0;
         }
       }
-      if (moved == 0.0 || (pass > 0 && moved < 1e-11 && more-- <= 0)) break;
+      if (moved == 0.0 || (pass > 0 && moved < 1e-8 && more-- <= 0)) break;
     }
     return n;
   }
@@ -372,11 +389,10 @@ class PathSolver {
         const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
         if (s < 0) continue;
         r = w_.span[static_cast<std::size_t>(s)];
-        if (!w_.span_known[static_cast<std::size_t>(s)])
-          r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
+        if (!w_.span_known[static_cast<std::size_t>(s)]) r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
       } else {
         // Only the ends of a fading object's own segment fade it: here it counts whole.
-        r = wrap_between(object, wrap.object, wrap, false, a.x, b.x);
+        r = wrap_between(object, wrap.object, wrap, false, a.x, b.x, &w_.nearby[i]);
       }
       if (!r.wrapped()) continue;
       const double longer = value_of(r.length) - value_of(Vector(b.x - a.x)).norm();
@@ -414,7 +430,7 @@ class PathSolver {
     if (!any) mask = 0;
     std::size_t fading = path.wraps.size();
     for (std::size_t i = 0; any && i < path.wraps.size(); ++i)
-      if (w_.first_segment[i] >= 0 && w_.first[i].weight < 1.0) fading = i;
+      if (w_.first_segment[i] >= 0 && w_.first[i].weight < Scalar(1.0)) fading = i;
     if (fading == path.wraps.size() || paths_.mode_ == WrapMode::kAsOpenSim)
       return measure<kGradient>(path, solve(path, mask), Scalar(1.0));
     return blended<kGradient>(path, mask, Scalar(1.0));
@@ -424,14 +440,14 @@ class PathSolver {
   template <bool kGradient>
   Scalar blended(const Path& path, unsigned mask, const Scalar& factor) {
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
-      if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0 || w_.first[i].weight >= 1.0) continue;
+      if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0 || !(w_.first[i].weight < Scalar(1.0))) continue;
       if ((done_ >> i & 1u) != 0) continue;
       done_ |= 1u << i;
       const MusclePaths::Wrap& wrap = path.wraps[i];
       const Node a = w_.stations[static_cast<std::size_t>(w_.first_segment[i])];
       const Node b = w_.stations[static_cast<std::size_t>(w_.first_segment[i]) + 1];
-      Vector slope_a, slope_b;
-      const Scalar weight = weight_of(wrap.object, a.x, b.x, slope_a, slope_b);
+      const Scalar weight = w_.first[i].weight;
+      const Vector slope_a = w_.first[i].weight_p, slope_b = w_.first[i].weight_q;
       const Scalar with = blended<kGradient>(path, mask, Scalar(factor * weight));
       const Scalar without = blended<kGradient>(path, mask & ~(1u << i), Scalar(factor * (Scalar(1.0) - weight)));
       if constexpr (kGradient) {
@@ -446,42 +462,6 @@ class PathSolver {
       return without + weight * (with - without);
     }
     return measure<kGradient>(path, solve(path, mask), factor);
-  }
-
-  /// Weight of an object for a segment of the path and its slopes with respect to the ends, in ground.
-  Scalar weight_of(int object, const Vector& a, const Vector& b, Vector& slope_a, Vector& slope_b) {
-    using Jet = ceres::Jet<Scalar, 6>;
-    const auto& frame = w_.object[static_cast<std::size_t>(object)];
-    const Vector p = frame.rotation.transpose() * (a - frame.position);
-    const Vector q = frame.rotation.transpose() * (b - frame.position);
-    Vector3<Jet> pj, qj;
-    for (int i = 0; i < 3; ++i) {
-      pj[i] = Jet(p[i]);
-      qj[i] = Jet(q[i]);
-      pj[i].v.setZero();
-      qj[i].v.setZero();
-      pj[i].v[i] = Scalar(1.0);
-      qj[i].v[3 + i] = Scalar(1.0);
-    }
-    const MusclePaths::Object& o = paths_.objects_[static_cast<std::size_t>(object)];
-    Jet weight;
-    switch (o.shape) {
-      case WrapShape::kSphere:
-        weight = wrap_weight(o.sphere, pj, qj);
-        break;
-      case WrapShape::kCylinder:
-        weight = wrap_weight(o.cylinder, pj, qj);
-        break;
-      case WrapShape::kEllipsoid:
-        weight = wrap_weight(o.ellipsoid, pj, qj);
-        break;
-      case WrapShape::kTorus:
-        weight = wrap_weight(o.torus, pj, qj);
-        break;
-    }
-    slope_a = frame.rotation * Vector(weight.v.template head<3>());
-    slope_b = frame.rotation * Vector(weight.v.template tail<3>());
-    return weight.a;
   }
 
   /// Length of the nodes, and its gradient times `factor`.

@@ -242,18 +242,32 @@ struct RigidTendonForces {
   double passive = 0.0;  ///< F0 (fPE + damping v) cos(phi) [N]
 };
 
+/// The same for any scalar: active and passive force.
+template <typename Scalar>
+struct RigidTendonParts {
+  Scalar active, passive;
+};
+
 /// 0 when the path is shorter than the tendon or the fibre at its least length.
+template <typename Curves, typename Scalar>
+[[nodiscard]] RigidTendonParts<Scalar> rigid_tendon_parts(const Curves& curves, const MusculotendonConstants<Scalar>& k,
+                                                          const Scalar& a, const Scalar& lMT, const Scalar& vMT) {
+  const Scalar along = lMT - k.LS, nothing = along * Scalar(0.0);
+  if (!(along > Scalar(0.0))) return {nothing, nothing};
+  const internal::RigidFiber<Scalar> fiber(k, along);
+  if (fiber.length <= k.minimum_length) return {nothing, nothing};
+  const Scalar l = fiber.length * k.inverse_L0;
+  const Scalar v = vMT * fiber.cosine / (curves.velocity_unit(a, k.Vmax) * k.L0);
+  const Scalar along_tendon = k.F0 * fiber.cosine;
+  const Scalar active = curves.active_force(a, curves.active_length(l), v) * along_tendon;
+  return {active < Scalar(0.0) ? nothing : active, (curves.passive_force(l) + Scalar(k.damping) * v) * along_tendon};
+}
+
 template <typename Curves>
 [[nodiscard]] RigidTendonForces rigid_tendon_forces(const Curves& curves, const MusculotendonConstants<double>& k,
                                                     double a, double lMT, double vMT) {
-  const double along = lMT - k.LS;
-  if (!(along > 0.0)) return {along * 0.0, along * 0.0};
-  const internal::RigidFiber<double> fiber(k, along);
-  if (fiber.length <= k.minimum_length) return {};
-  const double l = fiber.length * k.inverse_L0;
-  const double v = vMT * fiber.cosine / (curves.velocity_unit(a, k.Vmax) * k.L0);
-  return {std::max(0.0, k.F0 * curves.active_force(a, curves.active_length(l), v) * fiber.cosine),
-          k.F0 * (curves.passive_force(l) + k.damping * v) * fiber.cosine};
+  const RigidTendonParts<double> parts = rigid_tendon_parts(curves, k, a, lMT, vMT);
+  return {parts.active, parts.passive};
 }
 
 /// All quantities of one state; for reports and tests, not for inner loops.
@@ -350,7 +364,7 @@ template <typename Curves>
   double low = k.minimum_length, high = fiber(0.5 * k.LS);
   CurveValue g = balance(curves, k, a, low, lMT);
   root.evaluations = 1;
-  if (!std::isfinite(g.value)) return {std::nan(""), 1.0, EquilibriumEnd::kNotFinite, 1};
+  if (std::isnan(g.value)) return {std::nan(""), 1.0, EquilibriumEnd::kNotFinite, 1};
   if (g.value >= 0.0) return {low, g.slope, EquilibriumEnd::kSlackTendon, 1};
   // Only a tendon that pulls when slack can leave no root so far.
   while (balance(curves, k, a, high, lMT).value < 0.0 && root.evaluations < 60) {

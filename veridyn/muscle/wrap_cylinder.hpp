@@ -63,7 +63,6 @@ template <typename Scalar>
       result.status = WrapStatus::kInside;
       return result;
     }
-    result.weight = internal::fade(result.depth / kInsideFade);
   }
   const double turn = (cross > 0.0) != long_way ? 1.0 : -1.0;
   const Scalar d1 = sqrt(p2 - radius2);
@@ -85,12 +84,9 @@ template <typename Scalar>
   const Scalar slope = dz / planar;
   result.r1.z() = p.z() + slope * d1;
   result.r2.z() = q.z() - slope * d2;
-  const double overrun = std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) -
-                         cylinder.half_length;
-  if (overrun > kEndStart * cylinder.radius) {
-    if (overrun >= kEndFade * cylinder.radius) return result;
-    result.weight *= internal::fade((overrun / cylinder.radius - kEndStart) / (kEndFade - kEndStart));
-  }
+  const double overrun =
+      std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) - cylinder.half_length;
+  if (overrun >= kEndFade * cylinder.radius) return result;
   result.status = WrapStatus::kWrapped;
   const Scalar flat = planar * per_length;
   const Scalar steep = dz * per_length;
@@ -100,40 +96,43 @@ template <typename Scalar>
   result.direction2 = Vector3((q.x() - result.r2.x()) * s2, (q.y() - result.r2.y()) * s2, steep);
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
+  const Scalar zero(0.0);
+  Vector3 end_slope(zero, zero, zero);  // d radius / d end that lies inside
   if (inside) {
-    // dL/dradius = angle planar/L, and the radius follows the end that lies inside.
-    const Scalar pull = angle * flat * Scalar(gap) / radius;
-    if (p2 < q2) {
-      result.gradient_p.x() += pull * p.x();
-      result.gradient_p.y() += pull * p.y();
-    } else {
-      result.gradient_q.x() += pull * q.x();
-      result.gradient_q.y() += pull * q.y();
-    }
+    const bool end_is_p = p2 < q2;
+    const Vector3& end = end_is_p ? p : q;
+    end_slope = Vector3(end.x(), end.y(), zero) * (Scalar(gap) / radius);
+    // dL/dradius = angle planar/L.
+    (end_is_p ? result.gradient_p : result.gradient_q) += end_slope * (angle * flat);
+    const Scalar distance = sqrt(nearer2);
+    internal::fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
+                                  Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
+  }
+  if (overrun > kEndStart * cylinder.radius) {
+    // Slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut string's
+    // length changes by minus its direction at P, by its direction at Q.
+    const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
+    const Scalar& height = first ? result.r1.z() : result.r2.z();
+    const Vector3 in(result.direction1.x() / flat, result.direction1.y() / flat, zero);
+    const Vector3 out(result.direction2.x() / flat, result.direction2.y() / flat, zero);
+    const Scalar d = first ? d1 : d2;
+    const Scalar part = d / planar;
+    const Vector3 own = (first ? Vector3(p.x(), p.y(), zero) : Vector3(q.x(), q.y(), zero)) / d;
+    // d part = (d d - part d planar) / planar
+    Vector3 part_p = in * part, part_q = out * (-part);
+    (first ? part_p : part_q) += own;
+    if (inside) (p2 < q2 ? part_p : part_q) -= end_slope * (radius / d + part * angle);
+    const Scalar sign = first ? slope : Scalar(-slope);
+    Vector3 height_p = part_p * sign, height_q = part_q * sign;
+    height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
+    height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
+    const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
+    const double band = (kEndFade - kEndStart) * cylinder.radius;
+    const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
+    const Scalar change = internal::fade_slope(x) * Scalar(up / band);
+    internal::times<Scalar>(result, internal::fade(x), height_p * change, height_q * change);
   }
   return result;
-}
-
-/// Weight of a wrap as a function of its ends, to be differentiated; equals `wrap(...).weight`.
-template <typename Scalar>
-[[nodiscard]] Scalar wrap_weight(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                 const Eigen::Matrix<Scalar, 3, 1>& q) {
-  using std::abs;
-  using std::sqrt;
-  const WrapResult<Scalar> path = wrap(cylinder, p, q);
-  if (!path.wrapped()) return Scalar(0.0);
-  Scalar weight(1.0);
-  if (path.depth > 0.0) {
-    const Scalar p2 = p.x() * p.x() + p.y() * p.y();
-    const Scalar q2 = q.x() * q.x() + q.y() * q.y();
-    const Scalar depth =
-        Scalar(1.0) - sqrt(p2 < q2 ? p2 : q2) * Scalar((1.0 - internal::kSurfaceGap) / cylinder.radius);
-    weight = internal::fade(Scalar(depth / Scalar(kInsideFade)));
-  }
-  const Scalar z1 = abs(path.r1.z()), z2 = abs(path.r2.z());
-  const Scalar overrun = (z1 < z2 ? z1 : z2) - Scalar(cylinder.half_length);
-  return weight *
-         internal::fade(Scalar((overrun / Scalar(cylinder.radius) - Scalar(kEndStart)) / Scalar(kEndFade - kEndStart)));
 }
 
 }  // namespace veridyn::muscle

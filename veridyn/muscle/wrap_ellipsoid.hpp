@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "veridyn/muscle/wrap_result.hpp"
 
@@ -23,11 +24,11 @@ struct GeodesicShot {
   Vector3 r1, r2, t1, t2;
   Scalar length1;
   Scalar jacobi, jacobi_slope;
-  Vector3 r1_slope;       ///< dr1 / dalpha
-  Scalar angle_slope;     ///< d(angle at P) / dalpha
-  Scalar visibility;      ///< Q'A r2 - 1: zero where Q lies in the tangent plane of r2
-  Vector3 sideways;       ///< unit, in the tangent plane of r2, across the geodesic
-  Vector3 normal2;        ///< A r2
+  Vector3 r1_slope;    ///< dr1 / dalpha
+  Scalar angle_slope;  ///< d(angle at P) / dalpha
+  Scalar visibility;   ///< Q'A r2 - 1: zero where Q lies in the tangent plane of r2
+  Vector3 sideways;    ///< unit, in the tangent plane of r2, across the geodesic
+  Vector3 normal2;     ///< A r2
 };
 
 /// Frame of the circle of tangent points from P, in coordinates x / a where the ellipsoid is the unit sphere.
@@ -147,6 +148,7 @@ struct GeodesicSolution {
 template <typename Scalar>
 struct ShotCorrection {
   Scalar angle, s, length2, jacobi;
+  bool reached = true;  ///< false: Q is never in the tangent plane; `s` leads to where it is nearest to that
 };
 
 template <typename Scalar>
@@ -165,23 +167,70 @@ ShotCorrection<Scalar> correction(const GeodesicShot<Scalar>& shot, const Eigen:
   const Vector3 aq = q.cwiseProduct(inverse);
   const Scalar value = shot.visibility + shot.jacobi * c.angle * shot.sideways.dot(aq);
   const Scalar slope = shot.t2.dot(aq);
-  const Scalar bend =
-      -shot.t2.dot(shot.t2.cwiseProduct(inverse)) / shot.normal2.squaredNorm() * shot.normal2.dot(aq);
+  const Scalar bend = -shot.t2.dot(shot.t2.cwiseProduct(inverse)) / shot.normal2.squaredNorm() * shot.normal2.dot(aq);
   const Scalar discriminant = slope * slope - Scalar(2.0) * bend * value;
   if (value_of(bend) >= 0.0) {
     c.s = -value / slope;
   } else if (value_of(discriminant) > 0.0) {
     c.s = (sqrt(discriminant) - slope) / bend;
   } else {
-    c.s = -slope / bend;  // nearest approach
+    c.s = -slope / bend;
+    c.reached = false;
   }
   return c;
 }
 
-/// Newton's method from the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
-inline GeodesicSolution solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                       const Eigen::Vector3d& toward) {
-  GeodesicSolution solution;
+/// What a warm start of the next, similar solution needs, and the last shot of this one.
+struct SolvedGeodesic : GeodesicSolution {
+  GeodesicShot<double> shot;
+  ShotCorrection<double> last;
+};
+
+inline constexpr double kFineStep = 0.15;  ///< of the integration [smallest radius]
+inline constexpr double kCoarseStep = 0.35;
+
+/// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
+/// correction is left to the caller; what remains after it is its square.
+inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                   const TangentCircle<double>& circle, SolvedGeodesic& solution) {
+  const double size = a.maxCoeff();
+  const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
+  const double radius = a.minCoeff();
+  double alpha = solution.alpha;
+  double s = solution.s;
+  bool is_fine = solution.converged;
+  solution.converged = false;
+  for (int i = 0; i < 30; ++i) {
+    solution.steps = std::clamp(1 + static_cast<int>(s / (radius * (is_fine ? kFineStep : kCoarseStep))), 1, 100);
+    solution.shot = shoot<double>(a, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
+    solution.last = correction<double>(solution.shot, inverse_square, q);
+    const ShotCorrection<double>& c = solution.last;
+    solution.iterations = i + 1;
+    if (!std::isfinite(c.angle) || !std::isfinite(c.s)) return;
+    // Where J < 0 the length has a maximum: the other direction leads to a shortest path.
+    const double towards_less = c.jacobi > 0.0 ? c.angle : -c.angle;
+    const double d_alpha = std::clamp(towards_less / solution.shot.angle_slope, -0.5, 0.5);
+    const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
+    solution.alpha = alpha;
+    solution.s = s;
+    solution.length = solution.shot.length1 + s + c.length2;
+    solution.jacobi = c.jacobi;
+    const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
+    if (is_fine && step < 3e-6 && c.reached) {
+      solution.middle = solution.shot.r1 + solution.shot.r2;
+      solution.converged = c.jacobi > 0.0;
+      return;
+    }
+    if (step < 5e-3) is_fine = true;
+    alpha += d_alpha;
+    s = std::max(0.0, s + d_s);
+  }
+}
+
+/// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                                     const Eigen::Vector3d& toward) {
+  SolvedGeodesic solution;
   const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
   const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
   const TangentCircle<double> far_circle = tangent_circle<double>(qs, toward);
@@ -190,42 +239,24 @@ inline GeodesicSolution solve_geodesic(const Eigen::Vector3d& a, const Eigen::Ve
   Eigen::Vector3d y_slope = y1 - ps;
   y_slope = (y_slope - y1 * y_slope.dot(y1)).normalized();
   const double arc = std::max(0.0, std::atan2(y2.dot(y_slope), y2.dot(y1)));
-  // Length of the ellipse between them by Gauss's three points.
-  double s = 0.0;
-  constexpr double kNode = 0.774596669241483377;
-  for (const double node : {-kNode, 0.0, kNode}) {
-    const double u = 0.5 * arc * (1.0 + node);
-    const Eigen::Vector3d tangent = (y_slope * std::cos(u) - y1 * std::sin(u)).cwiseProduct(a);
-    s += (node == 0.0 ? 8.0 : 5.0) / 18.0 * arc * tangent.norm();
-  }
+  // Length of the ellipse between them by Simpson's rule.
+  const double half_sine = std::sin(0.5 * arc), half_cosine = std::cos(0.5 * arc);
+  const Eigen::Vector3d mid = (y_slope * half_cosine - y1 * half_sine).cwiseProduct(a);
+  const double sine = 2.0 * half_sine * half_cosine, cosine = 1.0 - 2.0 * half_sine * half_sine;
+  const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
+  solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
   solution.toward = toward;
-  solution.steps = std::clamp(1 + static_cast<int>(arc / 0.12), 2, 60);
-  const double size = a.maxCoeff();
-  const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
-  double alpha = 0.0;
-  for (int i = 0; i < 30; ++i) {
-    const GeodesicShot<double> shot =
-        shoot<double>(a, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
-    const ShotCorrection<double> c = correction<double>(shot, inverse_square, q);
-    solution.iterations = i + 1;
-    if (!std::isfinite(c.angle) || !std::isfinite(c.s)) return solution;
-    // Where J < 0 the length has a maximum: the other direction leads to a shortest path.
-    const double towards_less = c.jacobi > 0.0 ? c.angle : -c.angle;
-    const double d_alpha = std::clamp(towards_less / shot.angle_slope, -0.5, 0.5);
-    const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
-    solution.alpha = alpha;
-    solution.s = s;
-    solution.length = shot.length1 + s + c.length2;
-    solution.jacobi = c.jacobi;
-    solution.middle = shot.r1 + shot.r2;
-    // What is left after the last step is the square of this.
-    if (std::abs(d_alpha) < 1e-6 && std::abs(d_s) < 1e-6 * size) {
-      solution.converged = c.jacobi > 0.0;
-      return solution;
-    }
-    alpha += d_alpha;
-    s = std::max(0.0, s + d_s);
-  }
+  newton(a, p, q, circle, solution);
+  return solution;
+}
+
+/// From a converged solution for nearby ends, on the same side.
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                                     const GeodesicSolution& nearby) {
+  SolvedGeodesic solution;
+  static_cast<GeodesicSolution&>(solution) = nearby;
+  const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
+  newton(a, p, q, circle, solution);
   return solution;
 }
 
@@ -235,10 +266,12 @@ inline GeodesicSolution solve_geodesic(const Eigen::Vector3d& a, const Eigen::Ve
 /// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
 ///
 /// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
-/// the solution). Accurate to about 1e-9 of the radii.
+/// the solution). Accurate to about 1e-7 of the radii. `nearby`: the solution is left there, and one that is there
+/// already (`converged`) starts the search.
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+                                      const Eigen::Matrix<Scalar, 3, 1>& q,
+                                      internal::GeodesicSolution* nearby = nullptr) {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   WrapResult<Scalar> result;
@@ -264,7 +297,6 @@ template <typename Scalar>
       result.status = WrapStatus::kInside;
       return result;
     }
-    result.weight = internal::fade(result.depth / kInsideFade);
     if (!(near2 < scale * scale)) return result;
   }
   const Eigen::Vector3d a = ellipsoid.radii * scale;
@@ -273,22 +305,26 @@ template <typename Scalar>
     if (ellipsoid.quadrant.sign < 0) near = -near;
     if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
   }
-  internal::GeodesicSolution solution = internal::solve_geodesic(a, pv, qv, near);
+  internal::SolvedGeodesic solution;
+  const bool warm = nearby != nullptr && nearby->converged;
+  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby);
+  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
     const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
     return x[ellipsoid.quadrant.axis] * sign < 0.0;
   };
   // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
-  if (near2 < 0.01 || !solution.converged || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0) {
-    const auto good = [&](const internal::GeodesicSolution& s) {
+  if (!solution.converged ||
+      (!warm && (near2 < 0.01 || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0))) {
+    const auto good = [&](const internal::SolvedGeodesic& s) {
       return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
     };
     const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
     bool have = good(solution);
     for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
                                           Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const internal::GeodesicSolution other = internal::solve_geodesic(a, pv, qv, toward);
+      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward);
       if (!good(other) && !(other.converged && !solution.converged)) continue;
       if (have && !(other.length < solution.length)) continue;
       solution = other;
@@ -300,12 +336,19 @@ template <typename Scalar>
     return result;
   }
   const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
-  const auto last_step = [&](const internal::GeodesicSolution& from) {
+  const auto last_step = [&](const internal::SolvedGeodesic& from) {
+    if constexpr (std::is_same_v<Scalar, double>) {
+      const internal::GeodesicShot<double>& shot = from.shot;
+      const double d_alpha = from.last.angle / shot.angle_slope;
+      result.r1 = shot.r1 + shot.r1_slope * d_alpha;
+      result.r2 = shot.r2 + shot.sideways * (shot.jacobi * from.last.angle) + shot.t2 * from.last.s;
+      result.surface_length = from.s + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+      return;
+    }
     const internal::TangentCircle<Scalar> circle =
         internal::tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
-    const internal::GeodesicShot<Scalar> shot =
-        internal::shoot<Scalar>(a, p, q, circle, Scalar(std::cos(from.alpha)), Scalar(std::sin(from.alpha)),
-                                Scalar(from.s), from.steps);
+    const internal::GeodesicShot<Scalar> shot = internal::shoot<Scalar>(
+        a, p, q, circle, Scalar(std::cos(from.alpha)), Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
     const auto c = internal::correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
     const Scalar d_alpha = c.angle / shot.angle_slope;
     result.r1 = shot.r1 + shot.r1_slope * d_alpha;
@@ -313,11 +356,11 @@ template <typename Scalar>
     result.surface_length = Scalar(from.s) + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
   };
   last_step(solution);
+  if (nearby != nullptr) *nearby = solution;
   result.spread = solution.jacobi / solution.length;
-  if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) && inactive(values_of(result.r2)) &&
-      inactive(solution.middle)) {
-    const internal::GeodesicSolution other =
-        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));
+  if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
+      inactive(values_of(result.r2)) && inactive(solution.middle)) {
+    const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));
     if (other.converged && !inactive(other.middle)) last_step(other);
   }
   const Vector3 in = result.r1 - p;
@@ -332,25 +375,16 @@ template <typename Scalar>
   result.gradient_q = result.direction2;
   if (inside) {
     // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
-    const Scalar growth =
-        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - internal::kSurfaceGap) / scale);
+    const Scalar growth = (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) *
+                          Scalar((1.0 - internal::kSurfaceGap) / scale);
     const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
     const Vector3& end = p_inside ? p : q;
     const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
     (p_inside ? result.gradient_p : result.gradient_q) += slope;
+    const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
+    internal::fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
   }
   return result;
-}
-
-/// Weight of a wrap as a function of its ends, to be differentiated; equals `wrap(...).weight`.
-template <typename Scalar>
-[[nodiscard]] Scalar wrap_weight(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                 const Eigen::Matrix<Scalar, 3, 1>& q) {
-  using std::sqrt;
-  const auto radii = ellipsoid.radii.cast<Scalar>().eval();
-  const Scalar p2 = p.cwiseQuotient(radii).squaredNorm(), q2 = q.cwiseQuotient(radii).squaredNorm();
-  const Scalar depth = Scalar(1.0) - sqrt(p2 < q2 ? p2 : q2) * Scalar(1.0 - internal::kSurfaceGap);
-  return internal::fade(Scalar(depth / Scalar(kInsideFade)));
 }
 
 }  // namespace veridyn::muscle

@@ -33,23 +33,25 @@ struct WrapResult {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
   WrapStatus status = WrapStatus::kStraight;
-  Vector3 r1 = Vector3::Zero();               ///< where the path reaches the object [m]
-  Vector3 r2 = Vector3::Zero();               ///< where it leaves it [m]
-  Scalar length{};          ///< |P r1| + surface + |r2 Q| [m]
-  Scalar surface_length{};  ///< [m]
-  Vector3 direction1 = Vector3::Zero();       ///< unit, from P to r1
-  Vector3 direction2 = Vector3::Zero();       ///< unit, from r2 to Q
+  Vector3 r1 = Vector3::Zero();          ///< where the path reaches the object [m]
+  Vector3 r2 = Vector3::Zero();          ///< where it leaves it [m]
+  Scalar length{};                       ///< |P r1| + surface + |r2 Q| [m]
+  Scalar surface_length{};               ///< [m]
+  Vector3 direction1 = Vector3::Zero();  ///< unit, from P to r1
+  Vector3 direction2 = Vector3::Zero();  ///< unit, from r2 to Q
   /// dL/dP and dL/dQ: -direction1 and direction2 unless an end dips into the object.
   Vector3 gradient_p = Vector3::Zero();
   Vector3 gradient_q = Vector3::Zero();
-  /// How much of the wrap counts, 0..1: below 1 in the bands where it fades out. Its value only; see `wrap_weight`.
-  double weight = 1.0;
+  /// How much of the wrap counts, 0..1: below 1 in the bands where it fades out; its derivatives with respect to P, Q.
+  Scalar weight{1.0};
+  Vector3 weight_p = Vector3::Zero();
+  Vector3 weight_q = Vector3::Zero();
   /// How deep an end lies inside, in radii; 0 outside.
   double depth = 0.0;
   /// The straight segment itself meets the object; false: only the wall of a quadrant makes it go round.
   bool meets = true;
-  /// How far neighbouring paths from P have spread at Q, per length: 1 on flat and once curved surfaces; small where the
-  /// surface focuses them and another path may be as short.
+  /// How far neighbouring paths from P have spread at Q, per length: 1 on flat and once curved surfaces; small where
+  /// the surface focuses them and another path may be as short.
   double spread = 1.0;
 
   [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
@@ -73,6 +75,31 @@ template <typename Scalar>
   if (!(x > Scalar(0.0))) return Scalar(1.0);
   if (!(x < Scalar(1.0))) return Scalar(0.0);
   return Scalar(1.0) - x * x * (Scalar(3.0) - Scalar(2.0) * x);
+}
+template <typename Scalar>
+[[nodiscard]] Scalar fade_slope(const Scalar& x) {
+  if (!(x > Scalar(0.0)) || !(x < Scalar(1.0))) return Scalar(0.0);
+  return Scalar(-6.0) * x * (Scalar(1.0) - x);
+}
+
+/// Multiplies a weight by another one.
+template <typename Scalar>
+void times(WrapResult<Scalar>& result, const Scalar& weight, const Eigen::Matrix<Scalar, 3, 1>& weight_p,
+           const Eigen::Matrix<Scalar, 3, 1>& weight_q) {
+  result.weight_p = result.weight_p * weight + weight_p * result.weight;
+  result.weight_q = result.weight_q * weight + weight_q * result.weight;
+  result.weight = result.weight * weight;
+}
+
+/// Weight of an end at `radii` < 1 of the object's size from its centre; `slope` = d radii / d end.
+template <typename Scalar>
+void fade_inside(WrapResult<Scalar>& result, const Scalar& radii, const Eigen::Matrix<Scalar, 3, 1>& slope,
+                 bool end_is_p) {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  const Scalar x = (Scalar(1.0) - radii * Scalar(1.0 - kSurfaceGap)) / Scalar(kInsideFade);
+  const Vector3 change = slope * (fade_slope(x) * Scalar(-(1.0 - kSurfaceGap) / kInsideFade));
+  const Vector3 none = Vector3::Zero();
+  times<Scalar>(result, fade(x), end_is_p ? change : none, end_is_p ? none : change);
 }
 
 }  // namespace internal

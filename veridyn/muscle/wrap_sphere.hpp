@@ -46,7 +46,6 @@ template <typename Scalar>
       result.status = WrapStatus::kInside;
       return result;
     }
-    result.weight = internal::fade(result.depth / kInsideFade);
   }
   // Normal of the plane, such that the path turns positively about it.
   Vector3 normal = p.cross(q);
@@ -90,23 +89,14 @@ template <typename Scalar>
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
   if (inside) {
-    const Scalar pull = angle * Scalar(gap) / radius;
-    if (p2 < q2)
-      result.gradient_p += p * pull;
-    else
-      result.gradient_q += q * pull;
+    const bool end_is_p = p2 < q2;
+    const Vector3& end = end_is_p ? p : q;
+    const Scalar distance = sqrt(nearer2);
+    (end_is_p ? result.gradient_p : result.gradient_q) += end * (angle * Scalar(gap) / radius);
+    internal::fade_inside<Scalar>(result, distance / Scalar(sphere.radius), end / (distance * Scalar(sphere.radius)),
+                                  end_is_p);
   }
   return result;
-}
-
-/// Weight of a wrap as a function of its ends, to be differentiated; equals `wrap(...).weight`.
-template <typename Scalar>
-[[nodiscard]] Scalar wrap_weight(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                 const Eigen::Matrix<Scalar, 3, 1>& q) {
-  using std::sqrt;
-  const Scalar p2 = p.squaredNorm(), q2 = q.squaredNorm();
-  const Scalar depth = Scalar(1.0) - sqrt(p2 < q2 ? p2 : q2) * Scalar((1.0 - internal::kSurfaceGap) / sphere.radius);
-  return internal::fade(Scalar(depth / Scalar(kInsideFade)));
 }
 
 }  // namespace veridyn::muscle

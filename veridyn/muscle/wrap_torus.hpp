@@ -42,6 +42,8 @@ WrapResult<Scalar> wrap_tube(const WrapTorus& torus, const Eigen::Matrix<Scalar,
   result.direction2 = turn(result.direction2);
   result.gradient_p = turn(result.gradient_p);
   result.gradient_q = turn(result.gradient_q);
+  result.weight_p = turn(result.weight_p);
+  result.weight_q = turn(result.weight_q);
   return result;
 }
 
@@ -104,13 +106,6 @@ template <typename Scalar>
     const double bend = (slope_at(angle + h) - slope_at(angle - h)) / (2.0 * h);
     return internal::wrap_tube<Scalar>(torus, p, q, Scalar(fixed - residual / Scalar(bend)));
   }
-}
-
-/// Weight of a wrap as a function of its ends; a ring's does not fade but for ends inside the tube.
-template <typename Scalar>
-[[nodiscard]] Scalar wrap_weight(const WrapTorus&, const Eigen::Matrix<Scalar, 3, 1>&,
-                                 const Eigen::Matrix<Scalar, 3, 1>&) {
-  return Scalar(1.0);
 }
 
 }  // namespace veridyn::muscle
