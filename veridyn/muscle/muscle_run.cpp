@@ -6,20 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "veridyn/core/error.hpp"
-#include "veridyn/muscle/inverse_dynamics.hpp"
-#include "veridyn/muscle/wished_motion.hpp"
+#include "veridyn/muscle/motion_analysis.hpp"
 
 namespace veridyn::muscle {
 namespace {
-
-std::vector<double> row_times(const MuscleStudy& study) {
-  const double span = study.end - study.begin;
-  const auto last = static_cast<std::size_t>(std::floor(span * study.rate_Hz * (1.0 + 1e-12) + 1e-9));
-  std::vector<double> times;
-  for (std::size_t i = 0; i <= last; ++i) times.push_back(study.begin + static_cast<double>(i) / study.rate_Hz);
-  return times;
-}
 
 MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   progress.stage(fmt::format("simulating {:g} s of {}", study.end - study.begin, study.title));
@@ -31,40 +21,57 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
-/// The wished motion row by row with path lengths and the forces it needs.
-MuscleResult along_the_wish(const MuscleStudy& study, Progress& progress) {
-  const MusculoskeletalSystem& system = *study.system;
+/// Rows of a prescribed motion.
+MuscleResult take(MotionAnalysis&& analysis) {
   MuscleResult result;
   MuscleTrajectory& t = result.trajectory;
-  t.time = row_times(study);
-  const auto rows = static_cast<Eigen::Index>(t.time.size());
-  const auto n = static_cast<Eigen::Index>(system.coordinates());
-  t.q.resize(rows, n);
-  t.qdot.resize(rows, n);
-  t.path_length.resize(rows, static_cast<Eigen::Index>(system.muscles().size()));
-  result.generalized_force.resize(rows, n);
-  SystemEvaluator<double> evaluator(system);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const WishedState wish = evaluate_motion(system.reduction(), study.motion, t.time[static_cast<std::size_t>(i)]);
-    t.q.row(i) = wish.q;
-    t.qdot.row(i) = wish.qdot;
-    result.generalized_force.row(i) = inverse_dynamics(system.mechanism(), wish.q, wish.qdot, wish.qddot);
-    evaluator.set_all(wish.q.data(), wish.qdot.data());
-    for (std::size_t m = 0; m < system.muscles().size(); ++m)
-      t.path_length(i, static_cast<Eigen::Index>(m)) = evaluator.path_length()[m];
-    if (!progress.update(static_cast<double>(i + 1) / static_cast<double>(rows))) {
-      t.end = SimulationEnd::kInterrupted;
-      break;
-    }
-  }
+  t.time = std::move(analysis.time);
+  t.q = std::move(analysis.q);
+  t.qdot = std::move(analysis.qdot);
+  t.path_length = std::move(analysis.path_length);
   t.end_time = t.time.back();
+  if (analysis.interrupted) t.end = SimulationEnd::kInterrupted;
   result.wished = t.q;
+  result.generalized_force = std::move(analysis.moment);
   return result;
 }
 
 MuscleResult inverse(const MuscleStudy& study, Progress& progress) {
   progress.stage("inverse dynamics");
-  return along_the_wish(study, progress);
+  return take(
+      analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)));
+}
+
+MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
+  progress.stage("static optimization");
+  MotionAnalysis analysis =
+      optimise_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz),
+                      study.static_optimization, progress);
+  estimation::RowMatrix activation = std::move(analysis.activation), force = std::move(analysis.force),
+                        reserve = std::move(analysis.reserve);
+  const std::vector<std::size_t> infeasible = std::move(analysis.infeasible);
+  MuscleResult result = take(std::move(analysis));
+  MuscleTrajectory& t = result.trajectory;
+  t.activation = std::move(activation);
+  t.tendon_force = std::move(force);
+  t.reserve = std::move(reserve);
+  // The tendon is rigid here: the fibre has what it leaves of the path.
+  t.fiber_length.resize(t.path_length.rows(), t.path_length.cols());
+  for (Eigen::Index m = 0; m < t.path_length.cols(); ++m) {
+    const MusculotendonParameters<double>& p =
+        study.system->muscles().settings(static_cast<std::size_t>(m)).musculotendon;
+    const double height = p.optimal_fiber_length * std::sin(p.pennation_angle_at_optimal);
+    for (Eigen::Index i = 0; i < t.path_length.rows(); ++i)
+      t.fiber_length(i, m) = std::hypot(std::max(0.0, t.path_length(i, m) - p.tendon_slack_length), height);
+  }
+  for (const std::size_t i : infeasible) result.overloaded.push_back(t.time[i]);
+  if (!infeasible.empty()) {
+    result.warnings.push_back(
+        fmt::format("in {} of {} frames, the first at {:g} s, muscles and reserves could not make the forces that the "
+                    "motion needs; what comes closest is given",
+                    infeasible.size(), t.time.size(), result.overloaded.front()));
+  }
+  return result;
 }
 
 MuscleResult follow(const MuscleStudy& study, Progress& progress) {
@@ -102,7 +109,8 @@ MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress) {
       result = inverse(study, progress);
       break;
     case MuscleMethod::kStaticOptimization:
-      throw InputError("motion.method", "static optimization is not there yet");
+      result = optimise(study, progress);
+      break;
     case MuscleMethod::kComputedMuscleControl:
       result = follow(study, progress);
       break;

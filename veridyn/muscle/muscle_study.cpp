@@ -10,7 +10,7 @@
 
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/builtin_models.hpp"
-#include "veridyn/muscle/wished_motion.hpp"
+#include "veridyn/muscle/ramp.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -496,31 +496,32 @@ void read_control(const StudyTable& table, MuscleStudy& study) {
 }
 
 void read_static(const StudyTable& table, MuscleStudy& study) {
-  StaticChoices& o = study.static_optimization;
+  StaticOptimizationOptions& o = study.static_optimization;
   o.exponent = table.number_or("exponent", "1", o.exponent);
   if (!(o.exponent > 1.0 && o.exponent <= 100.0))
     table.fail("exponent", fmt::format("= {:g} must be above 1, at most 100", o.exponent));
   const std::vector<std::string> names = {"with passive", "as opensim", "without physiology"};
   const std::string name = table.choice_or("formulation", names, names[0]);
-  o.formulation = name == names[0]   ? StaticFormulation::kWithPassive
-                  : name == names[1] ? StaticFormulation::kAsOpenSim
-                                     : StaticFormulation::kWithoutPhysiology;
+  o.force = name == names[0]   ? StaticForce::kWithPassive
+            : name == names[1] ? StaticForce::kAsOpenSim
+                               : StaticForce::kIsometric;
+  if (study.reserve_force > 0.0) o.reserve.assign(study.system->coordinates(), study.reserve_force);
 }
 
-/// Keys that belong to other methods are no mistake of spelling: say what they are for.
+/// Keys of other methods: files and ramps were meant to matter, so say that they do not. Tables of excitations and
+/// speeds may stay while a study's method changes.
 void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
-  struct Belongs {
-    const char* key;
-    bool forward;
-  };
-  for (const Belongs& b :
-       {Belongs{"file", false}, Belongs{"low_pass", false}, Belongs{"ramp", false}, Belongs{"start_speed", true},
-        Belongs{"start_file", true}, Belongs{"excitation", true}, Belongs{"excitation_step", true},
-        Belongs{"excitation_file", true}, Belongs{"interpolation", true}}) {
-    if (motion.has(b.key) && b.forward != (method == MuscleMethod::kForward)) {
-      motion.fail(b.key, fmt::format("has no meaning when method = \"{}\"", method_name(method)));
+  const bool forward = method == MuscleMethod::kForward;
+  for (const char* key : {"file", "low_pass", "ramp"}) {
+    if (motion.has(key) && forward) {
+      motion.fail(key, "is a wished motion, which method = \"forward\" has no use for; the other methods follow one");
     }
   }
+  for (const char* key : {"start_file", "excitation_file", "interpolation"}) {
+    if (motion.has(key) && !forward)
+      motion.fail(key, fmt::format("has no meaning when method = \"{}\"", method_name(method)));
+  }
+  for (const char* key : {"start_speed", "excitation", "excitation_step"}) static_cast<void>(motion.has(key));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "veridyn/muscle/musculoskeletal_system.hpp"
 #include "veridyn/muscle/osim_reader.hpp"
 #include "veridyn/muscle/signals.hpp"
+#include "veridyn/muscle/static_optimization.hpp"
 
 namespace veridyn::muscle {
 
@@ -25,14 +26,6 @@ enum class MuscleMethod {
 
 /// The word of the study: "forward", "inverse dynamics", "static optimization", "computed muscle control".
 [[nodiscard]] std::string_view method_name(MuscleMethod method);
-
-/// How static optimisation counts a muscle's force; see `static_optimization.hpp`.
-enum class StaticFormulation { kWithPassive, kAsOpenSim, kWithoutPhysiology };
-
-struct StaticChoices {
-  double exponent = 2.0;
-  StaticFormulation formulation = StaticFormulation::kWithPassive;
-};
 
 /// A mass held by a body.
 struct HeldLoad {
@@ -65,12 +58,12 @@ struct MuscleStudy {
   double accuracy = 1e-5;
   double reserve_force = 1.0;  ///< of the actuator that helps each free coordinate [N m or N]; 0: none
 
-  StartState start;                 ///< forward
-  Drive drive;                      ///< forward
-  Motion motion;                    ///< otherwise: every free and driven coordinate
-  std::vector<std::string> wished;  ///< coordinates whose motion the study gives; the others rest
-  ControlOptions control;           ///< computed muscle control, begin to rate set from above
-  StaticChoices static_optimization;
+  StartState start;                               ///< forward
+  Drive drive;                                    ///< forward
+  Motion motion;                                  ///< otherwise: every free and driven coordinate
+  std::vector<std::string> wished;                ///< coordinates whose motion the study gives; the others rest
+  ControlOptions control;                         ///< computed muscle control, begin to rate set from above
+  StaticOptimizationOptions static_optimization;  ///< reserves set from above
 
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> inputs;  ///< files read

@@ -80,7 +80,9 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
   for (std::size_t m = 0; m < model.muscles.size(); ++m) {
     const std::string place = "/forceset/" + model.muscles[m].name();
     if (layout.activation[m] >= 0 && t.activation.size() > 0) add(place + "/activation", t.activation, m);
-    if (layout.fiber_length[m] >= 0 && t.fiber_length.size() > 0) add(place + "/fiber_length", t.fiber_length, m);
+    // Static optimisation has rigid tendons: its fibre lengths are no states.
+    if (layout.fiber_length[m] >= 0 && t.fiber_length.size() > 0 && study.method != MuscleMethod::kStaticOptimization)
+      add(place + "/fiber_length", t.fiber_length, m);
   }
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(t.time.size()); ++i) {
     for (const auto& [matrix, index] : columns) storage.values.push_back((*matrix)(i, index));

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
-#include <string>
 
-#include "veridyn/muscle/coordinate_reduction.hpp"
-#include "veridyn/muscle/signals.hpp"
 #include "veridyn/numerics/interpolating_spline.hpp"
 
 namespace veridyn::muscle {
@@ -32,14 +28,5 @@ struct Ramp {
 
 /// A coordinate that stays where it is.
 [[nodiscard]] numerics::InterpolatingSpline resting_spline(double value);
-
-/// Pose, speeds and accelerations of all coordinates.
-struct WishedState {
-  Eigen::VectorXd q, qdot, qddot;
-};
-
-/// A motion at an instant. Free and driven coordinates, which all must be in `motion`, follow their splines; coupled
-/// ones their couplers, whatever the motion says of them.
-[[nodiscard]] WishedState evaluate_motion(const CoordinateReduction& reduction, const Motion& motion, double time);
 
 }  // namespace veridyn::muscle

@@ -1,4 +1,4 @@
-#include "veridyn/muscle/wished_motion.hpp"
+#include "veridyn/muscle/ramp.hpp"
 
 #include <array>
 #include <cmath>
@@ -77,34 +77,6 @@ numerics::InterpolatingSpline ramp_spline(std::span<const Ramp> ramps) {
 
 numerics::InterpolatingSpline resting_spline(double value) {
   return numerics::InterpolatingSpline::from_pieces({0.0}, {{value}}, 0.0);
-}
-
-WishedState evaluate_motion(const CoordinateReduction& reduction, const Motion& motion, double time) {
-  const auto wish = [&](int coordinate) {
-    const auto& spline = motion.coordinate[static_cast<std::size_t>(coordinate)];
-    VERIDYN_ASSERT(spline.has_value());
-    return spline->evaluate(time);
-  };
-  std::vector<double> z, zdot, zddot;
-  for (const int c : reduction.free()) {
-    const numerics::SplineValue value = wish(c);
-    z.push_back(value.value);
-    zdot.push_back(value.first);
-    zddot.push_back(value.second);
-  }
-  std::vector<DrivenMotion<double>> driven;
-  for (const int c : reduction.driven()) {
-    const numerics::SplineValue value = wish(c);
-    driven.push_back({value.value, value.first, value.second});
-  }
-  ExpandedState<double> state(reduction.coordinates());
-  expand(reduction, z.data(), zdot.data(), driven.data(), state);
-  WishedState result{state.q, state.qdot, state.bias};
-  for (int c = 0; c < reduction.coordinates(); ++c) {
-    const int root = reduction.free_root(c);
-    if (root >= 0) result.qddot(c) += state.slope(c) * zddot[static_cast<std::size_t>(root)];
-  }
-  return result;
 }
 
 }  // namespace veridyn::muscle
