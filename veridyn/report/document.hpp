@@ -188,7 +188,7 @@ struct XYSeries {
   std::vector<double> y = {};
   Role role = Role::kEstimate;
   Style style = Style::kMarkers;
-  double width = 0.0;    ///< of a line [CSS px]; 0: by role
+  double width = 0.0;    ///< of a line, or of a marker [CSS px]; 0: by role
   double opacity = 1.0;  ///< 0 to 1
 };
 
@@ -211,7 +211,7 @@ struct XYPlot {
   std::vector<Guide> guides = {};
   bool equal_axes = false;   ///< the same range on both axes
   bool equal_scale = false;  ///< a unit as long on one axis as on the other: a drawing of something in space
-  int height = 260;         ///< [CSS px]
+  int height = 260;          ///< [CSS px]
 };
 
 /// An estimate with its 95 % interval; NaN ends: no interval; NaN value: none by this method.

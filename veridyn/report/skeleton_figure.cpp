@@ -24,14 +24,15 @@ constexpr std::array<const char*, 3> kAxisNames{"x, forward", "y, up", "z, to th
 class Poses {
  public:
   Poses(const MuscleStudy& study, const MuscleResult& result)
-      : system_(*study.system), q_(result.trajectory.q), kinematics_(system_.mechanism()) {}
+      : study_(study), system_(*study.system), q_(result.trajectory.q), kinematics_(system_.mechanism()) {}
 
   void set(Eigen::Index row) {
     pose_ = q_.row(row);
     update_positions(system_.mechanism(), pose_.data(), kinematics_);
   }
   [[nodiscard]] std::vector<muscle::Polyline> sticks() const {
-    return bones(system_.model(), system_.mechanism(), kinematics_);
+    // Without the loads, which would move a stick's far end.
+    return bones(study_.written, system_.mechanism(), kinematics_);
   }
   [[nodiscard]] std::vector<Eigen::Vector3d> joints() const {
     std::vector<Eigen::Vector3d> centers;
@@ -45,7 +46,17 @@ class Poses {
     return system_.paths().polyline(kinematics_, pose_.data(), static_cast<int>(m), arc_points);
   }
 
+  [[nodiscard]] std::vector<Eigen::Vector3d> loads() const {
+    std::vector<Eigen::Vector3d> places;
+    for (const HeldLoad& load : study_.loads) {
+      const int body = system_.model().body(load.body);
+      places.push_back(body_pose(system_.mechanism(), kinematics_, body) * load.location);
+    }
+    return places;
+  }
+
  private:
+  const MuscleStudy& study_;
   const MusculoskeletalSystem& system_;
   const estimation::RowMatrix& q_;
   Kinematics<double> kinematics_;
@@ -137,6 +148,11 @@ std::vector<XYPlot> skeleton_figure(const MuscleStudy& study, const MuscleResult
     XYSeries joints{.name = "joint centres", .role = Role::kReference, .style = Style::kMarkers};
     append(joints, poses.joints(), view, false);
     plot.series.push_back(std::move(joints));
+    if (!study.loads.empty()) {
+      XYSeries loads{.name = "load", .role = Role::kReference, .style = Style::kMarkers, .width = 13.0};
+      append(loads, poses.loads(), view, false);
+      plot.series.push_back(std::move(loads));
+    }
     plots.push_back(std::move(plot));
   }
   return plots;

@@ -47,7 +47,8 @@ function draw_series(plot: uPlot, series: XYSeries, look: LineLook): void {
   };
   clipped(plot, (context) => {
     context.lineWidth = (series.width > 0 ? series.width : look.width) * ratio;
-    context.lineCap = context.lineJoin = series.width > 2 ? 'round' : 'butt';
+    context.lineCap = series.width > 2 ? 'round' : 'butt';
+    context.lineJoin = series.width > 2 ? 'round' : 'miter';
     context.strokeStyle = colour;
     if (series.style === 'line') {
       context.setLineDash(look.dash.map((length) => length * ratio));
@@ -66,7 +67,7 @@ function draw_series(plot: uPlot, series: XYSeries, look: LineLook): void {
       return;
     }
     const crowded = series.x.length > 600;
-    const radius = (crowded ? 1.7 : 2.6) * ratio;
+    const radius = (series.width > 0 ? 0.5 * series.width : crowded ? 1.7 : 2.6) * ratio;
     context.fillStyle = crowded ? translucent(colour, 60) : colour;
     const zero = plot.valToPos(0, 'y', true);
     for (let k = 0; k < series.x.length; ++k) {
@@ -148,10 +149,10 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
   const y_full = padded(y_range, 0.07);
 
   // One length of a unit for both axes: the range that has more room is made longer.
-  const scaled = (plot: uPlot): [Range, Range] => {
+  const scaled = (plot_width: number, plot_height: number): [Range, Range] => {
     if (!figure.equal_scale) return [x_full, y_full];
-    const width = Math.max(1, plot.width - y_axis_size(plot.width) - kRightPadding);
-    const height = Math.max(1, plot.height - kAbscissaSize - kTopPadding);
+    const width = Math.max(1, plot_width - y_axis_size(plot_width) - kRightPadding);
+    const height = Math.max(1, plot_height - kAbscissaSize - kTopPadding);
     const unit = Math.max((x_full[1] - x_full[0]) / width, (y_full[1] - y_full[0]) / height);
     return [stretched(x_full, unit * width), stretched(y_full, unit * height)];
   };
@@ -167,8 +168,9 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
           legend: { show: false },
           padding: [kTopPadding, kRightPadding, 0, 0],
           scales: {
-            x: { time: false, range: (each) => scaled(each)[0] },
-            y: { range: (each) => scaled(each)[1] },
+            // The plot does not know its size yet when it asks for the first time.
+            x: { time: false, range: (each) => scaled(each.width || width, each.height || height)[0] },
+            y: { range: (each) => scaled(each.width || width, each.height || height)[1] },
           },
           axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: y_axis_size(width) })],
           series: [{}, { stroke: 'transparent', points: { show: false } }],
@@ -183,10 +185,14 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
             setSize: [
               (each) => {
                 if (!figure.equal_scale) return;
-                const [x, y] = scaled(each);
-                each.batch(() => {
-                  each.setScale('x', { min: x[0], max: x[1] });
-                  each.setScale('y', { min: y[0], max: y[1] });
+                // Later: a plot that is being laid out takes no scales.
+                queueMicrotask(() => {
+                  const [x, y] = scaled(each.width, each.height);
+                  if (each.scales.x?.min === x[0] && each.scales.y?.min === y[0]) return;
+                  each.batch(() => {
+                    each.setScale('x', { min: x[0], max: x[1] });
+                    each.setScale('y', { min: y[0], max: y[1] });
+                  });
                 });
               },
             ],
