@@ -151,8 +151,28 @@ Verdict verdict(const Shown& shown) {
     v.lines.push_back(line + ".");
     if (v.lines.size() >= 4) break;
   }
-  v.headline = fmt::format("{:g} s of {}, {}.", shown.study.end - shown.study.begin, shown.study.title,
-                           method_name(shown.study.method));
+  const std::size_t muscles = shown.model.muscles.size();
+  const double span = shown.study.end - shown.study.begin;
+  switch (shown.study.method) {
+    case MuscleMethod::kForward:
+      v.headline = fmt::format("{} muscles moved the model for {:g} s.", muscles, span);
+      break;
+    case MuscleMethod::kInverseDynamics:
+      v.headline = fmt::format("These forces make the wished motion of {:g} s.", span);
+      break;
+    case MuscleMethod::kStaticOptimization:
+      v.headline = result.overloaded.empty()
+                       ? fmt::format("{} muscles make the forces that {:g} s of motion need.", muscles, span)
+                       : fmt::format("{} of {} frames need more than muscles and reserves have.",
+                                     result.overloaded.size(), t.time.size());
+      break;
+    case MuscleMethod::kComputedMuscleControl:
+      v.headline =
+          result.overloaded.empty()
+              ? fmt::format("{} muscles follow the wished motion of {:g} s.", muscles, span)
+              : fmt::format("{} muscles follow the wished motion of {:g} s with help of the reserves.", muscles, span);
+      break;
+  }
   if (!t.events.empty())
     v.lines.push_back(
         fmt::format("{} times a tendon went slack or a fibre reached its least length.", t.events.size()));
@@ -253,7 +273,6 @@ Table muscle_table_of(const Shown& shown) {
   if (forces) {
     table.columns.push_back({.name = "force", .unit = "N", .group = "peak"});
     table.columns.push_back({.name = "of F0", .unit = "%", .digits = 3, .group = "peak"});
-    table.columns.push_back({.name = "at", .unit = "s", .digits = 3, .group = "peak"});
     table.columns.push_back({.name = "mean", .digits = 3, .group = "activation"});
     table.columns.push_back({.name = "greatest", .digits = 3, .group = "activation"});
   }
@@ -270,10 +289,9 @@ Table muscle_table_of(const Shown& shown) {
                       number_cell(k.max_isometric_force), number_cell(k.optimal_fiber_length),
                       number_cell(k.tendon_slack_length), number_cell(k.pennation_angle_at_optimal / kDegree)}};
     if (forces) {
-      Eigen::Index at = 0;
-      const double peak = t.tendon_force.col(i).maxCoeff(&at);
-      for (const double value : {peak, 100.0 * peak / k.max_isometric_force, t.time[static_cast<std::size_t>(at)],
-                                 t.activation.col(i).mean(), t.activation.col(i).maxCoeff()}) {
+      const double peak = t.tendon_force.col(i).maxCoeff();
+      for (const double value :
+           {peak, 100.0 * peak / k.max_isometric_force, t.activation.col(i).mean(), t.activation.col(i).maxCoeff()}) {
         row.cells.push_back(number_cell(value));
       }
     }
@@ -343,9 +361,8 @@ std::vector<std::string> notes(const Shown& shown) {
 Document muscle_report(const MuscleStudy& study, const MuscleResult& result, const std::string& program) {
   const Shown shown = choose(study, result);
   Document document;
-  document.title = fmt::format("{}: {}", study.title, method_name(study.method));
-  document.subtitle = shown.model.name == study.title ? "Musculoskeletal model"
-                                                      : fmt::format("Musculoskeletal model {}", shown.model.name);
+  document.title = study.title;
+  document.subtitle = fmt::format("Musculoskeletal model {}: {}", shown.model.name, method_name(study.method));
   document.generator = fmt::format("Made with {}", program);
   document.verdict = verdict(shown);
   document.facts = facts(shown);
