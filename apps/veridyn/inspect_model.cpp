@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/veridyn/output.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/muscle/builtin_models.hpp"
+#include "veridyn/muscle/pose_table.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -192,8 +194,20 @@ bool is_model(const std::string& file) {
 
 int inspect_model(const std::string& file, const std::string& pose, bool as_opensim, const CommonOptions& options) {
   const OsimFile osim = load_model(file);
-  static_cast<void>(pose);
-  static_cast<void>(as_opensim);
+  if (!pose.empty()) {
+    // Poses ask for geometry and inertia only: forces that are not understood do not matter here.
+    const MusculoskeletalSystem system(
+        osim.model(), {.paths = as_opensim ? PathSource::kAsOpenSim : PathSource::kExact, .without_unsupported = true});
+    const std::string csv = pose_csv(system, read_poses(system.model(), pose));
+    if (options.out.empty()) {
+      fmt::print("{}", csv);
+    } else {
+      make_folder(options.out);
+      write_file(std::filesystem::path(options.out) / "poses.csv", csv);
+      tell(options, fmt::format("wrote {}", (std::filesystem::path(options.out) / "poses.csv").string()));
+    }
+    return kDone;
+  }
   if (options.json) {
     print_summary(summary_of(file, osim.model()), options);
   } else {

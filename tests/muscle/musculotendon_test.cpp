@@ -242,6 +242,8 @@ TEST(Musculotendon, FiberIsHeldAtItsLeastLengthWhileItShortens) {
     EXPECT_EQ(muscle.rates(0.5, 0.5, 0.5 * least, slack_path, 0.0).fiber_velocity, 0.0) << v.name;
     const double long_path = 0.143 * 1.05 + least;
     EXPECT_GT(muscle.rates(0.5, 0.5, least, long_path, 0.0).fiber_velocity, 0.0) << v.name;
+    const MuscleDetails d = muscle.details(0.0, 0.0, least, slack_path, 0.0);
+    EXPECT_TRUE(std::isfinite(d.force_velocity) && std::isfinite(d.fiber_stiffness)) << v.name;
   }
 }
 

@@ -96,7 +96,7 @@ class Controller {
       const int root = reduction.free_root(static_cast<int>(c));
       if (root >= 0) qp_.b(root) += s.slope(static_cast<Eigen::Index>(c)) * (moment_[c] - reserve_[c]);
     }
-    const auto pairs = system_.paths().pairs();
+    const auto pairs = system_.pairs();
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const int root = reduction.free_root(pairs[i].coordinate);
       if (root >= 0) qp_.A(root, pairs[i].muscle) -= s.slope(pairs[i].coordinate) * ahead_.path_gradient()[i];

@@ -134,7 +134,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
       if (root >= 0) required(root) += slope(c) * (follower.moment(c) - limits(c));
     }
     arms.setZero();
-    const auto pairs = system.paths().pairs();
+    const auto pairs = system.pairs();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const int root = system.reduction().free_root(pairs[k].coordinate);
       if (root >= 0)

@@ -103,6 +103,7 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     compiled.cylinder = {d[0], 0.5 * d[1], object.quadrant};
     compiled.ellipsoid = {d, object.quadrant};
     compiled.torus = {d[0], d[1], object.quadrant};
+    if (mode_ == WrapMode::kTaut && (sizes == 1 || sizes == 3)) compiled.reach = d.head(sizes).maxCoeff();
     objects_.push_back(compiled);
   }
 
@@ -158,7 +159,6 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     muscles_.push_back(path);
   }
 
-  const Kinematics<double> rest(mechanism);
   for (Path& path : muscles_) {
     const bool conditional =
         std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
@@ -193,6 +193,12 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
           if (same == spans_.end()) spans_.push_back({a, b, wrap.object});
         }
       }
+    }
+    for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
+      const Point& pa = points_[static_cast<std::size_t>(path.stations[i].point)];
+      const Point& pb = points_[static_cast<std::size_t>(path.stations[i + 1].point)];
+      const bool fixed = pa.link == pb.link && pa.moving < 0 && pb.moving < 0;
+      path.fixed.push_back(fixed ? (pb.location - pa.location).norm() : -1.0);
     }
     most_stations_ = std::max(most_stations_, path.stations.size());
     most_wraps_ = std::max(most_wraps_, path.wraps.size());
@@ -234,8 +240,8 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
     const int index = path.wraps[static_cast<std::size_t>(node.wrap)].object;
     const auto& frame = workspace.object[static_cast<std::size_t>(index)];
     const Object& object = objects_[static_cast<std::size_t>(index)];
-    const Eigen::Vector3d d1 = r.direction1 * r.surface_length / 3.0;
-    const Eigen::Vector3d d2 = r.direction2 * r.surface_length / 3.0;
+    const Eigen::Vector3d d1 = (r.r1 - workspace.nodes[k - 1].x).normalized() * r.surface_length / 3.0;
+    const Eigen::Vector3d d2 = (workspace.nodes[k + 2].x - r.r2).normalized() * r.surface_length / 3.0;
     for (int i = 1; i <= arc_points; ++i) {
       const double t = static_cast<double>(i) / (arc_points + 1), u = 1.0 - t;
       const Eigen::Vector3d x =

@@ -102,6 +102,7 @@ class MusclePaths {
     WrapCylinder cylinder;
     WrapEllipsoid ellipsoid;
     WrapTorus torus;
+    double reach = 0.0;  ///< a segment further from the centre does not meet it; 0: unknown
   };
   /// A straight piece between two links, shared by all muscles that have it.
   struct Segment {
@@ -134,10 +135,10 @@ class MusclePaths {
     std::string name;
     std::vector<PathStation> stations;
     std::vector<Wrap> wraps;
-    bool plain = true;      ///< no wraps, no conditions
-    double constant = 0.0;  ///< length of the segments within links
-    std::vector<int>
-        segments;  ///< plain, or by station for the straight parts of a path without conditions; -1: constant
+    bool plain = true;          ///< no wraps, no conditions
+    std::vector<double> fixed;  ///< length from a station to the next where both are fixed to one link, else -1
+    double constant = 0.0;      ///< length of the segments within links
+    std::vector<int> segments;  ///< plain: those between links
     std::vector<std::array<std::size_t, 2>> adds;  ///< plain: term -> pair
     std::array<std::size_t, 2> pairs{};
   };

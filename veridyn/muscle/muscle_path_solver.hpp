@@ -71,6 +71,7 @@ struct PathWorkspace {
   std::vector<Node> stations;
   std::vector<Node> nodes;
   std::vector<Node> other_nodes;
+  WrapResult<Scalar> fresh;
   std::vector<WrapResult<Scalar>> result;
   std::vector<WrapResult<Scalar>> other_result;
   std::vector<WrapResult<Scalar>> first;
@@ -126,6 +127,14 @@ class PathSolver {
                                   bool single, const Vector& p_ground, const Vector& q_ground,
                                   internal::GeodesicSolution* nearby = nullptr) {
     const auto& frame = w_.object[static_cast<std::size_t>(index)];
+    if (object.reach > 0.0) {
+      // Most segments pass far from most objects.
+      const Eigen::Vector3d a = value_of(Vector(p_ground - frame.position));
+      const Eigen::Vector3d b = value_of(Vector(q_ground - p_ground));
+      const double b2 = b.squaredNorm(), along = -a.dot(b);
+      if (!(along > 0.0 && along < b2) || a.squaredNorm() * b2 - along * along > object.reach * object.reach * b2)
+        return {};
+    }
     const Vector p = frame.rotation.transpose() * (p_ground - frame.position);
     const Vector q = frame.rotation.transpose() * (q_ground - frame.position);
     WrapResult<Scalar> r;
@@ -156,10 +165,13 @@ class PathSolver {
     if (!r.wrapped()) return r;
     r.r1 = frame.rotation * r.r1 + frame.position;
     r.r2 = frame.rotation * r.r2 + frame.position;
-    r.direction1 = frame.rotation * r.direction1;
-    r.direction2 = frame.rotation * r.direction2;
-    r.gradient_p = frame.rotation * r.gradient_p;
-    r.gradient_q = frame.rotation * r.gradient_q;
+    // The straight parts' directions follow from the points; these are asked for only where an end dips in.
+    if (r.depth > 0.0) {
+      r.direction1 = frame.rotation * r.direction1;
+      r.direction2 = frame.rotation * r.direction2;
+      r.gradient_p = frame.rotation * r.gradient_p;
+      r.gradient_q = frame.rotation * r.gradient_q;
+    }
     if (r.weight < Scalar(1.0)) {
       r.weight_p = frame.rotation * r.weight_p;
       r.weight_q = frame.rotation * r.weight_q;
@@ -255,8 +267,7 @@ class PathSolver {
         const Node& a = w_.stations[k];
         const Node& b = w_.stations[k + 1];
         if (a.station < wrap.first || b.station > wrap.last) continue;
-        WrapResult<Scalar> fresh;
-        const WrapResult<Scalar>* r = &fresh;
+        const WrapResult<Scalar>* r = &w_.fresh;
         if (!wrap.spans.empty()) {
           const int s = wrap.spans[static_cast<std::size_t>(a.station - wrap.first)];
           if (s < 0) continue;
@@ -267,7 +278,7 @@ class PathSolver {
           }
           r = &w_.span[index];
         } else {
-          fresh = wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x);
+          w_.fresh = wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x);
         }
         if (r->status == WrapStatus::kInside) flag = std::max(flag, PathFlag::kInside);
         if (r->status == WrapStatus::kFailed) flag = std::max(flag, PathFlag::kFailed);
@@ -489,6 +500,13 @@ class PathSolver {
           }
         }
         continue;
+      }
+      if (a.station >= 0 && b.station == a.station + 1) {
+        const double fixed = path.fixed[static_cast<std::size_t>(a.station)];
+        if (fixed >= 0.0) {
+          length += fixed;
+          continue;
+        }
       }
       const Vector u = b.x - a.x;
       const Scalar l2 = u.squaredNorm();

@@ -48,6 +48,18 @@ void check_default_pose(const Model& model, const Mechanism& mechanism, const Mu
   if (!inside.empty()) throw InputError(model.name, fmt::format("at the default pose {}", inside.front()));
 }
 
+std::string fit_note(const Model& model, const FittedPaths& fit) {
+  std::size_t length = 0, arm = 0;
+  for (std::size_t m = 0; m < fit.errors().size(); ++m) {
+    if (fit.errors()[m].length > fit.errors()[length].length) length = m;
+    if (fit.errors()[m].moment_arm > fit.errors()[arm].moment_arm) arm = m;
+  }
+  if (fit.errors().empty()) return "fitted paths: the model has no muscles";
+  return fmt::format("fitted paths: largest error of a length {:.1e} m ('{}'), of a moment arm {:.1e} m ('{}')",
+                     fit.errors()[length].length, model.muscles[length].name(), fit.errors()[arm].moment_arm,
+                     model.muscles[arm].name());
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& options)
@@ -60,7 +72,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
   check_default_pose(model_, mechanism_, paths_);
   if (source_ == PathSource::kFitted) {
     fit_.emplace(model_, mechanism_, paths_);
-    for (const std::string& note : fit_->notes()) notes_.push_back(note);
+    notes_.push_back(fit_note(model_, *fit_));
   }
   layout_.free = reduction_.free().size();
   scales_.assign(layout_.free, 1.0);

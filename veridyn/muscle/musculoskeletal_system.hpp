@@ -28,9 +28,9 @@ enum class PathSource {
 struct SystemOptions {
   PathSource paths = PathSource::kExact;
   /// Coordinates held at their start value, beside those that the model locks.
-  std::vector<std::string> locked;
+  std::vector<std::string> locked{};
   /// Coordinates that the model locks and that move all the same.
-  std::vector<std::string> unlocked;
+  std::vector<std::string> unlocked{};
   /// Go on although forces or constraints of the model are not understood.
   bool without_unsupported = false;
 };
@@ -59,8 +59,10 @@ class MusculoskeletalSystem {
   [[nodiscard]] const CoordinateReduction& reduction() const { return reduction_; }
   [[nodiscard]] const MusclePaths& paths() const { return paths_; }
   /// Null unless paths are fitted.
-  [[nodiscard]] const PathFit* fit() const { return fit_ ? &*fit_ : nullptr; }
+  [[nodiscard]] const FittedPaths* fit() const { return fit_ ? &*fit_ : nullptr; }
   [[nodiscard]] PathSource path_source() const { return source_; }
+  /// Muscles and coordinates of `SystemEvaluator::path_gradient`.
+  [[nodiscard]] std::span<const MusclePaths::Pair> pairs() const { return fit_ ? fit_->pairs() : paths_.pairs(); }
   [[nodiscard]] const MuscleGroup<double>& muscles() const { return muscles_; }
   [[nodiscard]] const StateLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t coordinates() const { return model_.coordinates.size(); }
@@ -77,7 +79,7 @@ class MusculoskeletalSystem {
   Mechanism mechanism_;
   CoordinateReduction reduction_;
   MusclePaths paths_;
-  std::optional<PathFit> fit_;
+  std::optional<FittedPaths> fit_;
   PathSource source_;
   MuscleGroup<double> muscles_;
   StateLayout layout_;
@@ -116,13 +118,15 @@ class SystemEvaluator {
   [[nodiscard]] const Scalar* qdot() const { return qdot_; }
   [[nodiscard]] std::span<const Scalar> path_length() const { return length_; }
   [[nodiscard]] std::span<const Scalar> path_speed() const { return speed_; }
-  /// dL/dq in the order of `system.paths().pairs()`.
+  /// dL/dq in the order of `system.pairs()`.
   [[nodiscard]] std::span<const Scalar> path_gradient() const { return gradient_; }
   [[nodiscard]] std::span<const Scalar> tendon_force() const { return force_; }
   [[nodiscard]] std::span<const Scalar> activation() const { return activation_; }
   [[nodiscard]] std::span<const Scalar> fiber_length() const { return fiber_; }
   [[nodiscard]] const MuscleGroup<Scalar>& muscles() const { return muscles_; }
   [[nodiscard]] ReducedDynamics<Scalar>& dynamics() { return reduced_; }
+  /// Whether fitted paths were ever asked for a pose outside the ranges they were fitted over.
+  [[nodiscard]] bool beyond_fit() const { return beyond_fit_; }
   /// Evaluations of the derivative so far.
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
@@ -141,6 +145,7 @@ class SystemEvaluator {
   std::vector<Scalar> length_, speed_, gradient_;
   std::vector<Scalar> excitation_, activation_, fiber_, activation_rate_, fiber_velocity_, force_;
   long evaluations_ = 0;
+  bool beyond_fit_ = false;
 };
 
 // Details ------------------------------------------------------------------------------------------------------------
@@ -167,7 +172,7 @@ SystemEvaluator<Scalar>::SystemEvaluator(const MusculoskeletalSystem& system, Mu
       tau_(system.coordinates()),
       length_(muscles_.size()),
       speed_(muscles_.size()),
-      gradient_(system.paths().pairs().size()),
+      gradient_(system.pairs().size()),
       excitation_(muscles_.size()),
       activation_(muscles_.size()),
       fiber_(muscles_.size()),
@@ -188,15 +193,15 @@ void SystemEvaluator<Scalar>::hold(const Scalar* q) {
 template <typename Scalar>
 void SystemEvaluator<Scalar>::update_paths() {
   const MusclePaths& paths = system_->paths();
-  if (const PathFit* fit = system_->fit()) {
-    fit->evaluate(q_, length_.data(), gradient_.data());
+  if (const FittedPaths* fit = system_->fit()) {
+    beyond_fit_ |= !fit->evaluate(q_, length_.data(), gradient_.data());
   } else {
     paths.evaluate(reduced_.kinematics(), q_, path_workspace_);
     std::copy(path_workspace_.length.begin(), path_workspace_.length.end(), length_.begin());
     std::copy(path_workspace_.gradient.begin(), path_workspace_.gradient.end(), gradient_.begin());
   }
   std::fill(speed_.begin(), speed_.end(), Scalar(0.0));
-  const auto pairs = paths.pairs();
+  const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     speed_[static_cast<std::size_t>(pairs[i].muscle)] += gradient_[i] * qdot_[pairs[i].coordinate];
   }
@@ -235,7 +240,7 @@ bool SystemEvaluator<Scalar>::derivative(const Scalar* x, const SystemInputs& in
   } else {
     std::copy(inputs.coordinate_force.begin(), inputs.coordinate_force.end(), tau_.begin());
   }
-  const auto pairs = system_->paths().pairs();
+  const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     tau_[static_cast<std::size_t>(pairs[i].coordinate)] -=
         force_[static_cast<std::size_t>(pairs[i].muscle)] * gradient_[i];

@@ -235,8 +235,8 @@ template <typename Curves, typename Scalar>
                                                                   const MusculotendonConstants<Scalar>& k,
                                                                   const Scalar& a, const Scalar& lMT);
 
-/// Largest isometric-tendon quantities that static optimisation and CMC ask for: forces along a tendon of fixed slack
-/// length at the present path length and speed.
+/// Forces along the path as if the tendon were rigid, at the present path length and speed: what static optimisation
+/// and CMC ask for.
 struct RigidTendonForces {
   double active = 0.0;   ///< F0 a fL fV cos(phi) [N], not below 0
   double passive = 0.0;  ///< F0 (fPE + damping v) cos(phi) [N]
@@ -466,7 +466,9 @@ MuscleDetails musculotendon_details(const Curves& curves, const MusculotendonCon
   d.pennation_rate = cosine > 0.0 ? -d.fiber_velocity / d.fiber_length * sine / cosine : 0.0;
   d.active_length = fL.value;
   d.passive = fP.value;
-  d.force_velocity = curves.active_force(d.activation, fL.value, v) / (d.activation * fL.value);
+  // Where nothing is active fV still has a value.
+  const double a_least = std::max(d.activation, 1e-9), fL_least = std::max(fL.value, 1e-9);
+  d.force_velocity = curves.active_force(a_least, fL_least, v) / (a_least * fL_least);
   d.active_force = k.F0 * curves.active_force(d.activation, fL.value, v);
   d.passive_force = k.F0 * (fP.value + k.damping * v);
   d.fiber_force = d.active_force + d.passive_force;

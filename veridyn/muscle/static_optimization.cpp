@@ -35,7 +35,6 @@ struct SeparableProgram {
     for (Eigen::VectorXd* v : {&low, &high, &x, &slope}) v->setZero(n);
     for (Eigen::VectorXd* v : {&tau, &lambda, &centre, &gradient, &step, &trial}) v->setZero(m);
     hessian.setZero(m, m);
-    factor = Eigen::LLT<Eigen::MatrixXd>(m);
   }
 
   // x and dx/ds at the multipliers; returns the dual's value.

@@ -56,26 +56,43 @@ TangentCircle<Scalar> tangent_circle(const Eigen::Matrix<Scalar, 3, 1>& p, const
 template <typename Scalar>
 void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::Matrix<Scalar, 3, 1>& inverse_square,
                         const Scalar& s, int steps, Eigen::Matrix<Scalar, 4, 1>& y, Eigen::Matrix<Scalar, 4, 1>& v) {
-  using Vector4 = Eigen::Matrix<Scalar, 4, 1>;
-  const auto f = [&](const Vector4& at) -> Vector4 {
-    const Scalar n0 = at[0] * inverse_square[0];
-    const Scalar n1 = at[1] * inverse_square[1];
-    const Scalar n2 = at[2] * inverse_square[2];
-    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
-    const Scalar w = Scalar(-1.0) / (n * n);
-    return (lambda.cwiseProduct(at) * w).eval();
-  };
+  // With V = h v and K = h^2 f no step size is left in the formulas. Four scalars, not a matrix: nothing is shuffled.
   const Scalar h = s / Scalar(static_cast<double>(steps));
-  const Scalar hh = h * h;
+  const Scalar hh = -h * h;
+  const Scalar l0 = lambda[0] * hh, l1 = lambda[1] * hh, l2 = lambda[2] * hh, l3 = lambda[3] * hh;
+  const Scalar i0 = inverse_square[0], i1 = inverse_square[1], i2 = inverse_square[2];
+  const auto f = [&](const Scalar* at, Scalar* k) {
+    const Scalar n0 = at[0] * i0, n1 = at[1] * i1, n2 = at[2] * i2;
+    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
+    const Scalar w = Scalar(1.0) / (n * n);
+    k[0] = l0 * at[0] * w;
+    k[1] = l1 * at[1] * w;
+    k[2] = l2 * at[2] * w;
+    k[3] = l3 * at[3] * w;
+  };
+  Scalar x[4], u[4], at[4], k1[4], k2[4], k3[4], k4[4];
+  for (int c = 0; c < 4; ++c) {
+    x[c] = y[c];
+    u[c] = v[c] * h;
+  }
   for (int i = 0; i < steps; ++i) {
-    const Vector4 k1 = f(y);
-    const Vector4 k2 = f((y + v * (h * Scalar(0.2)) + k1 * (hh * Scalar(1.0 / 50.0))).eval());
-    const Vector4 k3 =
-        f((y + v * (h * Scalar(2.0 / 3.0)) + (k2 * Scalar(7.0) - k1) * (hh * Scalar(1.0 / 27.0))).eval());
-    const Vector4 k4 =
-        f((y + v * h + (k1 * Scalar(21.0) - k2 * Scalar(4.0) + k3 * Scalar(18.0)) * (hh * Scalar(1.0 / 70.0))).eval());
-    y += v * h + (k1 * Scalar(14.0) + k2 * Scalar(100.0) + k3 * Scalar(54.0)) * (hh * Scalar(1.0 / 336.0));
-    v += (k1 * Scalar(14.0) + k2 * Scalar(125.0) + k3 * Scalar(162.0) + k4 * Scalar(35.0)) * (h * Scalar(1.0 / 336.0));
+    f(x, k1);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * 0.2 + k1[c] * (1.0 / 50.0));
+    f(at, k2);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * (2.0 / 3.0) - k1[c] * (1.0 / 27.0)) + k2[c] * (7.0 / 27.0);
+    f(at, k3);
+    for (int c = 0; c < 4; ++c)
+      at[c] = x[c] + (u[c] + k1[c] * (21.0 / 70.0) - k2[c] * (4.0 / 70.0)) + k3[c] * (18.0 / 70.0);
+    f(at, k4);
+    for (int c = 0; c < 4; ++c) {
+      x[c] += u[c] + (k1[c] * (14.0 / 336.0) + k2[c] * (100.0 / 336.0) + k3[c] * (54.0 / 336.0));
+      u[c] += k1[c] * (14.0 / 336.0) + k2[c] * (125.0 / 336.0) + k3[c] * (162.0 / 336.0) + k4[c] * (35.0 / 336.0);
+    }
+  }
+  const Scalar per_h = Scalar(1.0) / h;
+  for (int c = 0; c < 4; ++c) {
+    y[c] = x[c];
+    v[c] = u[c] * per_h;
   }
 }
 
@@ -192,7 +209,7 @@ inline constexpr double kCoarseStep = 0.35;
 /// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
 /// correction is left to the caller; what remains after it is its square.
 inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                   const TangentCircle<double>& circle, SolvedGeodesic& solution) {
+                   const TangentCircle<double>& circle, double tolerance, SolvedGeodesic& solution) {
   const double size = a.maxCoeff();
   const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
   const double radius = a.minCoeff();
@@ -216,20 +233,22 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
     solution.length = solution.shot.length1 + s + c.length2;
     solution.jacobi = c.jacobi;
     const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
-    if (is_fine && step < 3e-6 && c.reached) {
+    // Next to the surface the last correction is less linear.
+    const bool clear = std::min(solution.shot.length1, c.length2) > 0.2 * radius;
+    if (is_fine && step < (clear ? tolerance : 1e-2 * tolerance) && c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
     }
     if (step < 5e-3) is_fine = true;
     alpha += d_alpha;
-    s = std::max(0.0, s + d_s);
+    s = std::max(1e-12 * size, s + d_s);
   }
 }
 
 /// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
 inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const Eigen::Vector3d& toward) {
+                                     const Eigen::Vector3d& toward, double tolerance) {
   SolvedGeodesic solution;
   const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
   const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
@@ -246,17 +265,17 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
   const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
   solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
   solution.toward = toward;
-  newton(a, p, q, circle, solution);
+  newton(a, p, q, circle, tolerance, solution);
   return solution;
 }
 
 /// From a converged solution for nearby ends, on the same side.
 inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const GeodesicSolution& nearby) {
+                                     const GeodesicSolution& nearby, double tolerance) {
   SolvedGeodesic solution;
   static_cast<GeodesicSolution&>(solution) = nearby;
   const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
-  newton(a, p, q, circle, solution);
+  newton(a, p, q, circle, tolerance, solution);
   return solution;
 }
 
@@ -266,7 +285,8 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
 /// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
 ///
 /// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
-/// the solution). Accurate to about 1e-7 of the radii. `nearby`: the solution is left there, and one that is there
+/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
+/// square of that. `nearby`: the solution is left there, and one that is there
 /// already (`converged`) starts the search.
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
@@ -305,10 +325,12 @@ template <typename Scalar>
     if (ellipsoid.quadrant.sign < 0) near = -near;
     if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
   }
+  // Derivatives are taken at the last shot: it has to be closer to the solution for them.
+  constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-4 : 1e-7;
   internal::SolvedGeodesic solution;
   const bool warm = nearby != nullptr && nearby->converged;
-  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby);
-  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near);
+  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby, tolerance);
+  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near, tolerance);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
     const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
@@ -324,7 +346,7 @@ template <typename Scalar>
     bool have = good(solution);
     for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
                                           Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward);
+      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward, tolerance);
       if (!good(other) && !(other.converged && !solution.converged)) continue;
       if (have && !(other.length < solution.length)) continue;
       solution = other;
@@ -360,7 +382,8 @@ template <typename Scalar>
   result.spread = solution.jacobi / solution.length;
   if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
       inactive(values_of(result.r2)) && inactive(solution.middle)) {
-    const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward));
+    const internal::SolvedGeodesic other =
+        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
     if (other.converged && !inactive(other.middle)) last_step(other);
   }
   const Vector3 in = result.r1 - p;

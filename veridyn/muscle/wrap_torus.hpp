@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "veridyn/muscle/wrap_cylinder.hpp"
 
@@ -93,6 +95,10 @@ template <typename Scalar>
     if (std::abs(step) < 1e-9) break;
     // The obstacle is highest where the length is greatest.
     step = std::clamp(curvature < 0.0 ? -slope / curvature : (slope > 0.0 ? 0.1 : -0.1), -0.2, 0.2);
+  }
+  if (!(std::abs(slope) < 1e-7 * torus.ring_radius) || !(curvature < 0.0)) {
+    result.status = WrapStatus::kFailed;  // the string slides off along the ring
+    return result;
   }
   if constexpr (std::is_same_v<Scalar, double>) {
     return internal::wrap_tube<double>(torus, p, q, angle);
