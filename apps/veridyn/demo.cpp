@@ -1,4 +1,5 @@
-// veridyn demo: the whole way on a built-in aircraft and a simulated flight; needs no file.
+// veridyn demo: the whole way on a built-in aircraft and a simulated flight, and an arm that lifts a weight; needs no
+// file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/veridyn/results.hpp"
+#include "apps/veridyn/simulate_muscle.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
@@ -33,7 +35,43 @@ sensors = "reference"
 turbulence = "low_moderate"
 )";
 
-int demo(const CommonOptions& options) {
+constexpr const char* kMuscleDemo =
+    R"(# The muscles' part of `veridyn demo`: which excitations bend the elbow of the built-in arm with 1 kg in the hand?
+title = "elbow flexion with 1 kg"
+
+[subject]
+model = "arm"
+locked = ["shoulder_flexion"]
+
+[[subject.load]]
+body = "forearm"
+mass = "1 kg"
+location = [0, -0.30, 0]
+
+[motion]
+method = "computed muscle control"
+duration = 1.1
+
+[[motion.ramp]]
+coordinate = "elbow_flexion"
+from = "10 deg"
+to = "110 deg"
+start = 0.05
+duration = 1
+)";
+
+int muscle_demo(const CommonOptions& options) {
+  CommonOptions own = options;
+  own.out = (std::filesystem::path(options.out) / "muscle").string();
+  own.json = false;  // the summary is the aircraft's
+  make_folder(own.out);
+  const std::string path = (std::filesystem::path(own.out) / "study.toml").string();
+  write_file(path, kMuscleDemo);
+  // Overrides are meant for the aircraft's study.
+  return simulate_muscle(Study::load(path), path, own, "demo");
+}
+
+int aircraft_demo(const CommonOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(options.out) / "aircraft";
   make_folder(folder);
   write_file(folder / "study.toml", kDemoStudy);
@@ -53,12 +91,17 @@ int demo(const CommonOptions& options) {
   return kDone;
 }
 
+int demo(const CommonOptions& options) {
+  const int exit_code = aircraft_demo(options);
+  return exit_code == kDone ? muscle_demo(options) : exit_code;
+}
+
 }  // namespace
 
 void add_demo(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<CommonOptions>();
   CLI::App* verb =
-      program.add_subcommand("demo", "a complete run on a built-in aircraft and a simulated flight; needs no input");
+      program.add_subcommand("demo", "complete runs on a built-in aircraft and a built-in arm; needs no input");
   add_common(*verb, *options, "out/demo", "veridyn demo --seed 3");
   verb->callback([options, &exit_code] { exit_code = demo(*options); });
 }

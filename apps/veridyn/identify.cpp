@@ -8,7 +8,9 @@
 #include "apps/veridyn/ground.hpp"
 #include "apps/veridyn/results.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
+#include "veridyn/muscle/muscle_study.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -21,6 +23,11 @@ struct Options {
 int identify(const Options& options) {
   const Study study = load_study(options.study, options.common);
   if (is_ground_study(study)) return identify_ground(study, options.study, options.common);
+  if (muscle::is_muscle_study(study.root())) {
+    throw InputError(study.root().place("subject"),
+                     "is a musculoskeletal model, whose parameters this version does not estimate yet; `veridyn "
+                     "simulate` runs the study, [subject.parameters] sets parameters by hand");
+  }
   TerminalProgress progress(options.common.quiet);
   aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, progress);
@@ -43,7 +50,11 @@ int identify(const Options& options) {
 void add_identify(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = program.add_subcommand("identify", "from recording to parameters, validation and report");
-  verb->add_option("STUDY", options->study, "study file (TOML); `veridyn init aircraft` writes one to start from")
+  verb->add_option(
+          "STUDY", options->study,
+          "study file (TOML) of an aircraft's flight, a swing test or a calibration; `veridyn init` writes one to "
+          "start from. Studies of muscles (`model` in [subject]) are for `veridyn simulate`: estimating muscle "
+          "parameters is not there yet")
       ->required();
   add_common(*verb, options->common, "out/identify",
              "veridyn identify study.toml --out out/flight7 --set data.from=120");

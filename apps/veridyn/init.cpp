@@ -1,4 +1,4 @@
-// veridyn init aircraft|swing-test|calibration: a commented study file to start from.
+// veridyn init aircraft|swing-test|calibration|muscle: a commented study file to start from.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "apps/veridyn/ground_templates.hpp"
+#include "apps/veridyn/muscle_template.hpp"
 #include "apps/veridyn/options.hpp"
 #include "apps/veridyn/output.hpp"
 #include "veridyn/core/error.hpp"
@@ -15,7 +16,7 @@ namespace veridyn::app {
 namespace {
 
 struct Options {
-  std::string log;
+  std::string log;  ///< or model: the file that the study is about
   bool force = false;
   CommonOptions common;
 };
@@ -122,12 +123,12 @@ file = @LOG@
 # estimate = "estimate.json"     # start from an earlier identification
 )toml";
 
-/// The template with the log's path as TOML text, so that it is found from the study's folder.
-std::string study_text(const std::string& log, const std::filesystem::path& folder) {
+/// A file's path as TOML text, so that it is found from the study's folder.
+std::string quoted_path(const std::string& file, const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
-  fs::path path = log;
-  // A log that is there is named from the study's folder; a name to be filled in stays as it is.
+  fs::path path = file;
+  // A file that is there is named from the study's folder; a name to be filled in stays as it is.
   if (path.is_relative() && fs::exists(path, error))
     path = fs::proximate(fs::absolute(path), fs::absolute(folder), error);
   std::string quoted = "\"";
@@ -135,18 +136,20 @@ std::string study_text(const std::string& log, const std::filesystem::path& fold
     if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }
-  quoted += '"';
-  std::string text = kAircraftStudy;
-  const std::string mark = "@LOG@";
-  text.replace(text.find(mark), mark.size(), quoted);
-  return text;
+  return quoted + '"';
+}
+
+/// A template with `mark` replaced.
+std::string filled(std::string text, const std::string& mark, const std::string& with) {
+  return text.replace(text.find(mark), mark.size(), with);
 }
 
 std::filesystem::path folder_of(const Options& options) {
   return options.common.out.empty() ? "." : options.common.out;
 }
 
-void write_study(const Options& options, const std::string& text, const std::string& to_do) {
+void write_study(const Options& options, const std::string& text, const std::string& to_do,
+                 const std::string& verb = "identify") {
   const std::filesystem::path folder = folder_of(options);
   make_folder(folder);
   const std::filesystem::path path = folder / "study.toml";
@@ -154,7 +157,7 @@ void write_study(const Options& options, const std::string& text, const std::str
     throw InputError(path.string(), "is there already; --force replaces it");
   }
   write_file(path, text);
-  tell(options.common, fmt::format("wrote {}: {}, then `veridyn identify {}`", path.string(), to_do, path.string()));
+  tell(options.common, fmt::format("wrote {}: {}, then `veridyn {} {}`", path.string(), to_do, verb, path.string()));
 }
 
 }  // namespace
@@ -174,6 +177,19 @@ void add_init(CLI::App& program, int& exit_code) {
   };
   add_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy);
   add_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy);
+  auto muscle = std::make_shared<Options>();
+  CLI::App* model = verb->add_subcommand("muscle", "study of a musculoskeletal model: study.toml in --out");
+  muscle->log = "arm";
+  model->add_option("--model", muscle->log, "OpenSim model (.osim), or a built-in one: arm")
+      ->capture_default_str()
+      ->type_name("FILE");
+  model->add_flag("--force", muscle->force, "replace an existing study.toml");
+  add_common(*model, muscle->common, ".", "veridyn init muscle --model arm26.osim --out my_arm");
+  model->callback([muscle, &exit_code] {
+    write_study(*muscle, filled(kMuscleStudy, "@MODEL@", quoted_path(muscle->log, folder_of(*muscle))),
+                "choose method and motion", "simulate");
+    exit_code = kDone;
+  });
   CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");
   verb->require_subcommand(1);
   aircraft->add_option("--log", options->log, "the log that the study is about")
@@ -183,7 +199,8 @@ void add_init(CLI::App& program, int& exit_code) {
   aircraft->add_flag("--force", options->force, "replace an existing study.toml");
   add_common(*aircraft, options->common, ".", "veridyn init aircraft --log flight.bin --out my_aircraft");
   aircraft->callback([options, &exit_code] {
-    write_study(*options, study_text(options->log, folder_of(*options)), "fill in the subject");
+    write_study(*options, filled(kAircraftStudy, "@LOG@", quoted_path(options->log, folder_of(*options))),
+                "fill in the subject");
     exit_code = kDone;
   });
 }

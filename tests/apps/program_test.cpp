@@ -1,11 +1,9 @@
+#include "tests/apps/program.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -21,52 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string text;  ///< stdout and stderr
-};
-
-Outcome run(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = ::popen((std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
-    outcome.text.append(block.data(), n);
-  const int status = ::pclose(pipe);
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-class Program : public testing::Test {
+class Program : public ProgramTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("veridyn_program_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string file(const std::string& name, const std::string& content) const {
-    write_file(folder_ / name, content);
-    return (folder_ / name).string();
-  }
-  std::string out() const { return " --quiet --out " + (folder_ / "out").string(); }
-
-  /// A wrong input: exit code 2, one line that holds `message`, and no result.
-  void expect_refusal(const std::string& arguments, const std::string& message) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
-    EXPECT_THAT(outcome.text, HasSubstr(message));
-    EXPECT_FALSE(fs::exists(folder_ / "out" / "estimate.json"));
-    EXPECT_FALSE(fs::exists(folder_ / "out" / "report.html"));
-  }
-
   static constexpr const char* kFlight =
       "[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 90\nairspeed = 20\nturbulence = \"low_light\"\n"
       "[reconstruct]\nsensors = \"reference\"\nturbulence = \"low_light\"\n"
       "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 5\nduration = 35\nsurfaces = [\"elevator\"]\n"
       "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 45\nduration = 40\nsurfaces = [\"aileron\", \"rudder\"]\n";
-
-  fs::path folder_;
 };
 
 TEST_F(Program, ShowsItsVerbsAndNoOthers) {
@@ -80,7 +39,7 @@ TEST_F(Program, ShowsItsVerbsAndNoOthers) {
 
 TEST_F(Program, HelpsEveryVerbWithAnExample) {
   for (const char* verb : {"demo", "inspect", "simulate", "reconstruct", "identify", "validate", "export", "track",
-                           "reproduce aircraft", "init aircraft"}) {
+                           "reproduce aircraft", "init aircraft", "init muscle"}) {
     const Outcome help = run(std::string(verb) + " --help");
     EXPECT_EQ(help.exit_code, 0) << verb;
     EXPECT_THAT(help.text, HasSubstr("Example:\n  veridyn ")) << verb;

@@ -59,5 +59,17 @@ TEST(InterpolatingSpline, HoldsItsEndValuesAndTakesFewPoints) {
   EXPECT_NEAR(cubic.evaluate(3.0).value, 27.0, 1e-12);
 }
 
+TEST(InterpolatingSpline, OfPiecesIsWhatThePiecesSayTheRightOneAtABreak) {
+  const auto spline = InterpolatingSpline::from_pieces({0.0, 1.0}, {{2.0, 3.0}, {5.0, 0.0, 4.0}}, 2.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(-1.0).value, 2.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(0.5).value, 3.5);
+  EXPECT_DOUBLE_EQ(spline.evaluate(0.5).first, 3.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(1.0).first, 0.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(1.0).second, 8.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(1.5).value, 6.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(3.0).value, 9.0);
+  EXPECT_DOUBLE_EQ(spline.evaluate(3.0).first, 0.0);
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

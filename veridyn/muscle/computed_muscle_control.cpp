@@ -298,7 +298,12 @@ double ControlResult::tracking_error(int coordinate) const {
 ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const Motion& motion,
                                       const ControlOptions& options, Progress& progress) {
   check(system, options);
-  ControlResult result = Controller(system, motion, options).run(default_start(system.model()), progress);
+  StartState pose = default_start(system.model());
+  for (const int c : system.reduction().driven()) {
+    const auto& spline = motion.coordinate[static_cast<std::size_t>(c)];
+    if (spline) pose.q(c) = spline->evaluate(options.begin).value;
+  }
+  ControlResult result = Controller(system, motion, options).run(pose, progress);
   if (result.trajectory.end == SimulationEnd::kInterrupted) return result;
   // The result is the replay of what was found: what a forward simulation of the same drive gives.
   Progress quiet;

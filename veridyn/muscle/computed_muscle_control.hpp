@@ -55,6 +55,7 @@ struct ControlResult {
 /// their window, and stay so in the result: OpenSim writes them as samples to be interpolated, which is why its replay
 /// leaves its own motion.
 ///
+/// Locked coordinates are held where the motion, if it has them, is at `begin`; else at the model's default.
 /// Every free coordinate must be in the motion. @throws InputError naming the one that is not, or options that make no
 /// sense.
 [[nodiscard]] ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const Motion& motion,

@@ -1,6 +1,7 @@
 #include "veridyn/numerics/interpolating_spline.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "veridyn/core/assert.hpp"
 
@@ -104,6 +105,16 @@ InterpolatingSpline::InterpolatingSpline(std::span<const double> x, std::span<co
       coefficients_[piece][d] = value / factorial;
     }
   }
+}
+
+InterpolatingSpline InterpolatingSpline::from_pieces(std::vector<double> breaks,
+                                                     std::vector<std::array<double, 6>> coefficients, double end) {
+  VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end >= breaks.back());
+  InterpolatingSpline spline;
+  spline.breaks_ = std::move(breaks);
+  spline.coefficients_ = std::move(coefficients);
+  spline.end_ = end;
+  return spline;
 }
 
 SplineValue InterpolatingSpline::evaluate(double time) const {

@@ -25,6 +25,12 @@ class InterpolatingSpline {
   /// `times` strictly increasing, at least one; as many values. The caller has checked them for NaN.
   InterpolatingSpline(std::span<const double> times, std::span<const double> values);
 
+  /// The piecewise polynomial sum_k coefficients[i][k] (t - breaks[i])^k from breaks[i] on, the last piece until `end`.
+  /// `breaks` strictly increasing, at least one, as many coefficients; smoothness is that of the pieces given.
+  [[nodiscard]] static InterpolatingSpline from_pieces(std::vector<double> breaks,
+                                                       std::vector<std::array<double, 6>> coefficients, double end);
+
+  /// At a break the piece that begins there counts.
   [[nodiscard]] SplineValue evaluate(double time) const;
   [[nodiscard]] double begin() const { return breaks_.front(); }
   [[nodiscard]] double end() const { return end_; }

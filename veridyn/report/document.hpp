@@ -188,6 +188,8 @@ struct XYSeries {
   std::vector<double> y = {};
   Role role = Role::kEstimate;
   Style style = Style::kMarkers;
+  double width = 0.0;    ///< of a line, or of a marker [CSS px]; 0: by role
+  double opacity = 1.0;  ///< 0 to 1
 };
 
 /// A dashed line across a plot, such as the bound of white noise.
@@ -207,8 +209,9 @@ struct XYPlot {
   Quantity y = {};
   std::vector<XYSeries> series = {};
   std::vector<Guide> guides = {};
-  bool equal_axes = false;  ///< the same range on both axes
-  int height = 260;         ///< [CSS px]
+  bool equal_axes = false;   ///< the same range on both axes
+  bool equal_scale = false;  ///< a unit as long on one axis as on the other: a drawing of something in space
+  int height = 260;          ///< [CSS px]
 };
 
 /// An estimate with its 95 % interval; NaN ends: no interval; NaN value: none by this method.

@@ -202,6 +202,8 @@ json block_json(const XYPlot& plot, const JsonOptions& options) {
     series.push_back({{"name", each.name},
                       {"role", name_of(each.role)},
                       {"style", name_of(each.style)},
+                      {"width", each.width},
+                      {"opacity", each.opacity},
                       {"x", round_for_storage(drawn.x, kValueSteps)},
                       {"y", round_for_storage(drawn.y, kValueSteps)}});
   }
@@ -219,6 +221,7 @@ json block_json(const XYPlot& plot, const JsonOptions& options) {
           {"y", quantity_json(plot.y)},
           {"height", plot.height},
           {"equal_axes", plot.equal_axes},
+          {"equal_scale", plot.equal_scale},
           {"series", std::move(series)},
           {"guides", std::move(guides)}};
 }

@@ -107,6 +107,8 @@ export interface XYSeries {
   name: string;
   role: Role;
   style: 'line' | 'markers' | 'stems';
+  width: number;
+  opacity: number;
   x: Samples;
   y: Samples;
 }
@@ -120,6 +122,7 @@ export interface XYPlot {
   y: Axis;
   height: number;
   equal_axes: boolean;
+  equal_scale: boolean;
   series: XYSeries[];
   guides: { direction: 'horizontal' | 'vertical'; value: number; label: string }[];
 }

@@ -7,6 +7,11 @@ import { swatch } from './time_series';
 
 type Range = [number, number];
 
+/** Room around the plotting area [CSS px]. */
+const kTopPadding = 8;
+const kRightPadding = 12;
+const kAbscissaSize = 26;
+
 function span_of(values: (number | null)[][]): Range {
   let low = Infinity;
   let high = -Infinity;
@@ -25,8 +30,14 @@ function padded([low, high]: Range, share: number): Range {
   return [low - margin, high + margin];
 }
 
+/** The middle of a range with another length. */
+function stretched([low, high]: Range, length: number): Range {
+  const middle = 0.5 * (low + high);
+  return [middle - 0.5 * length, middle + 0.5 * length];
+}
+
 function draw_series(plot: uPlot, series: XYSeries, look: LineLook): void {
-  const colour = look.colour(palette());
+  const colour = series.opacity < 1 ? translucent(look.colour(palette()), 100 * series.opacity) : look.colour(palette());
   const ratio = uPlot.pxRatio;
   const at = (k: number): Range | null => {
     const x = series.x[k];
@@ -35,7 +46,9 @@ function draw_series(plot: uPlot, series: XYSeries, look: LineLook): void {
     return [plot.valToPos(x, 'x', true), plot.valToPos(y, 'y', true)];
   };
   clipped(plot, (context) => {
-    context.lineWidth = look.width * ratio;
+    context.lineWidth = (series.width > 0 ? series.width : look.width) * ratio;
+    context.lineCap = series.width > 2 ? 'round' : 'butt';
+    context.lineJoin = series.width > 2 ? 'round' : 'miter';
     context.strokeStyle = colour;
     if (series.style === 'line') {
       context.setLineDash(look.dash.map((length) => length * ratio));
@@ -54,7 +67,7 @@ function draw_series(plot: uPlot, series: XYSeries, look: LineLook): void {
       return;
     }
     const crowded = series.x.length > 600;
-    const radius = (crowded ? 1.7 : 2.6) * ratio;
+    const radius = (series.width > 0 ? 0.5 * series.width : crowded ? 1.7 : 2.6) * ratio;
     context.fillStyle = crowded ? translucent(colour, 60) : colour;
     const zero = plot.valToPos(0, 'y', true);
     for (let k = 0; k < series.x.length; ++k) {
@@ -135,6 +148,15 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
   const x_full = padded(x_range, 0.04);
   const y_full = padded(y_range, 0.07);
 
+  // One length of a unit for both axes: the range that has more room is made longer.
+  const scaled = (plot_width: number, plot_height: number): [Range, Range] => {
+    if (!figure.equal_scale) return [x_full, y_full];
+    const width = Math.max(1, plot_width - y_axis_size(plot_width) - kRightPadding);
+    const height = Math.max(1, plot_height - kAbscissaSize - kTopPadding);
+    const unit = Math.max((x_full[1] - x_full[0]) / width, (y_full[1] - y_full[0]) / height);
+    return [stretched(x_full, unit * width), stretched(y_full, unit * height)];
+  };
+
   const readout = h('span', { class: 'clock' });
   const host = h('div', { class: 'plot' });
   queueMicrotask(() => {
@@ -144,9 +166,13 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
           width,
           height,
           legend: { show: false },
-          padding: [8, 12, 0, 0],
-          scales: { x: { time: false, range: () => x_full }, y: { range: () => y_full } },
-          axes: [axis('x', { size: 26 }), axis('y', { size: y_axis_size(width) })],
+          padding: [kTopPadding, kRightPadding, 0, 0],
+          scales: {
+            // The plot does not know its size yet when it asks for the first time.
+            x: { time: false, range: (each) => scaled(each.width || width, each.height || height)[0] },
+            y: { range: (each) => scaled(each.width || width, each.height || height)[1] },
+          },
+          axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: y_axis_size(width) })],
           series: [{}, { stroke: 'transparent', points: { show: false } }],
           cursor: { drag: { x: false, y: false }, points: { show: false }, bind: { dblclick: () => () => null } },
           hooks: {
@@ -154,6 +180,20 @@ export function draw_xy_plot(figure: XYPlot): HTMLElement {
               (each) => {
                 draw_guides(each, figure);
                 figure.series.forEach((series, k) => draw_series(each, series, look[k] as LineLook));
+              },
+            ],
+            setSize: [
+              (each) => {
+                if (!figure.equal_scale) return;
+                // Later: a plot that is being laid out takes no scales.
+                queueMicrotask(() => {
+                  const [x, y] = scaled(each.width, each.height);
+                  if (each.scales.x?.min === x[0] && each.scales.y?.min === y[0]) return;
+                  each.batch(() => {
+                    each.setScale('x', { min: x[0], max: x[1] });
+                    each.setScale('y', { min: y[0], max: y[1] });
+                  });
+                });
               },
             ],
             setCursor: [

@@ -1,0 +1,83 @@
+#pragma once
+
+namespace veridyn::app {
+
+/// What `veridyn init muscle` writes; @MODEL@ is replaced by the model's name or path.
+inline constexpr const char* kMuscleStudy =
+    R"toml(# A study of a musculoskeletal model: which model, which motion, what to compute.
+#   veridyn inspect arm                 bodies, coordinates, muscles of a model; of your own: veridyn inspect my.osim
+#   veridyn simulate study.toml         motion.csv, muscles.csv, states.sto, controls.sto, model.osim, report.html
+# Numbers are SI and radians; a text may carry any unit of the same kind: "30 deg", "10 ms". Keys with a leading # show
+# their defaults, or what they look like. Misspelt keys are refused, with the nearest known one. docs/muscle.md explains
+# all of them.
+
+[subject]
+model = @MODEL@
+# paths = "exact"                # "fitted": polynomials, faster; "opensim": OpenSim's wrapping, its jumps included
+# locked = ["shoulder_flexion"]  # coordinates held where they start
+# unlocked = []                  # coordinates that the model locks and that move all the same
+# without_unsupported = false    # go on without forces and constraints of the model that are not understood
+
+# Parameters other than the model's: max_isometric_force, optimal_fiber_length, tendon_slack_length,
+# pennation_angle_at_optimal, max_contraction_velocity (in L0/s), activation_time_constant, deactivation_time_constant.
+[subject.parameters]
+# "biceps_long.optimal_fiber_length" = "0.150 m"
+# "biceps_long.max_isometric_force" = "550 N"
+
+# A weight in the hand; repeat the table for more.
+# [[subject.load]]
+# body = "forearm"
+# mass = "1 kg"
+# location = [0, -0.3, 0]        # m in the body's frame
+
+[motion]
+method = "forward"               # "inverse dynamics", "static optimization", "computed muscle control"
+# begin = 0                      # s; of a motion file its beginning
+duration = 1                     # s; of a motion file its rest when left out
+# rate = 200                     # Hz, rows of the results
+# accuracy = 1e-5                # of the integration
+# reserve_force = 1              # N m, of an actuator that helps each free coordinate; 0: none
+
+# Where it is at `begin`, by coordinate; the model's default pose where nothing is said.
+[motion.start]
+# elbow_flexion = "30 deg"
+
+# --- method = "forward": excitations are given, the motion follows -------------------------------------------------
+# [motion]
+# start_file = "states.sto"      # pose, speeds, activations and fibre lengths at `begin`
+# excitation_file = "controls.sto"   # .sto, .mot or .csv, by the muscles' names; instead of the tables below
+# interpolation = "linear"       # "hold": each sample holds until the next
+[motion.start_speed]
+# elbow_flexion = "0 deg/s"
+[motion.excitation]              # 0 to 1
+default = 0.05
+# biceps_long = 0.10
+# [[motion.excitation_step]]     # from `time` on; muscles that are not named keep theirs
+# time = "0.2 s"
+# brachialis = 0.15
+
+# --- the three others: a motion is wished for ----------------------------------------------------------------------
+# [motion]
+# file = "lift.mot"              # .mot, .sto or .csv with columns by the coordinates' names
+# low_pass = "6 Hz"              # of its samples, without delay
+# [[motion.ramp]]                # or coordinates that go from here to there; all others rest
+# coordinate = "elbow_flexion"
+# from = "10 deg"                # where the ramp before ended, or the start
+# to = "110 deg"
+# start = 0.05                   # s
+# duration = 1                   # s
+# shape = "minimum jerk"         # "half sine", "linear"
+
+[motion.control]                 # computed muscle control
+# window = "10 ms"               # controls are held so long
+# kp = 100                       # 1/s^2, gains on the errors of position
+# kv = 20                        # 1/s, and speed
+# min_control = 0.02
+# max_control = 1
+
+[motion.static_optimization]
+# exponent = 2                   # of the activations in the sum that is made least
+# formulation = "with passive"   # "as opensim": without passive forces; "without physiology": force = activation F0
+)toml";
+
+}  // namespace veridyn::app

@@ -1,0 +1,140 @@
+// The program on studies of muscles.
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.hpp"
+#include "veridyn/io/csv.hpp"
+
+namespace veridyn {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class MuscleProgram : public ProgramTest {
+ protected:
+  static constexpr const char* kSubject = "[subject]\nmodel = \"arm\"\n";
+  [[nodiscard]] std::string in_out(const std::string& name) const { return (folder_ / "out" / name).string(); }
+};
+
+TEST_F(MuscleProgram, SimulatesItsOwnTemplate) {
+  ASSERT_EQ(run("init muscle --quiet --out " + folder_.string()).exit_code, 0);
+  EXPECT_THAT(read_file(folder_ / "study.toml"), HasSubstr("model = \"arm\""));
+  const Outcome done =
+      run("simulate " + (folder_ / "study.toml").string() + " --set motion.duration=0.2 --json" + out());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  for (const char* name :
+       {"motion.csv", "muscles.csv", "states.sto", "controls.sto", "model.osim", "report.html", "run.json"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  const auto summary = nlohmann::json::parse(done.text);
+  EXPECT_EQ(summary["method"], "forward");
+  EXPECT_EQ(summary["completed"], true);
+  EXPECT_EQ(summary["rows"], 41);
+  EXPECT_EQ(summary["muscles"].size(), 6u);
+  // What it wrote it reads: the model, and the states and controls.
+  EXPECT_EQ(run("inspect " + in_out("model.osim")).exit_code, 0);
+  const Recording motion = io::to_recording(io::read_csv_file(in_out("motion.csv")));
+  EXPECT_TRUE(motion.has("elbow_flexion"));
+}
+
+TEST_F(MuscleProgram, TemplateHoldsEveryKeyInASpellingThatIsUnderstood) {
+  ASSERT_EQ(run("init muscle --quiet --out " + folder_.string()).exit_code, 0);
+  // All keys of one method after the other, uncommented where they stand.
+  std::string text = read_file(folder_ / "study.toml");
+  const auto uncomment = [&](const std::string& key) {
+    const std::size_t at = text.find("# " + key);
+    ASSERT_NE(at, std::string::npos) << key;
+    text.erase(at, 2);
+  };
+  for (const char* key : {"paths =",
+                          "locked =",
+                          "unlocked =",
+                          "without_unsupported",
+                          "\"biceps_long.optimal",
+                          "\"biceps_long.max",
+                          "[[subject.load]]",
+                          "body =",
+                          "mass =",
+                          "location =",
+                          "begin =",
+                          "rate =",
+                          "accuracy =",
+                          "reserve_force =",
+                          "elbow_flexion = \"30",
+                          "elbow_flexion = \"0",
+                          "biceps_long = 0",
+                          "[[motion.excitation_step]]",
+                          "time =",
+                          "brachialis =",
+                          "window",
+                          "kp",
+                          "kv",
+                          "min_control",
+                          "max_control",
+                          "exponent",
+                          "formulation"})
+    uncomment(key);
+  const Outcome done =
+      run("simulate " + file("all.toml", text) + " --set motion.duration=0.05 --set subject.unlocked=[]" + out());
+  EXPECT_EQ(done.exit_code, 0) << done.text;
+}
+
+TEST_F(MuscleProgram, WritesBackTheModelWithTheParametersUsed) {
+  const std::string study =
+      file("s.toml", std::string(kSubject) +
+                         "[subject.parameters]\nbrachialis.max_isometric_force = 901.5\n[motion]\nduration = 0.05\n");
+  ASSERT_EQ(run("simulate " + study + out()).exit_code, 0);
+  EXPECT_THAT(read_file(in_out("model.osim")),
+              AllOf(HasSubstr("<max_isometric_force>901.5<"), testing::Not(HasSubstr("<max_isometric_force>950<"))));
+}
+
+TEST_F(MuscleProgram, ReplaysAControlFromItsFiles) {
+  const std::string control =
+      file("control.toml", std::string(kSubject) +
+                               "locked = [\"shoulder_flexion\"]\n[motion]\nmethod = \"computed muscle control\"\n"
+                               "duration = 0.2\n[[motion.ramp]]\ncoordinate = \"elbow_flexion\"\nfrom = \"30 deg\"\n"
+                               "to = \"45 deg\"\nduration = 0.2\n");
+  ASSERT_EQ(run("simulate " + control + out()).exit_code, 0);
+  const std::string replay =
+      file("replay.toml", std::string(kSubject) +
+                              "locked = [\"shoulder_flexion\"]\n[motion]\nduration = 0.2\n"
+                              "start_file = \"out/states.sto\"\nexcitation_file = \"out/controls.sto\"\n"
+                              "interpolation = \"hold\"\n");
+  ASSERT_EQ(run("simulate " + replay + " --quiet --out " + (folder_ / "replay").string()).exit_code, 0);
+  const Recording first = io::to_recording(io::read_csv_file(in_out("motion.csv")));
+  const Recording again = io::to_recording(io::read_csv_file(folder_ / "replay" / "motion.csv"));
+  const auto& a = first.at("elbow_flexion").value;
+  const auto& b = again.at("elbow_flexion").value;
+  ASSERT_EQ(a.size(), b.size());
+  ASSERT_GT(a.size(), 40u);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-6) << i;
+}
+
+TEST_F(MuscleProgram, SaysWhenASimulationCannotFinishAndKeepsWhatThereIs) {
+  // Slides without friction for ever: at 1e5 rad/s the elbow is beyond 10^4 rad after 0.1 s.
+  const std::string study =
+      file("s.toml", std::string(kSubject) + "[motion]\nduration = 1\n[motion.start_speed]\nelbow_flexion = 1e6\n");
+  const Outcome failed = run("simulate " + study + out());
+  EXPECT_EQ(failed.exit_code, 1) << failed.text;
+  EXPECT_THAT(failed.text, HasSubstr("motion.csv"));
+  EXPECT_EQ(std::count(failed.text.begin(), failed.text.end(), '\n'), 1) << failed.text;
+  EXPECT_THAT(read_file(in_out("report.html")), HasSubstr("Not finished"));
+  EXPECT_TRUE(std::filesystem::exists(in_out("motion.csv")));
+}
+
+TEST_F(MuscleProgram, RefusesWrongStudies) {
+  expect_refusal("simulate " + file("s.toml", "[subject]\nmodel = \"amr\"\n[motion]\n") + out(), "did you mean 'arm'?");
+  expect_refusal("simulate " + file("s.toml", "[subject]\nmodel = \"leg.osim\"\n[motion]\n") + out(),
+                 "leg.osim: no such file");
+  expect_refusal("simulate " + file("s.toml", std::string(kSubject) + "[motion]\nratte = 1\n") + out(),
+                 "s.toml:4: motion.ratte: unknown key (did you mean 'rate'?)");
+}
+
+TEST_F(MuscleProgram, DoesNotIdentifyMusclesYetAndSaysSo) {
+  expect_refusal("identify " + file("s.toml", std::string(kSubject) + "[motion]\n") + out(),
+                 "does not estimate yet; `veridyn simulate` runs the study");
+  EXPECT_THAT(run("identify --help").text, HasSubstr("not there yet"));
+  EXPECT_THAT(run("simulate --help").text, AllOf(HasSubstr("Aircraft"), HasSubstr("Muscles")));
+}
+
+}  // namespace
+}  // namespace veridyn

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "veridyn/core/files.hpp"
+
+namespace veridyn {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+/// Runs the program with these arguments.
+inline Outcome run(const std::string& arguments) {
+  Outcome outcome;
+  FILE* pipe = ::popen((std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 4096> block{};
+  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    outcome.text.append(block.data(), n);
+  const int status = ::pclose(pipe);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+/// A scratch folder for each test, and what every refusal must look like.
+class ProgramTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("veridyn_program_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name, const std::string& content) const {
+    write_file(folder_ / name, content);
+    return (folder_ / name).string();
+  }
+  std::string out() const { return " --quiet --out " + (folder_ / "out").string(); }
+
+  /// A wrong input: exit code 2, one line that holds `message`, and no result.
+  void expect_refusal(const std::string& arguments, const std::string& message) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+    EXPECT_THAT(outcome.text, testing::HasSubstr(message));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "estimate.json"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "report.html"));
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace veridyn

@@ -1,0 +1,123 @@
+#include "veridyn/muscle/muscle_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "veridyn/muscle/motion_analysis.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+MuscleResult forward(const MuscleStudy& study, Progress& progress) {
+  progress.stage(fmt::format("simulating {:g} s of {}", study.end - study.begin, study.title));
+  const ForwardOptions options{
+      .begin = study.begin, .end = study.end, .rate_Hz = study.rate_Hz, .accuracy = study.accuracy};
+  MuscleResult result;
+  result.trajectory = simulate_forward(*study.system, study.start, study.drive, options, progress);
+  result.drive = study.drive;
+  return result;
+}
+
+/// Rows of a prescribed motion.
+MuscleResult take(MotionAnalysis&& analysis) {
+  MuscleResult result;
+  MuscleTrajectory& t = result.trajectory;
+  t.time = std::move(analysis.time);
+  t.q = std::move(analysis.q);
+  t.qdot = std::move(analysis.qdot);
+  t.path_length = std::move(analysis.path_length);
+  t.end_time = t.time.back();
+  if (analysis.interrupted) t.end = SimulationEnd::kInterrupted;
+  result.wished = t.q;
+  result.generalized_force = std::move(analysis.moment);
+  return result;
+}
+
+MuscleResult inverse(const MuscleStudy& study, Progress& progress) {
+  progress.stage("inverse dynamics");
+  return take(
+      analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)));
+}
+
+MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
+  progress.stage("static optimization");
+  MotionAnalysis analysis =
+      optimise_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz),
+                      study.static_optimization, progress);
+  estimation::RowMatrix activation = std::move(analysis.activation), force = std::move(analysis.force),
+                        reserve = std::move(analysis.reserve);
+  const std::vector<std::size_t> infeasible = std::move(analysis.infeasible);
+  MuscleResult result = take(std::move(analysis));
+  MuscleTrajectory& t = result.trajectory;
+  t.activation = std::move(activation);
+  t.tendon_force = std::move(force);
+  t.reserve = std::move(reserve);
+  // The tendon is rigid here: the fibre has what it leaves of the path.
+  t.fiber_length.resize(t.path_length.rows(), t.path_length.cols());
+  for (Eigen::Index m = 0; m < t.path_length.cols(); ++m) {
+    const MusculotendonParameters<double>& p =
+        study.system->muscles().settings(static_cast<std::size_t>(m)).musculotendon;
+    const double height = p.optimal_fiber_length * std::sin(p.pennation_angle_at_optimal);
+    for (Eigen::Index i = 0; i < t.path_length.rows(); ++i)
+      t.fiber_length(i, m) = std::hypot(std::max(0.0, t.path_length(i, m) - p.tendon_slack_length), height);
+  }
+  for (const std::size_t i : infeasible) result.overloaded.push_back(t.time[i]);
+  if (!infeasible.empty()) {
+    result.warnings.push_back(
+        fmt::format("in {} of {} frames, the first at {:g} s, muscles and reserves could not make the forces that the "
+                    "motion needs; what comes closest is given",
+                    infeasible.size(), t.time.size(), result.overloaded.front()));
+  }
+  return result;
+}
+
+MuscleResult follow(const MuscleStudy& study, Progress& progress) {
+  progress.stage(fmt::format("computed muscle control of {:g} s", study.end - study.begin));
+  ControlResult found = computed_muscle_control(*study.system, study.motion, study.control, progress);
+  MuscleResult result;
+  result.trajectory = std::move(found.trajectory);
+  result.wished = std::move(found.wished);
+  result.drive = std::move(found.drive);
+  result.overloaded = std::move(found.overloaded);
+  if (!result.overloaded.empty()) {
+    result.warnings.push_back(
+        fmt::format("in {} of the windows, the first at {:g} s, the muscles could not make the wished acceleration and "
+                    "the reserves did more than their force",
+                    result.overloaded.size(), result.overloaded.front()));
+  }
+  return result;
+}
+
+}  // namespace
+
+double MuscleResult::tracking_error(std::size_t coordinate) const {
+  if (wished.rows() == 0 || wished.rows() != trajectory.q.rows()) return 0.0;
+  const auto c = static_cast<Eigen::Index>(coordinate);
+  return (trajectory.q.col(c) - wished.col(c)).cwiseAbs().maxCoeff();
+}
+
+MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress) {
+  MuscleResult result;
+  switch (study.method) {
+    case MuscleMethod::kForward:
+      result = forward(study, progress);
+      break;
+    case MuscleMethod::kInverseDynamics:
+      result = inverse(study, progress);
+      break;
+    case MuscleMethod::kStaticOptimization:
+      result = optimise(study, progress);
+      break;
+    case MuscleMethod::kComputedMuscleControl:
+      result = follow(study, progress);
+      break;
+  }
+  result.notes = study.system->notes();
+  result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());
+  return result;
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/io/storage.hpp"
+#include "veridyn/muscle/muscle_study.hpp"
+
+namespace veridyn::muscle {
+
+/// What a muscle study came to.
+struct MuscleResult {
+  /// Rows in time. Of inverse dynamics without excitations, activations, fibres and forces; of static optimization
+  /// without excitations. Of a simulation that did not finish, the rows up to there.
+  MuscleTrajectory trajectory;
+  estimation::RowMatrix wished;  ///< the wished pose, rows as `trajectory`; empty of a forward simulation
+  /// What the wished motion needs at each coordinate, of gravity and inertia [N m or N]; inverse dynamics and static
+  /// optimization.
+  estimation::RowMatrix generalized_force;
+  /// Excitations and reserves that, from the first row's state on, repeat the motion.
+  std::optional<Drive> drive;
+  std::vector<double> overloaded;  ///< instants at which the muscles could not do what was wished [s]
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] bool usable() const { return trajectory.usable(); }
+  /// Largest |q - wished| of a coordinate [rad or m]; 0 without a wish.
+  [[nodiscard]] double tracking_error(std::size_t coordinate) const;
+};
+
+/// Does what the study asks. Never throws for a simulation that diverges: the result says how it ended.
+[[nodiscard]] MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress);
+
+/// motion.csv: by coordinate value and speed, wish, generalised force or reserve where there are any.
+[[nodiscard]] Recording motion_table(const MuscleStudy& study, const MuscleResult& result);
+/// muscles.csv: by muscle excitation, activation, fibre length, tendon force, path length, as far as the method has
+/// them.
+[[nodiscard]] Recording muscle_table(const MuscleStudy& study, const MuscleResult& result);
+/// states.sto by OpenSim's names: value and speed of each coordinate, activation and fibre length of muscles that have
+/// them as states.
+[[nodiscard]] io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result);
+/// controls.sto: excitations by muscle, reserves by COORDINATE_reserve in units of the reserve's force. A value that
+/// holds until a jump is written twice, at its beginning and 1 ns before its end, so that held and linear reading are
+/// the same signal.
+[[nodiscard]] std::optional<io::Storage> control_storage(const MuscleStudy& study, const MuscleResult& result);
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/study.hpp"
+#include "veridyn/muscle/computed_muscle_control.hpp"
+#include "veridyn/muscle/forward_simulation.hpp"
+#include "veridyn/muscle/musculoskeletal_system.hpp"
+#include "veridyn/muscle/osim_reader.hpp"
+#include "veridyn/muscle/signals.hpp"
+#include "veridyn/muscle/static_optimization.hpp"
+
+namespace veridyn::muscle {
+
+/// What a muscle study asks for.
+enum class MuscleMethod {
+  kForward,                ///< excitations are given, the motion is wanted
+  kInverseDynamics,        ///< the motion is given, generalised forces are wanted
+  kStaticOptimization,     ///< the motion is given, activations are wanted, each instant for itself
+  kComputedMuscleControl,  ///< the motion is given, excitations are wanted that make the muscles follow it
+};
+
+/// The word of the study: "forward", "inverse dynamics", "static optimization", "computed muscle control".
+[[nodiscard]] std::string_view method_name(MuscleMethod method);
+
+/// A mass held by a body.
+struct HeldLoad {
+  std::string body;
+  double mass = 0.0;                                   ///< [kg]
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body's frame [m]
+};
+
+/// A parameter that the study sets otherwise than the model file.
+struct ParameterChange {
+  std::string muscle;
+  std::string parameter;
+  double before = 0.0;
+  double after = 0.0;
+};
+
+/// A study of a musculoskeletal model, read and checked: the model made ready, and what is to be done with it.
+struct MuscleStudy {
+  std::string title;
+  std::string model_name;        ///< as the study names it
+  std::optional<OsimFile> file;  ///< as read; always set by `read_muscle_study`
+  Model written;                 ///< the file's model with the study's parameters: what is written back
+  std::vector<HeldLoad> loads;   ///< in the system's masses, not in `written`
+  std::vector<ParameterChange> changes;
+  std::unique_ptr<MusculoskeletalSystem> system;
+
+  MuscleMethod method = MuscleMethod::kForward;
+  double begin = 0.0, end = 1.0;  ///< [s]
+  double rate_Hz = 200.0;
+  double accuracy = 1e-5;
+  double reserve_force = 1.0;  ///< of the actuator that helps each free coordinate [N m or N]; 0: none
+
+  StartState start;                               ///< forward
+  Drive drive;                                    ///< forward
+  Motion motion;                                  ///< otherwise: every free and driven coordinate
+  std::vector<std::string> wished;                ///< coordinates whose motion the study gives; the others rest
+  ControlOptions control;                         ///< computed muscle control, begin to rate set from above
+  StaticOptimizationOptions static_optimization;  ///< reserves set from above
+
+  std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> inputs;  ///< files read
+};
+
+/// A muscle study is one whose `[subject]` names a `model`.
+[[nodiscard]] bool is_muscle_study(const StudyTable& root);
+
+/// Reads from the root of a study:
+///
+///     [subject]
+///     model = "arm26.osim"           # an OpenSim model; "arm": the built-in one
+///     paths = "exact"                # "fitted": polynomials, faster; "opensim": OpenSim's wrapping, jumps included
+///     locked = ["r_shoulder_elev"]   # held where they start
+///     unlocked = []                  # move although the model locks them
+///     without_unsupported = false    # go on without forces and constraints that are not understood
+///     [subject.parameters]
+///     "BIClong.optimal_fiber_length" = 0.12  # also max_isometric_force, tendon_slack_length,
+///                                    # pennation_angle_at_optimal, max_contraction_velocity,
+///                                    # activation_time_constant, deactivation_time_constant
+///     [[subject.load]]
+///     body = "r_ulna_radius_hand"
+///     mass = 1.0
+///     location = [0, -0.31, 0.08]    # in the body's frame; its origin when left out
+///
+///     [motion]
+///     method = "forward"             # "inverse dynamics", "static optimization", "computed muscle control"
+///     begin = 0                      # [s]; of a motion file its beginning
+///     duration = 1                   # [s]; of a motion file its rest
+///     rate = 200                     # rows of the results [Hz]
+///     accuracy = 1e-5                # of the integration: error of a step in units of the states' sizes
+///     reserve_force = 1              # of an actuator that helps each free coordinate, at control 1 [N m]; 0: none
+///     file = "lift.mot"              # the wished motion: .mot, .sto or .csv
+///     low_pass = "6 Hz"              # of its samples, without delay; none when left out
+///     [[motion.ramp]]                # or beside it, coordinates that the file does not have
+///     coordinate = "r_elbow_flex"
+///     from = "10 deg"                # where it is before; the end of the ramp before, or its start
+///     to = "110 deg"
+///     start = 0.03                   # [s]; `begin` when left out
+///     duration = 1                   # [s]
+///     shape = "minimum jerk"         # "half sine", "linear"
+///     [motion.start]                 # pose at `begin`, and of coordinates without a wish: the model's when left out
+///     r_elbow_flex = "30 deg"
+///     [motion.start_speed]           # forward only
+///     r_elbow_flex = 0.0
+///     [motion]
+///     start_file = "states.sto"      # forward: pose, speeds, activations, fibre lengths at `begin`
+///     excitation_file = "controls.sto"  # forward; reserves by the name COORDINATE_reserve, in units of reserve_force
+///     interpolation = "linear"       # "hold": each sample until the next
+///     [motion.excitation]            # forward: constants, 0 to 1; with a file for muscles that it does not have
+///     default = 0.05
+///     BRA = 0.4
+///     [[motion.excitation_step]]     # forward: from `time` on; muscles not named keep theirs
+///     time = 0.2
+///     BRA = 0.5
+///     [motion.control]               # computed muscle control
+///     window = 0.010                 # controls are held so long [s]
+///     kp = 100                       # [1/s^2]
+///     kv = 20                        # [1/s]
+///     min_control = 0.02
+///     max_control = 1
+///     [motion.static_optimization]
+///     exponent = 2
+///     formulation = "with passive"   # "as opensim", "without physiology"
+///
+/// Other keys of the root are left to others; `Study::root().finish()` finds the misspelt ones.
+/// @throws InputError with file, line and key.
+[[nodiscard]] MuscleStudy read_muscle_study(const StudyTable& root);
+
+}  // namespace veridyn::muscle

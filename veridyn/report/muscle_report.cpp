@@ -1,0 +1,402 @@
+#include "veridyn/report/muscle_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "veridyn/report/skeleton_figure.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::muscle;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// More lines than this in one panel say nothing: the strongest muscles, the coordinates that move most.
+constexpr std::size_t kMostLines = 12;
+
+struct Shown {
+  const MuscleStudy& study;
+  const MuscleResult& result;
+  const Model& model;
+  std::vector<std::size_t> muscles;      ///< drawn, in the model's order
+  std::vector<std::size_t> coordinates;  ///< drawn: those that move
+};
+
+double unit_of(const Coordinate& c) { return c.motion == CoordinateMotion::kTranslational ? 1.0 : 1.0 / kDegree; }
+std::string unit_name(const Coordinate& c) { return c.motion == CoordinateMotion::kTranslational ? "m" : "deg"; }
+std::string force_unit(const Coordinate& c) { return c.unit() == "m" ? "N" : "N m"; }
+
+std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t index, double scale = 1.0) {
+  std::vector<double> values(static_cast<std::size_t>(matrix.rows()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    values[static_cast<std::size_t>(i)] = scale * matrix(i, static_cast<Eigen::Index>(index));
+  return values;
+}
+
+bool any(const estimation::RowMatrix& matrix) { return matrix.size() > 0 && !matrix.isZero(0.0); }
+
+/// The `most` indices of the largest sizes, in their own order.
+std::vector<std::size_t> largest(const std::vector<double>& size, std::size_t most) {
+  std::vector<std::size_t> index(size.size());
+  std::iota(index.begin(), index.end(), std::size_t{0});
+  std::stable_sort(index.begin(), index.end(), [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
+  if (index.size() > most) index.resize(most);
+  std::sort(index.begin(), index.end());
+  return index;
+}
+
+Shown choose(const MuscleStudy& study, const MuscleResult& result) {
+  Shown shown{study, result, study.system->model(), {}, {}};
+  const MuscleTrajectory& t = result.trajectory;
+  std::vector<double> force(shown.model.muscles.size());
+  for (std::size_t m = 0; m < force.size() && t.tendon_force.rows() > 0; ++m)
+    force[m] = t.tendon_force.col(static_cast<Eigen::Index>(m)).maxCoeff();
+  shown.muscles = largest(force, kMostLines);
+  std::vector<double> travel(shown.model.coordinates.size());
+  for (std::size_t c = 0; c < travel.size(); ++c) {
+    const auto q = t.q.col(static_cast<Eigen::Index>(c));
+    travel[c] = q.maxCoeff() - q.minCoeff();
+  }
+  shown.coordinates = largest(travel, kMostLines);
+  std::erase_if(shown.coordinates, [&](std::size_t c) { return travel[c] < 1e-9; });
+  return shown;
+}
+
+std::string list_text(const std::vector<std::string>& names, const char* none) {
+  return names.empty() ? none : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string paths_text(const MusculoskeletalSystem& system) {
+  switch (system.path_source()) {
+    case PathSource::kExact:
+      return "wrapped at every pose, taut and continuous";
+    case PathSource::kFitted:
+      return "polynomials fitted to the wrapped paths";
+    case PathSource::kAsOpenSim:
+      break;
+  }
+  return "OpenSim's own wrapping, its jumps included";
+}
+
+std::vector<Fact> facts(const Shown& shown) {
+  const MuscleStudy& study = shown.study;
+  const CoordinateReduction& reduction = study.system->reduction();
+  std::vector<std::string> free, held, coupled;
+  for (std::size_t c = 0; c < shown.model.coordinates.size(); ++c) {
+    const CoordinateRole role = reduction.role(static_cast<int>(c));
+    (role == CoordinateRole::kFree     ? free
+     : role == CoordinateRole::kDriven ? held
+                                       : coupled)
+        .push_back(shown.model.coordinates[c].name);
+  }
+  std::vector<Fact> list{{"Model", study.model_name}, {"Method", std::string(method_name(study.method))}};
+  list.push_back({"Time", fmt::format("{:g} .. {:g} s, {:g} rows a second", study.begin, study.end, study.rate_Hz)});
+  list.push_back({"Free coordinates", list_text(free, "none")});
+  if (!held.empty()) list.push_back({"Locked", list_text(held, "none")});
+  if (!coupled.empty()) list.push_back({"Coupled", list_text(coupled, "none")});
+  list.push_back({"Muscles", std::to_string(shown.model.muscles.size())});
+  list.push_back({"Paths", paths_text(*study.system)});
+  for (const HeldLoad& load : study.loads) {
+    list.push_back({"Load", fmt::format("{:g} kg on {} at ({:g}, {:g}, {:g}) m", load.mass, load.body,
+                                        load.location.x(), load.location.y(), load.location.z())});
+  }
+  const MuscleTrajectory& t = shown.result.trajectory;
+  if (t.steps > 0) {
+    list.push_back({"Integration",
+                    fmt::format("accuracy {:g}: {} steps, {} evaluations", study.accuracy, t.steps, t.evaluations)});
+  }
+  return list;
+}
+
+Verdict verdict(const Shown& shown) {
+  const MuscleResult& result = shown.result;
+  const MuscleTrajectory& t = result.trajectory;
+  Verdict v;
+  if (!result.usable()) {
+    v.level = Level::kBad;
+    v.word = "Not finished";
+    v.headline = t.message() + ".";
+    v.lines.push_back(fmt::format("What follows is the motion up to there: {} rows.", t.time.size()));
+    return v;
+  }
+  const bool clean = result.warnings.empty();
+  v.level = clean ? Level::kGood : Level::kCaution;
+  switch (shown.study.method) {
+    case MuscleMethod::kForward:
+      v.word = "Simulated";
+      break;
+    case MuscleMethod::kInverseDynamics:
+      v.word = "Computed";
+      break;
+    case MuscleMethod::kStaticOptimization:
+      v.word = clean ? "Balanced" : "Not all balanced";
+      break;
+    case MuscleMethod::kComputedMuscleControl:
+      v.word = clean ? "Followed" : "Followed with help";
+      break;
+  }
+  for (const std::size_t c : shown.coordinates) {
+    const Coordinate& k = shown.model.coordinates[c];
+    const auto i = static_cast<Eigen::Index>(c);
+    std::string line = fmt::format("{} goes from {:.3g} to {:.3g} {}", k.name, unit_of(k) * t.q(0, i),
+                                   unit_of(k) * t.q(t.q.rows() - 1, i), unit_name(k));
+    if (shown.study.method == MuscleMethod::kComputedMuscleControl) {
+      line += fmt::format(", at most {:.2g} {} from the wish", unit_of(k) * result.tracking_error(c), unit_name(k));
+    }
+    v.lines.push_back(line + ".");
+    if (v.lines.size() >= 4) break;
+  }
+  const std::size_t muscles = shown.model.muscles.size();
+  const double span = shown.study.end - shown.study.begin;
+  switch (shown.study.method) {
+    case MuscleMethod::kForward:
+      v.headline = fmt::format("{} muscles moved the model for {:g} s.", muscles, span);
+      break;
+    case MuscleMethod::kInverseDynamics:
+      v.headline = fmt::format("These forces make the wished motion of {:g} s.", span);
+      break;
+    case MuscleMethod::kStaticOptimization:
+      v.headline = result.overloaded.empty()
+                       ? fmt::format("{} muscles make the forces that {:g} s of motion need.", muscles, span)
+                       : fmt::format("{} of {} frames need more than muscles and reserves have.",
+                                     result.overloaded.size(), t.time.size());
+      break;
+    case MuscleMethod::kComputedMuscleControl:
+      v.headline =
+          result.overloaded.empty()
+              ? fmt::format("{} muscles follow the wished motion of {:g} s.", muscles, span)
+              : fmt::format("{} muscles follow the wished motion of {:g} s with help of the reserves.", muscles, span);
+      break;
+  }
+  if (!t.events.empty())
+    v.lines.push_back(
+        fmt::format("{} times a tendon went slack or a fibre reached its least length.", t.events.size()));
+  return v;
+}
+
+TimeSeries motion_figure(const Shown& shown) {
+  const MuscleTrajectory& t = shown.result.trajectory;
+  TimeSeries figure{.title = "Motion", .samples = t.time};
+  const bool wish = shown.study.method == MuscleMethod::kComputedMuscleControl;
+  if (wish) figure.caption = "Dashed: the wish.";
+  for (const std::size_t c : shown.coordinates) {
+    const Coordinate& k = shown.model.coordinates[c];
+    Panel panel{.label = k.name, .unit = unit_name(k)};
+    if (wish)
+      panel.lines.push_back(
+          {.name = "wish", .y = column(shown.result.wished, c, unit_of(k)), .role = Role::kReference});
+    panel.lines.push_back({.name = "motion", .y = column(t.q, c, unit_of(k))});
+    figure.panels.push_back(std::move(panel));
+  }
+  for (const std::size_t c : shown.coordinates) {
+    const Coordinate& k = shown.model.coordinates[c];
+    if (shown.coordinates.size() > 4) break;
+    figure.panels.push_back({.label = k.name + " speed",
+                             .unit = unit_name(k) + "/s",
+                             .lines = {{.name = "motion", .y = column(t.qdot, c, unit_of(k))}},
+                             .height = 110});
+  }
+  return figure;
+}
+
+TimeSeries force_figure(const Shown& shown) {
+  const MuscleTrajectory& t = shown.result.trajectory;
+  TimeSeries figure{.title = "Generalised forces", .samples = t.time};
+  const bool required = shown.result.generalized_force.size() > 0, reserve = any(t.reserve);
+  figure.caption = required && reserve
+                       ? "Required: by gravity and inertia. Reserve: what the muscles do not give of it."
+                   : required ? "What gravity and inertia ask for; constraints are not heeded."
+                              : "What reserve actuators add to the muscles.";
+  for (std::size_t c = 0; c < shown.model.coordinates.size() && figure.panels.size() < kMostLines; ++c) {
+    const Coordinate& k = shown.model.coordinates[c];
+    Panel panel{.label = k.name, .unit = force_unit(k), .lines = {}, .height = 120};
+    if (required) panel.lines.push_back({.name = "required", .y = column(shown.result.generalized_force, c)});
+    const bool acts = reserve && !t.reserve.col(static_cast<Eigen::Index>(c)).isZero(0.0);
+    if (acts) panel.lines.push_back({.name = "reserve", .y = column(t.reserve, c)});
+    if (!panel.lines.empty()) figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+TimeSeries muscle_figure(const Shown& shown) {
+  const MuscleTrajectory& t = shown.result.trajectory;
+  TimeSeries figure{.title = "Muscles over time", .samples = t.time};
+  figure.caption = "Fibre lengths in optimal lengths L0: active force is greatest at 1.";
+  if (shown.muscles.size() < shown.model.muscles.size())
+    figure.caption += fmt::format(" The {} strongest of {} muscles.", shown.muscles.size(), shown.model.muscles.size());
+  const auto panel = [&](const char* label, const char* unit, const estimation::RowMatrix& values, int height,
+                         const auto& scale) {
+    if (values.size() == 0) return;
+    Panel p{.label = label, .unit = unit, .lines = {}, .height = height};
+    for (const std::size_t m : shown.muscles)
+      p.lines.push_back({.name = shown.model.muscles[m].name(), .y = column(values, m, scale(m))});
+    figure.panels.push_back(std::move(p));
+  };
+  const auto one = [](std::size_t) { return 1.0; };
+  panel("excitation", "", t.excitation, 150, one);
+  panel("activation", "", t.activation, 150, one);
+  panel("fibre length", "L0", t.fiber_length, 170,
+        [&](std::size_t m) { return 1.0 / shown.model.muscles[m].parameters.musculotendon.optimal_fiber_length; });
+  panel("tendon force", "N", t.tendon_force, 170, one);
+  panel("path length", "m", t.path_length, 130, one);
+  return figure;
+}
+
+const char* type_name(const MuscleParameters& muscle) {
+  struct Names {
+    const char* operator()(const ThelenCurves&) const { return "Thelen 2003"; }
+    const char* operator()(const DeprecatedThelenCurves&) const { return "Thelen 2003 (before 2012)"; }
+    const char* operator()(const MillardCurves&) const { return "Millard 2012"; }
+    const char* operator()(const DeGrooteFregly2016Curves&) const { return "De Groote-Fregly 2016"; }
+  };
+  return std::visit(Names(), muscle.curves);
+}
+
+Table muscle_table_of(const Shown& shown) {
+  const MuscleTrajectory& t = shown.result.trajectory;
+  const bool forces = t.tendon_force.size() > 0, fibers = t.fiber_length.size() > 0;
+  Table table{.title = "Muscles",
+              .caption =
+                  "F0 maximum isometric force, L0 optimal fibre length, LS tendon slack length, pennation at "
+                  "optimal length. A margin marks muscles with parameters set by the study.",
+              .columns = {{.name = "Muscle"},
+                          {.name = "Model"},
+                          {.name = "F0", .unit = "N"},
+                          {.name = "L0", .unit = "m"},
+                          {.name = "LS", .unit = "m"},
+                          {.name = "Pennation", .unit = "deg", .digits = 3}}};
+  if (forces) {
+    table.columns.push_back({.name = "force", .unit = "N", .group = "peak"});
+    table.columns.push_back({.name = "of F0", .unit = "%", .digits = 3, .group = "peak"});
+    table.columns.push_back({.name = "mean", .digits = 3, .group = "activation"});
+    table.columns.push_back({.name = "greatest", .digits = 3, .group = "activation"});
+  }
+  if (fibers) {
+    table.columns.push_back({.name = "least", .unit = "L0", .digits = 3, .group = "fibre length"});
+    table.columns.push_back({.name = "greatest", .unit = "L0", .digits = 3, .group = "fibre length"});
+  }
+  for (std::size_t m = 0; m < shown.model.muscles.size(); ++m) {
+    const auto i = static_cast<Eigen::Index>(m);
+    const MuscleParameters& p = shown.model.muscles[m].parameters;
+    const MusculotendonParameters<double>& k = p.musculotendon;
+    Row row{.cells = {text_cell(p.name),
+                      text_cell(std::string(type_name(p)) + (p.rigid_tendon ? ", rigid tendon" : "")),
+                      number_cell(k.max_isometric_force), number_cell(k.optimal_fiber_length),
+                      number_cell(k.tendon_slack_length), number_cell(k.pennation_angle_at_optimal / kDegree)}};
+    if (forces) {
+      const double peak = t.tendon_force.col(i).maxCoeff();
+      for (const double value :
+           {peak, 100.0 * peak / k.max_isometric_force, t.activation.col(i).mean(), t.activation.col(i).maxCoeff()}) {
+        row.cells.push_back(number_cell(value));
+      }
+    }
+    if (fibers) {
+      row.cells.push_back(number_cell(t.fiber_length.col(i).minCoeff() / k.optimal_fiber_length));
+      row.cells.push_back(number_cell(t.fiber_length.col(i).maxCoeff() / k.optimal_fiber_length));
+    }
+    if (std::any_of(shown.study.changes.begin(), shown.study.changes.end(),
+                    [&](const ParameterChange& c) { return c.muscle == p.name; }))
+      row.status = Status::kCaution;
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table change_table(const MuscleStudy& study) {
+  Table table{.title = "Parameters set by the study",
+              .columns = {{.name = "Muscle"}, {.name = "Parameter"}, {.name = "In the file"}, {.name = "Here"}}};
+  for (const ParameterChange& c : study.changes) {
+    table.rows.push_back(
+        {.cells = {text_cell(c.muscle), text_cell(c.parameter), number_cell(c.before), number_cell(c.after)}});
+  }
+  return table;
+}
+
+Table event_table(const Shown& shown) {
+  constexpr std::size_t kMostEvents = 200;
+  const std::vector<MuscleEvent>& events = shown.result.trajectory.events;
+  Table table{.title = "Events",
+              .columns = {{.name = "Time", .unit = "s", .digits = 5}, {.name = "Muscle"}, {.name = "What"}}};
+  if (events.size() > kMostEvents) table.caption = fmt::format("The first {} of {}.", kMostEvents, events.size());
+  for (std::size_t i = 0; i < std::min(events.size(), kMostEvents); ++i) {
+    table.rows.push_back({.cells = {number_cell(events[i].time),
+                                    text_cell(shown.model.muscles[static_cast<std::size_t>(events[i].muscle)].name()),
+                                    text_cell(event_text(events[i].kind))}});
+  }
+  return table;
+}
+
+std::vector<std::string> notes(const Shown& shown) {
+  std::vector<std::string> list = shown.result.notes;
+  for (const UnsupportedElement& u : shown.model.unsupported) {
+    if (!u.changes_motion)
+      list.push_back(fmt::format("{} '{}' of the file is not used; it does not change the motion", u.element, u.name));
+  }
+  for (const std::string& warning : shown.model.warnings) list.push_back(warning);
+  const bool ellipsoid = std::any_of(shown.model.wrap_objects.begin(), shown.model.wrap_objects.end(),
+                                     [](const WrapObject& w) { return w.shape == WrapShape::kEllipsoid; });
+  if (ellipsoid && shown.study.system->path_source() != PathSource::kAsOpenSim) {
+    list.emplace_back(
+        "Paths wrap over ellipsoids. OpenSim's own lengths jump at some poses there, by centimetres where its path "
+        "takes "
+        "the other side of the object; the paths here stay continuous, and their moment arms are -dL/dq. paths = "
+        "\"opensim\" gives OpenSim's, for comparison.");
+  }
+  if (!shown.study.loads.empty()) list.emplace_back("model.osim does not hold the loads: they belong to the study.");
+  if (shown.study.method == MuscleMethod::kComputedMuscleControl) {
+    list.emplace_back(
+        "Controls are held over each window. controls.sto has both ends of each window, so that this program with "
+        "interpolation = \"hold\" and OpenSim, which interpolates, get the same excitations.");
+  }
+  return list;
+}
+
+}  // namespace
+
+Document muscle_report(const MuscleStudy& study, const MuscleResult& result, const std::string& program) {
+  const Shown shown = choose(study, result);
+  Document document;
+  document.title = study.title;
+  document.subtitle = fmt::format("Musculoskeletal model {}: {}", shown.model.name, method_name(study.method));
+  document.generator = fmt::format("Made with {}", program);
+  document.verdict = verdict(shown);
+  document.facts = facts(shown);
+  if (!result.warnings.empty()) {
+    Section section{.title = "Warnings", .id = "warnings"};
+    section.blocks.emplace_back(List{.items = result.warnings, .tone = Tone::kWarning});
+    document.sections.push_back(std::move(section));
+  }
+  Section motion{.title = "Motion", .id = "motion"};
+  for (XYPlot& plot : skeleton_figure(study, result)) motion.blocks.emplace_back(std::move(plot));
+  if (!shown.coordinates.empty()) motion.blocks.emplace_back(motion_figure(shown));
+  if (result.generalized_force.size() > 0 || any(result.trajectory.reserve))
+    motion.blocks.emplace_back(force_figure(shown));
+  document.sections.push_back(std::move(motion));
+  if (!shown.model.muscles.empty()) {
+    Section muscles{.title = "Muscles", .id = "muscles"};
+    muscles.blocks.emplace_back(muscle_figure(shown));
+    muscles.blocks.emplace_back(muscle_table_of(shown));
+    if (!study.changes.empty()) muscles.blocks.emplace_back(change_table(study));
+    if (!result.trajectory.events.empty()) muscles.blocks.emplace_back(event_table(shown));
+    document.sections.push_back(std::move(muscles));
+  }
+  const std::vector<std::string> said = notes(shown);
+  if (!said.empty()) {
+    Section section{.title = "Notes", .id = "notes"};
+    section.blocks.emplace_back(List{.items = said, .tone = Tone::kNote});
+    document.sections.push_back(std::move(section));
+  }
+  if (!shown.model.credits.empty()) {
+    Section section{.title = "Credits of the model", .id = "credits", .folded = true};
+    section.blocks.emplace_back(Paragraph{.text = shown.model.credits});
+    document.sections.push_back(std::move(section));
+  }
+  return document;
+}
+
+}  // namespace veridyn::report
