@@ -40,8 +40,12 @@ TEST_P(MuscleParameters_, SensitivitiesAreThoseOfCentralDifferences) {
                            "brachialis.activation_time_constant", "brachialis.tendon_slack_length"}) {
     names.push_back(parse_parameter_name(system.model(), name, "test"));
   }
-  const MuscleParametricModel model(system, names, {segment_of(system, 0.6, {0.05, 0.05, 0.05, 0.3, 0.2, 0.3}, 0.15)},
-                                    1e-9);
+  // A step of the excitations, so that the activation's time constant shows.
+  MotionSegment segment = segment_of(system, 0.6, std::vector<double>(6, 0.05), 0.12);
+  std::vector<double> step(6, 0.05);
+  for (const double u : {0.05, 0.05, 0.05, 0.3, 0.2, 0.3}) step.push_back(u);
+  segment.drive.excitation = ControlSignals({0.0, 0.035}, step, 6, Interpolation::kHold);
+  const MuscleParametricModel model(system, names, {segment}, 1e-9);
   Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
   for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
   for (std::size_t i = 0; i < 4; ++i)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,7 +15,10 @@ namespace veridyn::numerics {
 
 /// How an error-controlled integration chooses its steps.
 struct StepControl {
-  double tolerance = 1e-6;     ///< largest error of a step in any component, as a part of the component's scale
+  double tolerance = 1e-6;  ///< largest error of a step in any component, as a part of the component's scale
+  /// With Jets: the same of their derivatives, as a part of the largest of each (scaled). They need it: where a stiff
+  /// solution rests, steps grow until its errors show, and those of a derivative would have grown unseen meanwhile.
+  double derivative_tolerance = 1e-4;
   double first_step = 0.0;     ///< 0: chosen from the first derivative
   double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
   double largest_step = 0.0;   ///< 0: the interval
@@ -34,8 +38,8 @@ auto value_of(const Jet& x) -> decltype(x.a) {
 /// stepper must cost nothing: it is a template on the derivative, keeps its stages, and does not allocate while it
 /// steps. The last stage of a step is the first of the next, over calls of `advance` too.
 ///
-/// `Scalar` is double or a Jet. With Jets the steps are those of the values, so that the derivatives are those of the
-/// numerical solution at fixed steps.
+/// `Scalar` is double or a Jet. With Jets the derivatives are those of the numerical solution at the steps taken, and
+/// their errors are controlled like those of the values.
 template <typename Scalar>
 class DormandPrince {
  public:
@@ -80,7 +84,7 @@ class DormandPrince {
         step_ = 0.25 * h;
         continue;
       }
-      const double error = error_of(x, scale) / control.tolerance;
+      const double error = error_of(scale, control);
       // PI control (Gustafsson 1991) with Hairer's constants for this method.
       constexpr double kBeta = 0.04;
       const double power = std::pow(std::max(error, 1e-10), 0.2 - 0.75 * kBeta);
@@ -183,15 +187,30 @@ class DormandPrince {
     return true;
   }
 
-  /// Largest estimated error of the step in units of the scale.
-  double error_of(const Scalar*, std::span<const double> scale) const {
+  /// Largest estimated error of the step in units of what is allowed.
+  double error_of(std::span<const double> scale, const StepControl& control) const {
     constexpr double e1 = 71.0 / 57600.0, e3 = -71.0 / 16695.0, e4 = 71.0 / 1920.0, e5 = -17253.0 / 339200.0,
                      e6 = 22.0 / 525.0, e7 = -1.0 / 40.0;
+    const auto combined = [&](const auto& part) {
+      return h_ * (e1 * part(0) + e3 * part(2) + e4 * part(3) + e5 * part(4) + e6 * part(5) + e7 * part(6));
+    };
     double largest = 0.0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const auto v = [&](std::size_t s) { return internal::value_of(stage(s)[i]); };
-      const double error = h_ * (e1 * v(0) + e3 * v(2) + e4 * v(3) + e5 * v(4) + e6 * v(5) + e7 * v(6));
+      const double error = combined([&](std::size_t s) { return internal::value_of(stage(s)[i]); });
       largest = std::max(largest, std::abs(error) / scale[i]);
+    }
+    largest /= control.tolerance;
+    if constexpr (!std::is_same_v<Scalar, double>) {
+      for (int j = 0; j < Scalar::DIMENSION; ++j) {
+        double size = 0.0, error = 0.0;
+        for (std::size_t i = 0; i < n_; ++i) {
+          const auto part = [&](std::size_t s) { return stage(s)[i].v(j); };
+          size = std::max({size, std::abs(stage(kEnd)[i].v(j)) / scale[i], h_ * std::abs(part(0)) / scale[i],
+                           h_ * std::abs(part(6)) / scale[i]});
+          error = std::max(error, std::abs(combined(part)) / scale[i]);
+        }
+        if (size > 0.0) largest = std::max(largest, error / (control.derivative_tolerance * size));
+      }
     }
     return largest;
   }

@@ -1,0 +1,199 @@
+// The whole arm against the real OpenSim: wall times of OpenSim 4.5.2 on one core of a machine like this one (reference
+// e_timings.csv: accuracy 1e-5, median of five) over ours, as counters `OpenSim_ms` and `times_faster`. One thread.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+
+#include "veridyn/muscle/computed_muscle_control.hpp"
+#include "veridyn/muscle/motion_analysis.hpp"
+#include "veridyn/muscle/muscle_parametric_model.hpp"
+#include "veridyn/muscle/osim_reader.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+const std::filesystem::path kShared = VERIDYN_SHARED_DIR;
+constexpr std::size_t kMuscles = 6;
+
+std::unique_ptr<MusculoskeletalSystem> arm(benchmark::State& state, const char* file, PathSource paths) {
+  if (!std::filesystem::exists(kShared / "data/opensim")) {
+    state.SkipWithError("the OpenSim models of ../shared/data are not here");
+    return nullptr;
+  }
+  return std::make_unique<MusculoskeletalSystem>(read_osim(kShared / "data/opensim" / file),
+                                                 SystemOptions{.paths = paths});
+}
+
+/// Scenarios 1 to 3 of the reference's README.
+Drive scenario(int number) {
+  if (number == 1) return {ControlSignals(std::vector<double>(kMuscles, 0.05)), {}};
+  std::vector<double> time{0.0}, value(kMuscles, 0.05);
+  if (number == 2) {
+    time.push_back(0.2);
+    for (const double u : {0.05, 0.5, 0.5, 0.4, 0.4, 0.4}) value.push_back(u);
+    return {ControlSignals(time, value, kMuscles, Interpolation::kHold), {}};
+  }
+  time.clear();
+  value.clear();
+  constexpr std::array<double, 6> kBase{0.08, 0.10, 0.25, 0.15, 0.20, 0.08}, kFrequency{1.0, 1.3, 1.7, 2.1, 2.5, 3.1};
+  for (int i = 0; i <= 1000; ++i) {
+    time.push_back(0.001 * i);
+    for (std::size_t k = 0; k < kMuscles; ++k) {
+      value.push_back(kBase[k] + 0.04 * std::sin(2.0 * std::numbers::pi * kFrequency[k] * time.back() +
+                                                 static_cast<double>(k) * std::numbers::pi / 3.0));
+    }
+  }
+  return {ControlSignals(time, value, kMuscles, Interpolation::kLinear), {}};
+}
+
+StartState start_of(const Model& model, int number) {
+  constexpr std::array<std::array<double, 2>, 3> kStart{{{2.5, 30.0}, {10.0, 30.0}, {0.0, 40.0}}};
+  StartState start = default_start(model);
+  for (Eigen::Index c = 0; c < 2; ++c) {
+    start.q(c) = kStart[static_cast<std::size_t>(number - 1)][static_cast<std::size_t>(c)] * std::numbers::pi / 180.0;
+  }
+  return start;
+}
+
+void compare(benchmark::State& state, double opensim_ms) {
+  state.counters["OpenSim_ms"] = opensim_ms;
+  // A rate of "OpenSim seconds" is how many times faster we are.
+  state.counters["times_faster"] = benchmark::Counter(opensim_ms * 1e-3, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void forward(benchmark::State& state, const char* file, PathSource paths, int number, double opensim_ms) {
+  const auto system = arm(state, file, paths);
+  if (!system) return;
+  const StartState start = start_of(system->model(), number);
+  const Drive drive = scenario(number);
+  Progress progress;
+  // A row a step, as OpenSim stores its states.
+  const ForwardOptions options{.rate_Hz = 0.0, .accuracy = 1e-5};
+  long evaluations = 0;
+  MuscleTrajectory t;
+  for (auto _ : state) {
+    t = simulate_forward(*system, start, drive, options, progress);
+    evaluations += t.evaluations;
+  }
+  const MuscleTrajectory exact = simulate_forward(*system, start, drive, {.rate_Hz = 0.0, .accuracy = 1e-11}, progress);
+  state.counters["end_error_rad"] = (t.q.row(t.q.rows() - 1) - exact.q.row(exact.q.rows() - 1)).cwiseAbs().maxCoeff();
+  state.counters["per_evaluation"] =
+      benchmark::Counter(static_cast<double>(evaluations), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  compare(state, opensim_ms);
+}
+
+constexpr const char* kThelen = "arm26.osim";
+constexpr const char* kMillard = "arm26_millard.osim";
+#define FORWARD(name, file, number, opensim_ms)                                            \
+  BENCHMARK_CAPTURE(forward, name##_fitted, file, PathSource::kFitted, number, opensim_ms) \
+      ->Unit(benchmark::kMillisecond);                                                     \
+  BENCHMARK_CAPTURE(forward, name##_exact, file, PathSource::kExact, number, opensim_ms)->Unit(benchmark::kMillisecond)
+FORWARD(thelen_s1, kThelen, 1, 57.017);
+FORWARD(thelen_s2, kThelen, 2, 143.725);
+FORWARD(thelen_s3, kThelen, 3, 116.968);
+FORWARD(millard_s1, kMillard, 1, 144.611);
+FORWARD(millard_s2, kMillard, 2, 199.999);
+FORWARD(millard_s3, kMillard, 3, 141.532);
+
+Motion reference_motion(const Model& model) {
+  return make_motion(read_signals(kShared / "reference/opensim/minjerk_elbow.mot"), model);
+}
+
+void control(benchmark::State& state, const char* file, PathSource paths, double opensim_ms) {
+  const auto system = arm(state, file, paths);
+  if (!system) return;
+  const Motion motion = reference_motion(system->model());
+  Progress progress;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        computed_muscle_control(*system, motion, {.end = 1.02, .rate_Hz = 0.0}, progress).trajectory.steps);
+  compare(state, opensim_ms);
+}
+#define CONTROL(name, file, opensim_ms)                                                                            \
+  BENCHMARK_CAPTURE(control, name##_fitted, file, PathSource::kFitted, opensim_ms)->Unit(benchmark::kMillisecond); \
+  BENCHMARK_CAPTURE(control, name##_exact, file, PathSource::kExact, opensim_ms)->Unit(benchmark::kMillisecond)
+CONTROL(arm26, kThelen, 27104.0);
+CONTROL(arm26_load1kg, "arm26_load1kg.osim", 25660.0);
+CONTROL(arm26_millard, kMillard, 28265.0);
+CONTROL(arm26_millard_load1kg, "arm26_millard_load1kg.osim", 26977.0);
+
+void optimisation(benchmark::State& state, const char* file, PathSource paths, StaticForce force, double opensim_ms) {
+  const auto system = arm(state, file, paths);
+  if (!system) return;
+  const Motion motion = reference_motion(system->model());
+  Progress progress;
+  const auto time = frame_times(0.0, 1.0, 200.0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(optimise_motion(*system, motion, system->model().default_pose(), time,
+                                             {.force = force, .reserve = {1.0, 1.0}}, progress)
+                                 .activation.sum());
+  }
+  compare(state, opensim_ms);
+}
+BENCHMARK_CAPTURE(optimisation, arm26_exact, kThelen, PathSource::kExact, StaticForce::kAsOpenSim, 2220.0)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(optimisation, arm26_fitted, kThelen, PathSource::kFitted, StaticForce::kAsOpenSim, 2220.0)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(optimisation, arm26_load1kg_exact, "arm26_load1kg.osim", PathSource::kExact, StaticForce::kAsOpenSim,
+                  2251.0)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(optimisation, arm26_exact_with_passive, kThelen, PathSource::kExact, StaticForce::kWithPassive,
+                  2220.0)
+    ->Unit(benchmark::kMillisecond);
+
+void inverse(benchmark::State& state) {
+  const auto system = arm(state, kThelen, PathSource::kExact);
+  if (!system) return;
+  const Motion motion = reference_motion(system->model());
+  const auto time = frame_times(0.0, 1.0, 200.0);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(analyse_motion(*system, motion, system->model().default_pose(), time).moment.sum());
+  compare(state, 24.8);
+}
+BENCHMARK(inverse)->Unit(benchmark::kMillisecond);
+
+void derivative(benchmark::State& state, const char* file, PathSource paths) {
+  const auto system = arm(state, file, paths);
+  if (!system) return;
+  SystemEvaluator<double> evaluator(*system);
+  const StateLayout& layout = system->layout();
+  std::vector<double> x(layout.size), rate(layout.size), u(kMuscles, 0.1);
+  x[0] = 0.1;
+  x[1] = 0.7;
+  evaluator.set_motion(x.data(), x.data() + 2);
+  evaluator.start_muscles(u.data(), x.data());
+  for (auto _ : state) benchmark::DoNotOptimize(evaluator.derivative(x.data(), {u, {}}, rate.data()));
+}
+BENCHMARK_CAPTURE(derivative, thelen_fitted, kThelen, PathSource::kFitted);
+BENCHMARK_CAPTURE(derivative, thelen_exact, kThelen, PathSource::kExact);
+BENCHMARK_CAPTURE(derivative, millard_fitted, kMillard, PathSource::kFitted);
+BENCHMARK_CAPTURE(derivative, millard_exact, kMillard, PathSource::kExact);
+
+/// A second of the arm with derivatives with respect to `n` parameters.
+void sensitivities(benchmark::State& state) {
+  const auto system = arm(state, kThelen, PathSource::kFitted);
+  if (!system) return;
+  std::vector<MuscleParameterName> names;
+  for (int m = 0; m < static_cast<int>(kMuscles); ++m) {
+    for (int f = 0; f < 3; ++f) names.push_back({m, f});
+  }
+  MotionSegment segment{start_of(system->model(), 2), scenario(2), frame_times(0.0, 1.0, 100.0)};
+  const MuscleParametricModel model(*system, names, {segment}, 1e-5);
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
+  for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
+  for (std::size_t i = 0; i < 4; ++i)
+    theta(static_cast<Eigen::Index>(names.size() + i)) = model.initial_conditions(0)[i].start;
+  std::vector<Eigen::Index> active(static_cast<std::size_t>(state.range(0)));
+  for (std::size_t i = 0; i < active.size(); ++i) active[i] = static_cast<Eigen::Index>(i);
+  estimation::ModelResponse response;
+  for (auto _ : state) benchmark::DoNotOptimize(model.respond(0, theta, active, response));
+}
+BENCHMARK(sensitivities)->Arg(0)->Arg(6)->Arg(18)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace veridyn::muscle
