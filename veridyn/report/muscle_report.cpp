@@ -94,7 +94,8 @@ std::vector<Fact> facts(const Shown& shown) {
                                        : coupled)
         .push_back(shown.model.coordinates[c].name);
   }
-  std::vector<Fact> list{{"Model", study.model_name}, {"Method", std::string(method_name(study.method))}};
+  std::vector<Fact> list{{"Model", std::filesystem::path(study.model_name).filename().string()},
+                         {"Method", std::string(method_name(study.method))}};
   list.push_back({"Time", fmt::format("{:g} .. {:g} s, {:g} rows a second", study.begin, study.end, study.rate_Hz)});
   list.push_back({"Free coordinates", list_text(free, "none")});
   if (!held.empty()) list.push_back({"Locked", list_text(held, "none")});
