@@ -91,6 +91,25 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
+/// Coordinates that a simulation carried out of their ranges: nothing but forces holds them.
+std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTrajectory& t) {
+  std::vector<std::string> said;
+  const Model& model = study.system->model();
+  for (const int c : study.system->reduction().free()) {
+    const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+    const double slack = 1e-3 * (k.high - k.low);
+    for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
+      if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
+      said.push_back(fmt::format(
+          "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, k.low, k.high, k.unit(),
+          t.time[static_cast<std::size_t>(i)],
+          study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
+      break;
+    }
+  }
+  return said;
+}
+
 }  // namespace
 
 double MuscleResult::tracking_error(std::size_t coordinate) const {
@@ -116,6 +135,9 @@ MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress) {
       break;
   }
   result.notes = study.system->notes();
+  if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
+    for (std::string& left : left_ranges(study, result.trajectory)) result.warnings.push_back(std::move(left));
+  }
   result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());
   return result;
 }

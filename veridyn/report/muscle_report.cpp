@@ -75,8 +75,15 @@ std::string paths_text(const MusculoskeletalSystem& system) {
   switch (system.path_source()) {
     case PathSource::kExact:
       return "wrapped at every pose, taut and continuous";
-    case PathSource::kFitted:
-      return "polynomials fitted to the wrapped paths";
+    case PathSource::kFitted: {
+      double length = 0.0, arm = 0.0;
+      for (const PathFitError& error : system.fit()->errors()) {
+        length = std::max(length, error.length);
+        arm = std::max(arm, error.moment_arm);
+      }
+      return fmt::format("polynomials fitted to the wrapped paths: lengths within {:.2g} mm, moment arms {:.2g} mm",
+                         1e3 * length, 1e3 * arm);
+    }
     case PathSource::kAsOpenSim:
       break;
   }
