@@ -67,8 +67,12 @@ Shown choose(const MuscleStudy& study, const MuscleResult& result) {
   return shown;
 }
 
-std::string list_text(const std::vector<std::string>& names, const char* none) {
-  return names.empty() ? none : fmt::format("{}", fmt::join(names, ", "));
+/// All names, or how many and the first ones.
+std::string list_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 6;
+  if (names.empty()) return "none";
+  if (names.size() <= kMostNames) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{}: {}, ...", names.size(), fmt::join(names.begin(), names.begin() + kMostNames, ", "));
 }
 
 std::string paths_text(const MusculoskeletalSystem& system) {
@@ -104,9 +108,9 @@ std::vector<Fact> facts(const Shown& shown) {
   std::vector<Fact> list{{"Model", std::filesystem::path(study.model_name).filename().string()},
                          {"Method", std::string(method_name(study.method))}};
   list.push_back({"Time", fmt::format("{:g} .. {:g} s, {:g} rows a second", study.begin, study.end, study.rate_Hz)});
-  list.push_back({"Free coordinates", list_text(free, "none")});
-  if (!held.empty()) list.push_back({"Locked", list_text(held, "none")});
-  if (!coupled.empty()) list.push_back({"Coupled", list_text(coupled, "none")});
+  list.push_back({"Free coordinates", list_text(free)});
+  if (!held.empty()) list.push_back({"Locked", list_text(held)});
+  if (!coupled.empty()) list.push_back({"Coupled", list_text(coupled)});
   list.push_back({"Muscles", std::to_string(shown.model.muscles.size())});
   list.push_back({"Paths", paths_text(*study.system)});
   for (const HeldLoad& load : study.loads) {
