@@ -101,9 +101,11 @@ std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTraje
     const double slack = 1e-3 * (k.high - k.low);
     for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
       if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
+      const bool angle = k.unit() == "rad";
+      const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
       said.push_back(fmt::format(
-          "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, k.low, k.high, k.unit(),
-          t.time[static_cast<std::size_t>(i)],
+          "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
+          angle ? "deg" : "m", t.time[static_cast<std::size_t>(i)],
           study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
       break;
     }
