@@ -12,7 +12,7 @@ MuscleWindow::MuscleWindow(const MusculoskeletalSystem& system)
       cubic_(n_),
       start_(2 * n_),
       state_(2 * n_),
-      scales_(2 * n_, 1.0),
+      scales_(2 * n_, 0.1),
       length_(n_),
       speed_(n_),
       activation_rate_(n_),
@@ -26,7 +26,7 @@ MuscleWindow::MuscleWindow(const MusculoskeletalSystem& system)
       trial_force_(n_),
       side_(n_) {
   for (std::size_t m = 0; m < n_; ++m)
-    scales_[n_ + m] = system.muscles().settings(m).musculotendon.optimal_fiber_length;
+    scales_[n_ + m] = 0.1 * system.muscles().settings(m).musculotendon.optimal_fiber_length;
 }
 
 void MuscleWindow::set_paths(double duration, const std::array<std::vector<double>, kNodes>& length) {

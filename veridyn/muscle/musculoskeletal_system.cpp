@@ -75,16 +75,16 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
     notes_.push_back(fit_note(model_, *fit_));
   }
   layout_.free = reduction_.free().size();
-  scales_.assign(layout_.free, 1.0);
-  scales_.insert(scales_.end(), layout_.free, 10.0);
+  scales_.assign(layout_.free, 0.1);
+  scales_.insert(scales_.end(), layout_.free, 1.0);
   layout_.size = scales_.size();
   for (std::size_t m = 0; m < muscles_.size(); ++m) {
     layout_.activation.push_back(muscles_.has_activation_state(m) ? static_cast<int>(layout_.size++) : -1);
-    if (layout_.activation.back() >= 0) scales_.push_back(1.0);
+    if (layout_.activation.back() >= 0) scales_.push_back(0.1);
   }
   for (std::size_t m = 0; m < muscles_.size(); ++m) {
     layout_.fiber_length.push_back(muscles_.has_fiber_state(m) ? static_cast<int>(layout_.size++) : -1);
-    if (layout_.fiber_length.back() >= 0) scales_.push_back(muscles_.settings(m).musculotendon.optimal_fiber_length);
+    if (layout_.fiber_length.back() >= 0) scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
   }
 }
 

@@ -66,7 +66,8 @@ class MusculoskeletalSystem {
   [[nodiscard]] const MuscleGroup<double>& muscles() const { return muscles_; }
   [[nodiscard]] const StateLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t coordinates() const { return model_.coordinates.size(); }
-  /// Sizes of the states, for error control: 1 rad or m, 10 per second, activation 1, fibre length L0.
+  /// Sizes of the states, for error control: 0.1 rad or m, 1 per second, activation 0.1, a tenth of L0. With them an
+  /// accuracy of 1e-5 leaves arm26 within some 1e-6 rad after a second, as OpenSim's 1e-5 does.
   [[nodiscard]] std::span<const double> scales() const { return scales_; }
   /// "speed of coordinate 'elbow_flexion'", for messages.
   [[nodiscard]] std::string state_name(std::size_t index) const;
@@ -238,7 +239,7 @@ bool SystemEvaluator<Scalar>::derivative(const Scalar* x, const SystemInputs& in
   if (inputs.coordinate_force.empty()) {
     std::fill(tau_.begin(), tau_.end(), Scalar(0.0));
   } else {
-    std::copy(inputs.coordinate_force.begin(), inputs.coordinate_force.end(), tau_.begin());
+    for (std::size_t c = 0; c < tau_.size(); ++c) tau_[c] = Scalar(inputs.coordinate_force[c]);
   }
   const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
