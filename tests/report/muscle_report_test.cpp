@@ -15,12 +15,12 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-struct Run {
+struct Simulated {
   muscle::MuscleStudy study;
   muscle::MuscleResult result;
 };
 
-Run run(const std::string& motion, const std::string& subject = "") {
+Simulated run(const std::string& motion, const std::string& subject = "") {
   const Study study = Study::parse("[subject]\nmodel = \"arm\"\n" + subject + "[motion]\n" + motion, "s.toml");
   muscle::MuscleStudy read = muscle::read_muscle_study(study.root());
   Progress progress;
@@ -52,7 +52,7 @@ const XYSeries& series(const XYPlot& plot, const std::string& name) {
 }
 
 TEST(MuscleReport, HasPosesCurvesAndATableOfTheMuscles) {
-  const Run lift = run(kLift, kLoad + "[subject.parameters]\nbrachialis.max_isometric_force = 900\n");
+  const Simulated lift = run(kLift, kLoad + "[subject.parameters]\nbrachialis.max_isometric_force = 900\n");
   const Document document = muscle_report(lift.study, lift.result, "veridyn test");
   check(document);
   EXPECT_EQ(document.verdict.level, Level::kGood);
@@ -69,7 +69,7 @@ TEST(MuscleReport, HasPosesCurvesAndATableOfTheMuscles) {
 }
 
 TEST(MuscleReport, DrawsTheModelToScaleWhereItIs) {
-  const Run lift = run(kLift, kLoad);
+  const Simulated lift = run(kLift, kLoad);
   const std::vector<XYPlot> plots = skeleton_figure(lift.study, lift.result);
   ASSERT_EQ(plots.size(), 2u);
   EXPECT_EQ(plots[0].x.label, "x, forward");
@@ -94,7 +94,8 @@ TEST(MuscleReport, DrawsTheModelToScaleWhereItIs) {
 }
 
 TEST(MuscleReport, SaysThatASimulationDidNotFinish) {
-  const Run failed = run("duration = 1\n[motion.start_speed]\nelbow_flexion = 1e6\n");
+  const Simulated failed = run("duration = 1\naccuracy = 0.1\n[motion.start_speed]\nelbow_flexion = 1e6\n",
+                               "locked = [\"shoulder_flexion\"]\n");
   ASSERT_FALSE(failed.result.usable());
   const Document document = muscle_report(failed.study, failed.result, "veridyn test");
   check(document);
@@ -104,10 +105,11 @@ TEST(MuscleReport, SaysThatASimulationDidNotFinish) {
 }
 
 TEST(MuscleReport, WarnsWhereMusclesCannotDoIt) {
-  const Run weak = run("reserve_force = 0\n" + kLift, kLoad +
-                                                          "[subject.parameters]\nbrachialis.max_isometric_force = 5\n"
-                                                          "biceps_long.max_isometric_force = 5\n"
-                                                          "biceps_short.max_isometric_force = 5\n");
+  const Simulated weak =
+      run("reserve_force = 0\n" + kLift, kLoad +
+                                             "[subject.parameters]\nbrachialis.max_isometric_force = 5\n"
+                                             "biceps_long.max_isometric_force = 5\n"
+                                             "biceps_short.max_isometric_force = 5\n");
   const Document document = muscle_report(weak.study, weak.result, "veridyn test");
   EXPECT_EQ(document.verdict.level, Level::kCaution);
   ASSERT_FALSE(document.sections.empty());

@@ -303,6 +303,23 @@ XYPlot fit_plot() {
           .equal_axes = true};
 }
 
+/// A ground track of 60 m by 20 m, drawn to scale.
+XYPlot ground_track() {
+  return {.title = "Ground track of a turn",
+          .x = {.label = "east", .unit = "m"},
+          .y = {.label = "north", .unit = "m"},
+          .series = {{.name = "runway",
+                      .x = {0.0, 60.0, 60.0, 0.0, 0.0},
+                      .y = {0.0, 0.0, 20.0, 20.0, 0.0},
+                      .role = Role::kMeasured,
+                      .style = Style::kLine,
+                      .width = 6.0,
+                      .opacity = 0.5},
+                     {.name = "touch-down", .x = {20.0}, .y = {10.0}, .width = 12.0}},
+          .equal_scale = true,
+          .height = 320};
+}
+
 Matrix correlation() {
   Matrix matrix{.title = "Correlation of the estimates",
                 .caption = "Above 0.9 in size, two parameters are hardly told apart."};
@@ -368,7 +385,7 @@ Document sample_document() {
                                         "hold-out confirms it."},
                       parameter_table(), interval_plot(), method_table()}},
           {.title = "Does it predict?", .blocks = {validation(), coefficients(), fit_plot(), normal_plot("Cm", 30)}},
-          {.title = "Residuals", .blocks = {autocorrelation(), normal_plot("CL", 0), correlation()}},
+          {.title = "Residuals", .blocks = {autocorrelation(), normal_plot("CL", 0), correlation(), ground_track()}},
           {.title = "Warnings",
            .blocks = {List{.items = {"The pitot was silent from 131 s to 139 s.",
                                      "Closed-loop flight from 96 s on: inputs are correlated with the state."},

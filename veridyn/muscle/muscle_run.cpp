@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "veridyn/muscle/motion_analysis.hpp"
@@ -91,6 +92,27 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
+/// Coordinates that a simulation carried out of their ranges: nothing but forces holds them.
+std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTrajectory& t) {
+  std::vector<std::string> said;
+  const Model& model = study.system->model();
+  for (const int c : study.system->reduction().free()) {
+    const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+    const double slack = 1e-3 * (k.high - k.low);
+    for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
+      if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
+      const bool angle = k.unit() == "rad";
+      const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
+      said.push_back(fmt::format(
+          "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
+          angle ? "deg" : "m", t.time[static_cast<std::size_t>(i)],
+          study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
+      break;
+    }
+  }
+  return said;
+}
+
 }  // namespace
 
 double MuscleResult::tracking_error(std::size_t coordinate) const {
@@ -116,6 +138,9 @@ MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress) {
       break;
   }
   result.notes = study.system->notes();
+  if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
+    for (std::string& left : left_ranges(study, result.trajectory)) result.warnings.push_back(std::move(left));
+  }
   result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());
   return result;
 }

@@ -67,16 +67,27 @@ Shown choose(const MuscleStudy& study, const MuscleResult& result) {
   return shown;
 }
 
-std::string list_text(const std::vector<std::string>& names, const char* none) {
-  return names.empty() ? none : fmt::format("{}", fmt::join(names, ", "));
+/// All names, or how many and the first ones.
+std::string list_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 6;
+  if (names.empty()) return "none";
+  if (names.size() <= kMostNames) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{}: {}, ...", names.size(), fmt::join(names.begin(), names.begin() + kMostNames, ", "));
 }
 
 std::string paths_text(const MusculoskeletalSystem& system) {
   switch (system.path_source()) {
     case PathSource::kExact:
       return "wrapped at every pose, taut and continuous";
-    case PathSource::kFitted:
-      return "polynomials fitted to the wrapped paths";
+    case PathSource::kFitted: {
+      double length = 0.0, arm = 0.0;
+      for (const PathFitError& error : system.fit()->errors()) {
+        length = std::max(length, error.length);
+        arm = std::max(arm, error.moment_arm);
+      }
+      return fmt::format("polynomials fitted to the wrapped paths: lengths within {:.2g} mm, moment arms {:.2g} mm",
+                         1e3 * length, 1e3 * arm);
+    }
     case PathSource::kAsOpenSim:
       break;
   }
@@ -94,11 +105,12 @@ std::vector<Fact> facts(const Shown& shown) {
                                        : coupled)
         .push_back(shown.model.coordinates[c].name);
   }
-  std::vector<Fact> list{{"Model", study.model_name}, {"Method", std::string(method_name(study.method))}};
+  std::vector<Fact> list{{"Model", std::filesystem::path(study.model_name).filename().string()},
+                         {"Method", std::string(method_name(study.method))}};
   list.push_back({"Time", fmt::format("{:g} .. {:g} s, {:g} rows a second", study.begin, study.end, study.rate_Hz)});
-  list.push_back({"Free coordinates", list_text(free, "none")});
-  if (!held.empty()) list.push_back({"Locked", list_text(held, "none")});
-  if (!coupled.empty()) list.push_back({"Coupled", list_text(coupled, "none")});
+  list.push_back({"Free coordinates", list_text(free)});
+  if (!held.empty()) list.push_back({"Locked", list_text(held)});
+  if (!coupled.empty()) list.push_back({"Coupled", list_text(coupled)});
   list.push_back({"Muscles", std::to_string(shown.model.muscles.size())});
   list.push_back({"Paths", paths_text(*study.system)});
   for (const HeldLoad& load : study.loads) {

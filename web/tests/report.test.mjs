@@ -84,7 +84,7 @@ describe('the report', { skip }, () => {
     assert.equal(await page.locator('main > section[id]').count(), 7);
     assert.equal(await page.locator('figure.series').count(), 4);
     assert.equal(await page.locator('.time-series .plot canvas').count(), 11);
-    assert.equal(await page.locator('figure.xy-figure .plot canvas').count(), 4);
+    assert.equal(await page.locator('figure.xy-figure .plot canvas').count(), 5);
     assert.equal(await page.locator('table.data').count(), 3);
     assert.equal(await page.locator('table.data').first().locator('tbody tr').count(), 14);
     assert.equal(await page.locator('.interval-picture svg').count(), 11);
@@ -237,6 +237,23 @@ describe('the report', { skip }, () => {
     await page.waitForTimeout(200);
     const widths = await page.evaluate(() => [...document.querySelectorAll('.plot')].map((host) => [host.clientWidth, host.uplot?.width ?? host.clientWidth]));
     for (const [host, plot] of widths) assert.equal(plot, host);
+    await close();
+  });
+
+  test('draws to scale what is meant to be, at every width of the window', async () => {
+    const { page, close } = await open();
+    for (const width of [1280, 500]) {
+      await page.setViewportSize({ width, height: 800 });
+      await page.waitForTimeout(200);
+      const [x, y, inside] = await page.locator('figure', { hasText: 'Ground track' }).locator('.plot').evaluate((host) => {
+        const { uplot } = host;
+        const length = (axis) => Math.abs(uplot.valToPos(20, axis) - uplot.valToPos(0, axis));
+        const { x, y } = uplot.scales;
+        return [length('x'), length('y'), x.min <= 0 && x.max >= 60 && y.min <= 0 && y.max >= 20];
+      });
+      assert.ok(inside);
+      assert.ok(Math.abs(x / y - 1) < 0.02, `20 m are ${x} px across and ${y} px up`);
+    }
     await close();
   });
 
