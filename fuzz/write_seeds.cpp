@@ -23,6 +23,9 @@ int main(int count, char** arguments) {
     write("ulog", veridyn::testing::small_ulog());
     write("csv", veridyn::testing::small_csv());
     write("mat", veridyn::testing::small_mat());
+    write("storage",
+          "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\nendheader\ntime\tshoulder\telbow\n0.0\t1.5\t-"
+          "2e1\n0.1\t3\t+4\n");
   } catch (const veridyn::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
