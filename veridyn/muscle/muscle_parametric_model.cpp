@@ -117,7 +117,12 @@ bool MuscleParametricModel::simulate(
 
   const bool held_excitation = segment.drive.excitation.interpolation() == Interpolation::kHold;
   numerics::DormandPrince<Scalar> stepper(layout.size);
-  const numerics::StepControl control{.tolerance = accuracy_, .smallest_step = 1e-12, .max_steps = 200000};
+  // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
+  constexpr double kLeast = 1e-6;
+  const numerics::StepControl control{.tolerance = accuracy_,
+                                      .derivative_tolerance = std::max(10.0 * accuracy_, kLeast),
+                                      .smallest_step = 1e-12,
+                                      .max_steps = 200000};
   double t = segment.time.front();
   Eigen::Index row = 0;
   const auto write = [&](const Scalar* state) {
