@@ -180,7 +180,7 @@ void sensitivities(benchmark::State& state) {
   if (!system) return;
   std::vector<MuscleParameterName> names;
   for (int m = 0; m < static_cast<int>(kMuscles); ++m) {
-    for (int f = 0; f < 3; ++f) names.push_back({m, f});
+    for (std::size_t f = 0; f < 3; ++f) names.push_back({m, f});
   }
   MotionSegment segment{start_of(system->model(), 2), scenario(2), frame_times(0.0, 1.0, 100.0)};
   const MuscleParametricModel model(*system, names, {segment}, 1e-5);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <numbers>
 #include <string>
 #include <variant>
@@ -92,6 +93,32 @@ struct MusculotendonParameters {
             Other(deactivation_time_constant)};
   }
 };
+
+/// A number of `MusculotendonParameters` as OpenSim's files, studies and estimates name it.
+struct MusculotendonField {
+  const char* name;
+  const char* unit;
+};
+inline constexpr std::array<MusculotendonField, 7> kMusculotendonFields{{{"max_isometric_force", "N"},
+                                                                         {"optimal_fiber_length", "m"},
+                                                                         {"tendon_slack_length", "m"},
+                                                                         {"pennation_angle_at_optimal", "rad"},
+                                                                         {"max_contraction_velocity", "1/s"},
+                                                                         {"activation_time_constant", "s"},
+                                                                         {"deactivation_time_constant", "s"}}};
+
+/// The number that `kMusculotendonFields[field]` names.
+template <typename Scalar>
+[[nodiscard]] Scalar& field_of(MusculotendonParameters<Scalar>& p, std::size_t field) {
+  Scalar* const fields[] = {&p.max_isometric_force,        &p.optimal_fiber_length,     &p.tendon_slack_length,
+                            &p.pennation_angle_at_optimal, &p.max_contraction_velocity, &p.activation_time_constant,
+                            &p.deactivation_time_constant};
+  return *fields[field];
+}
+template <typename Scalar>
+[[nodiscard]] const Scalar& field_of(const MusculotendonParameters<Scalar>& p, std::size_t field) {
+  return field_of(const_cast<MusculotendonParameters<Scalar>&>(p), field);
+}
 
 /// One muscle as a file describes it, without its path.
 struct MuscleParameters {

@@ -9,35 +9,21 @@
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::muscle {
-namespace {
-
-constexpr std::array<MusculotendonField, 7> kFields{{{"max_isometric_force", "N"},
-                                                     {"optimal_fiber_length", "m"},
-                                                     {"tendon_slack_length", "m"},
-                                                     {"pennation_angle_at_optimal", "rad"},
-                                                     {"max_contraction_velocity", "1/s"},
-                                                     {"activation_time_constant", "s"},
-                                                     {"deactivation_time_constant", "s"}}};
-
-}  // namespace
-
-std::span<const MusculotendonField> musculotendon_fields() { return kFields; }
-
 MuscleParameterName parse_parameter_name(const Model& model, std::string_view text, std::string_view place) {
   const std::size_t dot = text.rfind('.');
   const std::string_view muscle = text.substr(0, dot);
   const std::string_view field = dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1);
   std::vector<std::string> names;
-  MuscleParameterName result{model.muscle(muscle), -1};
+  MuscleParameterName result{model.muscle(muscle), kMusculotendonFields.size()};
   if (result.muscle < 0) {
     for (const Muscle& m : model.muscles) names.push_back(m.name());
     throw InputError(place, fmt::format("'{}': there is no muscle '{}'{}", text, muscle, suggestion(muscle, names)));
   }
-  for (std::size_t i = 0; i < kFields.size(); ++i) {
-    names.emplace_back(kFields[i].name);
-    if (kFields[i].name == field) result.field = static_cast<int>(i);
+  for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
+    names.emplace_back(kMusculotendonFields[i].name);
+    if (kMusculotendonFields[i].name == field) result.field = i;
   }
-  if (result.field < 0) {
+  if (result.field == kMusculotendonFields.size()) {
     throw InputError(place,
                      fmt::format("'{}': a muscle has no parameter '{}'{}", text, field, suggestion(field, names)));
   }
@@ -50,9 +36,8 @@ MuscleParametricModel::MuscleParametricModel(const MusculoskeletalSystem& system
     : system_(&system), names_(std::move(names)), segments_(std::move(segments)), accuracy_(accuracy) {
   for (const MuscleParameterName& name : names_) {
     const MuscleParameters& muscle = system.muscles().settings(static_cast<std::size_t>(name.muscle));
-    MusculotendonParameters<double> values = muscle.musculotendon;
-    const double value = field_of(values, name.field);
-    const MusculotendonField& field = kFields[static_cast<std::size_t>(name.field)];
+    const double value = field_of(muscle.musculotendon, name.field);
+    const MusculotendonField& field = kMusculotendonFields[name.field];
     parameters_.push_back({.name = fmt::format("{}.{}", muscle.name, field.name),
                            .unit = std::string(field.unit),
                            .start = value,

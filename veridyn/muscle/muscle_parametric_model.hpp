@@ -15,24 +15,8 @@ namespace veridyn::muscle {
 /// A parameter of a muscle: "BIClong.optimal_fiber_length".
 struct MuscleParameterName {
   int muscle = 0;
-  int field = 0;  ///< index into `musculotendon_fields`
+  std::size_t field = 0;  ///< in `kMusculotendonFields`
 };
-
-/// Names and units of the parameters of `MusculotendonParameters`, in its order, as OpenSim's files name them.
-struct MusculotendonField {
-  std::string_view name;
-  std::string_view unit;
-};
-[[nodiscard]] std::span<const MusculotendonField> musculotendon_fields();
-
-template <typename Scalar>
-[[nodiscard]] Scalar& field_of(MusculotendonParameters<Scalar>& parameters, int field) {
-  Scalar* const fields[] = {&parameters.max_isometric_force,       &parameters.optimal_fiber_length,
-                            &parameters.tendon_slack_length,       &parameters.pennation_angle_at_optimal,
-                            &parameters.max_contraction_velocity,  &parameters.activation_time_constant,
-                            &parameters.deactivation_time_constant};
-  return *fields[field];
-}
 
 /// Reads "MUSCLE.field". @throws InputError at `place` naming the nearest muscle or field.
 [[nodiscard]] MuscleParameterName parse_parameter_name(const Model& model, std::string_view text,

@@ -15,22 +15,6 @@
 namespace veridyn::muscle {
 namespace {
 
-struct NamedParameter {
-  const char* name;
-  const char* unit;
-  double MusculotendonParameters<double>::*value;
-};
-
-constexpr std::array<NamedParameter, 7> kParameters{{
-    {"max_isometric_force", "N", &MusculotendonParameters<double>::max_isometric_force},
-    {"optimal_fiber_length", "m", &MusculotendonParameters<double>::optimal_fiber_length},
-    {"tendon_slack_length", "m", &MusculotendonParameters<double>::tendon_slack_length},
-    {"pennation_angle_at_optimal", "rad", &MusculotendonParameters<double>::pennation_angle_at_optimal},
-    {"max_contraction_velocity", "1/s", &MusculotendonParameters<double>::max_contraction_velocity},
-    {"activation_time_constant", "s", &MusculotendonParameters<double>::activation_time_constant},
-    {"deactivation_time_constant", "s", &MusculotendonParameters<double>::deactivation_time_constant},
-}};
-
 std::vector<std::string> muscle_names(const Model& model) {
   std::vector<std::string> names;
   for (const Muscle& m : model.muscles) names.push_back(m.name());
@@ -68,7 +52,7 @@ double coordinate_value(const StudyTable& table, const std::string& key, const C
   const double value = table.number(key, c.unit());
   const double slack = 1e-6 * (1.0 + c.high - c.low);
   if (value < c.low - slack || value > c.high + slack) {
-    table.fail(key, fmt::format("= {:.6g} {} is outside the range of '{}', {:.6g} .. {:.6g}", value, c.unit(), c.name,
+    table.fail(key, fmt::format("{:.6g} {} is outside the range of '{}', {:.6g} .. {:.6g}", value, c.unit(), c.name,
                                 c.low, c.high));
   }
   return value;
@@ -76,31 +60,32 @@ double coordinate_value(const StudyTable& table, const std::string& key, const C
 
 double excitation(const StudyTable& table, const std::string& key) {
   const double value = table.number(key, "1");
-  if (!(value >= 0.0 && value <= 1.0)) table.fail(key, fmt::format("= {} must be from 0 to 1", value));
+  if (!(value >= 0.0 && value <= 1.0)) table.fail(key, fmt::format("{} must be from 0 to 1", value));
   return value;
 }
 
 std::string known_parameters() {
   std::string text;
-  for (const NamedParameter& p : kParameters) text += fmt::format("{}{}", text.empty() ? "" : ", ", p.name);
+  for (const MusculotendonField& p : kMusculotendonFields)
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", p.name);
   return text;
 }
 
 void set_parameter(const StudyTable& table, const std::string& key, const std::string& muscle,
                    const std::string& parameter, Model& model, std::vector<ParameterChange>& changes) {
   Muscle& m = model.muscles[muscle_of(table, key, muscle, model)];
-  const auto found = std::find_if(kParameters.begin(), kParameters.end(),
-                                  [&](const NamedParameter& p) { return p.name == parameter; });
-  if (found == kParameters.end()) {
+  const auto found = std::find_if(kMusculotendonFields.begin(), kMusculotendonFields.end(),
+                                  [&](const MusculotendonField& p) { return p.name == parameter; });
+  if (found == kMusculotendonFields.end()) {
     std::vector<std::string> names;
-    for (const NamedParameter& p : kParameters) names.emplace_back(p.name);
+    for (const MusculotendonField& p : kMusculotendonFields) names.emplace_back(p.name);
     table.fail(key, fmt::format("a muscle has no parameter '{}'{}", parameter, suggestion(parameter, names)));
   }
-  double& value = m.parameters.musculotendon.*(found->value);
+  double& value = field_of(m.parameters.musculotendon, static_cast<std::size_t>(found - kMusculotendonFields.begin()));
   const double before = value;
   if (std::string_view(found->unit) == "rad") {
     value = table.number(key, "rad");
-    if (!(value >= 0.0 && value < 1.5)) table.fail(key, fmt::format("= {:g} rad must be from 0 to 1.5 rad", value));
+    if (!(value >= 0.0 && value < 1.5)) table.fail(key, fmt::format("{:g} rad must be from 0 to 1.5 rad", value));
   } else {
     value = table.positive(key, found->unit);
   }
@@ -213,7 +198,7 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
   study.end = study.begin + motion.positive_or("duration", "s", file ? study.motion.end - study.begin : 1.0);
   if (file && !(study.end > study.begin)) {
     motion.fail("begin",
-                fmt::format("= {:g} s is at or after the end of the motion, {:g} s", study.begin, study.motion.end));
+                fmt::format("{:g} s is at or after the end of the motion, {:g} s", study.begin, study.motion.end));
   }
   const double slack = 1e-9 * (1.0 + std::abs(study.end));
   if (file && (study.begin < study.motion.begin - slack || study.end > study.motion.end + slack)) {
@@ -222,17 +207,17 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
                             study.motion.begin, study.motion.end));
   }
   if (study.end - study.begin > 3600.0)
-    motion.fail("duration", fmt::format("= {:g} s is more than an hour", study.end - study.begin));
+    motion.fail("duration", fmt::format("{:g} s is more than an hour", study.end - study.begin));
   study.rate_Hz = motion.positive_or("rate", "1/s", study.rate_Hz);
   if (!(study.rate_Hz * (study.end - study.begin) <= 1e7)) {
-    motion.fail("rate", fmt::format("= {:g} Hz makes more than 10 million rows", study.rate_Hz));
+    motion.fail("rate", fmt::format("{:g} Hz makes more than 10 million rows", study.rate_Hz));
   }
   study.accuracy = motion.positive_or("accuracy", "1", study.accuracy);
   if (!(study.accuracy >= 1e-13 && study.accuracy <= 0.1))
-    motion.fail("accuracy", fmt::format("= {:g} must be from 1e-13 to 0.1", study.accuracy));
+    motion.fail("accuracy", fmt::format("{:g} must be from 1e-13 to 0.1", study.accuracy));
   study.reserve_force = motion.number_or("reserve_force", "N m", study.reserve_force);
   if (!(study.reserve_force >= 0.0))
-    motion.fail("reserve_force", fmt::format("= {:g} must be >= 0", study.reserve_force));
+    motion.fail("reserve_force", fmt::format("{:g} must be >= 0", study.reserve_force));
 }
 
 void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t c, const MuscleStudy& study) {
@@ -392,7 +377,7 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
     const double time = step.number("time", "s");
     if (!(time > times.back())) {
       step.fail("time",
-                fmt::format("= {:g} s is not after {:g} s, where the excitations before it begin", time, times.back()));
+                fmt::format("{:g} s is not after {:g} s, where the excitations before it begin", time, times.back()));
     }
     if (step.has("default")) std::fill(now.begin(), now.end(), excitation(step, "default"));
     for (const std::string& key : step.keys()) {
@@ -425,7 +410,7 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
     if (table.has("from")) {
       const double from = coordinate_value(table, "from", coordinate);
       if ((before != nullptr || pose.has(name)) && std::abs(from - ramp.from) > 1e-9) {
-        table.fail("from", fmt::format("= {:.6g} {} jumps: {} it is at {:.6g}", from, coordinate.unit(),
+        table.fail("from", fmt::format("{:.6g} {} jumps: {} it is at {:.6g}", from, coordinate.unit(),
                                        before != nullptr ? "after the ramp before" : "by motion.start", ramp.from));
       }
       ramp.from = from;
@@ -434,7 +419,7 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
     ramp.start = table.number_or("start", "s", before != nullptr ? before->start + before->duration : study.begin);
     ramp.duration = table.positive("duration", "s");
     if (before != nullptr && !(ramp.start >= before->start + before->duration - 1e-12)) {
-      table.fail("start", fmt::format("= {:g} s is before the end of the ramp before, {:g} s", ramp.start,
+      table.fail("start", fmt::format("{:g} s is before the end of the ramp before, {:g} s", ramp.start,
                                       before->start + before->duration));
     }
     if (before != nullptr) ramp.start = std::max(ramp.start, before->start + before->duration);
@@ -474,19 +459,19 @@ void read_control(const StudyTable& table, MuscleStudy& study) {
   ControlOptions& o = study.control;
   o.window = table.positive_or("window", "s", o.window);
   if (study.method == MuscleMethod::kComputedMuscleControl && !(o.window <= study.end - study.begin)) {
-    table.fail("window", fmt::format("= {:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
+    table.fail("window", fmt::format("{:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
   }
   o.kp = table.number_or("kp", "1/s^2", o.kp);
   o.kv = table.number_or("kv", "1/s", o.kv);
-  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("= {:g} must be >= 0", o.kp));
-  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("= {:g} must be >= 0", o.kv));
+  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("{:g} must be >= 0", o.kp));
+  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("{:g} must be >= 0", o.kv));
   o.min_control = table.number_or("min_control", "1", o.min_control);
   o.max_control = table.number_or("max_control", "1", o.max_control);
   if (!(o.min_control >= 0.0 && o.min_control < 1.0))
-    table.fail("min_control", fmt::format("= {:g} must be from 0 to below 1", o.min_control));
+    table.fail("min_control", fmt::format("{:g} must be from 0 to below 1", o.min_control));
   if (!(o.max_control > o.min_control && o.max_control <= 1.0)) {
     table.fail("max_control",
-               fmt::format("= {:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
+               fmt::format("{:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
   }
   o.begin = study.begin;
   o.end = study.end;
@@ -499,7 +484,7 @@ void read_static(const StudyTable& table, MuscleStudy& study) {
   StaticOptimizationOptions& o = study.static_optimization;
   o.exponent = table.number_or("exponent", "1", o.exponent);
   if (!(o.exponent > 1.0 && o.exponent <= 100.0))
-    table.fail("exponent", fmt::format("= {:g} must be above 1, at most 100", o.exponent));
+    table.fail("exponent", fmt::format("{:g} must be above 1, at most 100", o.exponent));
   const std::vector<std::string> names = {"with passive", "as opensim", "without physiology"};
   const std::string name = table.choice_or("formulation", names, names[0]);
   o.force = name == names[0]   ? StaticForce::kWithPassive

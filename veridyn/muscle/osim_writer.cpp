@@ -18,21 +18,6 @@ struct Edit {
   std::string text;
 };
 
-struct WrittenParameter {
-  const char* name;
-  double MusculotendonParameters<double>::*value;
-};
-
-constexpr std::array<WrittenParameter, 7> kWritten{{
-    {"max_isometric_force", &MusculotendonParameters<double>::max_isometric_force},
-    {"optimal_fiber_length", &MusculotendonParameters<double>::optimal_fiber_length},
-    {"tendon_slack_length", &MusculotendonParameters<double>::tendon_slack_length},
-    {"pennation_angle_at_optimal", &MusculotendonParameters<double>::pennation_angle_at_optimal},
-    {"max_contraction_velocity", &MusculotendonParameters<double>::max_contraction_velocity},
-    {"activation_time_constant", &MusculotendonParameters<double>::activation_time_constant},
-    {"deactivation_time_constant", &MusculotendonParameters<double>::deactivation_time_constant},
-}};
-
 pugi::xml_node find_muscle(const osim::Document& document, const std::string& name) {
   for (const osim::Element& element : osim::Element(document, document.model()).objects("ForceSet")) {
     if (osim::is_muscle(element.type()) && element.name() == name) return element.node();
@@ -73,9 +58,11 @@ std::string OsimFile::text_with(const Model& changed) const {
     const MusculotendonParameters<double>& old =
         model_.muscles[static_cast<std::size_t>(index)].parameters.musculotendon;
     const pugi::xml_node node = find_muscle(*document_, muscle.name());
-    for (const WrittenParameter& p : kWritten) {
-      const double value = muscle.parameters.musculotendon.*p.value;
-      if (value != old.*p.value) edits.push_back(edit_of(document_->text(), node, p.name, value));
+    for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
+      const double value = field_of(muscle.parameters.musculotendon, i);
+      if (value != field_of(old, i)) {
+        edits.push_back(edit_of(document_->text(), node, kMusculotendonFields[i].name, value));
+      }
     }
   }
   std::stable_sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
