@@ -279,45 +279,35 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
   return solution;
 }
 
-}  // namespace internal
-
-/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
-/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
-///
-/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
-/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
-/// square of that. `nearby`: the solution is left there, and one that is there
-/// already (`converged`) starts the search.
 template <typename Scalar>
-[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                      const Eigen::Matrix<Scalar, 3, 1>& q,
-                                      internal::GeodesicSolution* nearby = nullptr) {
+void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+               const Eigen::Matrix<Scalar, 3, 1>& q, GeodesicSolution* nearby, WrapResult<Scalar>& result) {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  WrapResult<Scalar> result;
+  result.clear();
   const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
   Eigen::Vector3d ps = pv.cwiseQuotient(ellipsoid.radii), qs = qv.cwiseQuotient(ellipsoid.radii);
   const Eigen::Vector3d u = qs - ps;
   const double u2 = u.squaredNorm();
   const double along = -ps.dot(u);
-  if (!(along > 0.0 && along < u2)) return result;
+  if (!(along > 0.0 && along < u2)) return;
   Eigen::Vector3d near = ps + u * (along / u2);
   double near2 = near.squaredNorm();
-  if (!(near2 < 1.0)) return result;
+  if (!(near2 < 1.0)) return;
 
   // An end inside shrinks the ellipsoid until it lies just outside.
   const double nearest2 = std::min(ps.squaredNorm(), qs.squaredNorm());
-  const bool inside = nearest2 * (1.0 - internal::kSurfaceGap) * (1.0 - internal::kSurfaceGap) < 1.0;
+  const bool inside = nearest2 * (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap) < 1.0;
   const bool p_inside = ps.squaredNorm() <= qs.squaredNorm();
   double scale = 1.0;
   if (inside) {
-    scale = std::sqrt(nearest2) * (1.0 - internal::kSurfaceGap);
+    scale = std::sqrt(nearest2) * (1.0 - kSurfaceGap);
     result.depth = 1.0 - scale;
     if (result.depth >= kInsideFade) {
       result.status = WrapStatus::kInside;
-      return result;
+      return;
     }
-    if (!(near2 < scale * scale)) return result;
+    if (!(near2 < scale * scale)) return;
   }
   const Eigen::Vector3d a = ellipsoid.radii * scale;
   if (near2 < 1e-24) {
@@ -327,10 +317,10 @@ template <typename Scalar>
   }
   // Derivatives are taken at the last shot: it has to be closer to the solution for them.
   constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-4 : 1e-7;
-  internal::SolvedGeodesic solution;
+  SolvedGeodesic solution;
   const bool warm = nearby != nullptr && nearby->converged;
-  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby, tolerance);
-  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near, tolerance);
+  if (warm) solution = solve_geodesic(a, pv, qv, *nearby, tolerance);
+  if (!solution.converged) solution = solve_geodesic(a, pv, qv, near, tolerance);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
     const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
@@ -339,14 +329,14 @@ template <typename Scalar>
   // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
   if (!solution.converged ||
       (!warm && (near2 < 0.01 || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0))) {
-    const auto good = [&](const internal::SolvedGeodesic& s) {
+    const auto good = [&](const SolvedGeodesic& s) {
       return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
     };
     const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
     bool have = good(solution);
     for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
                                           Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward, tolerance);
+      const SolvedGeodesic other = solve_geodesic(a, pv, qv, toward, tolerance);
       if (!good(other) && !(other.converged && !solution.converged)) continue;
       if (have && !(other.length < solution.length)) continue;
       solution = other;
@@ -355,23 +345,22 @@ template <typename Scalar>
   }
   if (!solution.converged) {
     result.status = WrapStatus::kFailed;
-    return result;
+    return;
   }
   const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
-  const auto last_step = [&](const internal::SolvedGeodesic& from) {
+  const auto last_step = [&](const SolvedGeodesic& from) {
     if constexpr (std::is_same_v<Scalar, double>) {
-      const internal::GeodesicShot<double>& shot = from.shot;
+      const GeodesicShot<double>& shot = from.shot;
       const double d_alpha = from.last.angle / shot.angle_slope;
       result.r1 = shot.r1 + shot.r1_slope * d_alpha;
       result.r2 = shot.r2 + shot.sideways * (shot.jacobi * from.last.angle) + shot.t2 * from.last.s;
       result.surface_length = from.s + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
       return;
     }
-    const internal::TangentCircle<Scalar> circle =
-        internal::tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
-    const internal::GeodesicShot<Scalar> shot = internal::shoot<Scalar>(
-        a, p, q, circle, Scalar(std::cos(from.alpha)), Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
-    const auto c = internal::correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
+    const TangentCircle<Scalar> circle = tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
+    const GeodesicShot<Scalar> shot = shoot<Scalar>(a, p, q, circle, Scalar(std::cos(from.alpha)),
+                                                    Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
+    const auto c = correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
     const Scalar d_alpha = c.angle / shot.angle_slope;
     result.r1 = shot.r1 + shot.r1_slope * d_alpha;
     result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
@@ -382,8 +371,7 @@ template <typename Scalar>
   result.spread = solution.jacobi / solution.length;
   if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
       inactive(values_of(result.r2)) && inactive(solution.middle)) {
-    const internal::SolvedGeodesic other =
-        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
+    const SolvedGeodesic other = solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
     if (other.converged && !inactive(other.middle)) last_step(other);
   }
   const Vector3 in = result.r1 - p;
@@ -398,15 +386,32 @@ template <typename Scalar>
   result.gradient_q = result.direction2;
   if (inside) {
     // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
-    const Scalar growth = (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) *
-                          Scalar((1.0 - internal::kSurfaceGap) / scale);
+    const Scalar growth =
+        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - kSurfaceGap) / scale);
     const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
     const Vector3& end = p_inside ? p : q;
     const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
     (p_inside ? result.gradient_p : result.gradient_q) += slope;
     const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
-    internal::fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
+    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
   }
+}
+
+}  // namespace internal
+
+/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
+/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
+///
+/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
+/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
+/// square of that. `nearby`: the solution is left there, and one that is there
+/// already (`converged`) starts the search.
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q,
+                                      internal::GeodesicSolution* nearby = nullptr) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(ellipsoid, p, q, nearby, result);
   return result;
 }
 
