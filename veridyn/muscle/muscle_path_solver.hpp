@@ -48,7 +48,7 @@ struct PathWorkspace {
         first_segment(paths.most_wraps_),
         before(2 * paths.most_wraps_),
         start(2 * paths.most_wraps_),
-        nearby(paths.most_wraps_) {
+        memory(paths.most_wraps_) {
     for (std::size_t i = 0; i < paths.points_.size(); ++i)
       position[i] = paths.points_[i].location.template cast<Scalar>();
   }
@@ -90,7 +90,7 @@ struct PathWorkspace {
   std::vector<int> first_segment;
   std::vector<Vector> before;  ///< tangent points of the last pass
   std::vector<Vector> start;   ///< and of the one before
-  std::vector<internal::GeodesicSolution> nearby;
+  std::vector<internal::GeodesicMemory> memory;
 };
 
 template <typename Scalar>
@@ -149,7 +149,7 @@ class PathSolver {
   /// What an object does to one segment, in ground; true if it wraps.
   bool wrap_between(const MusclePaths::Object& object, int index, const MusclePaths::Wrap& wrap, bool single,
                     const Vector& p_ground, const Vector& q_ground, WrapResult<Scalar>& r,
-                    internal::GeodesicSolution* nearby = nullptr) {
+                    internal::GeodesicMemory* memory = nullptr) {
     const auto& frame = w_.object[static_cast<std::size_t>(index)];
     // Most segments pass far from most objects.
     if (object.reach > 0.0) {
@@ -186,11 +186,11 @@ class PathSolver {
           break;
         case WrapShape::kEllipsoid:
           if (side_ == 0) {
-            internal::wrap_onto(object.ellipsoid, p, q, nearby, r);
+            internal::wrap_onto(object.ellipsoid, p, q, memory, r);
           } else {
             WrapEllipsoid one_side = object.ellipsoid;
             one_side.side = side_;
-            internal::wrap_onto(one_side, p, q, nearby, r);
+            internal::wrap_onto(one_side, p, q, memory, r);
           }
           break;
         case WrapShape::kTorus:
@@ -395,6 +395,8 @@ class PathSolver {
     std::swap(w_.own_result, w_.other_own_result);
     for (const int side : {1, -1}) {
       side_ = side;
+      give_up_ = other_length + kNearlySettled;
+      other_n_ = other_n;
       const std::size_t count = settle(path, mask);
       const double l = muscle::value_of(measure<false>(path, count, Scalar(1.0)));
       if (l < other_length - 1e-12) {
@@ -412,6 +414,16 @@ class PathSolver {
     return other_n;
   }
 
+  /// Whether nodes come to those of the best path so far: on one side no other solution is that near.
+  bool as_before(std::size_t n) const {
+    if (n != other_n_) return false;
+    for (std::size_t k = 0; k < n; ++k)
+      if (w_.nodes[k].wrap != w_.other_nodes[k].wrap ||
+          !(value_of(Vector(w_.nodes[k].x - w_.other_nodes[k].x)).norm() < kNearlySettled))
+        return false;
+    return true;
+  }
+
   std::size_t settle(const Path& path, unsigned mask) {
     std::copy_n(w_.stations.begin(), n_stations_, w_.nodes.begin());
     std::size_t n = n_stations_;
@@ -423,7 +435,7 @@ class PathSolver {
       return n;
     }
     if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
-    for (std::size_t i = 0; i < path.wraps.size(); ++i) w_.nearby[i].converged = false;
+    for (std::size_t i = 0; i < path.wraps.size(); ++i) w_.memory[i].clear();
     // Jets keep on for their derivatives after the values stand.
     int more = std::is_same_v<Scalar, double> ? 0 : 8;
     // An object is solved again only where another one on the path has changed since.
@@ -468,6 +480,11 @@ class PathSolver {
         }
       }
       if (moved == 0.0 || (pass > 0 && moved < 1e-8 && more-- <= 0)) break;
+      // Nearly settled tangent points tell which solution it comes to; the length is stationary and tells if it is
+      // longer.
+      if (side_ != 0 && moved < kNearlySettled &&
+          (as_before(n) || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_))
+        break;
       if constexpr (std::is_same_v<Scalar, double>) {
         if (pass > 0) accelerate(path, n, moved, acceleration);
       }
@@ -573,7 +590,7 @@ class PathSolver {
         }
       } else {
         // Only the ends of a fading object's own segment fade it: here it counts whole.
-        wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh, &w_.nearby[i]);
+        wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh, &w_.memory[i]);
       }
       if (!r->wrapped()) continue;
       const double longer = value_of(r->length) - value_of(Vector(b.x - a.x)).norm();
@@ -792,6 +809,9 @@ class PathSolver {
   std::size_t n_stations_ = 0;
   unsigned done_ = 0;
   int side_ = 0;
+  double give_up_ = 0.0;     ///< length from which another side is not followed
+  std::size_t other_n_ = 0;  ///< nodes of the best path so far
+  static constexpr double kNearlySettled = 1e-3;
 };
 
 template <typename Scalar>
