@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <set>
+#include <tuple>
 
 #include "veridyn/core/error.hpp"
 
@@ -136,7 +139,6 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
           station.condition = p.coordinate;
           station.low = p.low;
           station.high = p.high;
-          path.plain = false;
         }
       }
       path.stations.push_back(station);
@@ -152,7 +154,6 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
       wrap.last = w.last_point < 0 ? stations - 1 : std::min(stations - 1, w.last_point);
       wrap.method = w.method;
       path.wraps.push_back(wrap);
-      path.plain = false;
     }
     if (path.wraps.size() > 32)
       throw InputError(model.name, fmt::format("muscle {}: more than 32 wrap objects", path.name));
@@ -205,29 +206,115 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     path.pairs[0] = pairs_.size();
     for (const int c : coordinates_of(path)) pairs_.push_back({static_cast<int>(&path - muscles_.data()), c});
     path.pairs[1] = pairs_.size();
-    if (!path.plain) continue;
-    for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
-      const int a = path.stations[i].point, b = path.stations[i + 1].point;
-      const Point& pa = points_[static_cast<std::size_t>(a)];
-      const Point& pb = points_[static_cast<std::size_t>(b)];
-      if (pa.link == pb.link && pa.moving < 0 && pb.moving < 0) {
-        path.constant += (pb.location - pa.location).norm();
-        continue;
+    compile_straight(static_cast<int>(&path - muscles_.data()));
+  }
+  sort_segments();
+  list_points();
+}
+
+void MusclePaths::compile_straight(int muscle) {
+  const Path& path = muscles_[static_cast<std::size_t>(muscle)];
+  std::vector<Condition> conditions;
+  std::vector<std::size_t> condition_of;
+  for (const PathStation& s : path.stations) {
+    const auto same = std::find_if(conditions.begin(), conditions.end(), [&](const Condition& c) {
+      return c.coordinate == s.condition && c.low == s.low && c.high == s.high;
+    });
+    condition_of.push_back(static_cast<std::size_t>(same - conditions.begin()));
+    if (s.condition >= 0 && same == conditions.end()) conditions.push_back({s.condition, s.low, s.high});
+  }
+  if (!path.wraps.empty() || conditions.size() > kMostConditions) {
+    general_.push_back(muscle);
+    return;
+  }
+  StraightPath straight{muscle, conditions_.size(), conditions_.size() + conditions.size(), variants_.size()};
+  conditions_.insert(conditions_.end(), conditions.begin(), conditions.end());
+  for (unsigned held = 0; held < 1u << conditions.size(); ++held) {
+    Variant variant{0.0, variant_segments_.size(), 0, variant_adds_.size(), 0};
+    int a = -1;
+    for (std::size_t i = 0; i < path.stations.size(); ++i) {
+      const PathStation& station = path.stations[i];
+      if (station.condition >= 0 && (held >> condition_of[i] & 1u) == 0) continue;
+      const int b = station.point;
+      if (a >= 0) {
+        const Point& pa = points_[static_cast<std::size_t>(a)];
+        const Point& pb = points_[static_cast<std::size_t>(b)];
+        if (pa.link == pb.link && pa.moving < 0 && pb.moving < 0) {
+          variant.constant += (pb.location - pa.location).norm();
+        } else {
+          const int s = segment(a, b);
+          variant_segments_.push_back(s);
+          const Segment& compiled = segments_[static_cast<std::size_t>(s)];
+          for (std::size_t t = compiled.terms[0]; t < compiled.terms[1]; ++t)
+            for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k)
+              if (pairs_[k].coordinate == terms_[t].coordinate) variant_adds_.push_back({t, k});
+        }
       }
-      const int s = segment(a, b);
-      path.segments.push_back(s);
-      const Segment& compiled = segments_[static_cast<std::size_t>(s)];
-      for (std::size_t t = compiled.terms[0]; t < compiled.terms[1]; ++t)
-        for (std::size_t k = path.pairs[0]; k < path.pairs[1]; ++k)
-          if (pairs_[k].coordinate == terms_[t].coordinate) path.adds.push_back({t, k});
+      a = b;
+    }
+    variant.end_segments = variant_segments_.size();
+    variant.end_adds = variant_adds_.size();
+    variants_.push_back(variant);
+  }
+  straight_.push_back(straight);
+}
+
+void MusclePaths::sort_segments() {
+  const auto links = [&](const Segment& s) {
+    const Point& a = points_[static_cast<std::size_t>(s.a)];
+    const Point& b = points_[static_cast<std::size_t>(s.b)];
+    return std::tuple{a.moving >= 0 || b.moving >= 0, a.link, b.link};
+  };
+  std::vector<std::size_t> order(segments_.size()), place(segments_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return links(segments_[i]) < links(segments_[j]); });
+  std::vector<Segment> sorted;
+  for (const std::size_t i : order) {
+    place[i] = sorted.size();
+    const Segment& s = segments_[i];
+    const auto [moving, a, b] = links(s);
+    if (!moving) {
+      if (link_pairs_.empty() || link_pairs_.back().a != a || link_pairs_.back().b != b)
+        link_pairs_.push_back({a, b, sorted.size(), sorted.size()});
+      ++link_pairs_.back().end;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        end_a_[axis].push_back(points_[static_cast<std::size_t>(s.a)].location[k]);
+        end_b_[axis].push_back(points_[static_cast<std::size_t>(s.b)].location[k]);
+      }
+    }
+    sorted.push_back(s);
+  }
+  segments_ = sorted;
+  for (int& s : variant_segments_) s = static_cast<int>(place[static_cast<std::size_t>(s)]);
+}
+
+void MusclePaths::list_points() {
+  std::set<int> for_lengths;
+  for (const int m : general_)
+    for (const PathStation& s : muscles_[static_cast<std::size_t>(m)].stations) for_lengths.insert(s.point);
+  std::set<int> for_all = for_lengths;
+  const std::size_t together = link_pairs_.empty() ? 0 : link_pairs_.back().end;
+  for (std::size_t i = 0; i < segments_.size(); ++i) {
+    for (const int p : {segments_[i].a, segments_[i].b}) {
+      if (i >= together) for_lengths.insert(p);
+      for_all.insert(p);
     }
   }
+  // Points of ground are where they are; moving ones are placed apart.
+  const auto placed = [&](int p) {
+    const Point& point = points_[static_cast<std::size_t>(p)];
+    return point.link != 0 && point.moving < 0;
+  };
+  std::copy_if(for_lengths.begin(), for_lengths.end(), std::back_inserter(points_for_lengths_), placed);
+  std::copy_if(for_all.begin(), for_all.end(), std::back_inserter(points_for_all_), placed);
 }
 
 std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kinematics, const double* q, int muscle,
                                                    int arc_points) const {
   PathWorkspace<double> workspace(*this);
-  PathSolver<double> solver(*this, kinematics, q, workspace);
+  PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
   const Path& path = muscles_[static_cast<std::size_t>(muscle)];
   std::vector<Eigen::Vector3d> line;
@@ -258,7 +345,7 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
 
 std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinematics, const double* q, int muscle) const {
   PathWorkspace<double> workspace(*this);
-  PathSolver<double> solver(*this, kinematics, q, workspace);
+  PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
   const Path& path = muscles_[static_cast<std::size_t>(muscle)];
   std::vector<std::string> names;
@@ -272,7 +359,7 @@ std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinemati
 
 std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& kinematics, const double* q) const {
   PathWorkspace<double> workspace(*this);
-  const PathSolver<double> solver(*this, kinematics, q, workspace);
+  const PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   std::vector<std::string> lines;
   for (const Path& path : muscles_) {
     for (const Wrap& wrap : path.wraps) {

@@ -135,16 +135,38 @@ class MusclePaths {
     std::string name;
     std::vector<PathStation> stations;
     std::vector<Wrap> wraps;
-    bool plain = true;          ///< no wraps, no conditions
     std::vector<double> fixed;  ///< length from a station to the next where both are fixed to one link, else -1
-    double constant = 0.0;      ///< length of the segments within links
-    std::vector<int> segments;  ///< plain: those between links
-    std::vector<std::array<std::size_t, 2>> adds;  ///< plain: term -> pair
     std::array<std::size_t, 2> pairs{};
   };
+  struct Condition {
+    int coordinate = 0;
+    double low = 0.0, high = 0.0;
+    /// With OpenSim's own margin.
+    [[nodiscard]] bool holds(double value) const { return value >= low - 1e-5 && value <= high + 1e-5; }
+  };
+  /// A path without wraps: a sum of straight segments, one sum for each set of conditions that hold.
+  struct StraightPath {
+    int muscle = 0;
+    std::size_t conditions = 0, end_conditions = 0;  ///< in conditions_
+    std::size_t variants = 0;                        ///< in variants_: 2 to the number of conditions
+  };
+  struct Variant {
+    double constant = 0.0;                       ///< length of the segments within links
+    std::size_t segments = 0, end_segments = 0;  ///< those between links, in variant_segments_
+    std::size_t adds = 0, end_adds = 0;          ///< in variant_adds_
+  };
+  /// Segments whose ends are fixed to the same two links.
+  struct LinkPair {
+    int a = 0, b = 0;
+    std::size_t first = 0, end = 0;
+  };
+  static constexpr std::size_t kMostConditions = 4;  ///< of a path that is compiled into variants
 
   int point(int link, const Eigen::Vector3d& location);
   int segment(int a, int b);
+  void compile_straight(int muscle);
+  void sort_segments();
+  void list_points();
   [[nodiscard]] std::vector<int> coordinates_of(const Path& path) const;
   [[nodiscard]] bool moves(int coordinate, int link) const {
     return moves_[static_cast<std::size_t>(link) * static_cast<std::size_t>(coordinates_) +
@@ -162,6 +184,16 @@ class MusclePaths {
   std::vector<Span> spans_;
   std::vector<Path> muscles_;
   std::vector<Pair> pairs_;
+  std::vector<int> general_;  ///< muscles that are not in straight_
+  std::vector<StraightPath> straight_;
+  std::vector<Condition> conditions_;
+  std::vector<Variant> variants_;
+  std::vector<int> variant_segments_;
+  std::vector<std::array<std::size_t, 2>> variant_adds_;  ///< term -> pair
+  /// segments_ from 0 to the end of the last pair have fixed ends: side by side, so that they are computed together.
+  std::vector<LinkPair> link_pairs_;
+  std::array<std::vector<double>, 3> end_a_, end_b_;  ///< of those, by axis, in their links
+  std::vector<int> points_for_lengths_, points_for_all_;
   std::size_t most_stations_ = 0;
   std::size_t most_wraps_ = 0;
 };

@@ -14,25 +14,19 @@ struct WrapCylinder {
   WrapQuadrant quadrant;
 };
 
-/// Shortest path over the cylinder: unrolled, straight part, helix and straight part are one straight line of length
-/// sqrt(l^2 + dz^2), l the planar length of two tangents and an arc. Closed form, one arctangent.
-///
-/// Without a quadrant the path goes round the shorter way, where the segment meets the cylinder. A quadrant is read as
-/// a wall from the axis to infinity on the inactive side: the path never crosses it, so it may go round the longer way
-/// even where the segment does not meet the cylinder. That is OpenSim's choice except where both ends lie on the
-/// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. There is no wrap
-/// where both tangent points lie beyond the cylinder's ends (plus the fade, `wrap_result.hpp`).
-template <typename Scalar>
-[[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
-  using std::atan2;
-  using std::sqrt;
-  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  WrapResult<Scalar> result;
-  const double px = value_of(p.x()), py = value_of(p.y()), qx = value_of(q.x()), qy = value_of(q.y());
+namespace internal {
+
+/// How a segment passes a cylinder, from the ends' coordinates across its axis.
+struct CylinderPass {
+  bool meets = false;
+  bool long_way = false;  ///< it crosses the quadrant's wall
+  double cross = 0.0;
+};
+
+inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, double py, double qx, double qy) {
+  CylinderPass pass;
   const double ux = qx - px, uy = qy - py;
-  const double cross = px * qy - py * qx;
-  bool long_way = false;
+  pass.cross = px * qy - py * qx;
   if (cylinder.quadrant.sign != 0) {
     // Does the segment cross the wall { s x[axis] < 0, the other coordinate 0 }?
     const bool along_x = cylinder.quadrant.axis == 0;
@@ -41,17 +35,31 @@ template <typename Scalar>
     const double side_q = along_x ? qy : qx;
     if ((side_p < 0.0) != (side_q < 0.0)) {
       const double at = along_x ? px - ux * (py / uy) : py - uy * (px / ux);
-      long_way = s * at < 0.0 && cylinder.quadrant.axis != 2;
+      pass.long_way = s * at < 0.0 && cylinder.quadrant.axis != 2;
     }
   }
   const double u2 = ux * ux + uy * uy;
   const double along = -(px * ux + py * uy);
-  result.meets = along > 0.0 && along < u2 && cross * cross < cylinder.radius * cylinder.radius * u2;
-  if (!long_way && !result.meets) return result;
+  pass.meets = along > 0.0 && along < u2 && pass.cross * pass.cross < cylinder.radius * cylinder.radius * u2;
+  return pass;
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+               WrapResult<Scalar>& result) {
+  using std::atan2;
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  result.clear();
+  const CylinderPass pass = cylinder_pass(cylinder, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
+  const bool long_way = pass.long_way;
+  const double cross = pass.cross;
+  result.meets = pass.meets;
+  if (!long_way && !result.meets) return;
 
   const Scalar p2 = p.x() * p.x() + p.y() * p.y();
   const Scalar q2 = q.x() * q.x() + q.y() * q.y();
-  const double gap = (1.0 - internal::kSurfaceGap) * (1.0 - internal::kSurfaceGap);
+  const double gap = (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap);
   Scalar radius2(cylinder.radius * cylinder.radius);
   const Scalar& nearer2 = p2 < q2 ? p2 : q2;
   const bool inside = value_of(nearer2) * gap < value_of(radius2);
@@ -61,7 +69,7 @@ template <typename Scalar>
     result.depth = 1.0 - value_of(radius) / cylinder.radius;
     if (result.depth >= kInsideFade) {
       result.status = WrapStatus::kInside;
-      return result;
+      return;
     }
   }
   const double turn = (cross > 0.0) != long_way ? 1.0 : -1.0;
@@ -86,7 +94,7 @@ template <typename Scalar>
   result.r2.z() = q.z() - slope * d2;
   const double overrun =
       std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) - cylinder.half_length;
-  if (overrun >= kEndFade * cylinder.radius) return result;
+  if (overrun >= kEndFade * cylinder.radius) return;
   result.status = WrapStatus::kWrapped;
   const Scalar flat = planar * per_length;
   const Scalar steep = dz * per_length;
@@ -105,8 +113,8 @@ template <typename Scalar>
     // dL/dradius = angle planar/L.
     (end_is_p ? result.gradient_p : result.gradient_q) += end_slope * (angle * flat);
     const Scalar distance = sqrt(nearer2);
-    internal::fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
-                                  Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
+    fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
+                        Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
   }
   if (overrun > kEndStart * cylinder.radius) {
     // Slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut string's
@@ -127,11 +135,29 @@ template <typename Scalar>
     height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
     height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
     const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
+    if (!inside) begin_weight(result);
     const double band = (kEndFade - kEndStart) * cylinder.radius;
     const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
-    const Scalar change = internal::fade_slope(x) * Scalar(up / band);
-    internal::times<Scalar>(result, internal::fade(x), height_p * change, height_q * change);
+    const Scalar change = fade_slope(x) * Scalar(up / band);
+    times<Scalar>(result, fade(x), height_p * change, height_q * change);
   }
+}
+
+}  // namespace internal
+
+/// Shortest path over the cylinder: unrolled, straight part, helix and straight part are one straight line of length
+/// sqrt(l^2 + dz^2), l the planar length of two tangents and an arc. Closed form, one arctangent.
+///
+/// Without a quadrant the path goes round the shorter way, where the segment meets the cylinder. A quadrant is read as
+/// a wall from the axis to infinity on the inactive side: the path never crosses it, so it may go round the longer way
+/// even where the segment does not meet the cylinder. That is OpenSim's choice except where both ends lie on the
+/// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. There is no wrap
+/// where both tangent points lie beyond the cylinder's ends (plus the fade, `wrap_result.hpp`).
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(cylinder, p, q, result);
   return result;
 }
 

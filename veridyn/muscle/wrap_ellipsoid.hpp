@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "veridyn/muscle/geodesic_spheroid.hpp"
 #include "veridyn/muscle/wrap_result.hpp"
 
 /// Wrapping over an ellipsoid along its geodesic.
@@ -17,12 +18,15 @@
 /// method for the one unknown, the direction in which the path leaves P. J stays positive on a shortest path.
 namespace veridyn::muscle::internal {
 
-/// One shot: the geodesic that starts where angle `alpha` on the circle of tangent points from P says, of length `s`.
+/// One shot: the geodesic that starts where angle `alpha` on the circle of tangent points from P says, as far as the
+/// parameter `s`: its length, on a spheroid the arc of its auxiliary sphere.
 template <typename Scalar>
 struct GeodesicShot {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   Vector3 r1, r2, t1, t2;
   Scalar length1;
+  Scalar surface;  ///< length from r1 to r2
+  Scalar speed;    ///< d surface / ds
   Scalar jacobi, jacobi_slope;
   Vector3 r1_slope;    ///< dr1 / dalpha
   Scalar angle_slope;  ///< d(angle at P) / dalpha
@@ -97,7 +101,7 @@ void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::
 }
 
 template <typename Scalar>
-GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Eigen::Matrix<Scalar, 3, 1>& p,
+GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Matrix<Scalar, 3, 1>& p,
                            const Eigen::Matrix<Scalar, 3, 1>& q, const TangentCircle<Scalar>& circle,
                            const Scalar& cos_alpha, const Scalar& sin_alpha, const Scalar& s, int steps) {
   using std::sqrt;
@@ -114,19 +118,31 @@ GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Eigen::Matrix<Scalar,
   const Scalar n1_square = n1.squaredNorm();
   const Vector3 b1 = n1.cross(shot.t1) / sqrt(n1_square);
   shot.angle_slope = shot.r1_slope.dot(b1) / shot.length1;
-  const Scalar invariant = n1_square * shot.t1.dot(shot.t1.cwiseProduct(inverse_square));
-  const double abc = a.x() * a.y() * a.z();
-  Eigen::Matrix<Scalar, 4, 1> lambda;
-  lambda << invariant * inverse_square.x(), invariant * inverse_square.y(), invariant * inverse_square.z(),
-      Scalar(1.0 / (abc * abc));
-  Eigen::Matrix<Scalar, 4, 1> y, v;
-  y << shot.r1.x(), shot.r1.y(), shot.r1.z(), shot.length1;
-  v << shot.t1.x(), shot.t1.y(), shot.t1.z(), Scalar(1.0);
-  integrate_geodesic<Scalar>(lambda, inverse_square, s, steps, y, v);
-  shot.r2 = y.template head<3>();
-  shot.t2 = v.template head<3>();
-  shot.jacobi = y[3];
-  shot.jacobi_slope = v[3];
+  if (spheroid.axis >= 0) {
+    const SpheroidArrival<Scalar> end = spheroid_geodesic<Scalar>(spheroid, a, shot.r1, shot.t1, shot.length1, s);
+    shot.r2 = end.position;
+    shot.t2 = end.direction;
+    shot.jacobi = end.jacobi;
+    shot.jacobi_slope = end.jacobi_slope;
+    shot.surface = end.length;
+    shot.speed = end.speed;
+  } else {
+    const Scalar invariant = n1_square * shot.t1.dot(shot.t1.cwiseProduct(inverse_square));
+    const double abc = a.x() * a.y() * a.z();
+    Eigen::Matrix<Scalar, 4, 1> lambda;
+    lambda << invariant * inverse_square.x(), invariant * inverse_square.y(), invariant * inverse_square.z(),
+        Scalar(1.0 / (abc * abc));
+    Eigen::Matrix<Scalar, 4, 1> y, v;
+    y << shot.r1.x(), shot.r1.y(), shot.r1.z(), shot.length1;
+    v << shot.t1.x(), shot.t1.y(), shot.t1.z(), Scalar(1.0);
+    integrate_geodesic<Scalar>(lambda, inverse_square, s, steps, y, v);
+    shot.r2 = y.template head<3>();
+    shot.t2 = v.template head<3>();
+    shot.jacobi = y[3];
+    shot.jacobi_slope = v[3];
+    shot.surface = s;
+    shot.speed = Scalar(1.0);
+  }
   shot.normal2 = shot.r2.cwiseProduct(inverse_square);
   shot.visibility = shot.normal2.dot(q) - Scalar(1.0);
   shot.sideways = shot.normal2.cross(shot.t2) / sqrt(shot.normal2.squaredNorm());
@@ -159,6 +175,17 @@ struct GeodesicSolution {
   int steps = 4;
   int iterations = 0;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+};
+
+/// Solutions of one object for ends that stand still soon: the next one starts from the last.
+struct GeodesicMemory {
+  GeodesicSolution nearby;
+  bool no_other = false;  ///< there is none on the quadrant's other side
+
+  void clear() {
+    nearby.converged = false;
+    no_other = false;
+  }
 };
 
 /// Correction of (angle at P, s) that a shot asks for, and |r2 Q|.
@@ -208,18 +235,20 @@ inline constexpr double kCoarseStep = 0.35;
 
 /// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
 /// correction is left to the caller; what remains after it is its square.
-inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                   const TangentCircle<double>& circle, double tolerance, SolvedGeodesic& solution) {
+inline void newton(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                   const Eigen::Vector3d& q, const TangentCircle<double>& circle, double tolerance,
+                   SolvedGeodesic& solution) {
   const double size = a.maxCoeff();
   const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
   const double radius = a.minCoeff();
   double alpha = solution.alpha;
   double s = solution.s;
-  bool is_fine = solution.converged;
+  // Quadrature has no coarse steps that would be cheaper.
+  bool is_fine = solution.converged || spheroid.axis >= 0;
   solution.converged = false;
   for (int i = 0; i < 30; ++i) {
     solution.steps = std::clamp(1 + static_cast<int>(s / (radius * (is_fine ? kFineStep : kCoarseStep))), 1, 100);
-    solution.shot = shoot<double>(a, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
+    solution.shot = shoot<double>(a, spheroid, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
     solution.last = correction<double>(solution.shot, inverse_square, q);
     const ShotCorrection<double>& c = solution.last;
     solution.iterations = i + 1;
@@ -230,25 +259,26 @@ inline void newton(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eig
     const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
     solution.alpha = alpha;
     solution.s = s;
-    solution.length = solution.shot.length1 + s + c.length2;
+    solution.length = solution.shot.length1 + solution.shot.surface + c.length2;
     solution.jacobi = c.jacobi;
     const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
-    // Next to the surface the last correction is less linear.
-    const bool clear = std::min(solution.shot.length1, c.length2) > 0.2 * radius;
-    if (is_fine && step < (clear ? tolerance : 1e-2 * tolerance) && c.reached) {
+    // The last correction leaves about step^2 size of the tangent points, of the directions that over the straight
+    // part.
+    const double straight = std::min(solution.shot.length1, c.length2) / size;
+    if (is_fine && step < 0.5 * tolerance && step * step < tolerance * tolerance * straight && c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
     }
     if (step < 5e-3) is_fine = true;
     alpha += d_alpha;
-    s = std::max(1e-12 * size, s + d_s);
+    s = std::max(1e-12 * size, s + d_s / solution.shot.speed);
   }
 }
 
 /// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
-inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const Eigen::Vector3d& toward, double tolerance) {
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                                     const Eigen::Vector3d& q, const Eigen::Vector3d& toward, double tolerance) {
   SolvedGeodesic solution;
   const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
   const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
@@ -258,79 +288,74 @@ inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vect
   Eigen::Vector3d y_slope = y1 - ps;
   y_slope = (y_slope - y1 * y_slope.dot(y1)).normalized();
   const double arc = std::max(0.0, std::atan2(y2.dot(y_slope), y2.dot(y1)));
-  // Length of the ellipse between them by Simpson's rule.
-  const double half_sine = std::sin(0.5 * arc), half_cosine = std::cos(0.5 * arc);
-  const Eigen::Vector3d mid = (y_slope * half_cosine - y1 * half_sine).cwiseProduct(a);
-  const double sine = 2.0 * half_sine * half_cosine, cosine = 1.0 - 2.0 * half_sine * half_sine;
-  const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
-  solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
+  if (spheroid.axis >= 0) {
+    solution.s = arc;
+  } else {
+    // Length of the ellipse between them by Simpson's rule.
+    const double half_sine = std::sin(0.5 * arc), half_cosine = std::cos(0.5 * arc);
+    const Eigen::Vector3d mid = (y_slope * half_cosine - y1 * half_sine).cwiseProduct(a);
+    const double sine = 2.0 * half_sine * half_cosine, cosine = 1.0 - 2.0 * half_sine * half_sine;
+    const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
+    solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
+  }
   solution.toward = toward;
-  newton(a, p, q, circle, tolerance, solution);
+  newton(a, spheroid, p, q, circle, tolerance, solution);
   return solution;
 }
 
 /// From a converged solution for nearby ends, on the same side.
-inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                                     const GeodesicSolution& nearby, double tolerance) {
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                                     const Eigen::Vector3d& q, const GeodesicSolution& nearby, double tolerance) {
   SolvedGeodesic solution;
   static_cast<GeodesicSolution&>(solution) = nearby;
   const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
-  newton(a, p, q, circle, tolerance, solution);
+  newton(a, spheroid, p, q, circle, tolerance, solution);
   return solution;
 }
 
-}  // namespace internal
-
-/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
-/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
-///
-/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
-/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
-/// square of that. `nearby`: the solution is left there, and one that is there
-/// already (`converged`) starts the search.
 template <typename Scalar>
-[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                      const Eigen::Matrix<Scalar, 3, 1>& q,
-                                      internal::GeodesicSolution* nearby = nullptr) {
+void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+               const Eigen::Matrix<Scalar, 3, 1>& q, GeodesicMemory* memory, WrapResult<Scalar>& result) {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  WrapResult<Scalar> result;
+  result.clear();
   const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
   Eigen::Vector3d ps = pv.cwiseQuotient(ellipsoid.radii), qs = qv.cwiseQuotient(ellipsoid.radii);
   const Eigen::Vector3d u = qs - ps;
   const double u2 = u.squaredNorm();
   const double along = -ps.dot(u);
-  if (!(along > 0.0 && along < u2)) return result;
+  if (!(along > 0.0 && along < u2)) return;
   Eigen::Vector3d near = ps + u * (along / u2);
   double near2 = near.squaredNorm();
-  if (!(near2 < 1.0)) return result;
+  if (!(near2 < 1.0)) return;
 
   // An end inside shrinks the ellipsoid until it lies just outside.
   const double nearest2 = std::min(ps.squaredNorm(), qs.squaredNorm());
-  const bool inside = nearest2 * (1.0 - internal::kSurfaceGap) * (1.0 - internal::kSurfaceGap) < 1.0;
+  const bool inside = nearest2 * (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap) < 1.0;
   const bool p_inside = ps.squaredNorm() <= qs.squaredNorm();
   double scale = 1.0;
   if (inside) {
-    scale = std::sqrt(nearest2) * (1.0 - internal::kSurfaceGap);
+    scale = std::sqrt(nearest2) * (1.0 - kSurfaceGap);
     result.depth = 1.0 - scale;
     if (result.depth >= kInsideFade) {
       result.status = WrapStatus::kInside;
-      return result;
+      return;
     }
-    if (!(near2 < scale * scale)) return result;
+    if (!(near2 < scale * scale)) return;
   }
   const Eigen::Vector3d a = ellipsoid.radii * scale;
+  const Spheroid spheroid = internal::spheroid(a);
   if (near2 < 1e-24) {
     near = Eigen::Vector3d::Unit(ellipsoid.quadrant.sign != 0 ? ellipsoid.quadrant.axis : 0);
     if (ellipsoid.quadrant.sign < 0) near = -near;
     if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
   }
   // Derivatives are taken at the last shot: it has to be closer to the solution for them.
-  constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-4 : 1e-7;
-  internal::SolvedGeodesic solution;
-  const bool warm = nearby != nullptr && nearby->converged;
-  if (warm) solution = internal::solve_geodesic(a, pv, qv, *nearby, tolerance);
-  if (!solution.converged) solution = internal::solve_geodesic(a, pv, qv, near, tolerance);
+  constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-3 : 1e-7;
+  SolvedGeodesic solution;
+  const bool warm = memory != nullptr && memory->nearby.converged;
+  if (warm) solution = solve_geodesic(a, spheroid, pv, qv, memory->nearby, tolerance);
+  if (!solution.converged) solution = solve_geodesic(a, spheroid, pv, qv, near, tolerance);
   // Where the segment passes near the centre either side may be the shorter.
   const auto inactive = [&](const Eigen::Vector3d& x) {
     const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
@@ -339,14 +364,14 @@ template <typename Scalar>
   // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
   if (!solution.converged ||
       (!warm && (near2 < 0.01 || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0))) {
-    const auto good = [&](const internal::SolvedGeodesic& s) {
+    const auto good = [&](const SolvedGeodesic& s) {
       return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
     };
     const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
     bool have = good(solution);
     for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
                                           Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const internal::SolvedGeodesic other = internal::solve_geodesic(a, pv, qv, toward, tolerance);
+      const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, toward, tolerance);
       if (!good(other) && !(other.converged && !solution.converged)) continue;
       if (have && !(other.length < solution.length)) continue;
       solution = other;
@@ -355,36 +380,36 @@ template <typename Scalar>
   }
   if (!solution.converged) {
     result.status = WrapStatus::kFailed;
-    return result;
+    return;
   }
   const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
-  const auto last_step = [&](const internal::SolvedGeodesic& from) {
+  const auto last_step = [&](const SolvedGeodesic& from) {
     if constexpr (std::is_same_v<Scalar, double>) {
-      const internal::GeodesicShot<double>& shot = from.shot;
+      const GeodesicShot<double>& shot = from.shot;
       const double d_alpha = from.last.angle / shot.angle_slope;
       result.r1 = shot.r1 + shot.r1_slope * d_alpha;
       result.r2 = shot.r2 + shot.sideways * (shot.jacobi * from.last.angle) + shot.t2 * from.last.s;
-      result.surface_length = from.s + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+      result.surface_length = shot.surface + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
       return;
     }
-    const internal::TangentCircle<Scalar> circle =
-        internal::tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
-    const internal::GeodesicShot<Scalar> shot = internal::shoot<Scalar>(
-        a, p, q, circle, Scalar(std::cos(from.alpha)), Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
-    const auto c = internal::correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
+    const TangentCircle<Scalar> circle = tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
+    const GeodesicShot<Scalar> shot = shoot<Scalar>(a, spheroid, p, q, circle, Scalar(std::cos(from.alpha)),
+                                                    Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
+    const auto c = correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
     const Scalar d_alpha = c.angle / shot.angle_slope;
     result.r1 = shot.r1 + shot.r1_slope * d_alpha;
     result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
-    result.surface_length = Scalar(from.s) + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
+    result.surface_length = shot.surface + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
   };
   last_step(solution);
-  if (nearby != nullptr) *nearby = solution;
+  if (memory != nullptr) memory->nearby = solution;
   result.spread = solution.jacobi / solution.length;
   if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
-      inactive(values_of(result.r2)) && inactive(solution.middle)) {
-    const internal::SolvedGeodesic other =
-        internal::solve_geodesic(a, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
-    if (other.converged && !inactive(other.middle)) last_step(other);
+      inactive(values_of(result.r2)) && inactive(solution.middle) && !(warm && memory->no_other)) {
+    const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
+    const bool found = other.converged && !inactive(other.middle);
+    if (found) last_step(other);
+    if (memory != nullptr) memory->no_other = !found;
   }
   const Vector3 in = result.r1 - p;
   const Vector3 out = q - result.r2;
@@ -398,15 +423,32 @@ template <typename Scalar>
   result.gradient_q = result.direction2;
   if (inside) {
     // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
-    const Scalar growth = (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) *
-                          Scalar((1.0 - internal::kSurfaceGap) / scale);
+    const Scalar growth =
+        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - kSurfaceGap) / scale);
     const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
     const Vector3& end = p_inside ? p : q;
     const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
     (p_inside ? result.gradient_p : result.gradient_q) += slope;
     const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
-    internal::fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
+    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
   }
+}
+
+}  // namespace internal
+
+/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
+/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
+///
+/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
+/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface; lengths to the
+/// square of that. `memory`: the solution is left there, and one that is
+/// there already starts the search.
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q,
+                                      internal::GeodesicMemory* memory = nullptr) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(ellipsoid, p, q, memory, result);
   return result;
 }
 

@@ -55,6 +55,15 @@ struct WrapResult {
   double spread = 1.0;
 
   [[nodiscard]] bool wrapped() const { return status == WrapStatus::kWrapped; }
+
+  /// Straight, without touching what only a wrap sets: most segments miss most objects.
+  void clear() {
+    status = WrapStatus::kStraight;
+    weight = Scalar(1.0);
+    depth = 0.0;
+    meets = true;
+    spread = 1.0;
+  }
 };
 
 /// The value part of a vector: decisions are taken in double, derivatives follow.
@@ -82,6 +91,14 @@ template <typename Scalar>
   return Scalar(-6.0) * x * (Scalar(1.0) - x);
 }
 
+/// A weight of 1, to be multiplied.
+template <typename Scalar>
+void begin_weight(WrapResult<Scalar>& result) {
+  result.weight = Scalar(1.0);
+  result.weight_p.setZero();
+  result.weight_q.setZero();
+}
+
 /// Multiplies a weight by another one.
 template <typename Scalar>
 void times(WrapResult<Scalar>& result, const Scalar& weight, const Eigen::Matrix<Scalar, 3, 1>& weight_p,
@@ -99,6 +116,7 @@ void fade_inside(WrapResult<Scalar>& result, const Scalar& radii, const Eigen::M
   const Scalar x = (Scalar(1.0) - radii * Scalar(1.0 - kSurfaceGap)) / Scalar(kInsideFade);
   const Vector3 change = slope * (fade_slope(x) * Scalar(-(1.0 - kSurfaceGap) / kInsideFade));
   const Vector3 none = Vector3::Zero();
+  begin_weight(result);
   times<Scalar>(result, fade(x), end_is_p ? change : none, end_is_p ? none : change);
 }
 

@@ -12,29 +12,26 @@ struct WrapSphere {
   WrapQuadrant quadrant;
 };
 
-/// Shortest path over a sphere about the origin: a great circle in the plane of P, Q and the centre. Closed form.
-///
-/// Wraps where the segment meets the sphere, the shorter way; with a quadrant, the longer way where the whole shorter
-/// arc lies on the inactive side and the longer one does not (a string would slip off there; OpenSim holds it). Where
-/// the segment passes through the centre, the plane is the one that contains the quadrant's axis.
+namespace internal {
+
 template <typename Scalar>
-[[nodiscard]] WrapResult<Scalar> wrap(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p,
-                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+               WrapResult<Scalar>& result) {
   using std::atan2;
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  WrapResult<Scalar> result;
+  result.clear();
   const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
   const Eigen::Vector3d u = qv - pv;
   const double along = -pv.dot(u);
   const double u2 = u.squaredNorm();
-  if (!(along > 0.0 && along < u2)) return result;
+  if (!(along > 0.0 && along < u2)) return;
   const Eigen::Vector3d near = pv + u * (along / u2);
-  if (!(near.squaredNorm() < sphere.radius * sphere.radius)) return result;
+  if (!(near.squaredNorm() < sphere.radius * sphere.radius)) return;
 
   const Scalar p2 = p.squaredNorm();
   const Scalar q2 = q.squaredNorm();
-  const double gap = (1.0 - internal::kSurfaceGap) * (1.0 - internal::kSurfaceGap);
+  const double gap = (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap);
   Scalar radius2(sphere.radius * sphere.radius);
   const Scalar& nearer2 = p2 < q2 ? p2 : q2;
   const bool inside = value_of(nearer2) * gap < value_of(radius2);
@@ -44,7 +41,7 @@ template <typename Scalar>
     result.depth = 1.0 - value_of(radius) / sphere.radius;
     if (result.depth >= kInsideFade) {
       result.status = WrapStatus::kInside;
-      return result;
+      return;
     }
   }
   // Normal of the plane, such that the path turns positively about it.
@@ -93,9 +90,22 @@ template <typename Scalar>
     const Vector3& end = end_is_p ? p : q;
     const Scalar distance = sqrt(nearer2);
     (end_is_p ? result.gradient_p : result.gradient_q) += end * (angle * Scalar(gap) / radius);
-    internal::fade_inside<Scalar>(result, distance / Scalar(sphere.radius), end / (distance * Scalar(sphere.radius)),
-                                  end_is_p);
+    fade_inside<Scalar>(result, distance / Scalar(sphere.radius), end / (distance * Scalar(sphere.radius)), end_is_p);
   }
+}
+
+}  // namespace internal
+
+/// Shortest path over a sphere about the origin: a great circle in the plane of P, Q and the centre. Closed form.
+///
+/// Wraps where the segment meets the sphere, the shorter way; with a quadrant, the longer way where the whole shorter
+/// arc lies on the inactive side and the longer one does not (a string would slip off there; OpenSim holds it). Where
+/// the segment passes through the centre, the plane is the one that contains the quadrant's axis.
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(sphere, p, q, result);
   return result;
 }
 
