@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace veridyn::numerics {
@@ -34,8 +36,12 @@ TEST(ParallelFor, ThrowsTheExceptionOfAnItemOnceAllThreadsHaveEnded) {
 
 TEST(ParallelFor, StopsWhenAskedTo) {
   std::atomic<int> done = 0;
-  EXPECT_FALSE(parallel_for(
-      100000, 2, [&](std::size_t) { ++done; }, [](std::size_t n) { return n < 10; }));
+  // Work takes a while: on a busy machine the helper could otherwise finish it all before the caller asks.
+  const auto work = [&](std::size_t) {
+    ++done;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  };
+  EXPECT_FALSE(parallel_for(100000, 2, work, [](std::size_t n) { return n < 10; }));
   EXPECT_LT(done, 100000);
 }
 
