@@ -49,6 +49,8 @@ class MusclePaths {
   [[nodiscard]] int muscles() const { return static_cast<int>(muscles_.size()); }
   [[nodiscard]] int coordinates() const { return coordinates_; }
   [[nodiscard]] WrapMode mode() const { return mode_; }
+  /// Whether a muscle has wrap objects that are active.
+  [[nodiscard]] bool can_wrap(int muscle) const { return !muscles_[static_cast<std::size_t>(muscle)].wraps.empty(); }
   /// All pairs, muscle after muscle: the order of `PathWorkspace::gradient`.
   [[nodiscard]] std::span<const Pair> pairs() const { return pairs_; }
   [[nodiscard]] std::size_t first_pair(int muscle) const { return muscles_[static_cast<std::size_t>(muscle)].pairs[0]; }
@@ -60,6 +62,10 @@ class MusclePaths {
   /// Lengths and `gradient`.
   template <typename Scalar>
   void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace) const;
+  /// The same, but of the muscles that can wrap those with skip[muscle] != 0 are left as they are.
+  template <typename Scalar>
+  void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace,
+                std::span<const std::uint8_t> skip) const;
   /// Lengthening speeds [m/s] at the pose last evaluated: speeds[m] = sum dL/dq qdot.
   template <typename Scalar>
   void speeds(const PathWorkspace<Scalar>& workspace, const Scalar* qdot, Scalar* speeds) const;

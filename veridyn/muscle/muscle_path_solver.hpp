@@ -107,8 +107,9 @@ class PathSolver {
     place(places);
   }
 
+  /// All muscles but those of `skip` (by muscle, may be empty) that wrap.
   template <bool kGradient>
-  void all() {
+  void all(std::span<const std::uint8_t> skip = {}) {
     segments<kGradient>();
     if constexpr (kGradient) std::fill(w_.gradient.begin(), w_.gradient.end(), Scalar(0.0));
     for (const MusclePaths::StraightPath& path : paths_.straight_) {
@@ -131,6 +132,7 @@ class PathSolver {
     }
     for (const int muscle : paths_.general_) {
       const auto m = static_cast<std::size_t>(muscle);
+      if (!skip.empty() && skip[m] != 0) continue;
       w_.flag[m] = PathFlag::kFine;
       w_.length[m] = general<kGradient>(paths_.muscles_[m], w_.flag[m]);
     }
@@ -441,6 +443,7 @@ class PathSolver {
     // An object is solved again only where another one on the path has changed since.
     std::array<int, 32> solved_at, changed_at;
     std::fill_n(changed_at.begin(), path.wraps.size(), -1);
+    std::fill_n(solved_at.begin(), path.wraps.size(), -1);
     int step = 0;
     Acceleration acceleration;
     for (int pass = 0; pass < 60; ++pass) {
@@ -486,7 +489,7 @@ class PathSolver {
           (as_before(n) || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_))
         break;
       if constexpr (std::is_same_v<Scalar, double>) {
-        if (pass > 0) accelerate(path, n, moved, acceleration);
+        if (pass > 0) accelerate(n, moved, acceleration);
       }
     }
     return n;
@@ -496,10 +499,11 @@ class PathSolver {
   /// other.
   struct Acceleration {
     int known = 0;
-    Eigen::Vector3d residual, image;
-    Eigen::Matrix<double, 3, 2> residual_change, image_change;
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero(), image = Eigen::Vector3d::Zero();
+    Eigen::Matrix<double, 3, 2> residual_change = Eigen::Matrix<double, 3, 2>::Zero();
+    Eigen::Matrix<double, 3, 2> image_change = Eigen::Matrix<double, 3, 2>::Zero();
   };
-  void accelerate(const Path& path, std::size_t n, double moved, Acceleration& a) {
+  void accelerate(std::size_t n, double moved, Acceleration& a) {
     // The two objects whose ends are tangent points of another one.
     std::size_t found = 0, later = 0;
     for (std::size_t k = 0; k + 1 < n; ++k) {
@@ -510,7 +514,6 @@ class PathSolver {
       ++found;
       later = std::max(later, i);
     }
-    (void)path;
     if (found != 2 || moved >= 1.0) {
       a.known = 0;
       return;
@@ -824,6 +827,12 @@ template <typename Scalar>
 void MusclePaths::evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q,
                            PathWorkspace<Scalar>& workspace) const {
   PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kForAll).template all<true>();
+}
+
+template <typename Scalar>
+void MusclePaths::evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace,
+                           std::span<const std::uint8_t> skip) const {
+  PathSolver<Scalar>(*this, kinematics, q, workspace, PathPlaces::kForAll).template all<true>(skip);
 }
 
 template <typename Scalar>

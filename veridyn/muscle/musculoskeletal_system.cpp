@@ -49,15 +49,26 @@ void check_default_pose(const Model& model, const Mechanism& mechanism, const Mu
 }
 
 std::string fit_note(const Model& model, const FittedPaths& fit) {
-  std::size_t length = 0, arm = 0;
+  std::size_t length = 0, arm = 0, fitted = 0;
+  std::vector<std::string> misfits;
   for (std::size_t m = 0; m < fit.errors().size(); ++m) {
-    if (fit.errors()[m].length > fit.errors()[length].length) length = m;
-    if (fit.errors()[m].moment_arm > fit.errors()[arm].moment_arm) arm = m;
+    const PathFitError& e = fit.errors()[m];
+    if (!e.fitted) {
+      if (e.length > 0.0) misfits.push_back(fmt::format("'{}'", model.muscles[m].name()));
+      continue;
+    }
+    if (fitted++ == 0) length = arm = m;
+    if (e.length > fit.errors()[length].length) length = m;
+    if (e.moment_arm > fit.errors()[arm].moment_arm) arm = m;
   }
   if (fit.errors().empty()) return "fitted paths: the model has no muscles";
-  return fmt::format("fitted paths: largest error of a length {:.1e} m ('{}'), of a moment arm {:.1e} m ('{}')",
-                     fit.errors()[length].length, model.muscles[length].name(), fit.errors()[arm].moment_arm,
-                     model.muscles[arm].name());
+  std::string note = fmt::format("fitted paths: {} of {} muscles, the others exact", fitted, fit.errors().size());
+  if (!misfits.empty()) note += fmt::format(" ({} because no polynomial is good enough)", fmt::join(misfits, ", "));
+  if (fitted > 0)
+    note += fmt::format("; largest error of a length {:.1e} m ('{}'), of a moment arm {:.1e} m ('{}')",
+                        fit.errors()[length].length, model.muscles[length].name(), fit.errors()[arm].moment_arm,
+                        model.muscles[arm].name());
+  return note;
 }
 
 }  // namespace
@@ -71,7 +82,9 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       muscles_(muscle_parameters(model_)) {
   check_default_pose(model_, mechanism_, paths_);
   if (source_ == PathSource::kFitted) {
-    fit_.emplace(model_, mechanism_, paths_);
+    PathFitOptions fit_options;
+    fit_options.mixed = true;
+    fit_.emplace(model_, mechanism_, paths_, fit_options);
     notes_.push_back(fit_note(model_, *fit_));
   }
   layout_.free = reduction_.free().size();

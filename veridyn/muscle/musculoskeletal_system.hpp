@@ -21,7 +21,7 @@ namespace veridyn::muscle {
 /// Where path lengths and moment arms come from.
 enum class PathSource {
   kExact,      ///< wrapping, computed at every pose
-  kFitted,     ///< polynomials fitted to it once: several times faster, with a stated error
+  kFitted,     ///< wrapping paths as polynomials fitted to it once, with a stated error; exact where no fit is good
   kAsOpenSim,  ///< OpenSim's own wrapping, jumps included, for comparisons; no derivatives
 };
 
@@ -195,7 +195,7 @@ template <typename Scalar>
 void SystemEvaluator<Scalar>::update_paths() {
   const MusclePaths& paths = system_->paths();
   if (const FittedPaths* fit = system_->fit()) {
-    beyond_fit_ |= !fit->evaluate(q_, length_.data(), gradient_.data());
+    beyond_fit_ |= !fit->evaluate(paths, reduced_.kinematics(), q_, path_workspace_, length_.data(), gradient_.data());
   } else {
     paths.evaluate(reduced_.kinematics(), q_, path_workspace_);
     std::copy(path_workspace_.length.begin(), path_workspace_.length.end(), length_.begin());

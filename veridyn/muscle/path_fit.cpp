@@ -97,6 +97,15 @@ FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const M
   };
 
   for (int m = 0; m < exact.muscles(); ++m) {
+    fitted_.push_back(options.mixed && !exact.can_wrap(m) ? 0 : 1);
+    if (fitted_.back() == 0) {
+      constant_.push_back(0.0);
+      PathFitError none;
+      none.muscle = model.muscles[static_cast<std::size_t>(m)].name();
+      none.fitted = false;
+      errors_.push_back(none);
+      continue;
+    }
     // Coordinates that matter.
     std::vector<int> candidates, used;
     for (std::size_t k = exact.first_pair(m); k < exact.end_pair(m); ++k)
@@ -264,7 +273,8 @@ FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const M
     evaluate(q.data(), length.data(), gradient.data());
     std::vector<double> worst(errors_.size(), 0.0);
     for (std::size_t m = 0; m < errors_.size(); ++m)
-      errors_[m].length = std::max(errors_[m].length, std::abs(length[m] - sampler.workspace.length[m]));
+      if (fitted_[m] != 0)
+        errors_[m].length = std::max(errors_[m].length, std::abs(length[m] - sampler.workspace.length[m]));
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       const auto m = static_cast<std::size_t>(pairs_[k].muscle);
       worst[m] = std::max(worst[m], std::abs(gradient[k] - sampler.slope(pairs_[k].muscle, pairs_[k].coordinate)));
@@ -276,6 +286,49 @@ FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const M
   }
   for (std::size_t m = 0; m < above.size(); ++m)
     errors_[m].above_tolerance = static_cast<double>(above[m]) / options.check_poses;
+  if (!options.mixed) return;
+  for (std::size_t m = 0; m < errors_.size(); ++m) {
+    if (fitted_[m] == 0) continue;
+    errors_[m].fitted = errors_[m].length <= options.tolerance && errors_[m].above_tolerance <= options.most_above;
+    fitted_[m] = errors_[m].fitted ? 1 : 0;
+  }
+  keep_exact(exact);
+}
+
+void FittedPaths::keep_exact(const MusclePaths& exact) {
+  std::erase_if(parts_, [&](const Part& part) { return fitted_[static_cast<std::size_t>(part.muscle)] == 0; });
+  std::vector<MusclePaths::Pair> pairs;
+  std::vector<std::size_t> place(pairs_.size());
+  std::size_t k = 0;
+  for (int m = 0; m < muscles(); ++m) {
+    const bool is_fitted = fitted_[static_cast<std::size_t>(m)] != 0;
+    for (; k < pairs_.size() && pairs_[k].muscle == m; ++k) {
+      place[k] = pairs.size();
+      if (is_fitted) pairs.push_back(pairs_[k]);
+    }
+    if (is_fitted) continue;
+    constant_[static_cast<std::size_t>(m)] = 0.0;
+    exact_.push_back(m);
+    for (std::size_t from = exact.first_pair(m); from < exact.end_pair(m); ++from) {
+      exact_pairs_.push_back({from, pairs.size()});
+      pairs.push_back(exact.pairs()[from]);
+    }
+  }
+  pairs_ = pairs;
+  std::vector<Axis> axes;
+  std::vector<int> axis_place(axes_.size(), -1);
+  for (Part& part : parts_) {
+    for (int a = 0; a < part.coordinates; ++a) {
+      part.pair[a] = place[part.pair[a]];
+      int& now = axis_place[static_cast<std::size_t>(part.axes[a])];
+      if (now < 0) {
+        now = static_cast<int>(axes.size());
+        axes.push_back(axes_[static_cast<std::size_t>(part.axes[a])]);
+      }
+      part.axes[a] = now;
+    }
+  }
+  axes_ = axes;
 }
 
 }  // namespace veridyn::muscle

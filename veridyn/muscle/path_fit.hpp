@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,11 +18,17 @@ struct PathFitOptions {
   int max_degree = 12;        ///< total degree of a polynomial; three less with three coordinates, six less with more
   int panels = 256;       ///< of a one-coordinate part that no polynomial up to `max_degree` meets the tolerance for
   int check_poses = 600;  ///< independent of those of the fit
+  /// Leave exact what is better so: paths without wraps, which cost less than a polynomial (and whose conditional
+  /// points make kinks), and those whose fit misses the tolerance: in a length, or in moment arms at more than
+  /// `most_above` of the check poses. To be evaluated with kinematics.
+  bool mixed = false;
+  double most_above = 0.05;
 };
 
 /// How well one muscle's path is fitted, on poses that the fit did not use.
 struct PathFitError {
   std::string muscle;
+  bool fitted = true;            ///< false: left exact; the figures are those of the fit that was not good enough, or 0
   std::vector<int> coordinates;  ///< that its length depends on
   int terms = 0;                 ///< coefficients
   double length = 0.0;           ///< largest difference [m]
@@ -50,12 +58,18 @@ class FittedPaths {
   [[nodiscard]] std::span<const MusclePaths::Pair> pairs() const { return pairs_; }
   [[nodiscard]] const std::vector<PathFitError>& errors() const { return errors_; }
 
-  /// Lengths [m] by muscle and dL/dq by pair. False if a coordinate that matters lies outside its range: polynomials
-  /// are then extrapolated, pieces go on straight. Does not allocate or throw.
+  /// Lengths [m] by muscle and dL/dq by pair; zero for those that are left exact. False if a coordinate that matters
+  /// lies outside its range: polynomials are then extrapolated, pieces go on straight. Does not allocate or throw.
   template <typename Scalar>
   bool evaluate(const Scalar* q, Scalar* length, Scalar* gradient) const;
+  /// The same with the exact ones too, from the paths that the fit was made of.
+  template <typename Scalar>
+  bool evaluate(const MusclePaths& exact, const Kinematics<Scalar>& kinematics, const Scalar* q,
+                PathWorkspace<Scalar>& workspace, Scalar* length, Scalar* gradient) const;
 
  private:
+  void keep_exact(const MusclePaths& exact);
+
   static constexpr int kMostCoordinates = 8;
   static constexpr int kMostDegree = 15;
 
@@ -91,7 +105,21 @@ class FittedPaths {
   std::vector<double> rows_;    ///< of parts with one or two: by power of the second, then of the first, ascending
   std::vector<double> pieces_;  ///< four coefficients a piece, of t = 0..1
   std::vector<PathFitError> errors_;
+  std::vector<std::uint8_t> fitted_;                     ///< by muscle
+  std::vector<int> exact_;                               ///< the other muscles
+  std::vector<std::array<std::size_t, 2>> exact_pairs_;  ///< their pairs: of the exact paths, here
 };
+
+template <typename Scalar>
+bool FittedPaths::evaluate(const MusclePaths& exact, const Kinematics<Scalar>& kinematics, const Scalar* q,
+                           PathWorkspace<Scalar>& workspace, Scalar* length, Scalar* gradient) const {
+  const bool inside = evaluate(q, length, gradient);
+  if (exact_.empty()) return inside;
+  exact.evaluate(kinematics, q, workspace, std::span<const std::uint8_t>(fitted_));
+  for (const int m : exact_) length[m] = workspace.length[static_cast<std::size_t>(m)];
+  for (const auto& [from, to] : exact_pairs_) gradient[to] = workspace.gradient[from];
+  return inside;
+}
 
 template <typename Scalar>
 bool FittedPaths::evaluate(const Scalar* q, Scalar* length, Scalar* gradient) const {
