@@ -21,9 +21,10 @@ namespace {
 const std::filesystem::path kShared = VERIDYN_SHARED_DIR;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-#define SKIP_WITHOUT_REFERENCE()                                                                                    \
-  if (!std::filesystem::exists(kShared / "reference/opensim")) GTEST_SKIP() << "the reference of ../shared is not " \
-                                                                               "here"
+#define SKIP_WITHOUT_REFERENCE()                               \
+  if (!std::filesystem::exists(kShared / "reference/opensim")) \
+  GTEST_SKIP() << "the reference of ../shared is not "         \
+                  "here"
 
 std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
   std::ifstream in(file);

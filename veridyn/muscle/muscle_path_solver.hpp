@@ -608,7 +608,6 @@ class PathSolver {
       }
       if (r->meets) break;
     }
-    (void)path;
     return best;
   }
 

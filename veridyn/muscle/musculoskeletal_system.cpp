@@ -97,7 +97,8 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
   }
   for (std::size_t m = 0; m < muscles_.size(); ++m) {
     layout_.fiber_length.push_back(muscles_.has_fiber_state(m) ? static_cast<int>(layout_.size++) : -1);
-    if (layout_.fiber_length.back() >= 0) scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
+    if (layout_.fiber_length.back() >= 0)
+      scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
   }
 }
 

@@ -16,8 +16,8 @@ struct Polyline {
 };
 
 /// Stick figure of a pose: from each body's joint centre to the centres of the joints it carries; a body that carries
-/// none is drawn through its mass centre to twice its distance, where its far end may be. One line a stick, named by its
-/// body. `kinematics` after `update_positions`.
+/// none is drawn through its mass centre to twice its distance, where its far end may be. One line a stick, named by
+/// its body. `kinematics` after `update_positions`.
 [[nodiscard]] std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism,
                                           const Kinematics<double>& kinematics);
 
