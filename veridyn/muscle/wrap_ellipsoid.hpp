@@ -441,7 +441,7 @@ void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>
 ///
 /// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
 /// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface. Lengths over a
-/// spheroid (quadrature, `geodesic_spheroid.hpp`) to about 1e-10 m at anatomical sizes, over three unequal radii
+/// spheroid (quadrature, `geodesic_spheroid.hpp`) to about 3e-9 m at anatomical sizes, over three unequal radii
 /// (integration in steps) to 1e-8 m. `memory`: the solution is left there, and one that is
 /// there already starts the search.
 template <typename Scalar>
