@@ -182,8 +182,9 @@ TEST(FittedPaths, AreExactWhereNoFitIsGoodEnough) {
     for (std::size_t k = 0; k < gradient.size(); ++k) {
       const MusclePaths::Pair pair = mixed.fitted.pairs()[k];
       for (std::size_t j = 0; j < exact.gradient.size(); ++j) {
-        if (mixed.exact.pairs()[j].muscle == pair.muscle && mixed.exact.pairs()[j].coordinate == pair.coordinate)
+        if (mixed.exact.pairs()[j].muscle == pair.muscle && mixed.exact.pairs()[j].coordinate == pair.coordinate) {
           EXPECT_NEAR(gradient[k], exact.gradient[j], 3e-3) << k;
+        }
       }
     }
   }

@@ -460,7 +460,7 @@ class PathSolver {
         const MusclePaths::Wrap& wrap = path.wraps[i];
         const WrapResult<Scalar>* was = w_.result[i];
         const bool was_there = remove(static_cast<int>(i), n);
-        const std::size_t at = choose(path, i, wrap, n);
+        const std::size_t at = choose(i, wrap, n);
         if (at < n) {
           insert(path, i, at, n);
           if (!was_there) {
@@ -568,7 +568,7 @@ class PathSolver {
   }
 
   /// Segment of the path as it is on which wrap i acts (n: none), with its result in w_.result[i].
-  std::size_t choose(const Path& path, std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n) {
+  std::size_t choose(std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n) {
     const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
     std::size_t best = n;
     double least = 1e300;
@@ -777,7 +777,7 @@ class PathSolver {
       for (std::size_t slot = 0; slot < path.wraps.size(); ++slot) {
         const std::size_t i = slot < 2 ? order[slot] : slot;
         remove(static_cast<int>(i), n);
-        const std::size_t at = choose(path, i, path.wraps[i], n);
+        const std::size_t at = choose(i, path.wraps[i], n);
         if (at < n) insert(path, i, at, n);
         if (slot < 2 && at == n && w_.first_segment[i] < 0) status[slot] = inside_somewhere(path, i, n);
         if (slot < 2 && at < n) status[slot] = WrapStatus::kWrapped;
