@@ -96,8 +96,14 @@ FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const M
     return known;
   };
 
+  // One exact path costs the whole machinery of exact paths: where all straight ones are cheap to fit, none is left.
+  constexpr std::size_t kFew = 2;
+  bool few = true;
   for (int m = 0; m < exact.muscles(); ++m) {
-    fitted_.push_back(options.mixed && !exact.can_wrap(m) ? 0 : 1);
+    few = few && (exact.can_wrap(m) || exact.end_pair(m) - exact.first_pair(m) <= kFew);
+  }
+  for (int m = 0; m < exact.muscles(); ++m) {
+    fitted_.push_back(options.mixed && !few && !exact.can_wrap(m) ? 0 : 1);
     if (fitted_.back() == 0) {
       constant_.push_back(0.0);
       PathFitError none;

@@ -18,9 +18,9 @@ struct PathFitOptions {
   int max_degree = 12;        ///< total degree of a polynomial; three less with three coordinates, six less with more
   int panels = 256;       ///< of a one-coordinate part that no polynomial up to `max_degree` meets the tolerance for
   int check_poses = 600;  ///< independent of those of the fit
-  /// Leave exact what is better so: paths without wraps, which cost less than a polynomial (and whose conditional
-  /// points make kinks), and those whose fit misses the tolerance: in a length, or in moment arms at more than
-  /// `most_above` of the check poses. To be evaluated with kinematics.
+  /// Leave exact what is better so: paths without wraps, which cost less than polynomials of many coordinates (unless
+  /// all of them depend on two at most), and those whose fit misses the tolerance: in a length, or in moment arms at
+  /// more than `most_above` of the check poses. To be evaluated with kinematics.
   bool mixed = false;
   double most_above = 0.05;
 };
