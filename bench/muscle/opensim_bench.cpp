@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "tests/muscle/arm26_scenarios.hpp"
 #include "veridyn/muscle/computed_muscle_control.hpp"
 #include "veridyn/muscle/motion_analysis.hpp"
 #include "veridyn/muscle/muscle_parametric_model.hpp"
@@ -27,28 +28,6 @@ std::unique_ptr<MusculoskeletalSystem> arm(benchmark::State& state, const char* 
   }
   return std::make_unique<MusculoskeletalSystem>(read_osim(kShared / "data/opensim" / file),
                                                  SystemOptions{.paths = paths});
-}
-
-/// Scenarios 1 to 3 of the reference's README.
-Drive scenario(int number) {
-  if (number == 1) return {ControlSignals(std::vector<double>(kMuscles, 0.05)), {}};
-  std::vector<double> time{0.0}, value(kMuscles, 0.05);
-  if (number == 2) {
-    time.push_back(0.2);
-    for (const double u : {0.05, 0.5, 0.5, 0.4, 0.4, 0.4}) value.push_back(u);
-    return {ControlSignals(time, value, kMuscles, Interpolation::kHold), {}};
-  }
-  time.clear();
-  value.clear();
-  constexpr std::array<double, 6> kBase{0.08, 0.10, 0.25, 0.15, 0.20, 0.08}, kFrequency{1.0, 1.3, 1.7, 2.1, 2.5, 3.1};
-  for (int i = 0; i <= 1000; ++i) {
-    time.push_back(0.001 * i);
-    for (std::size_t k = 0; k < kMuscles; ++k) {
-      value.push_back(kBase[k] + 0.04 * std::sin(2.0 * std::numbers::pi * kFrequency[k] * time.back() +
-                                                 static_cast<double>(k) * std::numbers::pi / 3.0));
-    }
-  }
-  return {ControlSignals(time, value, kMuscles, Interpolation::kLinear), {}};
 }
 
 StartState start_of(const Model& model, int number) {
@@ -70,7 +49,7 @@ void forward(benchmark::State& state, const char* file, PathSource paths, int nu
   const auto system = arm(state, file, paths);
   if (!system) return;
   const StartState start = start_of(system->model(), number);
-  const Drive drive = scenario(number);
+  const Drive drive = test::arm26_scenario(number, 0.001);
   Progress progress;
   // A row a step, as OpenSim stores its states.
   const ForwardOptions options{.rate_Hz = 0.0, .accuracy = 1e-5};
@@ -182,7 +161,7 @@ void sensitivities(benchmark::State& state) {
   for (int m = 0; m < static_cast<int>(kMuscles); ++m) {
     for (std::size_t f = 0; f < 3; ++f) names.push_back({m, f});
   }
-  MotionSegment segment{start_of(system->model(), 2), scenario(2), frame_times(0.0, 1.0, 100.0)};
+  MotionSegment segment{start_of(system->model(), 2), test::arm26_scenario(2, 0.001), frame_times(0.0, 1.0, 100.0)};
   const MuscleParametricModel model(*system, names, {segment}, 1e-5);
   Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
   for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;

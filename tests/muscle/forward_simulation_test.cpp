@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "tests/muscle/arm26_scenarios.hpp"
 #include "tests/muscle/reference_table.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/builtin_models.hpp"
@@ -24,30 +25,6 @@ Drive constant_drive(std::size_t muscles, double excitation) {
   return {ControlSignals(std::vector<double>(muscles, excitation)), {}};
 }
 
-/// Excitations of the reference's three scenarios (README of the reference).
-Drive scenario(int number) {
-  constexpr std::size_t kMuscles = 6;
-  if (number == 1) return constant_drive(kMuscles, 0.05);
-  std::vector<double> time{0.0}, value(kMuscles, 0.05);
-  if (number == 2) {
-    time.push_back(0.2);
-    for (const double u : {0.05, 0.5, 0.5, 0.4, 0.4, 0.4}) value.push_back(u);
-    return {ControlSignals(time, value, kMuscles, Interpolation::kHold), {}};
-  }
-  time.clear();
-  value.clear();
-  constexpr std::array<double, 6> kBase{0.08, 0.10, 0.25, 0.15, 0.20, 0.08}, kFrequency{1.0, 1.3, 1.7, 2.1, 2.5, 3.1};
-  for (int i = 0; i <= 4000; ++i) {
-    const double t = 0.00025 * i;
-    time.push_back(t);
-    for (std::size_t k = 0; k < kMuscles; ++k) {
-      value.push_back(kBase[k] + 0.04 * std::sin(2.0 * std::numbers::pi * kFrequency[k] * t +
-                                                 static_cast<double>(k) * std::numbers::pi / 3.0));
-    }
-  }
-  return {ControlSignals(time, value, kMuscles, Interpolation::kLinear), {}};
-}
-
 struct Differences {
   double angle_deg = 0.0, fiber = 0.0, force = 0.0;
 };
@@ -62,7 +39,8 @@ Differences compare(const std::string& kind, int number, PathSource paths) {
   StartState start = default_start(system.model());
   start.q << table.number(0, "r_shoulder_elev_rad"), table.number(0, "r_elbow_flex_rad");
   Progress progress;
-  const MuscleTrajectory t = simulate_forward(system, start, scenario(number), {.accuracy = 1e-8}, progress);
+  const MuscleTrajectory t =
+      simulate_forward(system, start, test::arm26_scenario(number, 0.00025), {.accuracy = 1e-8}, progress);
   EXPECT_TRUE(t.usable()) << t.message();
   EXPECT_EQ(t.time.size(), table.rows.size());
   Differences d;

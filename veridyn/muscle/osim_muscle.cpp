@@ -115,8 +115,10 @@ void read_path(Context& context, const Element& element, Muscle& muscle) {
   }
 }
 
-ThelenCurves read_thelen(const Element& e) {
-  ThelenCurves c;
+/// What both forms of Thelen's muscle share.
+template <typename Curves>
+Curves read_thelen_shape(const Element& e) {
+  Curves c;
   c.tendon_strain = e.positive_or("FmaxTendonStrain", c.tendon_strain);
   c.passive_strain = e.positive_or("FmaxMuscleStrain", c.passive_strain);
   c.active_width = e.positive_or("KshapeActive", c.active_width);
@@ -124,19 +126,17 @@ ThelenCurves read_thelen(const Element& e) {
   c.Af = e.positive_or("Af", c.Af);
   c.Flen = e.positive_or("Flen", c.Flen);
   if (!(c.Flen > 1.0)) e.fail("Flen", fmt::format("{} must be > 1", c.Flen));
+  return c;
+}
+
+ThelenCurves read_thelen(const Element& e) {
+  auto c = read_thelen_shape<ThelenCurves>(e);
   c.extrapolation_threshold = e.positive_or("fv_linear_extrap_threshold", c.extrapolation_threshold);
   return c;
 }
 
 DeprecatedThelenCurves read_deprecated_thelen(const Element& e) {
-  DeprecatedThelenCurves c;
-  c.tendon_strain = e.positive_or("FmaxTendonStrain", c.tendon_strain);
-  c.passive_strain = e.positive_or("FmaxMuscleStrain", c.passive_strain);
-  c.active_width = e.positive_or("KshapeActive", c.active_width);
-  c.passive_exponent = e.positive_or("KshapePassive", c.passive_exponent);
-  c.Af = e.positive_or("Af", c.Af);
-  c.Flen = e.positive_or("Flen", c.Flen);
-  if (!(c.Flen > 1.0)) e.fail("Flen", fmt::format("{} must be > 1", c.Flen));
+  auto c = read_thelen_shape<DeprecatedThelenCurves>(e);
   c.damping = e.not_negative_or("damping", c.damping);
   c.Vmax0 = e.positive_or("Vmax0", c.Vmax0);
   return c;

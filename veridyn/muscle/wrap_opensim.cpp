@@ -248,14 +248,10 @@ bool shift_tangent_point(const Vector3d& p, Vector3d& r, const Vector3d& w) {
         0.1 * kPi / 180.0))
     return false;
   // Where the line p-w passes the line through the feet of p and w on the axis-parallel through r.
-  const double d1 = (radial(p) - radial(r)).norm();
-  const double d2 = (radial(w) - radial(r)).norm();
   // Both feet lie on one line parallel to the axis; the nearest points of p-w to it:
   const Vector3d u = w - p;
   const Vector3d across = radial(u);
   const double s = across.squaredNorm() > 0.0 ? -radial(p - r).dot(across) / across.squaredNorm() : 0.0;
-  (void)d1;
-  (void)d2;
   r.z() += 1.5 * (p.z() + s * u.z() - r.z());
   return true;
 }
