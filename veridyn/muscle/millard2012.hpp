@@ -62,6 +62,11 @@ class Millard2012 {
     return Vmax;
   }
 
+  /// fV with slope and curvature, from its table.
+  [[nodiscard]] auto quick_velocity_curve() const {
+    return [this](double v) { return curves_->velocity.tabulated_with_curvature(v); };
+  }
+
   template <typename Scalar>
   [[nodiscard]] Scalar velocity(const Scalar& a, const Scalar& fL, const Scalar& F, double damping) const {
     Scalar A = a * fL;
@@ -82,9 +87,6 @@ class Millard2012 {
     else
       low = std::min(high, std::max(low, 0.0));
     return {A, F, damping, low, high, start(A, F, damping, low, high)};
-  }
-  [[nodiscard]] auto quick_velocity_curve() const {
-    return [this](double v) { return curves_->velocity.tabulated_with_curvature(v); };
   }
 
   template <typename Scalar>

@@ -160,7 +160,9 @@ std::vector<JointSource> joint_sources(const Context& context) {
 }  // namespace
 
 void read_joints(Context& context) {
-  for (const auto& [element, child] : joint_sources(context)) {
+  for (const JointSource& source : joint_sources(context)) {
+    const Element& element = source.element;
+    const int child = source.child;
     Joint joint;
     joint.name = element.name();
     joint.type = element.type();
