@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
@@ -231,6 +232,114 @@ TEST(FourWheelModel, GainsEnergyOnlyFromForcesAtMovingPoints) {
     }
   }
   EXPECT_GT(off_the_ground, 50);
+}
+
+/// A car driven over a road of bumps, with the work done on it integrated along by the same method (the last state).
+class EnergyBalance {
+ public:
+  using Augmented = Eigen::Matrix<double, kFourWheelStates + 1, 1>;
+  EnergyBalance(const LinearCar<double>& car, double steer, double bump) : car_(car), steer_(steer), bump_(bump) {}
+
+  /// |energy gained - work done| over the largest kinetic energy of motion against the start, and what happened.
+  struct Result {
+    double error = 0.0, work = 0.0;
+    int off_the_ground = 0;  ///< steps with a wheel off
+  };
+  [[nodiscard]] Result run(double duration, double step) const {
+    Augmented at = Augmented::Zero();
+    at.head<kFourWheelStates>() = car_.steady_start(20.0);
+    const double start = energy_at(at);
+    Result result;
+    const auto derivative = [&](double t, const Augmented& x) {
+      const Moment m = moment(t, x);
+      const FourWheelRates<double> rates = rates_at(car_, m);
+      Augmented d;
+      d << rates.derivative, power(car_, m, rates, road_rates(m, rates));
+      return d;
+    };
+    const long steps = std::lround(duration / step);
+    for (long k = 0; k < steps; ++k) {
+      const double t = static_cast<double>(k) * step;
+      const auto Fz = rates_at(car_, moment(t, at)).Fz;
+      result.off_the_ground += *std::min_element(Fz.begin(), Fz.end()) == 0.0 ? 1 : 0;
+      at = numerics::runge_kutta_4_step(derivative, t, at, step);
+    }
+    result.work = at(kFourWheelStates);
+    result.error = std::abs(energy_at(at) - start - result.work) / start;
+    return result;
+  }
+
+ private:
+  [[nodiscard]] Moment moment(double t, const Augmented& x) const {
+    Moment m{x.head<kFourWheelStates>(), steer_ * std::sin(4.0 * t), 800.0, 0.0, {}};
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const Eigen::Vector2d at = place(m, i);
+      m.road[i] = bump_ * std::sin(0.7 * at.x()) * std::cos(0.5 * at.y());
+    }
+    return m;
+  }
+  [[nodiscard]] Eigen::Vector2d place(const Moment& m, std::size_t i) const {
+    return m.state.head<2>() + Eigen::Rotation2Dd(m.state(kYaw)) * Eigen::Vector2d(car_.wheel_x(i), car_.wheel_y(i));
+  }
+  [[nodiscard]] PerWheel<double> road_rates(const Moment& m, const FourWheelRates<double>& rates) const {
+    PerWheel<double> out{};
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const Eigen::Vector2d at = place(m, i), arm = at - m.state.head<2>();
+      const Eigen::Vector2d velocity = rates.derivative.head<2>() + m.state(kR) * Eigen::Vector2d(-arm.y(), arm.x());
+      out[i] = bump_ * (0.7 * std::cos(0.7 * at.x()) * std::cos(0.5 * at.y()) * velocity.x() -
+                        0.5 * std::sin(0.7 * at.x()) * std::sin(0.5 * at.y()) * velocity.y());
+    }
+    return out;
+  }
+  [[nodiscard]] double energy_at(const Augmented& x) const {
+    const Moment m = moment(0.0, x);
+    return energy<double>(car_.parameters(), m.state, m.road, car_.options());
+  }
+
+  const LinearCar<double>& car_;
+  double steer_, bump_;
+};
+
+TEST(FourWheelModel, BalancesItsEnergyOverAViolentDriveOnABumpyRoad) {
+  for (const bool longitudinal : {false, true}) {
+    const auto car = linear_car(uneven_car(), longitudinal ? with_longitudinal(0.05) : FourWheelOptions{});
+    const EnergyBalance smooth(car, 0.05, 0.015);
+    const auto coarse = smooth.run(1.0, 1e-3), fine = smooth.run(1.0, 5e-4), finest = smooth.run(1.0, 1.25e-4);
+    EXPECT_EQ(fine.off_the_ground, 0);
+    EXPECT_GT(std::abs(fine.work), 1e4);
+    EXPECT_NEAR(std::log2(coarse.error / fine.error), 4.0, 0.5);
+    EXPECT_LT(finest.error, 1e-10);
+    const auto jumping = EnergyBalance(car, 0.12, 0.08).run(1.0, 2e-5);
+    EXPECT_GT(jumping.off_the_ground, 5000);
+    EXPECT_LT(jumping.error, 1e-8);
+  }
+}
+
+TEST(FourWheelModel, KeepsItsEnergyWhereNothingTakesIt) {
+  VehicleParameters<double> p = uneven_car();
+  p.C_sf = p.C_sr = 0.0;
+  const LinearTyre<double> ice{.stiffness = 0.0, .slip_stiffness = 0.0};
+  const LinearCar<double> car(p, {ice, ice, ice, ice});
+  Moment m{car.steady_start(20.0), 0.0, 0.0, 0.0, {}};
+  m.state(kRollRate) = 1.0;
+  m.state(kHeaveRate) = 0.6;
+  m.state(kPitchRate) = -0.4;
+  const auto stored = [&] { return energy<double>(p, m.state, {}, car.options()); };
+  const auto derivative = [&](double, const FourWheelState<double>& x) {
+    return rates_at(car, {x, 0.0, 0.0, 0.0, {}}).derivative;
+  };
+  const double start = stored(), at_rest = energy<double>(p, car.steady_start(20.0), {}, car.options());
+  double worst = 0.0;
+  int off_the_ground = 0;
+  for (int k = 0; k < 40000; ++k) {
+    m.state = numerics::runge_kutta_4_step(derivative, 0.0, m.state, 5e-5);
+    worst = std::max(worst, std::abs(stored() - start));
+    const auto Fz = rates_at(car, m).Fz;
+    off_the_ground += *std::min_element(Fz.begin(), Fz.end()) == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(start - at_rest, 400.0);
+  EXPECT_LT(worst, 1e-7 * (start - at_rest));
+  EXPECT_GE(off_the_ground, 0);
 }
 
 /// The same motion seen in a mirror.
