@@ -104,7 +104,7 @@ bool is_file(const std::string& tyre) { return tyre.ends_with(".tir") || tyre.en
 
 /// The tyre file of an axle, and what it says beside the forces.
 TirFile read_axle(const std::filesystem::path& path, Vehicle& vehicle, std::string_view stiffness, Given& given) {
-  TirFile file = read_tir_file(path);
+  TirFile file = read_tir(path);
   vehicle.inputs.push_back(path);
   for (const std::string& warning : file.warnings)
     vehicle.warnings.push_back(path.filename().string() + ": " + warning);
@@ -131,9 +131,7 @@ void read_tyres(const StudyTable& subject, Vehicle& vehicle, Given& given) {
     const std::filesystem::path front = path_of("front"), rear = path_of("rear");
     AxleTyres<MagicFormulaTyre<double>> tyres;
     // Files are of a tyre for one side: those of the right are brought to the left.
-    const auto left = [](const TirFile& file) {
-      return file.side == TyreSide::kRight ? file.tyre.on_other_side() : file.tyre;
-    };
+    const auto left = [](const TirFile& file) { return file.on(TyreSide::kLeft); };
     tyres.front = left(read_axle(front, vehicle, "K_tf", given));
     tyres.rear = left(read_axle(rear, vehicle, "K_tr", given));
     const PerWheel<double> load = static_loads(p, kGravity);
