@@ -141,18 +141,18 @@ Table vehicle_table(const VehicleParameters<double>& parameters) {
 }
 
 std::vector<Block> frequency_response_figures(std::span<const NamedBicycle> bicycles) {
-  struct Quantity {
+  struct Response {
     const char* name;
     const char* unit;
     std::complex<double> BicycleResponse::*value;
     double factor;
   };
-  const std::array<Quantity, 3> quantities{
+  const std::array<Response, 3> quantities{
       {{"yaw rate", "deg/s per deg", &BicycleResponse::yaw_rate, 1.0},
        {"lateral acceleration", "m/s^2 per deg", &BicycleResponse::lateral_acceleration, kDegree},
        {"sideslip", "deg per deg", &BicycleResponse::sideslip, 1.0}}};
   std::vector<Block> blocks;
-  for (const Quantity& q : quantities) {
+  for (const Response& q : quantities) {
     XYPlot gain{.title = fmt::format("Gain of {} to steer", q.name),
                 .x = {"frequency", "Hz"},
                 .y = {"gain", q.unit},
