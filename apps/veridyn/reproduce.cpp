@@ -35,7 +35,8 @@ struct NamedStudy {
 std::vector<NamedStudy> studies_of(const Options& options) {
   std::vector<NamedStudy> studies;
   if (options.studies.empty()) {
-    for (const EmbeddedStudy& study : kAircraftStudies) studies.push_back({study.name, study.text});
+    for (const EmbeddedText& study : aircraft_studies())
+      studies.push_back({std::string(study.name), std::string(study.text)});
   } else {
     std::vector<std::filesystem::path> paths;
     for (const auto& entry : std::filesystem::directory_iterator(options.studies)) {
@@ -80,7 +81,7 @@ int reproduce_aircraft(const Options& options) {
     }
     tell(options.common, fmt::format("{:<4} {}", row.passed() ? "ok" : "NO", row.title));
     nlohmann::ordered_json json = {{"row", named.name}, {"title", row.title}, {"passed", row.passed()}};
-    for (const aircraft::ReproductionCheck& check : row.checks) {
+    for (const Check& check : row.checks) {
       tell(options.common, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
       json["checks"].push_back({{"passed", check.passed}, {"text", check.text}});
     }

@@ -190,7 +190,7 @@ Section section_of(const Reproduction& r) {
   Table checks{.title = "What must be seen",
                .columns = {{.name = ""}, {.name = "seen", .align = Align::kLeft}},
                .sortable = false};
-  for (const ReproductionCheck& check : r.checks) {
+  for (const Check& check : r.checks) {
     const Status status = check.passed ? Status::kGood : Status::kBad;
     checks.rows.push_back({.cells = {status_cell(status), text_cell(check.text)}, .status = status});
   }
@@ -224,7 +224,7 @@ Document reproduction_report(std::span<const Reproduction> rows, const std::stri
   for (const Reproduction& r : rows) {
     const Status status = r.passed() ? Status::kGood : Status::kBad;
     std::string seen;
-    for (const ReproductionCheck& check : r.checks) seen += (seen.empty() ? "" : "; ") + check.text;
+    for (const Check& check : r.checks) seen += (seen.empty() ? "" : "; ") + check.text;
     summary.rows.push_back({.cells = {status_cell(status), text_cell(r.title), text_cell(seen)}, .status = status});
   }
   document.sections.push_back({.title = "Summary", .blocks = {summary}});

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/vehicle/lane_change.hpp"
+#include "veridyn/vehicle/manoeuvre.hpp"
+#include "veridyn/vehicle/vehicle_trajectory.hpp"
+
+namespace veridyn::vehicle {
+
+/// A number that describes a test drive.
+struct Metric {
+  std::string name;    ///< "yaw_rate_response_time"
+  double value = 0.0;  ///< NaN when the drive does not show it
+  std::string unit;    ///< SI; "rad s^2/m"
+  std::string source;  ///< "ISO 7401"
+  std::string meaning{};
+};
+
+/// The metrics of a manoeuvre's own standard, then those of any drive.
+[[nodiscard]] std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& trajectory, const Manoeuvre& manoeuvre,
+                                                    const VehicleParameters<double>& parameters,
+                                                    double gravity = 9.80665);
+
+/// ISO 7401 step input. Steady state is the mean of the last fifth of the drive; times count from where the steer
+/// crosses half its steady value: to 90 % of the steady value (response time), to the first maximum (peak response
+/// time); overshoot (peak - steady)/steady; gains per steer; TB factor: peak response time of the yaw rate times the
+/// steady sideslip angle [s rad].
+[[nodiscard]] std::vector<Metric> step_steer_metrics(const VehicleTrajectory& trajectory);
+
+/// ISO 19365, FMVSS 126: lateral displacement of the centre of gravity 1.07 s after the beginning of steer; yaw rate
+/// 1.0 s and 1.75 s after the end of steer over its second peak (which may be at most 35 % and 20 %).
+[[nodiscard]] std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& trajectory);
+
+/// ISO 4138: slopes over lateral acceleration, by least squares over the samples between `low` and `high` [m/s^2] of
+/// absolute lateral acceleration: understeer gradient d(delta - L/R)/d a_y, sideslip gradient, roll gradient (where
+/// there is a roll angle).
+[[nodiscard]] std::vector<Metric> steady_state_metrics(const VehicleTrajectory& trajectory, double wheelbase,
+                                                       double low = 0.5, double high = 4.0);
+
+/// ISO 3888-1: whether and by how much the body stayed within the lanes; entry speed and peaks.
+[[nodiscard]] std::vector<Metric> lane_change_metrics(const VehicleTrajectory& trajectory,
+                                                      const DoubleLaneChange& course, const BodyOutline& body);
+
+/// Peaks of lateral acceleration, yaw rate, sideslip, roll; largest lateral load transfer ratio
+/// |left - right|/(left + right) of normal forces (1: wheels of a side lift), smallest normal force over its static
+/// value.
+[[nodiscard]] std::vector<Metric> peak_metrics(const VehicleTrajectory& trajectory, double gravity = 9.80665);
+
+/// Vertical comfort: rms of the vertical acceleration of the sprung mass, plain and weighted with W_k of ISO 2631-1,
+/// rms of suspension travel and of the change of wheel load over its mean. Empty when the model has no vertical motion.
+[[nodiscard]] std::vector<Metric> ride_metrics(const VehicleTrajectory& trajectory);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/vehicle/bicycle_model.hpp"
+#include "veridyn/vehicle/driver.hpp"
+#include "veridyn/vehicle/four_wheel_model.hpp"
+#include "veridyn/vehicle/road.hpp"
+#include "veridyn/vehicle/vehicle_trajectory.hpp"
+
+namespace veridyn::vehicle {
+
+struct SimulationOptions {
+  double duration = 20.0;     ///< [s]
+  double step = 1e-3;         ///< of the Runge-Kutta method [s]
+  double output_step = 1e-2;  ///< between samples, a multiple of `step` [s]
+  double speed = 20.0;        ///< u at the start; kept unless the model has longitudinal dynamics [m/s]
+
+  /// Throws InputError("drive", ...) naming the first option that makes no sense.
+  void validate() const;
+};
+
+/// Drives `model` from rest in its springs, straight ahead along x from the origin, with the classical fourth-order
+/// Runge-Kutta method. `road` may be null: flat. Samples are at multiples of `output_step` and at the end.
+///
+/// `driver.look` is called once a step. Steps are halved and halved again while slow wheel spin needs it (longitudinal
+/// dynamics). Lift-off is resolved to a step.
+///
+/// Throws InputError on bad options, a step too long for the vehicle's stiffness, inadmissible parameters, and
+/// controls out of range (steer not within 90 deg, negative brake torque, NaN), naming the time. Does not allocate
+/// after the first step but for lift-offs beyond 64.
+///
+/// Compiled for LinearTyre; with another tyre include vehicle_simulation_loop.hpp.
+template <typename Tyre>
+[[nodiscard]] VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& driver, const Road* road,
+                                         const SimulationOptions& options, Progress& progress);
+
+/// The same for the bicycle model: flat road, constant speed. Both tyres of an axle get the axle's values.
+template <typename Tyre>
+[[nodiscard]] VehicleTrajectory simulate(const BicycleModel<double, Tyre>& model, Driver& driver,
+                                         const SimulationOptions& options, Progress& progress);
+
+}  // namespace veridyn::vehicle
