@@ -51,8 +51,9 @@ struct MagicFormulaRange {
 ///
 /// Load: below `range.load_min` (at least 1 % of nominal) forces shrink in proportion to the load from their values
 /// there, to 0 at 0; above `range.load_max` they stay. Curvatures E above 1, where the curve would fold back, are taken
-/// as 1; weights below 0 as 0. Continuous everywhere; slopes jump at those limits and (files with PEX4, PEY3, PEY4) the
-/// curvature at zero slip. Does not throw or allocate.
+/// as 1; weights below 0 as 0; a longitudinal stiffness per load below a tenth of nominal, to which the linear fits of
+/// some files fall at high load, as that tenth. Continuous everywhere; slopes jump at those limits and (files with
+/// PEX4, PEY3, PEY4) the curvature at zero slip. Does not throw or allocate.
 template <typename Scalar>
 struct MagicFormulaTyre {
   MagicFormulaCoefficients<Scalar> coefficients;
@@ -176,7 +177,9 @@ typename MagicFormulaTyre<Scalar>::Terms MagicFormulaTyre<Scalar>::at(const Scal
 
   const Scalar gamma_x = gamma * c.LGAX;
   t.mu_x = (c.PDX1 + c.PDX2 * t.dfz) * (1.0 - c.PDX3 * gamma_x * gamma_x) * c.LMUX;  // (4.E13)
-  t.K_x = t.Fz * (c.PKX1 + c.PKX2 * t.dfz) * c.LKX;                                  // (4.E15)
+  Scalar stiffness = c.PKX1 + c.PKX2 * t.dfz;
+  if (stiffness < 0.1 * c.PKX1) stiffness = 0.1 * c.PKX1;
+  t.K_x = t.Fz * stiffness * c.LKX;  // (4.E15)
   if (!vanishes(c.PKX3)) t.K_x = t.K_x * exp(c.PKX3 * t.dfz);
   t.SH_x = (c.PHX1 + c.PHX2 * t.dfz) * c.LHX;                  // (4.E17)
   t.SV_x = t.Fz * (c.PVX1 + c.PVX2 * t.dfz) * c.LVX * c.LMUX;  // (4.E18)

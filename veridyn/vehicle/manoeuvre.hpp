@@ -8,6 +8,7 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/driver.hpp"
+#include "veridyn/vehicle/driver_model.hpp"
 #include "veridyn/vehicle/lane_change.hpp"
 #include "veridyn/vehicle/path.hpp"
 #include "veridyn/vehicle/piecewise_linear.hpp"
@@ -47,7 +48,7 @@ struct Manoeuvre {
   std::shared_ptr<const Path> path{};  ///< which is followed
   /// Speed over time that the manoeuvre needs to vary; empty: constant.
   PiecewiseLinear speed{};
-  /// Where the vehicle is to start, for manoeuvres that follow a path.
+  /// Place and heading at the start, for manoeuvres that follow a path; its velocities are the caller's.
   PlanarMotion initial{};
 };
 
@@ -60,7 +61,8 @@ struct Manoeuvre {
 [[nodiscard]] Manoeuvre sine_steer(double amplitude, double frequency, double start = 1.0, int periods = 1);
 [[nodiscard]] Manoeuvre sine_with_dwell(double amplitude, double start = 1.0, double frequency = 0.7,
                                         double dwell = 0.5);
-/// Instantaneous frequency low (high/low)^((t - start)/duration); fades in and out over one period of the lowest.
+/// Instantaneous frequency low (high/low)^((t - start)/duration); begins at phase 0, fades out over
+/// the last half second.
 [[nodiscard]] Manoeuvre sweep_steer(double amplitude, double low = 0.1, double high = 4.0, double duration = 60.0,
                                     double start = 1.0);
 /// A sum of cosines of equal power and random phase at multiples of 1/duration from `low` to `high`, scaled to a peak
@@ -83,14 +85,20 @@ struct ManoeuvreContext {
   std::optional<double> C_f{}, C_r{};
 };
 
+/// What a driver expects of the vehicle. @throws InputError when the speed is not > 0.
+[[nodiscard]] LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context);
+
 // Closed loop: a preview driver (MacAdam 1981) with the linear bicycle of the context as its internal model.
 
+/// `vehicle_width` 0: 7/6 of the track.
 [[nodiscard]] Manoeuvre double_lane_change(const ManoeuvreContext& context, double vehicle_width = 0.0,
-                                           double course_scale = 1.0);
-[[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path);
-/// A circle of constant radius whose speed grows from `context.speed` to `end_speed` over `duration`.
+                                           double course_scale = 1.0, const PreviewDriverOptions& options = {});
+[[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
+                                    const PreviewDriverOptions& options = {});
+/// A circle of constant radius (negative: to the right) on which the speed is to grow from `context.speed` to
+/// `end_speed` over `duration`; `speed` of the result says how.
 [[nodiscard]] Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius, double end_speed,
-                                               double duration = 120.0);
+                                               double duration = 120.0, const PreviewDriverOptions& options = {});
 
 /// Reads `[drive]`; keys (with defaults):
 ///

@@ -155,4 +155,14 @@ struct SimilarityReport {
 /// Reads `[[scale.parameter]]`: name, value (a number with unit as text, or plain with `unit`), symbol, affects.
 [[nodiscard]] std::vector<SimilarityParameter> read_similarity_parameters(const StudyTable& scale);
 
+namespace internal {
+
+/// As the public functions, but mu may be infinite when it is `with_friction`, and the rank is told.
+[[nodiscard]] std::vector<SimilarityParameter> similarity_parameters(const SimilaritySubject& subject,
+                                                                     bool with_friction);
+[[nodiscard]] std::vector<SimilarityGroup> similarity_groups(const std::vector<SimilarityParameter>& parameters,
+                                                             std::span<const std::string> repeating, std::size_t* rank);
+
+}  // namespace internal
+
 }  // namespace veridyn::vehicle
