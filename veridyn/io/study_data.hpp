@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 
@@ -21,6 +23,13 @@ namespace veridyn::io {
 /// rooms in `[data]` are left for them.
 /// @throws InputError for unreadable files, or a part of the recording that holds nothing.
 [[nodiscard]] Recording read_study_data(const StudyTable& data);
+
+/// One file, read as `[data.time]` says; for domains whose `[data]` names files under keys of their own.
+[[nodiscard]] Recording read_study_file(const StudyTable& data, const std::filesystem::path& path);
+
+/// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
+/// they have, so that their rate and gaps are theirs.
+[[nodiscard]] Recording without_missing(const Recording& recording);
 
 /// The samples with stamps in [from, to]. @throws InputError when no channel has one.
 [[nodiscard]] Recording cut(const Recording& recording, TimeSpan span);

@@ -50,7 +50,7 @@ struct DriveSignalOptions {
   double rolling_radius = 0.0;  ///< `rolling_radius` [m]: speed from the rear wheels where there is no `speed`
   /// `accel_position = [x, y, z]`: of the accelerometer from the centre of gravity, forward, left, up [m].
   std::array<double, 3> accel_position{};
-  /// `speed_position`: how far ahead of the centre of gravity `lateral_velocity` and `sideslip` are measured [m].
+  /// `velocity_position`: how far ahead of the centre of gravity `lateral_velocity` and `sideslip` are measured [m].
   double velocity_position = 0.0;
   /// `roll_gradient` [rad/(m/s^2)]: how far the body leans outward per lateral acceleration. A sensor fixed to the
   /// body then shows (1 + g roll_gradient) a_y; 5 deg per g (0.0089) make 8.7 % of it, which would all be read as

@@ -92,6 +92,12 @@ struct VehicleIdentification {
                                                      const DriveSignalOptions& signal_options,
                                                      const VehicleIdentifyOptions& options, Progress& progress);
 
+/// All DriveUnknowns of a vehicle on a drive whose constant biases (steering, yaw rate, accel_y) are fitted to it, for
+/// predictions: biases belong to the day, not to the vehicle.
+[[nodiscard]] Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                               const VehicleParameters<double>& vehicle,
+                                               const DriveModelOptions& options);
+
 /// As estimate.json has it; `subject` is the vehicle's name.
 [[nodiscard]] estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification,
                                                          const std::string& subject);
