@@ -28,7 +28,9 @@ TEST(SpectralResponse, FindsResponseAndCoherenceOfAFilterInNoise) {
   double chi2 = 0.0;
   for (const ResponseEstimate& one : found) {
     const std::complex<double> exact = 1.0 + 0.5 * std::polar(1.0, -2.0 * std::numbers::pi * one.frequency_Hz / 100.0);
-    EXPECT_NEAR(one.coherence, std::norm(exact) / (std::norm(exact) + 0.16), 0.03);
+    const double coherence = std::norm(exact) / (std::norm(exact) + 0.16);
+    // Standard deviation sqrt(2 c) (1 - c)/sqrt(n) (Bendat & Piersol 2010, eq. 9.82), about 445 independent segments.
+    EXPECT_NEAR(one.coherence, coherence, 4.0 * std::sqrt(2.0 * coherence / 445.0) * (1.0 - coherence));
     chi2 += std::norm((one.response - exact) / (std::abs(exact) * one.sigma));
   }
   // |error/sigma|^2 has two degrees of freedom a frequency, so its mean is 2.

@@ -73,7 +73,9 @@ TEST(DriverModel, ActsAfterItsDelayAndBeforeTheBend) {
   const VehicleTrajectory t = drive(car, driver, 20.0, 6.0);
   // The bend is at 5 s; it comes into sight at 4 s.
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (t.time[i] < 4.0 + 0.25 - 0.01) EXPECT_NEAR(t.steer[i], 0.0, 1e-12) << t.time[i];
+    if (t.time[i] < 4.0 + 0.25 - 0.01) {
+      EXPECT_NEAR(t.steer[i], 0.0, 1e-12) << t.time[i];
+    }
   }
   const auto at = [&](double when) { return t.steer[static_cast<std::size_t>(std::lround(when * 100.0))]; };
   EXPECT_GT(at(4.6), 1e-4);
@@ -143,7 +145,9 @@ TEST(SpeedController, ReachesItsSpeedAndHoldsItAgainstDrag) {
     const double drive = (c.drive_torque - c.brake_torque) / 0.3 / 1000.0;
     most = std::max(most, drive);
     u += 1e-3 * (drive - 0.4);  // a resistance of 0.4 m/s^2
-    if (k == 14500) EXPECT_NEAR(c.steer, 5.0 * std::numbers::pi / 180.0, 1e-12);
+    if (k == 14500) {
+      EXPECT_NEAR(c.steer, 5.0 * std::numbers::pi / 180.0, 1e-12);
+    }
   }
   EXPECT_NEAR(most, 3.0, 1e-9);
   EXPECT_NEAR(u, 20.0, 0.02);

@@ -47,8 +47,9 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
                    {first + 95.0, first + 125.0, right, right + width[2]}}};
   for (Lane& lane : course.lanes) lane = {scale * lane.begin, scale * lane.end, scale * lane.right, scale * lane.left};
   const auto middle = [&](std::size_t i) { return 0.5 * (course.lanes[i].right + course.lanes[i].left); };
-  // Shifts begin and end within the lanes, as far as the room beside the vehicle allows: a gentler curve.
-  const double early = 7.0 * scale;
+  // Shifts begin and end a little within the lanes, where the room beside the vehicle allows it: a gentler curve. A
+  // driver who looks ahead rounds it further.
+  const double early = 2.0 * scale;
   course.path.append_line((kApproach + 15.0) * scale - early)
       .append_lane_change(30.0 * scale + 2.0 * early, middle(1))
       .append_line(25.0 * scale - 2.0 * early)
