@@ -52,6 +52,21 @@ function(veridyn_room name)
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
+# veridyn_embed_texts(OUTPUT HEADER NAMESPACE FUNCTION FILES...)
+# Writes OUTPUT, which defines `std::span<const EmbeddedText> NAMESPACE::FUNCTION()` as HEADER declares it: the texts of
+# FILES by their names. An edited file is noticed.
+function(veridyn_embed_texts output header namespace function)
+  set(code "#include \"${header}\"\nnamespace ${namespace} {\nnamespace {\nconstexpr EmbeddedText kTexts[] = {\n")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    get_filename_component(name ${file} NAME_WE)
+    file(READ ${file} text)
+    string(APPEND code "{\"${name}\", R\"embedded(${text})embedded\"},\n")
+  endforeach()
+  string(APPEND code "};\n}  // namespace\nstd::span<const EmbeddedText> ${function}() { return kTexts; }\n}  // namespace ${namespace}\n")
+  file(CONFIGURE OUTPUT ${output} CONTENT "${code}" @ONLY)
+endfunction()
+
 # veridyn_room_tests(NAME SOURCES a_test.cpp ... [DEPENDS ...])
 # One test binary a room: veridyn_NAME_tests, its cases registered with CTest. VERIDYN_SHARED_DIR is where recordings by
 # others may lie; tests that read them skip when it is missing.

@@ -186,7 +186,7 @@ nlohmann::ordered_json summary_of(const std::string& file, const Model& model) {
 
 bool is_model(const std::string& file) {
   if (file.ends_with(".osim")) return true;
-  for (const BuiltinModel& model : builtin_models()) {
+  for (const EmbeddedText& model : builtin_models()) {
     if (model.name == file) return true;
   }
   return false;

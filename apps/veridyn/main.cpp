@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   app::add_identify(program, exit_code);
   app::add_track(program, exit_code);
   app::add_validate(program, exit_code);
+  app::add_scale(program, exit_code);
   app::add_reproduce(program, exit_code);
   app::add_export(program, exit_code);
   TerminalProgress::watch_signals();

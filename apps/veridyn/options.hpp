@@ -35,6 +35,7 @@ void add_init(CLI::App& program, int& exit_code);
 void add_inspect(CLI::App& program, int& exit_code);
 void add_reconstruct(CLI::App& program, int& exit_code);
 void add_reproduce(CLI::App& program, int& exit_code);
+void add_scale(CLI::App& program, int& exit_code);
 void add_simulate(CLI::App& program, int& exit_code);
 void add_track(CLI::App& program, int& exit_code);
 void add_validate(CLI::App& program, int& exit_code);

@@ -1,5 +1,5 @@
-// veridyn simulate STUDY: fly an aircraft and write what its sensors record, and the truth; or move a musculoskeletal
-// model.
+// veridyn simulate STUDY: fly an aircraft and write what its sensors record, and the truth; or drive a vehicle; or move
+// a musculoskeletal model.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,11 +9,13 @@
 
 #include "apps/veridyn/output.hpp"
 #include "apps/veridyn/simulate_muscle.hpp"
+#include "apps/veridyn/simulate_vehicle.hpp"
 #include "veridyn/aircraft/simulate_study.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/csv.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/vehicle/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -26,6 +28,7 @@ struct Options {
 int simulate(const Options& options) {
   const Study study = load_study(options.study, options.common);
   if (muscle::is_muscle_study(study.root())) return simulate_muscle(study, options.study, options.common);
+  if (vehicle::is_vehicle_study(study.root())) return simulate_vehicle(study, options.study, options.common);
   const aircraft::SimulationOptions simulation = aircraft::read_simulation(study.root());
   // Tables that only the analysis of the flight reads; misspelt keys in them are found by `identify`.
   for (const char* table : {"title", "data", "delays", "reconstruct", "signals", "segments", "identify", "validate",
@@ -68,10 +71,11 @@ int simulate(const Options& options) {
 void add_simulate(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* verb =
-      program.add_subcommand("simulate", "fly a known aircraft, or move a musculoskeletal model by its muscles");
+      program.add_subcommand("simulate", "fly a known aircraft, drive a vehicle, or move a musculoskeletal model");
   verb->add_option("STUDY", options->study,
                    "study file (TOML). Aircraft: [subject], [flight] and [sensors]; writes what its sensors record and "
-                   "the truth. Muscles: [subject] with `model` (an .osim file or \"arm\") and [motion] with `method` "
+                   "the truth. Vehicle: [subject] with kind = \"vehicle\", [drive], and where wanted [road] and "
+                   "[sensors]. Muscles: [subject] with `model` (an .osim file or \"arm\") and [motion] with `method` "
                    "(forward, inverse dynamics, static optimization, computed muscle control); writes motion, muscle "
                    "states, controls and a report. `veridyn init muscle` writes one to start from")
       ->required();

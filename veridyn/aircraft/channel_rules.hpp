@@ -40,8 +40,7 @@ class MapBuilder {
   MappedRecording& mapped_;
 };
 
-/// Values of `channel` at the stamps of `at`, by linear interpolation; NaN outside.
-[[nodiscard]] std::vector<double> interpolated(const Channel& channel, std::span<const double> at);
+using io::interpolated;
 
 [[nodiscard]] bool is_ardupilot(const Recording& log);
 [[nodiscard]] bool is_px4(const Recording& log);

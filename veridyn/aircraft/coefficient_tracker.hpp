@@ -1,62 +1,31 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "veridyn/aircraft/aero_model.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/change_detection.hpp"
-#include "veridyn/estimation/recursive_regression.hpp"
+#include "veridyn/estimation/regression_tracker.hpp"
 
 namespace veridyn::aircraft {
 
-/// How a coefficient is followed on line. Study table `[track]`; every key is optional.
-struct TrackOptions {
-  /// `method`: "PCA-GTLS" holds what is not excited; "GTLS"; "OLS".
-  estimation::Method method = estimation::Method::kPcaGtls;
-  /// `memory`: time after which a sample counts 5 % [s]; or `lambda`: weight of squares per sample (per row: see
-  /// `FlightSignals::stride`). 0: lambda is given.
-  double memory_s = 100.0;
-  /// `forgetting = "variable"` or "constant"; `lambda`, `lambda_min`, `K_a`, `K_b`, `gamma`, `row_weight`.
-  /// The noise is averaged over 500 n rows, so that a trigger lasts until the estimate has followed, and at least 33
-  /// rows are remembered: fewer fit noise while no linear model holds, as in a stall.
-  estimation::ForgettingOptions forgetting{.variable = true, .lambda_min = 0.97, .K_b = 500.0};
-  double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
-  bool detect_changes = true;    ///< `detect_changes`
-  /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
-  /// `detection_settling`: see ChangeDetectionOptions.
-  estimation::ChangeDetectionOptions detection = {};
+using estimation::TrackHistory;
+
+/// How a coefficient is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these;
+/// every one is optional. Rows come at the rate of `FlightSignals::stride`.
+struct TrackOptions : estimation::TrackerOptions {
   std::vector<Coefficient> coefficients = {};  ///< `coefficients`; empty: all that the subject models
   std::string estimate_file;                   ///< `estimate`: estimate.json to start from (hybrid start)
   /// `air_data`: "filter" takes airspeed from the causal state estimate (and flow angles where there is no vane),
   /// "sensors" from pitot and vanes.
   std::string air_data = "filter";
-  double history_Hz = 5.0;  ///< `history_rate`: of what is kept for the report
 
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static TrackOptions read(const StudyTable& table);
-  /// The forgetting factor at a rate of rows.
-  [[nodiscard]] estimation::ForgettingOptions forgetting_at(double rate_Hz) const;
-};
-
-/// What became of a coefficient over time, thinned to `TrackOptions::history_Hz`.
-struct TrackHistory {
-  std::vector<double> time;                          ///< [s]
-  std::vector<std::vector<double>> value, sigma;     ///< a series per parameter; sigma infinite before it is usable
-  std::vector<std::vector<double>> unexcited_share;  ///< a series per parameter, 0..1
-  std::vector<std::vector<double>> singular_value;   ///< a series per direction, descending
-  std::vector<double> threshold;
-  std::vector<int> excited;        ///< directions above the threshold, exact ones included
-  std::vector<double> lambda;      ///< least since the sample before
-  std::vector<double> suspicion;   ///< of the change detector: 1 is an alarm
-  std::vector<double> innovation;  ///< over its standard deviation, rms since the sample before
 };
 
 /// One aerodynamic coefficient followed row by row, watched for changes, with its history.
-class CoefficientTracker {
+class CoefficientTracker : public estimation::RegressionTracker {
  public:
   /// @param error_covariance W of a row [x, z], (n + 1) x (n + 1)
   /// @param rate_Hz of rows
@@ -64,44 +33,10 @@ class CoefficientTracker {
   CoefficientTracker(const CoefficientModel& model, const Eigen::MatrixXd& error_covariance,
                      const TrackOptions& options, double rate_Hz, std::vector<std::string> names = {});
 
-  /// Hybrid start; see RecursiveRegression::start.
-  void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);
-
-  /// Takes a row [x, z] of time `t` [s]. Beyond the history nothing is allocated.
-  /// @param row_W error covariance of this row where it is known: errors that grow with the signal (a coefficient has
-  /// those
-  ///   of the dynamic pressure) are then not taken for a change. Null: W.
-  /// @return the change that the row reveals
-  std::optional<estimation::Change> update(double t, std::span<const double> x, double z,
-                                           const Eigen::MatrixXd* row_W = nullptr);
-
   [[nodiscard]] const CoefficientModel& model() const { return model_; }
-  [[nodiscard]] const std::vector<std::string>& names() const { return regression_.names(); }
-  [[nodiscard]] const estimation::RecursiveRegression& regression() const { return regression_; }
-  [[nodiscard]] const estimation::ChangeDetector& detector() const { return detector_; }
-  [[nodiscard]] const TrackHistory& history() const { return history_; }
-  [[nodiscard]] const std::vector<estimation::Change>& changes() const { return changes_; }
-  [[nodiscard]] double rate_Hz() const { return rate_Hz_; }
 
  private:
-  void remember(double t);
-  [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
-  [[nodiscard]] double noise_ratio(const Eigen::MatrixXd& row_W) const;
-
   CoefficientModel model_;
-  TrackOptions options_;
-  double rate_Hz_;
-  estimation::SmallMatrix W_;
-  estimation::RecursiveRegression regression_;
-  estimation::ChangeDetector detector_;
-  std::vector<estimation::Change> changes_;
-  TrackHistory history_;
-  double next_s_ = 0.0;
-  bool first_ = true;
-  bool watching_ = false;  ///< every direction was excited once
-  double least_lambda_ = 1.0;
-  double innovation_power_ = 0.0;
-  std::uint64_t innovations_ = 0;
 };
 
 }  // namespace veridyn::aircraft

@@ -7,14 +7,9 @@
 
 #include "veridyn/aircraft/batch_experiment.hpp"
 #include "veridyn/aircraft/tracking_experiment.hpp"
+#include "veridyn/core/check.hpp"
 
 namespace veridyn::aircraft {
-
-/// Something that a reproduction must show, with what it showed.
-struct ReproductionCheck {
-  bool passed = false;
-  std::string text;
-};
 
 /// A published result beside ours: one row of `veridyn reproduce aircraft`, described by a study of its own
 /// (examples/reproduce/aircraft). Beside `[subject]`, `[flight]` and `[experiment]` the study holds
@@ -55,7 +50,7 @@ struct Reproduction {
   ExperimentOptions options;
   std::optional<BatchExperiment> batch;
   std::optional<TrackingExperiment> tracking;
-  std::vector<ReproductionCheck> checks;
+  std::vector<Check> checks;
   bool interrupted = false;
 
   [[nodiscard]] bool passed() const;

@@ -41,8 +41,19 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
   if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
 }
 
-/// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
-/// they have, so that their rate and gaps are theirs.
+/// Where the stamps of a table are.
+void read_time(const StudyTable& time, CsvOptions& options) {
+  const bool named = time.has("column") && !time.is_table("column");
+  if (named) options.time_column = time.text("column");
+  if (time.has("unit") && !time.is_table("unit")) options.time_unit = time.text("unit");
+  if (time.has("rate") && !time.is_table("rate")) {
+    if (named) time.fail("rate", "is for tables without stamps; `column` names their column");
+    options.rate = time.positive("rate", "Hz");
+  }
+}
+
+}  // namespace
+
 Recording without_missing(const Recording& recording) {
   Recording result = recording;
   for (const Channel& channel : recording.channels()) {
@@ -62,8 +73,6 @@ Recording without_missing(const Recording& recording) {
   }
   return result;
 }
-
-}  // namespace
 
 Recording cut(const Recording& recording, TimeSpan span) {
   Recording result;
@@ -97,6 +106,19 @@ Recording cut(const Recording& recording, TimeSpan span) {
   return result;
 }
 
+Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
+  const StudyTable time = data.table_or_empty("time");
+  const std::string name = table_name(path);
+  ReadOptions options;
+  if (data.has("columns")) options.csv.columns = data.texts("columns");
+  if (time.has(name)) {
+    read_time(time.table(name), options.csv);
+  } else {
+    read_time(time, options.csv);
+  }
+  return read_recording(path, options);
+}
+
 Recording read_study_data(const StudyTable& data) {
   if (data.has("file") == data.has("files")) {
     data.fail(data.has("file") ? "files" : "file",
@@ -104,26 +126,18 @@ Recording read_study_data(const StudyTable& data) {
   }
   const std::vector<std::filesystem::path> paths = data.files(data.has("file") ? "file" : "files");
   if (paths.empty()) data.fail("files", "is empty");
-  const StudyTable time = data.table_or_empty("time");
   Recording whole;
   std::vector<std::string> names;
   for (const std::filesystem::path& path : paths) names.push_back(path.filename().string());
   whole.source = paths.size() == 1 ? paths.front().string() : fmt::format("{}", fmt::join(names, ", "));
   for (const std::filesystem::path& path : paths) {
-    const std::string name = table_name(path);
-    ReadOptions options;
-    if (time.has(name)) {
-      const StudyTable table = time.table(name);
-      options.csv.time_column = table.text("column");
-      options.csv.time_unit = table.text_or("unit", "");
-    }
-    const Recording part = read_recording(path, options);
+    const Recording part = read_study_file(data, path);
     if (paths.size() == 1) {
       const std::string source = whole.source;
       whole = part;
       whole.source = source;
     } else {
-      merge(whole, part, name);
+      merge(whole, part, table_name(path));
     }
   }
   const bool bounded = data.has("from") || data.has("to");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 
@@ -10,7 +12,10 @@ namespace veridyn::io {
 ///     file  = "flight.bin"                    # one log of any known format, or
 ///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
 ///     from = 342, to = 850                    # [s] only this part, on the log's clock
-///     [data.time]                             # for tables that do not say where their stamps are
+///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header
+///     time = { column = "T", unit = "ms" }    # for a table that does not say where its stamps are, or
+///     time = { rate = "10 Hz" }               # that has none
+///     [data.time]                             # the same for some of several tables
 ///     GPS = { column = "T", unit = "ms" }
 ///
 /// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
@@ -18,6 +23,13 @@ namespace veridyn::io {
 /// rooms in `[data]` are left for them.
 /// @throws InputError for unreadable files, or a part of the recording that holds nothing.
 [[nodiscard]] Recording read_study_data(const StudyTable& data);
+
+/// One file, read as `[data.time]` says; for domains whose `[data]` names files under keys of their own.
+[[nodiscard]] Recording read_study_file(const StudyTable& data, const std::filesystem::path& path);
+
+/// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
+/// they have, so that their rate and gaps are theirs.
+[[nodiscard]] Recording without_missing(const Recording& recording);
 
 /// The samples with stamps in [from, to]. @throws InputError when no channel has one.
 [[nodiscard]] Recording cut(const Recording& recording, TimeSpan span);

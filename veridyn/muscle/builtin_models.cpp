@@ -9,7 +9,7 @@ namespace veridyn::muscle {
 
 OsimFile load_model(const std::string& name_or_path) {
   std::vector<std::string> names;
-  for (const BuiltinModel& model : builtin_models()) {
+  for (const EmbeddedText& model : builtin_models()) {
     if (model.name == name_or_path)
       return OsimFile::parse(std::string(model.text), fmt::format("built-in model {}", model.name));
     names.emplace_back(model.name);

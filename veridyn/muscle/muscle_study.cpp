@@ -143,7 +143,7 @@ void read_subject(const StudyTable& subject, MuscleStudy& study) {
     study.inputs.push_back(path);
   } else {
     std::vector<std::string> names;
-    for (const BuiltinModel& model : builtin_models()) names.emplace_back(model.name);
+    for (const EmbeddedText& model : builtin_models()) names.emplace_back(model.name);
     if (std::find(names.begin(), names.end(), study.model_name) == names.end()) {
       subject.fail("model", fmt::format("= '{}' is no built-in model{}; a file ends in .osim", study.model_name,
                                         suggestion(study.model_name, names)));
