@@ -260,11 +260,10 @@ LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context) {
 
 Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
                       const PreviewDriverOptions& options) {
+  path = std::make_shared<const Path>(path->from_origin());
   Manoeuvre m =
       with(ManoeuvreKind::kFollowPath, std::make_unique<PreviewDriver>(expected_bicycle(context), path, options),
            path->length() / context.speed, 0.0, options.max_steer);
-  const PathPoint begin = path->at(0.0);
-  m.initial = {.x = begin.x, .y = begin.y, .yaw = begin.heading};
   m.path = std::move(path);
   return m;
 }

@@ -45,11 +45,9 @@ struct Manoeuvre {
   double radius = 0.0;             ///< of a constant-radius circle [m]
   std::optional<DoubleLaneChange> course{};
   BodyOutline body{};
-  std::shared_ptr<const Path> path{};  ///< which is followed
+  std::shared_ptr<const Path> path{};  ///< which is followed: from the origin along x, where simulations start
   /// Speed over time that the manoeuvre needs to vary; empty: constant.
   PiecewiseLinear speed{};
-  /// Place and heading at the start, for manoeuvres that follow a path; its velocities are the caller's.
-  PlanarMotion initial{};
 };
 
 // Open loop. Angles at the road wheels [rad], times [s], frequencies [Hz]. All throw InputError for amplitudes beyond

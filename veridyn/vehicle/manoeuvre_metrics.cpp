@@ -200,7 +200,7 @@ std::vector<Metric> lane_change_metrics(const VehicleTrajectory& t, const Double
                                              : "the drive ended before the last lane did"},
                            {"lane_margin", check.margin, "m", "ISO 3888-1",
                             fmt::format("smallest, in lane {} at {:.2f} s; negative outside", check.lane, check.time)}};
-  const double entry = crossing(t.time, t.x, 1e-9);
+  const double entry = crossing(t.time, t.x, course.lanes[0].begin);
   list.push_back({"entry_speed", std::isfinite(entry) ? at_time(t.time, t.u, entry) : kNone, "m/s", "ISO 3888-1", ""});
   return list;
 }

@@ -69,7 +69,7 @@ struct MeasuredFrequencyResponse {
 /// rms of suspension travel and of the change of wheel load over its mean. Empty when the model has no vertical motion.
 [[nodiscard]] std::vector<Metric> ride_metrics(const VehicleTrajectory& trajectory);
 
-/// |W_k| of ISO 2631-1 (1997, annex A) at a frequency: vertical vibration of seated people. 0.77 at 2.5 Hz and 1.04
+/// |W_k| of ISO 2631-1 (1997, annex A) at a frequency: vertical vibration of seated people. 0.63 at 2.5 Hz and 1.05
 /// near 6 Hz.
 [[nodiscard]] double iso2631_weight(double frequency_Hz);
 

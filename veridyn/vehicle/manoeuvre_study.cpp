@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
 #include "veridyn/io/table.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 
@@ -118,7 +120,10 @@ Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& contex
                                                  "continuous sine",    "sine with dwell", "sweep",
                                                  "random steer",       "fishhook",        "steady-state circle",
                                                  "double lane change", "follow path",     "signal"};
-  const std::string name = drive.choice_or("manoeuvre", names, names[0]);
+  const std::string name = drive.text_or("manoeuvre", names[0]);
+  if (std::ranges::find(names, name) == names.end()) {
+    drive.fail("manoeuvre", fmt::format("no manoeuvre is called '{}'{}", name, suggestion(name, names)));
+  }
   if (!(context.speed > 0.0)) drive.fail("speed", fmt::format("= {:g} m/s must be > 0", context.speed));
   try {
     return read_one(name, drive, context);
