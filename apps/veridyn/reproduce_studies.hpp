@@ -8,5 +8,7 @@ namespace veridyn::app {
 
 /// examples/reproduce/aircraft, in order.
 [[nodiscard]] std::span<const EmbeddedText> aircraft_studies();
+/// examples/reproduce/vehicle, in order.
+[[nodiscard]] std::span<const EmbeddedText> vehicle_studies();
 
 }  // namespace veridyn::app

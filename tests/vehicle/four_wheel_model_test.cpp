@@ -87,9 +87,9 @@ TEST(FourWheelModel, StandsStillInItsSpringsOnItsStaticLoads) {
     EXPECT_EQ(rates.derivative(i), i == kX || i == kDistance ? 20.0 : 0.0) << i;
   }
   const double weight = p.mass * 9.80665;
-  EXPECT_NEAR(rates.Fz[0] + rates.Fz[1] + rates.Fz[2] + rates.Fz[3], weight, 1e-9);
-  EXPECT_NEAR(p.a * (rates.Fz[0] + rates.Fz[1]), p.b * (rates.Fz[2] + rates.Fz[3]), 1e-9);
-  EXPECT_EQ(rates.Fz, static_loads(p, 9.80665));
+  EXPECT_NEAR(rates.Fz(0) + rates.Fz(1) + rates.Fz(2) + rates.Fz(3), weight, 1e-9);
+  EXPECT_NEAR(p.a * (rates.Fz(0) + rates.Fz(1)), p.b * (rates.Fz(2) + rates.Fz(3)), 1e-9);
+  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(rates.Fz(i), static_loads(p, 9.80665)[i]);
 }
 
 // Newton and Euler for the whole vehicle from the forces and their places alone.
@@ -108,10 +108,10 @@ TEST(FourWheelModel, ChangesMomentumByItsForces) {
       }
       for (std::size_t i = 0; i < kWheels; ++i) {
         const double angle = is_front(i) ? m.steer : 0.0;
-        const Eigen::Vector3d in_wheel(rates.Fx[i], rates.Fy[i], rates.Fz[i]);
+        const Eigen::Vector3d in_wheel(rates.Fx(i), rates.Fy(i), rates.Fz(i));
         const Eigen::Vector3d f = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * in_wheel;
         force += f;
-        moment += Eigen::Vector3d(car.wheel_x(i), car.wheel_y(i), -p.cg_height).cross(f);
+        moment += Eigen::Vector3d(car.wheel_x()(i), car.wheel_y()(i), -p.cg_height).cross(f);
       }
       EXPECT_NEAR(p.mass * (d(kU) - m.state(kR) * m.state(kV)), force.x(), 1e-7);
       EXPECT_NEAR(p.mass * (d(kV) + m.state(kR) * m.state(kU)), force.y(), 1e-7);
@@ -177,21 +177,21 @@ double power(const LinearCar<double>& car, const Moment& m, const FourWheelRates
   const Eigen::Vector3d velocity(s(kU), s(kV), 0.0), spin(s(kRollRate), s(kPitchRate), s(kR));
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto w = static_cast<Eigen::Index>(i);
-    const double x = car.wheel_x(i), y = car.wheel_y(i);
+    const double x = car.wheel_x()(i), y = car.wheel_y()(i);
     const Eigen::Vector3d contact = velocity + spin.cross(Eigen::Vector3d(x, y, -p.cg_height));
-    EXPECT_NEAR(rates.contact_x[i], contact.x(), 1e-12);
-    EXPECT_NEAR(rates.contact_y[i], contact.y(), 1e-12);
+    EXPECT_NEAR(rates.contact_x(i), contact.x(), 1e-12);
+    EXPECT_NEAR(rates.contact_y(i), contact.y(), 1e-12);
     const Eigen::Vector3d force = Eigen::AngleAxisd(is_front(i) ? m.steer : 0.0, Eigen::Vector3d::UnitZ()) *
-                                  Eigen::Vector3d(rates.Fx[i], rates.Fy[i], 0.0);
-    sum += force.dot(contact) + rates.Fz[i] * road_rate[i];
+                                  Eigen::Vector3d(rates.Fx(i), rates.Fy(i), 0.0);
+    sum += force.dot(contact) + rates.Fz(i) * road_rate[i];
     const double stretching = s(kWheelHeightRate + w) - s(kHeaveRate) - y * s(kRollRate) + (x - ahead) * s(kPitchRate) -
                               p.cg_height * (s(kRoll) * s(kRollRate) + s(kPitch) * s(kPitchRate));
     sum -= (is_front(i) ? p.C_sf : p.C_sr) * stretching * stretching;
     if (const auto& l = car.options().longitudinal) {
       const double drive = is_front(i) ? l->front_drive_share : 1.0 - l->front_drive_share;
       const double brake = is_front(i) ? l->front_brake_share : 1.0 - l->front_brake_share;
-      const double friction = 0.5 * brake * m.brake + l->rolling_resistance * rates.Fz[i] * l->wheel_radius;
-      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx[i]) * s(kWheelSpin + w) -
+      const double friction = 0.5 * brake * m.brake + l->rolling_resistance * rates.Fz(i) * l->wheel_radius;
+      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx(i)) * s(kWheelSpin + w) -
              friction * std::abs(s(kWheelSpin + w));
     }
   }
@@ -225,7 +225,7 @@ TEST(FourWheelModel, GainsEnergyOnlyFromForcesAtMovingPoints) {
         road_rate[i] = any(generator);
         road[i].a = m.road[i];
         road[i].v(0) = road_rate[i];
-        off_the_ground += rates.Fz[i] == 0.0 ? 1 : 0;
+        off_the_ground += rates.Fz(i) == 0.0 ? 1 : 0;
       }
       const double expected = power(car, m, rates, road_rate);
       EXPECT_NEAR(energy(p, moving, road, car.options()).v(0), expected, 1e-10 * (1e4 + std::abs(expected)));
@@ -260,8 +260,8 @@ class EnergyBalance {
     const long steps = std::lround(duration / step);
     for (long k = 0; k < steps; ++k) {
       const double t = static_cast<double>(k) * step;
-      const auto Fz = rates_at(car_, moment(t, at)).Fz;
-      result.off_the_ground += *std::min_element(Fz.begin(), Fz.end()) == 0.0 ? 1 : 0;
+      const WheelArray<double> Fz = rates_at(car_, moment(t, at)).Fz;
+      result.off_the_ground += Fz.minCoeff() == 0.0 ? 1 : 0;
       result.exchanged += step * std::abs(derivative(t, at)(kFourWheelStates));
       at = numerics::runge_kutta_4_step(derivative, t, at, step);
     }
@@ -279,7 +279,8 @@ class EnergyBalance {
     return m;
   }
   [[nodiscard]] Eigen::Vector2d place(const Moment& m, std::size_t i) const {
-    return m.state.head<2>() + Eigen::Rotation2Dd(m.state(kYaw)) * Eigen::Vector2d(car_.wheel_x(i), car_.wheel_y(i));
+    return m.state.head<2>() +
+           Eigen::Rotation2Dd(m.state(kYaw)) * Eigen::Vector2d(car_.wheel_x()(i), car_.wheel_y()(i));
   }
   [[nodiscard]] PerWheel<double> road_rates(const Moment& m, const FourWheelRates<double>& rates) const {
     PerWheel<double> out{};
@@ -334,8 +335,8 @@ TEST(FourWheelModel, KeepsItsEnergyWhereNothingTakesIt) {
   for (int k = 0; k < 40000; ++k) {
     m.state = numerics::runge_kutta_4_step(derivative, 0.0, m.state, 5e-5);
     worst = std::max(worst, std::abs(stored() - start));
-    const auto Fz = rates_at(car, m).Fz;
-    off_the_ground += *std::min_element(Fz.begin(), Fz.end()) == 0.0 ? 1 : 0;
+    const WheelArray<double> Fz = rates_at(car, m).Fz;
+    off_the_ground += Fz.minCoeff() == 0.0 ? 1 : 0;
   }
   EXPECT_GT(start - at_rest, 400.0);
   EXPECT_LT(worst, 1e-7 * (start - at_rest));
@@ -491,11 +492,11 @@ TEST(FourWheelModel, MovesTheWholeMassAndIsNotTiltedInTheSourcesConvention) {
   m.state(kRollRate) = 0.5;
   m.state(kWheelHeight) = 1.0;
   const auto rates = rates_at(car, m);
-  EXPECT_NEAR(rates.slip_angle[0], 0.05 - (0.4 + 1.2 * 0.3) / (20.0 - 0.75 * 0.3), 1e-15);
-  EXPECT_NEAR(rates.slip_angle[1], 0.05 - (0.4 + 1.2 * 0.3) / (20.0 + 0.75 * 0.3), 1e-15);
-  EXPECT_NEAR(rates.slip_angle[3], -(0.4 - 1.2 * 0.3) / (20.0 + 0.75 * 0.3), 1e-15);
-  EXPECT_NEAR(p.mass * rates.lateral_acceleration, rates.Fy[0] + rates.Fy[1] + rates.Fy[2] + rates.Fy[3], 1e-9);
-  EXPECT_EQ(rates.Fz[0], 0.0);
+  EXPECT_NEAR(rates.slip_angle(0), 0.05 - (0.4 + 1.2 * 0.3) / (20.0 - 0.75 * 0.3), 1e-15);
+  EXPECT_NEAR(rates.slip_angle(1), 0.05 - (0.4 + 1.2 * 0.3) / (20.0 + 0.75 * 0.3), 1e-15);
+  EXPECT_NEAR(rates.slip_angle(3), -(0.4 - 1.2 * 0.3) / (20.0 + 0.75 * 0.3), 1e-15);
+  EXPECT_NEAR(p.mass * rates.lateral_acceleration, rates.Fy(0) + rates.Fy(1) + rates.Fy(2) + rates.Fy(3), 1e-9);
+  EXPECT_EQ(rates.Fz(0), 0.0);
   EXPECT_NEAR(rates.derivative(kWheelHeightRate), -(p.K_tf + p.K_sf) / p.unsprung_mass, 1e-9);
 }
 
@@ -506,8 +507,8 @@ TEST(FourWheelModel, LagsItsSlipByTheRelaxationLength) {
   Moment m{car.steady_start(20.0), 0.05, 0.0, 0.0, {}};
   m.state.segment<4>(kLaggedSlip).setConstant(0.02);
   const auto rates = rates_at(car, m);
-  EXPECT_EQ(rates.slip_angle[0], 0.02);
-  EXPECT_NEAR(rates.Fy[0], 60000.0 * 0.02, 1e-9);
+  EXPECT_EQ(rates.slip_angle(0), 0.02);
+  EXPECT_NEAR(rates.Fy(0), 60000.0 * 0.02, 1e-9);
   EXPECT_NEAR(rates.derivative(kLaggedSlip), (0.05 - 0.02) * 20.0 * std::cos(0.05) / 0.5, 1e-9);
   EXPECT_NEAR(rates.derivative(kLaggedSlip + 2), -0.02 * 20.0 / 0.5, 1e-9);
 }

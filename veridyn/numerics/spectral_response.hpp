@@ -13,7 +13,7 @@ struct ResponseEstimate {
   std::complex<double> response;  ///< H1 = S_xy/S_xx
   double coherence = 0.0;         ///< |S_xy|^2/(S_xx S_yy), 1 where all of the output is explained
   /// Relative standard deviation of the gain, and of the phase [rad]: sqrt((1 - c)/(2 n c)) (Bendat & Piersol 2010, eq.
-  /// 9.90), n the number of independent segments.
+  /// 9.90), n the number of independent segments (0.95 a segment at half overlap).
   double sigma = 0.0;
 };
 

@@ -1,14 +1,27 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
-#include "veridyn/aircraft/reproduction.hpp"
+#include "veridyn/core/check.hpp"
 #include "veridyn/report/document.hpp"
 
 namespace veridyn::report {
 
-/// The report of `veridyn reproduce aircraft`: a table of all rows, then per row the published figures beside ours,
-/// what was checked, and its picture.
-[[nodiscard]] Document reproduction_report(std::span<const aircraft::Reproduction> rows, const std::string& program);
+/// A published result beside ours, whatever the domain.
+struct ReproducedRow {
+  std::string title;
+  std::string finding;        ///< what was published, in words
+  std::string ours;           ///< how it was done here, in a sentence
+  std::vector<Check> checks;  ///< what must be seen
+  std::vector<Block> blocks;  ///< numbers side by side, pictures
+
+  [[nodiscard]] bool passed() const;
+};
+
+/// The report of `veridyn reproduce DOMAIN`: a table of all rows, then each row with its checks and blocks.
+[[nodiscard]] Document reproduction_report(const std::string& domain, std::span<const ReproducedRow> rows,
+                                           const std::string& program);
 
 }  // namespace veridyn::report

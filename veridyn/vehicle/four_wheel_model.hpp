@@ -11,6 +11,7 @@
 #include "veridyn/vehicle/longitudinal.hpp"
 #include "veridyn/vehicle/tyre.hpp"
 #include "veridyn/vehicle/vehicle_parameters.hpp"
+#include "veridyn/vehicle/wheel_arrays.hpp"
 #include "veridyn/vehicle/wheels.hpp"
 
 namespace veridyn::vehicle {
@@ -31,10 +32,10 @@ enum FourWheelIndex : Eigen::Index {
   kPitchRate,                           ///< [rad/s]
   kWheelHeight,                         ///< 4: of the unsprung masses above their rest [m]
   kWheelHeightRate = kWheelHeight + 4,  ///< 4: [m/s]
-  kWheelSpin = kWheelHeightRate + 4,    ///< 4: [rad/s]; at rest without longitudinal dynamics
+  kDistance = kWheelHeightRate + 4,     ///< travelled by the centre of gravity on its path [m]
+  kWheelSpin,                           ///< 4: [rad/s]; at rest without longitudinal dynamics
   kLaggedSlip = kWheelSpin + 4,         ///< 4: slip angles [rad]; at rest without relaxation length
-  kDistance = kLaggedSlip + 4,          ///< travelled by the centre of gravity on its path [m]
-  kFourWheelStates
+  kFourWheelStates = kLaggedSlip + 4
 };
 template <typename Scalar>
 using FourWheelState = Eigen::Matrix<Scalar, kFourWheelStates, 1>;
@@ -73,11 +74,9 @@ struct FourWheelOptions {
 /// The controls as they reach the wheels; the same for all derivatives at one time.
 template <typename Scalar>
 struct WheelControls {
-  std::array<Scalar, 2> steer{};  ///< of the front wheels, left and right [rad]
-  std::array<Scalar, 2> cos{};
-  std::array<Scalar, 2> sin{};
-  std::array<double, 2> drive{};  ///< torque on one wheel, front and rear [N m]
-  std::array<double, 2> brake{};  ///< [N m]
+  WheelArray<Scalar> steer;  ///< [rad]
+  WheelArray<Scalar> cos, sin;
+  WheelArray<double> drive, brake;  ///< torques [N m]
 };
 
 /// What the model says about one moment.
@@ -88,13 +87,13 @@ struct FourWheelRates {
   Scalar lateral_acceleration{0.0};       ///< v' + r u [m/s^2]
   /// Constant speed only: the force that keeps u as it is, along the vehicle, at the road [N]; 0 otherwise.
   Scalar holding_force{0.0};
-  PerWheel<Scalar> slip_angle{};  ///< that the tyre feels [rad]
-  PerWheel<Scalar> slip_ratio{};
-  PerWheel<Scalar> Fx{}, Fy{};                ///< wheel axes [N]
-  PerWheel<Scalar> Fz{};                      ///< normal force, static load included; 0 off the ground [N]
-  PerWheel<Scalar> suspension_travel{};       ///< wheel less body corner: bump positive [m]
-  PerWheel<Scalar> suspension_force{};        ///< on the body, less its static value [N]
-  PerWheel<Scalar> contact_x{}, contact_y{};  ///< velocity of the contact point, vehicle axes [m/s]
+  WheelArray<Scalar> slip_angle;  ///< that the tyre feels [rad]
+  WheelArray<Scalar> slip_ratio;
+  WheelArray<Scalar> Fx, Fy;                ///< wheel axes [N]
+  WheelArray<Scalar> Fz;                    ///< normal force, static load included; 0 off the ground [N]
+  WheelArray<Scalar> suspension_travel;     ///< wheel less body corner: bump positive [m]
+  WheelArray<Scalar> suspension_force;      ///< on the body, less its static value [N]
+  WheelArray<Scalar> contact_x, contact_y;  ///< velocity of the contact point, vehicle axes [m/s]
 };
 
 /// The four-wheel model: the body in the plane (x, y, yaw) and in heave, roll and pitch, and four unsprung masses that
@@ -142,48 +141,30 @@ class FourWheelModel {
   void rates(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
              FourWheelRates<Scalar>& out) const;
 
-  /// Position of a wheel from the vehicle's centre of gravity, x forward, y left [m].
-  [[nodiscard]] Scalar wheel_x(std::size_t wheel) const { return is_front(wheel) ? p_.a : Scalar(-p_.b); }
-  [[nodiscard]] Scalar wheel_y(std::size_t wheel) const {
-    const Scalar half = 0.5 * (is_front(wheel) ? p_.track_f : p_.track_r);
-    return is_left(wheel) ? half : Scalar(-half);
-  }
+  /// Position of the wheels from the vehicle's centre of gravity, x forward, y left [m].
+  [[nodiscard]] const WheelArray<Scalar>& wheel_x() const { return x_; }
+  [[nodiscard]] const WheelArray<Scalar>& wheel_y() const { return y_; }
 
   [[nodiscard]] const VehicleParameters<Scalar>& parameters() const { return p_; }
   [[nodiscard]] const PerWheel<Tyre>& tyres() const { return tyres_; }
   [[nodiscard]] const FourWheelOptions& options() const { return options_; }
-  [[nodiscard]] const PerWheel<Scalar>& rest_loads() const { return rest_load_; }
-
-  /// Friction that holds the spin of a wheel: brake and rolling resistance [N m].
-  [[nodiscard]] Scalar spin_friction(std::size_t wheel, const WheelControls<Scalar>& controls,
-                                     const Scalar& load) const;
+  /// Static loads of the tyres [N], on the grade where there is one.
+  [[nodiscard]] const WheelArray<Scalar>& rest_loads() const { return rest_; }
 
  private:
-  /// What one axle has, with what does not change precomputed.
-  struct Axle {
-    Scalar x{0.0};       ///< ahead of the vehicle's centre of gravity [m]
-    Scalar arm{0.0};     ///< ahead of the sprung mass's [m]
-    Scalar half{0.0};    ///< half the track [m]
-    Scalar spring{0.0};  ///< [N/m]
-    Scalar damper{0.0};  ///< [N s/m]
-    Scalar bar{0.0};     ///< [N/m]
-    Scalar tyre{0.0};    ///< [N/m]
-    Scalar rest{0.0};    ///< static load of one tyre [N]
-  };
-
   VehicleParameters<Scalar> p_;
   PerWheel<Tyre> tyres_;
   FourWheelOptions options_;
-  PerWheel<Scalar> rest_load_{};
-  std::array<Axle, 2> axles_{};
-  Scalar heaving_mass_{0.0};  ///< [kg]
-  Scalar tilting_{0.0};       ///< m_s g c [N m/rad]; 0 in the source's convention
-  Scalar second_order_{0.0};  ///< c, or 0 in the source's convention
-  Scalar contact_arm_{0.0};   ///< c, or 0 in the source's convention
-  Scalar per_mass_{0.0}, per_heaving_mass_{0.0}, per_unsprung_mass_{0.0};  ///< inverses
+  // What does not change, worked out once. In the source's convention `tilting_` and `contact_height_` are 0.
+  WheelArray<Scalar> x_, y_;                          ///< places of the wheels [m]
+  WheelArray<Scalar> arm_;                            ///< x from the sprung mass's centre of gravity [m]
+  WheelArray<Scalar> spring_, damper_, tyre_, rest_;  ///< stiffness and damping of each corner, static tyre load
+  std::array<Scalar, 2> bar_{};                       ///< front and rear [N/m]
+  Scalar tilting_{0.0};                               ///< m_s g c [N m/rad]
+  Scalar contact_height_{0.0};                        ///< c [m]
+  Scalar per_mass_{0.0}, per_heaving_mass_{0.0}, per_unsprung_mass_{0.0};
   Scalar per_I_x_{0.0}, per_I_y_{0.0}, per_I_z_{0.0};
-  double gravity_across_ = 0.0;  ///< square to the road [m/s^2]
-  double gravity_along_ = 0.0;   ///< down the grade [m/s^2]
+  double gravity_along_ = 0.0;  ///< down the grade [m/s^2]
 };
 
 template <typename Scalar, typename Tyre>
@@ -193,19 +174,28 @@ FourWheelModel<Scalar, Tyre>::FourWheelModel(const VehicleParameters<Scalar>& pa
   options.validate();
   const bool ours = options.convention == FourWheelConvention::kFirstPrinciples;
   const double grade = options.longitudinal ? options.longitudinal->grade : 0.0;
-  gravity_across_ = options.gravity * std::cos(grade);
+  const double gravity = options.gravity * std::cos(grade);  // square to the road
   gravity_along_ = options.gravity * std::sin(grade);
-  rest_load_ = static_loads(p_, gravity_across_);
+  const PerWheel<Scalar> loads = static_loads(p_, gravity);
   const Scalar sprung = p_.mass - 4.0 * p_.unsprung_mass;
   const Scalar x_s = ours ? Scalar(2.0 * p_.unsprung_mass * (p_.b - p_.a) / sprung) : Scalar(0.0);
-  axles_[0] = {p_.a, p_.a - x_s, 0.5 * p_.track_f, p_.K_sf, p_.C_sf, p_.K_bf, p_.K_tf, rest_load_[kFrontLeft]};
-  axles_[1] = {-p_.b, -p_.b - x_s, 0.5 * p_.track_r, p_.K_sr, p_.C_sr, p_.K_br, p_.K_tr, rest_load_[kRearLeft]};
-  heaving_mass_ = ours ? sprung : p_.mass;
-  tilting_ = ours ? Scalar(sprung * gravity_across_ * p_.cg_height) : Scalar(0.0);
-  second_order_ = ours ? p_.cg_height : Scalar(0.0);
-  contact_arm_ = second_order_;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto w = static_cast<Eigen::Index>(i);
+    const bool front = is_front(i);
+    const Scalar half = 0.5 * (front ? p_.track_f : p_.track_r);
+    x_[w] = front ? p_.a : Scalar(-p_.b);
+    y_[w] = is_left(i) ? half : Scalar(-half);
+    arm_[w] = x_[w] - x_s;
+    spring_[w] = front ? p_.K_sf : p_.K_sr;
+    damper_[w] = front ? p_.C_sf : p_.C_sr;
+    tyre_[w] = front ? p_.K_tf : p_.K_tr;
+    rest_[w] = loads[i];
+  }
+  bar_ = {p_.K_bf, p_.K_br};
+  tilting_ = ours ? Scalar(sprung * gravity * p_.cg_height) : Scalar(0.0);
+  contact_height_ = ours ? p_.cg_height : Scalar(0.0);
   per_mass_ = 1.0 / p_.mass;
-  per_heaving_mass_ = 1.0 / heaving_mass_;
+  per_heaving_mass_ = 1.0 / (ours ? sprung : p_.mass);
   per_unsprung_mass_ = 1.0 / p_.unsprung_mass;
   per_I_x_ = 1.0 / p_.I_x;
   per_I_y_ = 1.0 / p_.I_y;
@@ -230,159 +220,139 @@ WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar&
   using std::sin;
   using std::tan;
   WheelControls<Scalar> out;
-  out.steer = {steer, steer};
+  const Scalar none(0.0), one(1.0);
+  Scalar left = steer, right = steer;
   if (options_.ackermann != 0.0) {
     // The wheel's axis through the turning centre, which lies L/tan(steer) to the left of the rear axle's middle.
     const Scalar slope = tan(steer), across = p_.track_f / (2.0 * p_.wheelbase()) * slope;
-    out.steer[0] += options_.ackermann * (atan(slope / (1.0 - across)) - steer);
-    out.steer[1] += options_.ackermann * (atan(slope / (1.0 + across)) - steer);
+    left += options_.ackermann * (atan(slope / (1.0 - across)) - steer);
+    right += options_.ackermann * (atan(slope / (1.0 + across)) - steer);
   }
-  out.cos = {Scalar(1.0), Scalar(1.0)};
-  out.sin = {Scalar(0.0), Scalar(0.0)};
+  out.steer << left, right, none, none;
+  out.cos.setConstant(one);
+  out.sin.setConstant(none);
   if (options_.geometry == BicycleGeometry::kExact) {
-    out.cos[0] = cos(out.steer[0]);
-    out.sin[0] = sin(out.steer[0]);
-    out.cos[1] = options_.ackermann == 0.0 ? out.cos[0] : Scalar(cos(out.steer[1]));
-    out.sin[1] = options_.ackermann == 0.0 ? out.sin[0] : Scalar(sin(out.steer[1]));
+    out.cos[0] = out.cos[1] = cos(left);
+    out.sin[0] = out.sin[1] = sin(left);
+    if (options_.ackermann != 0.0) {
+      out.cos[1] = cos(right);
+      out.sin[1] = sin(right);
+    }
   }
+  out.drive.setZero();
+  out.brake.setZero();
   if (options_.longitudinal) {
     const LongitudinalParameters& l = *options_.longitudinal;
-    out.drive = {0.5 * l.front_drive_share * drive_torque, 0.5 * (1.0 - l.front_drive_share) * drive_torque};
-    out.brake = {0.5 * l.front_brake_share * brake_torque, 0.5 * (1.0 - l.front_brake_share) * brake_torque};
+    const double drive_f = 0.5 * l.front_drive_share * drive_torque, drive_r = 0.5 * drive_torque - drive_f;
+    const double brake_f = 0.5 * l.front_brake_share * brake_torque, brake_r = 0.5 * brake_torque - brake_f;
+    out.drive << drive_f, drive_f, drive_r, drive_r;
+    out.brake << brake_f, brake_f, brake_r, brake_r;
   }
   return out;
 }
 
 template <typename Scalar, typename Tyre>
-Scalar FourWheelModel<Scalar, Tyre>::spin_friction(std::size_t wheel, const WheelControls<Scalar>& controls,
-                                                   const Scalar& load) const {
-  const LongitudinalParameters& l = *options_.longitudinal;
-  return controls.brake[is_front(wheel) ? 0 : 1] + l.rolling_resistance * l.wheel_radius * load;
-}
-
-template <typename Scalar, typename Tyre>
 void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
                                          const PerWheel<double>& road, FourWheelRates<Scalar>& out) const {
-  using std::abs;
-  using std::atan;
   using std::cos;
   using std::sin;
   using std::sqrt;
+  using Wheels = WheelArray<Scalar>;
   const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
-  const bool exact = options_.geometry == BicycleGeometry::kExact;
   const bool spins = options_.longitudinal.has_value();
-  const bool lags = options_.relaxation_length > 0.0;
   const Scalar &u = s(kU), &v = s(kV), &r = s(kR);
   const Scalar &roll = s(kRoll), &pitch = s(kPitch), &roll_rate = s(kRollRate), &pitch_rate = s(kPitchRate);
   State& d = out.derivative;
 
-  // Sums are formed axle by axle, left plus right: so that mirrored motion has exactly mirrored sums.
-  std::array<Scalar, 2> lift, lift_left, Y, X, X_left;
-  const Scalar body = s(kHeave) + 0.5 * second_order_ * (roll * roll + pitch * pitch);
-  const Scalar body_rate = s(kHeaveRate) + second_order_ * (roll * roll_rate + pitch * pitch_rate);
-  const Scalar u_contact = u - contact_arm_ * pitch_rate;
-  const Scalar v_contact = v + contact_arm_ * roll_rate;
-  for (std::size_t axle = 0; axle < 2; ++axle) {
-    const Axle& k = axles_[axle];
-    const std::size_t left = 2 * axle, right = left + 1;
-    const auto l = static_cast<Eigen::Index>(left), rgt = static_cast<Eigen::Index>(right);
+  // Suspension and tyres up and down, as deviations from rest.
+  const Scalar body = s(kHeave) + 0.5 * contact_height_ * (roll * roll + pitch * pitch);
+  const Scalar body_rate = s(kHeaveRate) + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
+  const Wheels height = s.template segment<4>(kWheelHeight).array();
+  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
+  const Wheels travel = height - ((body - pitch * arm_) + roll * y_);
+  const Scalar bar_f = bar_[0] * (travel[0] - travel[1]), bar_r = bar_[1] * (travel[2] - travel[3]);
+  Wheels lift = spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_));
+  lift[0] += bar_f;
+  lift[1] -= bar_f;
+  lift[2] += bar_r;
+  lift[3] -= bar_r;
+  Wheels ground;
+  for (Eigen::Index i = 0; i < 4; ++i) ground[i] = Scalar(road[static_cast<std::size_t>(i)]);
+  Wheels normal = tyre_ * (ground - height);
+  out.Fz = rest_ + normal;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (out.Fz[i] > 0.0) continue;
+    out.Fz[i] = Scalar(0.0);
+    if (ours) normal[i] = -rest_[i];
+  }
+  out.suspension_travel = travel;
+  out.suspension_force = lift;
 
-    // Suspension and tyre, as deviations from rest.
-    const Scalar middle = body - k.arm * pitch, middle_rate = body_rate - k.arm * pitch_rate;
-    const Scalar tilt = k.half * roll, tilt_rate = k.half * roll_rate;
-    const Scalar travel_l = s(kWheelHeight + l) - (middle + tilt);
-    const Scalar travel_r = s(kWheelHeight + rgt) - (middle - tilt);
-    const Scalar bar = k.bar * (travel_l - travel_r);
-    const Scalar force_l = k.spring * travel_l + k.damper * (s(kWheelHeightRate + l) - (middle_rate + tilt_rate)) + bar;
-    const Scalar force_r =
-        k.spring * travel_r + k.damper * (s(kWheelHeightRate + rgt) - (middle_rate - tilt_rate)) - bar;
-    Scalar normal_l = k.tyre * (road[left] - s(kWheelHeight + l));
-    Scalar normal_r = k.tyre * (road[right] - s(kWheelHeight + rgt));
-    out.Fz[left] = k.rest + normal_l;
-    out.Fz[right] = k.rest + normal_r;
-    if (!(out.Fz[left] > 0.0)) {
-      out.Fz[left] = Scalar(0.0);
-      if (ours) normal_l = -k.rest;
+  // Slips: the velocity of the contact points in vehicle axes, then in wheel axes.
+  out.contact_x = (u - contact_height_ * pitch_rate) - r * y_;
+  out.contact_y = (v + contact_height_ * roll_rate) + r * x_;
+  const Wheels along = controls.cos * out.contact_x + controls.sin * out.contact_y;
+  Wheels speed = along;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (speed[i] < 0.0) speed[i] = -speed[i];
+    if (!(speed[i] > kLeastSpeedOfAngle)) speed[i] = Scalar(kLeastSpeedOfAngle);
+  }
+  if (options_.geometry == BicycleGeometry::kExact) {
+    const Wheels across = controls.cos * out.contact_y - controls.sin * out.contact_x;
+    out.slip_angle = -atan_of_wheels<Scalar>(across / speed);
+  } else {
+    out.slip_angle = controls.steer - out.contact_y / out.contact_x;
+  }
+  auto lag = d.template segment<4>(kLaggedSlip);
+  if (options_.relaxation_length > 0.0) {
+    const auto lagged = s.template segment<4>(kLaggedSlip).array();
+    lag = ((out.slip_angle - lagged) * speed / Scalar(options_.relaxation_length)).matrix();
+    out.slip_angle = lagged;
+  } else {
+    lag.setConstant(Scalar(0.0));
+  }
+  const auto spin = s.template segment<4>(kWheelSpin).array();
+  if (spins) {
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      const Scalar least = speed[i] > kLeastSpeedOfRatio ? speed[i] : Scalar(kLeastSpeedOfRatio);
+      out.slip_ratio[i] = (options_.longitudinal->wheel_radius * spin[i] - along[i]) / least;
     }
-    if (!(out.Fz[right] > 0.0)) {
-      out.Fz[right] = Scalar(0.0);
-      if (ours) normal_r = -k.rest;
-    }
-    out.suspension_travel[left] = travel_l;
-    out.suspension_travel[right] = travel_r;
-    out.suspension_force[left] = force_l;
-    out.suspension_force[right] = force_r;
-    lift[axle] = force_l + force_r;
-    lift_left[axle] = force_l - force_r;
-    d(kWheelHeight + l) = s(kWheelHeightRate + l);
-    d(kWheelHeight + rgt) = s(kWheelHeightRate + rgt);
-    d(kWheelHeightRate + l) = (normal_l - force_l) * per_unsprung_mass_;
-    d(kWheelHeightRate + rgt) = (normal_r - force_r) * per_unsprung_mass_;
+  } else {
+    out.slip_ratio.setConstant(Scalar(0.0));
+  }
 
-    // Slips and tyre forces.
-    const Scalar V_y = v_contact + k.x * r;
-    std::array<Scalar, 2> force_x, force_y;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const std::size_t wheel = left + side;
-      const auto w = static_cast<Eigen::Index>(wheel);
-      const Scalar V_x = side == 0 ? Scalar(u_contact - k.half * r) : Scalar(u_contact + k.half * r);
-      out.contact_x[wheel] = V_x;
-      out.contact_y[wheel] = V_y;
-      const bool turned = axle == 0 && exact;
-      const Scalar along = turned ? Scalar(controls.cos[side] * V_x + controls.sin[side] * V_y) : V_x;
-      const Scalar speed = along < 0.0 ? Scalar(-along) : along;
-      Scalar slip;
-      if (exact) {
-        const Scalar across = turned ? Scalar(controls.cos[side] * V_y - controls.sin[side] * V_x) : V_y;
-        slip = -atan(across / (speed > kLeastSpeedOfAngle ? speed : Scalar(kLeastSpeedOfAngle)));
-      } else {
-        slip = (axle == 0 ? controls.steer[side] : Scalar(0.0)) - V_y / V_x;
-      }
-      d(kLaggedSlip + w) = Scalar(0.0);
-      if (lags) {
-        d(kLaggedSlip + w) = (slip - s(kLaggedSlip + w)) * speed / options_.relaxation_length;
-        slip = s(kLaggedSlip + w);
-      }
-      Scalar ratio(0.0);
-      if (spins) {
-        const double radius = options_.longitudinal->wheel_radius;
-        ratio =
-            (radius * s(kWheelSpin + w) - along) / (speed > kLeastSpeedOfRatio ? speed : Scalar(kLeastSpeedOfRatio));
-      }
-      const TyreForces<Scalar> f =
-          tyres_[wheel].forces(out.Fz[wheel], ratio, slip, Scalar(options_.camber_per_roll * roll));
-      out.slip_angle[wheel] = slip;
-      out.slip_ratio[wheel] = ratio;
-      out.Fx[wheel] = f.Fx;
-      out.Fy[wheel] = f.Fy;
-      force_x[side] = turned ? Scalar(controls.cos[side] * f.Fx - controls.sin[side] * f.Fy) : f.Fx;
-      force_y[side] = turned ? Scalar(controls.sin[side] * f.Fx + controls.cos[side] * f.Fy) : f.Fy;
+  // Forces of the tyres, in wheel axes, then in vehicle axes.
+  const Scalar camber = options_.camber_per_roll * roll;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const TyreForces<Scalar> f =
+        tyres_[static_cast<std::size_t>(i)].forces(out.Fz[i], out.slip_ratio[i], out.slip_angle[i], camber);
+    out.Fx[i] = f.Fx;
+    out.Fy[i] = f.Fy;
+  }
+  const Wheels X = controls.cos * out.Fx - controls.sin * out.Fy;
+  const Wheels Y = controls.sin * out.Fx + controls.cos * out.Fy;
+  const Scalar sum_X = sum_of_wheels<Scalar>(X), sum_Y = sum_of_wheels<Scalar>(Y);
 
-      d(kWheelSpin + w) = Scalar(0.0);
-      if (spins) {
-        const LongitudinalParameters& p = *options_.longitudinal;
-        const Scalar turning = controls.drive[axle] - p.wheel_radius * f.Fx;
-        const Scalar friction = spin_friction(wheel, controls, out.Fz[wheel]);
-        const Scalar& spin = s(kWheelSpin + w);
-        // Coulomb friction: against the spin, and at rest as much as it takes to stay there.
-        const bool forwards = spin > 0.0 || (!(spin < 0.0) && turning > friction);
-        const bool backwards = spin < 0.0 || (!(spin > 0.0) && turning < -friction);
-        if (forwards) d(kWheelSpin + w) = (turning - friction) / p.wheel_inertia;
-        if (backwards) d(kWheelSpin + w) = (turning + friction) / p.wheel_inertia;
-      }
+  // The wheels' spin. Coulomb friction: against it, and at rest as much as it takes to stay there.
+  auto spin_up = d.template segment<4>(kWheelSpin);
+  spin_up.setConstant(Scalar(0.0));
+  if (spins) {
+    const LongitudinalParameters& l = *options_.longitudinal;
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      const Scalar turning = controls.drive[i] - l.wheel_radius * out.Fx[i];
+      const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * out.Fz[i];
+      const bool rests = !(spin[i] > 0.0) && !(spin[i] < 0.0);
+      if (spin[i] > 0.0 || (rests && turning > friction)) spin_up[i] = (turning - friction) / l.wheel_inertia;
+      if (spin[i] < 0.0 || (rests && turning < -friction)) spin_up[i] = (turning + friction) / l.wheel_inertia;
     }
-    X[axle] = force_x[0] + force_x[1];
-    X_left[axle] = force_x[0] - force_x[1];
-    Y[axle] = force_y[0] + force_y[1];
   }
 
   // The body in the plane.
-  const Scalar sum_X = X[0] + X[1];
-  out.lateral_acceleration = (Y[0] + Y[1]) * per_mass_;
+  out.lateral_acceleration = sum_Y * per_mass_;
   Scalar pitching_force = sum_X;
   if (spins) {
-    const LongitudinalParameters& p = *options_.longitudinal;
-    const Scalar drag = 0.5 * p.air_density * p.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
+    const LongitudinalParameters& l = *options_.longitudinal;
+    const Scalar drag = 0.5 * l.air_density * l.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
     out.longitudinal_acceleration = (sum_X - drag) * per_mass_ - gravity_along_;
     out.holding_force = Scalar(0.0);
     d(kU) = out.longitudinal_acceleration + r * v;
@@ -393,8 +363,7 @@ void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Sca
     if (ours) pitching_force = p_.mass * out.longitudinal_acceleration;
   }
   d(kV) = out.lateral_acceleration - r * u;
-  d(kR) =
-      (axles_[0].x * Y[0] + axles_[1].x * Y[1] - (axles_[0].half * X_left[0] + axles_[1].half * X_left[1])) * per_I_z_;
+  d(kR) = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
   const Scalar c_yaw = cos(s(kYaw)), s_yaw = sin(s(kYaw));
   d(kX) = u * c_yaw - v * s_yaw;
   d(kY) = u * s_yaw + v * c_yaw;
@@ -402,18 +371,16 @@ void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Sca
   d(kDistance) = sqrt(u * u + v * v);
 
   // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
-  const Scalar sum_lift = lift[0] + lift[1];
-  const Scalar tilting = tilting_ + second_order_ * sum_lift;
+  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
+  const Scalar tilting = tilting_ + contact_height_ * sum_lift;
   d(kHeave) = s(kHeaveRate);
   d(kRoll) = roll_rate;
   d(kPitch) = pitch_rate;
   d(kHeaveRate) = sum_lift * per_heaving_mass_;
-  d(kRollRate) =
-      (axles_[0].half * lift_left[0] + axles_[1].half * lift_left[1] + tilting * roll + p_.cg_height * (Y[0] + Y[1])) *
-      per_I_x_;
-  d(kPitchRate) =
-      (tilting * pitch - (axles_[0].arm * lift[0] + axles_[1].arm * lift[1]) - p_.cg_height * pitching_force) *
-      per_I_y_;
+  d(kRollRate) = (sum_of_wheels<Scalar>(y_ * lift) + tilting * roll + p_.cg_height * sum_Y) * per_I_x_;
+  d(kPitchRate) = (tilting * pitch - sum_of_wheels<Scalar>(arm_ * lift) - p_.cg_height * pitching_force) * per_I_y_;
+  d.template segment<4>(kWheelHeight) = height_rate.matrix();
+  d.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
 }
 
 }  // namespace veridyn::vehicle

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/numerics/spectral_response.hpp"
 #include "veridyn/vehicle/lane_change.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 #include "veridyn/vehicle/vehicle_trajectory.hpp"
@@ -44,6 +45,21 @@ struct Metric {
 [[nodiscard]] std::vector<Metric> lane_change_metrics(const VehicleTrajectory& trajectory,
                                                       const DoubleLaneChange& course, const BodyOutline& body);
 
+/// Responses to steer, estimated from a sweep or random steer (Welch's method, see `numerics::spectral_response`).
+struct MeasuredFrequencyResponse {
+  std::vector<numerics::ResponseEstimate> yaw_rate;              ///< [1/s]
+  std::vector<numerics::ResponseEstimate> lateral_acceleration;  ///< [m/s^2/rad]
+  std::vector<numerics::ResponseEstimate> sideslip;              ///< [1]
+  std::vector<numerics::ResponseEstimate> roll;                  ///< [1]; empty when the model has none
+};
+/// Segments of two periods of the lowest frequency, at least 8 s and at most a quarter of the drive. Needs evenly
+/// spaced samples. @throws InputError as `numerics::spectral_response`.
+[[nodiscard]] MeasuredFrequencyResponse measured_frequency_response(const VehicleTrajectory& trajectory, double low_Hz,
+                                                                    double high_Hz);
+/// ISO 7401 frequency domain: steady gain (mean of the lowest third of an octave), bandwidth where the yaw rate gain
+/// has fallen by 3 dB, peak and its frequency, phase lag at 1 Hz, smallest coherence.
+[[nodiscard]] std::vector<Metric> frequency_response_metrics(const MeasuredFrequencyResponse& response);
+
 /// Peaks of lateral acceleration, yaw rate, sideslip, roll; largest lateral load transfer ratio
 /// |left - right|/(left + right) of normal forces (1: wheels of a side lift), smallest normal force over its static
 /// value.
@@ -52,5 +68,9 @@ struct Metric {
 /// Vertical comfort: rms of the vertical acceleration of the sprung mass, plain and weighted with W_k of ISO 2631-1,
 /// rms of suspension travel and of the change of wheel load over its mean. Empty when the model has no vertical motion.
 [[nodiscard]] std::vector<Metric> ride_metrics(const VehicleTrajectory& trajectory);
+
+/// |W_k| of ISO 2631-1 (1997, annex A) at a frequency: vertical vibration of seated people. 0.77 at 2.5 Hz and 1.04
+/// near 6 Hz.
+[[nodiscard]] double iso2631_weight(double frequency_Hz);
 
 }  // namespace veridyn::vehicle

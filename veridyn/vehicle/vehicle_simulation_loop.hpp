@@ -43,7 +43,8 @@ struct RoadUnderWheels {
     if (road == nullptr) return heights;
     const double c = std::cos(state(kYaw)), s = std::sin(state(kYaw));
     for (std::size_t i = 0; i < kWheels; ++i) {
-      const double ahead = model.wheel_x(i), left = model.wheel_y(i);
+      const auto w = static_cast<Eigen::Index>(i);
+      const double ahead = model.wheel_x()[w], left = model.wheel_y()[w];
       heights[i] = road->height({.x = state(kX) + (ahead * c - left * s),
                                  .y = state(kY) + (ahead * s + left * c),
                                  .distance = state(kDistance) + ahead,
@@ -143,7 +144,7 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
 /// Which wheels are off the ground, since when.
 class LiftOffs {
  public:
-  void see(double time, const PerWheel<double>& normal_force, std::vector<LiftOff>& found);
+  void see(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found);
   void end(double time, std::vector<LiftOff>& found) const;
 
  private:

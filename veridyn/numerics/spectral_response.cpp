@@ -1,0 +1,112 @@
+#include "veridyn/numerics/spectral_response.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::numerics {
+namespace {
+
+constexpr std::string_view kPlace = "frequency response";
+
+/// Transforms of Hann-windowed half overlapping segments, one a row; scaled so that |X|^2 is a one-sided density.
+std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<const double> x, double rate_Hz,
+                                                                  std::size_t segment) {
+  std::vector<double> window(segment);
+  double power = 0.0;
+  for (std::size_t i = 0; i < segment; ++i) {
+    window[i] = 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(segment)));
+    power += window[i] * window[i];
+  }
+  const double scale = std::sqrt(2.0 / (rate_Hz * power));
+  Eigen::FFT<double> fft;
+  std::vector<std::vector<std::complex<double>>> all;
+  std::vector<double> piece(segment);
+  std::vector<std::complex<double>> spectrum;
+  for (std::size_t begin = 0; begin + segment <= x.size(); begin += segment / 2) {
+    double mean = 0.0;
+    for (std::size_t i = 0; i < segment; ++i) mean += x[begin + i];
+    mean /= static_cast<double>(segment);
+    for (std::size_t i = 0; i < segment; ++i) piece[i] = scale * window[i] * (x[begin + i] - mean);
+    fft.fwd(spectrum, piece);
+    all.emplace_back(spectrum.begin(), spectrum.begin() + static_cast<std::ptrdiff_t>(segment / 2 + 1));
+  }
+  return all;
+}
+
+void require(std::span<const double> x, double rate_Hz, std::size_t segment) {
+  if (!(rate_Hz > 0.0)) throw InputError(kPlace, fmt::format("rate is {:g} Hz; must be > 0", rate_Hz));
+  if (segment < 16 || segment > x.size()) {
+    throw InputError(
+        kPlace, fmt::format("segments of {} samples; must be 16 to the length of the record, {}", segment, x.size()));
+  }
+  const auto bad = std::ranges::find_if_not(x, [](double value) { return std::isfinite(value); });
+  if (bad != x.end()) throw InputError(kPlace, fmt::format("sample {} is not finite", bad - x.begin() + 1));
+}
+
+}  // namespace
+
+std::vector<ResponseEstimate> spectral_response(std::span<const double> input, std::span<const double> output,
+                                                double rate_Hz, std::size_t segment, double low_Hz, double high_Hz) {
+  if (input.size() != output.size()) {
+    throw InputError(kPlace, fmt::format("input has {} samples, output {}", input.size(), output.size()));
+  }
+  require(input, rate_Hz, segment);
+  require(output, rate_Hz, segment);
+  if (!(low_Hz > 0.0 && high_Hz > low_Hz && high_Hz <= 0.5 * rate_Hz)) {
+    throw InputError(kPlace, fmt::format("band {:g} to {:g} Hz; must be 0 < low < high <= rate/2", low_Hz, high_Hz));
+  }
+  const auto X = segment_transforms(input, rate_Hz, segment);
+  const auto Y = segment_transforms(output, rate_Hz, segment);
+  // Half overlapping Hann windows tell about 1.9/2 as much each as separate ones would (Welch 1967); separate ones fit
+  // (segments + 1)/2 times.
+  const double independent = X.size() == 1 ? 1.0 : 0.95 * static_cast<double>(X.size());
+  const double spacing = rate_Hz / static_cast<double>(segment);
+  std::vector<ResponseEstimate> list;
+  std::vector<double> density;
+  for (std::size_t k = 1; k <= segment / 2; ++k) {
+    const double frequency = spacing * static_cast<double>(k);
+    if (frequency < low_Hz * (1.0 - 1e-9) || frequency > high_Hz * (1.0 + 1e-9)) continue;
+    double xx = 0.0, yy = 0.0;
+    std::complex<double> xy = 0.0;
+    for (std::size_t s = 0; s < X.size(); ++s) {
+      xx += std::norm(X[s][k]);
+      yy += std::norm(Y[s][k]);
+      xy += std::conj(X[s][k]) * Y[s][k];
+    }
+    if (!(xx > 0.0)) continue;
+    ResponseEstimate one{.frequency_Hz = frequency, .response = xy / xx};
+    one.coherence = yy > 0.0 ? std::min(1.0, std::norm(xy) / (xx * yy)) : 0.0;
+    one.sigma = one.coherence > 0.0 ? std::sqrt((1.0 - one.coherence) / (2.0 * independent * one.coherence))
+                                    : std::numeric_limits<double>::infinity();
+    list.push_back(one);
+    density.push_back(xx);
+  }
+  if (density.empty()) return list;
+  const double floor = 1e-6 * *std::ranges::max_element(density);
+  std::vector<ResponseEstimate> kept;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (density[i] >= floor) kept.push_back(list[i]);
+  }
+  return kept;
+}
+
+std::vector<double> power_spectrum(std::span<const double> x, double rate_Hz, std::size_t segment) {
+  require(x, rate_Hz, segment);
+  const auto X = segment_transforms(x, rate_Hz, segment);
+  std::vector<double> density(segment / 2 + 1, 0.0);
+  for (const auto& one : X) {
+    for (std::size_t k = 0; k < density.size(); ++k) density[k] += std::norm(one[k]) / static_cast<double>(X.size());
+  }
+  // The ends stand for one frequency each, not for a pair.
+  density.front() *= 0.5;
+  if (segment % 2 == 0) density.back() *= 0.5;
+  return density;
+}
+
+}  // namespace veridyn::numerics

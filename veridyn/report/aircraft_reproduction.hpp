@@ -1,0 +1,11 @@
+#pragma once
+
+#include "veridyn/aircraft/reproduction.hpp"
+#include "veridyn/report/reproduction_report.hpp"
+
+namespace veridyn::report {
+
+/// A row of `veridyn reproduce aircraft`: published and own parameters side by side, and its picture.
+[[nodiscard]] ReproducedRow reproduced_row(const aircraft::Reproduction& reproduction);
+
+}  // namespace veridyn::report
