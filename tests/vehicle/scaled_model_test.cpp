@@ -40,7 +40,8 @@ double largest_difference(const FourWheelModel<double, Tyre>& prototype, const F
   const double speed = 20.0;
   const Manoeuvre m = reference_manoeuvre();
   const VehicleTrajectory full = simulate(prototype, *m.driver, nullptr, options_of(speed, {}), silent);
-  ScaledDriver driver(reference_manoeuvre().driver, factors);
+  const Manoeuvre manoeuvre = reference_manoeuvre();
+  ScaledDriver driver(*manoeuvre.driver, factors);
   const VehicleTrajectory back =
       scaled(simulate(twin, driver, nullptr, options_of(speed, factors), silent), factors.inverse());
   EXPECT_EQ(full.end, SimulationEnd::kCompleted);
