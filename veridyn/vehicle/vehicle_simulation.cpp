@@ -131,7 +131,8 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
   }
 }
 
-void LiftOffs::see(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
+void LiftOffs::change(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
+  any_off_ = false;
   for (std::size_t i = 0; i < kWheels; ++i) {
     const bool off = !(normal_force[static_cast<Eigen::Index>(i)] > 0.0), was_off = since_[i] >= 0.0;
     if (off && !was_off) since_[i] = time;
@@ -139,6 +140,7 @@ void LiftOffs::see(double time, const WheelArray<double>& normal_force, std::vec
       found.push_back({.wheel = i, .from = since_[i], .to = time});
       since_[i] = -1.0;
     }
+    any_off_ |= off;
   }
 }
 
