@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -13,6 +14,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/io/date_stamp.hpp"
 #include "veridyn/io/mapped_file.hpp"
 
 namespace veridyn::io {
@@ -163,8 +165,10 @@ Header split_header(const std::string& cell, bool our_own, const std::string& pl
 }
 
 struct TimeChoice {
-  std::size_t column = 0;
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t column = kNone;  ///< none: stamps are made from a rate
   double scale = 1.0;
+  bool dates = false;
 };
 
 // Names under which stamps are known, with their unit. '?': microseconds, or seconds with a decimal point.
@@ -181,10 +185,15 @@ constexpr TimeName kTimeNames[] = {{"time", "s"},          {"t", "s"},
                                    {"t_us", "us"},         {"timestamp_us", "us"},
                                    {"timestamp_ms", "ms"}, {"timestamp_s", "s"},
                                    {"timestamp_ns", "ns"}, {"time_ns", "ns"},
-                                   {"timestamp", "?"}};
+                                   {"millis", "ms"},       {"timestamp", "?"}};
 
 TimeChoice choose_time(const std::vector<Header>& headers, const CsvOptions& options, std::string_view first_row,
                        char delimiter, const std::string& place) {
+  if (options.rate > 0.0) return {};
+  std::vector<std::string> first_cells;
+  CellReader first(first_row, delimiter);
+  while (first_cells.size() < headers.size() && !first.at_end()) first_cells.push_back(first.text());
+  first_cells.resize(headers.size());
   std::vector<std::string> names;
   for (const Header& header : headers) names.push_back(header.name);
   const auto column_of = [&](std::string_view wanted) -> std::optional<std::size_t> {
@@ -205,6 +214,8 @@ TimeChoice choose_time(const std::vector<Header>& headers, const CsvOptions& opt
   } else if (column_of("timems") && column_of("week") && column_of("t")) {
     column = column_of("t");
     unit = "ms";
+  } else if (column_of("date") && column_of("time") && column_of("millis")) {
+    column = column_of("millis");
   }
   for (const TimeName& known : kTimeNames) {
     if (column && lower(names[*column]) != known.name) continue;
@@ -221,18 +232,17 @@ TimeChoice choose_time(const std::vector<Header>& headers, const CsvOptions& opt
       if (parse_unit(headers[i].unit).same_dimension(second)) column = i;
     }
   }
+  for (std::size_t i = 0; i < headers.size() && !column; ++i) {
+    if (parse_date_stamp(first_cells[i])) column = i;
+  }
   if (!column) {
     throw InputError(place, fmt::format("no time column found among {}; name it (time_column), or call it 'time[s]'",
                                         shown(fmt::format("{}", fmt::join(names, ", ")))));
   }
+  if (parse_date_stamp(first_cells[*column])) return {*column, 1.0, true};
   if (!headers[*column].unit.empty()) unit = headers[*column].unit;
   if (!options.time_unit.empty()) unit = options.time_unit;
-  if (unit == "?") {
-    CellReader reader(first_row, delimiter);
-    std::string cell;
-    for (std::size_t i = 0; i <= *column && !reader.at_end(); ++i) cell = reader.text();
-    unit = cell.find('.') != std::string::npos ? "s" : "us";
-  }
+  if (unit == "?") unit = first_cells[*column].find('.') != std::string::npos ? "s" : "us";
   if (unit.empty()) unit = "s";
   try {
     return {*column, parse_unit_like(unit, parse_unit("s")).scale};
@@ -347,28 +357,77 @@ class CsvParser {
     } while (!reader.last_cell_of_row() && !reader.at_end());
     if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
     header_line_ = line_ + 1;
-    const bool our_own = lower(cells.front()).rfind("time[", 0) == 0 && options_.time_column.empty();
+    const bool named = !options_.columns.empty();
+    const bool headless = named || holds_only_data(cells);
+    if (named) {
+      cells = options_.columns;
+    } else if (headless) {
+      for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = fmt::format("column_{}", i + 1);
+      log_.damage.notes.push_back(
+          fmt::format("there is no header: columns are called column_1 to column_{}", cells.size()));
+    }
+    const bool our_own = !named && lower(cells.front()).rfind("time[", 0) == 0 && options_.time_column.empty();
     std::set<std::string> taken;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (cells[i].empty()) {
         throw InputError(fmt::format("{}: column {}", place(header_line_), i + 1), "has no name");
       }
-      headers_.push_back(split_header(internal::printable(cells[i]), our_own, place(header_line_)));
+      // Units that a user wrote are not to be guessed at, as ours are not.
+      headers_.push_back(split_header(internal::printable(cells[i]), our_own || named, place(header_line_)));
       if (!taken.insert(headers_.back().name).second) {
         throw InputError(place(header_line_), fmt::format("column '{}' appears twice", shown(headers_.back().name)));
       }
     }
     our_own_ = our_own;
-    line_ += reader.lines();
-    rows_ = std::string_view(reader.position(),
-                             static_cast<std::size_t>(bytes_.data() + bytes_.size() - reader.position()));
+    if (headless) {
+      rows_ = rest;
+    } else {
+      line_ += reader.lines();
+      rows_ = std::string_view(reader.position(),
+                               static_cast<std::size_t>(bytes_.data() + bytes_.size() - reader.position()));
+    }
     time_ = choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));
-    if (headers_.size() < 2) throw InputError(place(header_line_), "there is no column beside the time");
+    if (headers_.size() < 2 && time_.column != TimeChoice::kNone)
+      throw InputError(place(header_line_), "there is no column beside the time");
     columns_.resize(headers_.size());
+  }
+
+  /// Whether a first row is no header: numbers and dates, at least one of them no empty cell.
+  static bool holds_only_data(const std::vector<std::string>& cells) {
+    bool any = false;
+    for (const std::string& cell : cells) {
+      bool infinite = false;
+      const bool data = parse_date_stamp(cell).has_value() || unusual_number(cell, infinite).has_value();
+      if (!data) return false;
+      any = any || !cell.empty();
+    }
+    return any;
+  }
+
+  /// Seconds since midnight of the first stamp's day; missing in the cell at which the file ends.
+  double read_date(CellReader& reader) {
+    const std::string cell = reader.text();
+    if (const auto stamp = parse_date_stamp(cell)) {
+      if (!first_day_) set_first_day(stamp->day);
+      return 86400.0 * static_cast<double>(stamp->day - *first_day_) + stamp->second;
+    }
+    if (reader.at_end() && !reader.row_has_newline()) return kMissing;
+    throw InputError(fmt::format("{}: column '{}'", place(row_line_), headers_[time_.column].name),
+                     fmt::format("'{}' is no date and time", shown(cell)));
+  }
+
+  void set_first_day(std::int64_t day) {
+    first_day_ = day;
+    log_.information["date"] = date_text(day);
   }
 
   void read_cell(CellReader& reader, std::size_t index) {
     Growing& column = columns_[index];
+    if (time_.dates && index == time_.column) {
+      column.kind = Growing::Kind::kNumber;
+      column.numbers.push_back(read_date(reader));
+      return;
+    }
     double value = 0.0;
     if (column.kind != Growing::Kind::kText) {
       if (reader.number(value)) {
@@ -436,9 +495,12 @@ class CsvParser {
           drop_cut_row(cells);
           break;
         }
-        throw InputError(place(row_line_), extra ? fmt::format("more cells than the {} of the header", count)
-                                                 : fmt::format("{} cells, the header has {}", cells, count));
+        const char* const names = options_.columns.empty() ? "the header" : "`columns`";
+        throw InputError(place(row_line_), extra ? fmt::format("more cells than the {} of {}", count, names)
+                                                 : fmt::format("{} cells, {} has {}", cells, names, count));
       }
+      ++row_count_;
+      if (time_.column == TimeChoice::kNone) continue;
       double& stamp = columns_[time_.column].numbers.back();
       stamp *= time_.scale;
       if (!(stamp >= last_time)) {
@@ -447,8 +509,23 @@ class CsvParser {
         throw InputError(where, fmt::format("time goes backwards: {} s after {} s", stamp, last_time));
       }
       last_time = stamp;
-      ++row_count_;
     }
+  }
+
+  /// The stamps, in seconds; those of a Unix clock from midnight of the first day, where a double resolves them well.
+  std::vector<double> take_stamps() {
+    if (time_.column == TimeChoice::kNone) {
+      std::vector<double> made(row_count_);
+      for (std::size_t i = 0; i < row_count_; ++i) made[i] = static_cast<double>(i) / options_.rate;
+      return made;
+    }
+    std::vector<double> stamps = std::move(columns_[time_.column].numbers);
+    constexpr double kYear2000 = 946684800.0;
+    constexpr double kYear2100 = 4102444800.0;
+    if (our_own_ || time_.dates || !(stamps.front() > kYear2000) || !(stamps.back() < kYear2100)) return stamps;
+    set_first_day(static_cast<std::int64_t>(std::floor(stamps.front() / 86400.0)));
+    for (double& stamp : stamps) stamp -= 86400.0 * static_cast<double>(*first_day_);
+    return stamps;
   }
 
   void drop_cut_row(std::size_t cells) {
@@ -491,7 +568,7 @@ class CsvParser {
     if (!empty.empty()) {
       log_.damage.notes.push_back(fmt::format("columns without one number: {}", fmt::join(empty, ", ")));
     }
-    std::vector<double>& stamps = columns_[time_.column].numbers;
+    std::vector<double> stamps = take_stamps();
     for (std::size_t i = 1; i < stamps.size(); ++i) topic.doubled += stamps[i] == stamps[i - 1] ? 1U : 0U;
     topic.time = make_time_base(std::move(stamps));
     log_.topics.push_back(std::move(topic));
@@ -507,6 +584,7 @@ class CsvParser {
   std::vector<Header> headers_;
   std::vector<Growing> columns_;
   TimeChoice time_;
+  std::optional<std::int64_t> first_day_;
   std::string_view rows_;
   std::size_t line_ = 0;  ///< lines before the rows
   std::size_t header_line_ = 1;

@@ -41,6 +41,17 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
   if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
 }
 
+/// Where the stamps of a table are.
+void read_time(const StudyTable& time, CsvOptions& options) {
+  const bool named = time.has("column") && !time.is_table("column");
+  if (named) options.time_column = time.text("column");
+  if (time.has("unit") && !time.is_table("unit")) options.time_unit = time.text("unit");
+  if (time.has("rate") && !time.is_table("rate")) {
+    if (named) time.fail("rate", "is for tables without stamps; `column` names their column");
+    options.rate = time.positive("rate", "Hz");
+  }
+}
+
 /// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
 /// they have, so that their rate and gaps are theirs.
 Recording without_missing(const Recording& recording) {
@@ -112,10 +123,11 @@ Recording read_study_data(const StudyTable& data) {
   for (const std::filesystem::path& path : paths) {
     const std::string name = table_name(path);
     ReadOptions options;
+    if (data.has("columns")) options.csv.columns = data.texts("columns");
     if (time.has(name)) {
-      const StudyTable table = time.table(name);
-      options.csv.time_column = table.text("column");
-      options.csv.time_unit = table.text_or("unit", "");
+      read_time(time.table(name), options.csv);
+    } else {
+      read_time(time, options.csv);
     }
     const Recording part = read_recording(path, options);
     if (paths.size() == 1) {

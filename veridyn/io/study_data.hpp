@@ -7,10 +7,13 @@ namespace veridyn::io {
 
 /// The recording that a study's `[data]` names:
 ///
-///     file  = "flight.bin"                    # one log of any known format, or
+///     file  = "flight.bin"                    # one log of any known format (or folder of arrays), or
 ///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
 ///     from = 342, to = 850                    # [s] only this part, on the log's clock
-///     [data.time]                             # for tables that do not say where their stamps are
+///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header
+///     time = { column = "T", unit = "ms" }    # for a table that does not say where its stamps are, or
+///     time = { rate = "10 Hz" }               # that has none
+///     [data.time]                             # the same for some of several tables
 ///     GPS = { column = "T", unit = "ms" }
 ///
 /// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace veridyn::io {
+
+/// A date and a time of day, without a time zone (loggers rarely say which; Unix time is UTC).
+struct DateStamp {
+  std::int64_t day = 0;  ///< since 1970-01-01
+  double second = 0.0;   ///< of that day [s]
+};
+
+/// Reads `2016-09-12 11:12:06.642`, with a blank, `T` or `_` in the middle, `-`, `/`, `.` or `_` in the date, `:` or
+/// `_` in the time, a fraction after `.` or `,` (or whole milliseconds after `_`, as in `2024_02_11_01_04_22_354`) or
+/// none, and `Z` at the end or not. The year comes first and has four digits. Empty when it is none of these or no such
+/// day or time exists. Does not throw.
+[[nodiscard]] std::optional<DateStamp> parse_date_stamp(std::string_view text);
+
+/// "2024-02-11", of a day since 1970-01-01.
+[[nodiscard]] std::string date_text(std::int64_t day);
+
+}  // namespace veridyn::io
