@@ -7,7 +7,7 @@
 
 #include "veridyn/vehicle/builtin_vehicles.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
-#include "veridyn/vehicle/scaled_driver.hpp"
+#include "veridyn/vehicle/scaled_drive.hpp"
 #include "veridyn/vehicle/vehicle_simulation.hpp"
 #include "veridyn/vehicle/vehicle_simulation_loop.hpp"
 
@@ -40,7 +40,7 @@ double largest_difference(const FourWheelModel<double, Tyre>& prototype, const F
   const double speed = 20.0;
   const Manoeuvre m = reference_manoeuvre();
   const VehicleTrajectory full = simulate(prototype, *m.driver, nullptr, options_of(speed, {}), silent);
-  ScaledDriver driver(reference_manoeuvre().driver, factors);
+  ScaledDriver driver(*m.driver, factors);
   const VehicleTrajectory back =
       scaled(simulate(twin, driver, nullptr, options_of(speed, factors), silent), factors.inverse());
   EXPECT_EQ(full.end, SimulationEnd::kCompleted);
