@@ -9,6 +9,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/vehicle/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
@@ -25,6 +26,10 @@ constexpr int kMostSubsteps = 40;
 constexpr double kLargestYawRate = 50.0;
 /// How far delays reach beyond a segment [s].
 constexpr double kReach_s = 0.5;
+
+/// Cut-off of the smoothing [Hz], and the noise of the steering over its rms from which it is needed.
+constexpr double kSmoothing_Hz = 4.0;
+constexpr double kNoNoise = 1e-4;
 
 double value_of(double x) { return x; }
 template <int kN>
@@ -117,6 +122,10 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
                    fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")", names[i]));
     }
   }
+  if (table.has("smoothing")) {
+    smoothing_Hz = table.number("smoothing", "Hz");
+    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
+  }
   const StudyTable starts = table.table_or_empty("start");
   const StudyTable priors = table.table_or_empty("prior");
   for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
@@ -144,6 +153,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   if (accel_) outputs_.push_back({"accel_y", "m/s^2"});
   if (lateral_velocity_) outputs_.push_back({"lateral_velocity", "m/s"});
 
+  smooth();
   const std::array<double, 4> own{start.C_f, start.C_r, start.I_z, start.a};
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (!std::isfinite(options_.start[i])) options_.start[i] = own[i];
@@ -198,8 +208,8 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   }
 
   const double C_f = options_.start[0], C_r = options_.start[1], I_z = options_.start[2];
-  const std::vector<double>& u = signals[DriveSignal::kSpeed].value;
-  const std::vector<double>& r = signals[DriveSignal::kYawRate].value;
+  const std::vector<double>& u = speed_;
+  const std::vector<double>& r = yaw_rate_;
   for (const TimeSpan& span : spans) {
     const auto [begin, end] = signals.indices(span);
     if (end <= begin + 1) continue;
@@ -225,6 +235,32 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   }
 }
 
+void DriveParametricModel::smooth() {
+  const GridSignal& steer = signals_[DriveSignal::kSteer];
+  const double rate = signals_.grid.rate_Hz();
+  smoothing_Hz_ = options_.smoothing_Hz;
+  if (smoothing_Hz_ < 0.0) {
+    double power = 0.0, count = 0.0;
+    for (const double v : steer.value) {
+      if (!std::isfinite(v)) continue;
+      power += v * v;
+      count += 1.0;
+    }
+    const bool noisy = steer.sigma * steer.sigma * count > kNoNoise * kNoNoise * power;
+    smoothing_Hz_ = noisy ? std::min(kSmoothing_Hz, 0.1 * rate) : 0.0;
+  }
+  steer_ = steer.value;
+  speed_ = signals_[DriveSignal::kSpeed].value;
+  yaw_rate_ = signals_[DriveSignal::kYawRate].value;
+  accel_y_ = signals_[DriveSignal::kAccelY].value;
+  lateral_velocity_meas_ = signals_[DriveSignal::kLateralVelocity].value;
+  if (!(smoothing_Hz_ > 0.0)) return;
+  const numerics::ModulatingKernel kernel = numerics::modulating_kernel(rate, smoothing_Hz_);
+  for (std::vector<double>* x : {&steer_, &speed_, &yaw_rate_, &accel_y_, &lateral_velocity_meas_}) {
+    if (!x->empty()) *x = numerics::filter(*x, kernel.smooth);
+  }
+}
+
 TimeSpan DriveParametricModel::segment_span(std::size_t segment) const {
   const Segment& s = segments_[segment];
   return {signals_.grid.at(s.begin), signals_.grid.at(s.begin + static_cast<std::size_t>(s.samples) - 1)};
@@ -242,9 +278,9 @@ std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
     for (Eigen::Index k = 0; k < s.samples; ++k) {
       const std::size_t at = s.begin + static_cast<std::size_t>(k);
       Eigen::Index column = 0;
-      m(k, column++) = signals_[DriveSignal::kYawRate].value[at];
-      if (accel_) m(k, column++) = signals_[DriveSignal::kAccelY].value[at];
-      if (lateral_velocity_) m(k, column++) = signals_[DriveSignal::kLateralVelocity].value[at];
+      m(k, column++) = yaw_rate_[at];
+      if (accel_) m(k, column++) = accel_y_[at];
+      if (lateral_velocity_) m(k, column++) = lateral_velocity_meas_[at];
     }
     all.push_back(std::move(m));
   }
@@ -256,8 +292,8 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
                                  const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
                                  Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
-  const std::vector<double>& steer_all = signals_[DriveSignal::kSteer].value;
-  const std::vector<double>& speed_all = signals_[DriveSignal::kSpeed].value;
+  const std::vector<double>& steer_all = steer_;
+  const std::vector<double>& speed_all = speed_;
   const std::size_t n = static_cast<std::size_t>(segment.samples);
   const double step = signals_.grid.step;
   // The steering before and after the segment, as far as it is there, for its delay.

@@ -26,6 +26,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRowsPerCutoff = 4.0;
 /// Rows on which the error covariance is averaged.
 constexpr std::size_t kCovarianceRows = 100;
+/// Relative error of the coefficients that small angles may make.
+constexpr double kSmallAngles = 0.01;
 /// Relative variation of the speed from which a gyro bias is told apart from a constant.
 constexpr double kSpeedVaries = 0.05;
 
@@ -399,7 +401,13 @@ AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& fi
   }
   coefficients(x, p, data.direct, f, J);
   const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
-  const double chi_square = e.dot(factor.solve(e));
+  // The small angles' own error is no contradiction.
+  const Eigen::Vector4d own =
+      kSmallAngles * Eigen::Vector4d(data.direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
+  Eigen::Matrix4d doubt = P;
+  doubt.diagonal() += own.cwiseAbs2();
+  const Eigen::LDLT<Eigen::Matrix4d> doubted(scale.asDiagonal() * doubt * scale.asDiagonal());
+  const double chi_square = e.dot(doubted.solve(e));
   out.value = x;
   out.covariance = size.asDiagonal() * normal.inverse() * size.asDiagonal();
   out.consistency_p = std::isfinite(chi_square) ? numerics::chi_square_upper_p(std::max(0.0, chi_square), 1.0) : 0.0;

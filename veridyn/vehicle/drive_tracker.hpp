@@ -1,16 +1,14 @@
 #pragma once
 
 #include <array>
-#include <deque>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/regression_tracker.hpp"
-#include "veridyn/numerics/filters.hpp"
+#include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/vehicle/drive_log.hpp"
 #include "veridyn/vehicle/drive_segments.hpp"
 #include "veridyn/vehicle/vehicle_parameters.hpp"
@@ -35,7 +33,7 @@ enum class TrackedAxle : std::size_t {
 };
 inline constexpr std::size_t kTrackedAxles = 3;
 inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleNames{"C_f", "C_r", "understeer_gradient"};
-inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad", "rad/(m/s^2)"};
+inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad", "rad s^2/m"};
 
 /// A change that one of the regressions revealed.
 struct DriveChange {
@@ -63,17 +61,21 @@ struct DriveTrackHistory {
 ///     d/dt(u delta) - a_y + r u - a r' = 1/C_f [m/(2L) d/dt(u (b a_y + k r'))] + const          (front)
 ///     r u - a_y + b r'                 = 1/C_r [m/(2L) d/dt(u (a a_y - k r'))] + const          (rear)
 ///     delta - L r/u = K a_y + T r' + const                                                       (understeer)
-/// each a recursive regression with forgetting, held where it is not excited (steady cornering excites only the last,
-/// straight driving none), watched for changes. The constants are noise-free columns. Rows come from zero-phase filters
-/// over the past: what is said at time t is about `latency_s` earlier, and no later sample enters. Work and memory per
-/// sample are bounded (but for the history). A hole of missing or unusable samples (slower than `min_speed`) empties
-/// the filters; estimates stay.
+/// (the first two divided by the speed, so that their noise hardly depends on it), each a recursive regression with
+/// forgetting, held where it is not excited (steady cornering excites only the last, straight driving none), watched
+/// for changes. The constants are noise-free columns. Rows come from modulating kernels over the past: what is said at
+/// time t is about `latency_s` earlier, and no later sample enters. Work and memory per sample are bounded (but for the
+/// history). A hole of missing or unusable samples (slower than `min_speed`) empties the filters; estimates stay.
 class DriveTracker {
  public:
-  /// @param noise standard deviation of one sample's white noise of steer, speed, yaw_rate, accel_y, in the units of
-  ///   DriveSample @param start stiffnesses begin at its C_f and C_r
+  /// @param start mass, a, b and I_z as given; stiffnesses begin at its C_f and C_r
+  /// @param noise standard deviation of one sample's white noise of steer, speed, yaw_rate, accel_y
+  /// @param estimate where it begins instead, with its error bars; null: the start
   DriveTracker(const VehicleParameters<double>& start, const DriveTrackOptions& options, double min_speed_mps,
                double rate_Hz, const std::array<double, 4>& noise, const estimation::Estimate* estimate = nullptr);
+
+  /// Is there a row yet? Before it the values are those of the start.
+  [[nodiscard]] bool started() const { return !trackers_.empty(); }
 
   /// Takes the next sample, `1/rate` after the last one (a larger step is a hole).
   /// @return the changes that it reveals
@@ -84,6 +86,7 @@ class DriveTracker {
   [[nodiscard]] double row_rate_Hz() const { return rate_Hz_ / static_cast<double>(stride_); }
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] double last_time() const { return last_; }  ///< of the last sample; -infinity before
+  /// Of 1/C_f, 1/C_r or the understeer gradient. Only when started.
   [[nodiscard]] const estimation::RegressionTracker& regression(TrackedAxle axle) const;
   [[nodiscard]] const DriveTrackHistory& history(TrackedAxle axle) const;
   [[nodiscard]] const std::vector<DriveChange>& changes() const { return changes_; }
@@ -94,18 +97,23 @@ class DriveTracker {
   [[nodiscard]] estimation::Estimate estimate(const std::string& subject) const;
 
  private:
-  static constexpr std::size_t kColumns = 8;  // raw products, see the source
+  static constexpr std::size_t kColumns = 8;
   void form_row(std::vector<DriveChange>& found);
+  void begin(double speed);
   void remember(double time);
-  [[nodiscard]] double filtered(std::size_t column, const std::vector<double>& taps) const;
+  [[nodiscard]] double filtered(std::size_t column, const numerics::FirKernel& kernel) const;
+
+  [[nodiscard]] double begin_value(TrackedAxle axle) const;
+  [[nodiscard]] double begin_sigma(TrackedAxle axle) const;
 
   VehicleParameters<double> start_;
   DriveTrackOptions options_;
   double min_speed_;
   double rate_Hz_;
   std::array<double, 4> noise_;
-  std::vector<double> smooth_, once_, twice_;  // taps of equal length: low pass, its first and second derivative
-  std::size_t half_ = 0;
+  double sigma_f_, sigma_r_;  // relative, at the start
+  std::string begin_text_;
+  numerics::ModulatingKernel kernel_;
   std::size_t stride_ = 1;
   std::vector<std::array<double, kColumns>> ring_;
   std::size_t filled_ = 0;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -23,8 +24,12 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoiseDoubt = 2.0;
 /// Correlation of neighbouring residuals from which they are called coloured.
 constexpr double kColoured = 0.3;
+/// Residual over what noise leaves, from which colour is more than that of the inputs' noise.
+constexpr double kBeyondNoise = 1.5;
 /// Cut-off of the regressions' filter where none is given [Hz].
 constexpr double kDefaultPass_Hz = 2.0;
+/// Relative difference between the methods that small angles may make.
+constexpr double kSmallAngles = 0.01;
 /// Longest correlation of residuals that is looked for.
 constexpr double kLongestLag_s = 2.0;
 
@@ -217,7 +222,7 @@ class Identification {
       add("C_r", "N/rad", axle.usable ? value(1) : start_.C_r);
       add("I_z", "kg m^2", axle.usable ? value(2) : start_.I_z);
       add("understeer_gradient", "rad s^2/m", axle.understeer);
-      if (steer_bias) add("steer_bias", "rad", axle.steer_bias);
+      if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
       mark(e);
       out_.estimates.push_back(std::move(e));
     }
@@ -410,6 +415,34 @@ class Identification {
     if (o_.model.tyre == DriveTyre::kMagicFormula) take("mu", out_.identified.mu);
   }
 
+  /// What noise of steering and speed does to the prediction: the same noise once more, and the difference as fits.
+  [[nodiscard]] DriveValidation with_noisier_inputs() const {
+    DriveSignals noisier = s_;
+    for (const DriveSignal which : {DriveSignal::kSteer, DriveSignal::kSpeed}) {
+      GridSignal& signal = noisier[which];
+      numerics::RandomStream noise(1, kDriveSignalNames[static_cast<std::size_t>(which)]);
+      for (double& v : signal.value) v += signal.sigma * noise.normal();
+    }
+    Eigen::MatrixXd covariance;
+    DriveValidation other = predict_drive(noisier, segments_.identification, start_, o_.model, full_theta(covariance));
+    const auto compare = [&](const char* name, std::vector<double> PredictedDrive::*series) {
+      std::vector<double> x, y;
+      for (std::size_t s = 0; s < std::min(other.drives.size(), out_.fit.drives.size()); ++s) {
+        const std::vector<double>&a = out_.fit.drives[s].*series, &b = other.drives[s].*series;
+        if (a.size() != b.size()) continue;
+        x.insert(x.end(), a.begin(), a.end());
+        y.insert(y.end(), b.begin(), b.end());
+      }
+      for (PredictedDriveQuantity& q : other.quantities) {
+        if (q.name == name) q.fit = numerics::fit_measures(x, y);
+      }
+    };
+    compare("yaw_rate", &PredictedDrive::yaw_rate_predicted);
+    compare("accel_y", &PredictedDrive::accel_y_predicted);
+    compare("lateral_velocity", &PredictedDrive::lateral_velocity_predicted);
+    return other;
+  }
+
   void check(std::string name, bool passed, double value, double limit, std::string text) {
     if (!passed) out_.warnings.push_back(text);
     out_.checks.push_back({std::move(name), passed, value, limit, std::move(text)});
@@ -418,19 +451,22 @@ class Identification {
   void judge() {
     VehicleEstimate& best = *std::find_if(out_.estimates.begin(), out_.estimates.end(),
                                           [&](const VehicleEstimate& e) { return e.method == out_.chosen; });
+    const DriveValidation shaken = with_noisier_inputs();
     double unmodelled = 0.0;
     std::string worst;
     for (const PredictedDriveQuantity& q : out_.fit.quantities) {
       const auto signal = std::find(kDriveSignalNames.begin(), kDriveSignalNames.end(), q.name);
       if (signal == kDriveSignalNames.end() || q.name == "yaw") continue;
-      const double sigma = s_.signals[static_cast<std::size_t>(signal - kDriveSignalNames.begin())].sigma;
+      const double own = s_.signals[static_cast<std::size_t>(signal - kDriveSignalNames.begin())].sigma;
+      const PredictedDriveQuantity* other = shaken.find(q.name);
+      const double sigma = std::hypot(own, other != nullptr ? other->fit.rmse : 0.0);
       const double beyond = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt * sigma * sigma / (q.fit.rmse * q.fit.rmse));
       const double share = std::max(0.0, 1.0 - q.fit.r2) * beyond;
       if (share > unmodelled) {
         unmodelled = share;
         worst = q.name;
       }
-      const bool white = !(q.lag1 > kColoured) || !(q.fit.rmse > 1.1 * sigma);
+      const bool white = !(q.lag1 > kColoured) || !(q.fit.rmse > kBeyondNoise * sigma);
       check(fmt::format("colour of {}", q.name), white, q.lag1, kColoured,
             white
                 ? fmt::format("the residual of {} is white enough (correlation of neighbours {:.2f})", q.name, q.lag1)
@@ -536,6 +572,8 @@ class Identification {
         // Both come from the same data, so the sum of covariances is more than their difference has: a weak test, but
         // one that does not cry wolf.
         covariance += out_.output_error->covariance.topLeftCorner(3, 3);
+        // Small angles, which only equation error takes.
+        covariance.diagonal() += (kSmallAngles * axle->value).cwiseAbs2();
         const double p = agreement_p(difference, covariance);
         check("agreement of methods", p >= o_.contradiction_level, p, o_.contradiction_level,
               p >= o_.contradiction_level

@@ -51,7 +51,8 @@ struct VehicleEstimate {
   std::string method;  ///< "output error", "GTLS", ...
   bool usable = false;
   std::string message;
-  /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances (steer_bias, ...).
+  /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances: sensors' biases; of
+  /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
   std::vector<estimation::ParameterEstimate> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
   [[nodiscard]] const estimation::ParameterEstimate* find(std::string_view name) const;

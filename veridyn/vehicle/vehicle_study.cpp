@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/road_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -73,6 +74,7 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
     drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
 
   if (root.has("road")) {
+    study.road = read_road(root.table("road"), study.seed);
     if (study.road && study.model != VehicleModelKind::kFourWheel)
       root.fail("road", "needs model = \"four-wheel\": the bicycle does not move up and down");
   }
