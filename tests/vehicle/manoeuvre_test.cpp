@@ -126,6 +126,22 @@ TEST(Manoeuvre, StudiesNameEveryOne) {
   EXPECT_NEAR(steer(read("manoeuvre = \"signal\"\ntime = [0, 2]\nsteer = [0, \"4 deg\"]"), 1.0), 2.0 * kDegree, 1e-12);
 }
 
+TEST(Manoeuvre, AddsTorquesAndHoldsASpeedWhereTheModelHasThem) {
+  const Manoeuvre braking =
+      read("longitudinal = true\nmanoeuvre = \"step steer\"\nbrake_torque = [0, 800]\ntorque_time = [3, 4]");
+  EXPECT_NEAR(braking.driver->controls(3.5).brake_torque, 400.0, 1e-9);
+  EXPECT_GT(steer(braking, 3.5), 0.0);
+  ManoeuvreContext context;
+  context.wheel_radius = 0.3;
+  const Manoeuvre held = read("longitudinal = true\ntarget_speed = \"108 kph\"", context);
+  held.driver->look(0.0, {.u = 29.0});
+  EXPECT_NEAR(held.driver->controls(0.0).drive_torque, 1100.0 * 0.3 * 1.0, 1e-9);  // 1 m/s too slow: 1 m/s^2
+  EXPECT_NE(why([] { (void)read("target_speed = 30"); }).find("needs longitudinal = true"), std::string::npos);
+  EXPECT_NE(
+      why([] { (void)read("longitudinal = true\nbrake_torque = -5"); }).find("brake_torque is -5 N m; must be >= 0"),
+      std::string::npos);
+}
+
 TEST(Manoeuvre, ReadsARecordedSignal) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "veridyn_steer_test.csv";
   std::ofstream(file) << "time[s],steer[deg],brake_torque[N m]\n0,0,0\n1,2,100\n2,2,0\n";

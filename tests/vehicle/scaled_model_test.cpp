@@ -40,8 +40,7 @@ double largest_difference(const FourWheelModel<double, Tyre>& prototype, const F
   const double speed = 20.0;
   const Manoeuvre m = reference_manoeuvre();
   const VehicleTrajectory full = simulate(prototype, *m.driver, nullptr, options_of(speed, {}), silent);
-  const Manoeuvre manoeuvre = reference_manoeuvre();
-  ScaledDriver driver(*manoeuvre.driver, factors);
+  ScaledDriver driver(*m.driver, factors);
   const VehicleTrajectory back =
       scaled(simulate(twin, driver, nullptr, options_of(speed, factors), silent), factors.inverse());
   EXPECT_EQ(full.end, SimulationEnd::kCompleted);

@@ -39,6 +39,33 @@ PiecewiseLinear column(const io::Table& table, std::string_view name, std::strin
   }
 }
 
+/// A torque that is one number or one a moment of `torque_time`.
+PiecewiseLinear read_torque(const StudyTable& drive, const char* key) {
+  if (!drive.has(key)) return {};
+  if (!drive.is_array(key)) return PiecewiseLinear(drive.number(key, "N m"));
+  const std::vector<double> time = drive.numbers("torque_time", "s");
+  try {
+    return {time, drive.numbers(key, "N m")};
+  } catch (const InputError& wrong) {
+    if (wrong.place() != "signal") throw;
+    drive.fail(key, std::string_view(wrong.what()).substr(wrong.place().size() + 2));
+  }
+}
+
+/// What drives and brakes, beside the steering.
+void read_longitudinal(Manoeuvre& manoeuvre, const StudyTable& drive, const ManoeuvreContext& context) {
+  const bool hold = drive.flag_or("hold_speed", false);
+  const bool torques = drive.has("drive_torque") || drive.has("brake_torque");
+  for (const char* key : {"hold_speed", "target_speed", "drive_torque", "brake_torque"}) {
+    if (drive.has(key) && !drive.flag_or("longitudinal", false)) drive.fail(key, "needs longitudinal = true");
+  }
+  if (torques) add_torques(manoeuvre, read_torque(drive, "drive_torque"), read_torque(drive, "brake_torque"));
+  if (hold || drive.has("target_speed")) {
+    if (!manoeuvre.speed.empty()) drive.fail(hold ? "hold_speed" : "target_speed", "this manoeuvre has its own speed");
+    add_speed_control(manoeuvre, PiecewiseLinear(drive.positive_or("target_speed", "m/s", context.speed)), context);
+  }
+}
+
 Manoeuvre read_signal(const StudyTable& drive) {
   if (!drive.has("file")) {
     const std::vector<double> time = drive.numbers("time", "s");
@@ -126,7 +153,9 @@ Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& contex
   }
   if (!(context.speed > 0.0)) drive.fail("speed", fmt::format("= {:g} m/s must be > 0", context.speed));
   try {
-    return read_one(name, drive, context);
+    Manoeuvre manoeuvre = read_one(name, drive, context);
+    read_longitudinal(manoeuvre, drive, context);
+    return manoeuvre;
   } catch (const InputError& wrong) {
     // What the library refuses is told with the place of the key that asked for it, where it can be known.
     if (wrong.place() != "manoeuvre" && wrong.place() != "driver" && wrong.place() != "signal") throw;

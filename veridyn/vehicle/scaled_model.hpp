@@ -50,8 +50,8 @@ template <typename Scalar>
     LongitudinalParameters& l = *options.longitudinal;
     l.wheel_radius *= factors.length;
     l.wheel_inertia *= factors.of("kg m^2");
-    l.drag_area *= factors.of("m^2");
-    l.air_density *= factors.of("kg/m^3");
+    // The air is the same: the area makes up for it.
+    l.drag_area *= factors.of("kg/m");
   }
   return options;
 }

@@ -61,7 +61,8 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
   ManoeuvreContext context{.parameters = study.vehicle.parameters,
                            .speed = s.speed,
                            .gravity = study.four_wheel.gravity,
-                           .seed = study.seed};
+                           .seed = study.seed,
+                           .wheel_radius = study.vehicle.longitudinal.wheel_radius};
   const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
   context.C_f = C_f;
   context.C_r = C_r;
