@@ -114,6 +114,14 @@ double RegressionTracker::noise_ratio(const Eigen::MatrixXd& row_W) const {
   return usual > 0.0 ? h.dot(row_W * h) / usual : 1.0;
 }
 
+double RegressionTracker::against_W(double innovation, const Eigen::MatrixXd* row_W) const {
+  const Eigen::Index n = W_.rows();
+  SmallVector h(n);
+  h.head(n - 1) = regression_.theta();
+  h(n - 1) = -1.0;
+  return innovation / std::sqrt(row_W != nullptr ? h.dot(*row_W * h) : h.dot(W_ * h));
+}
+
 std::optional<Change> RegressionTracker::update(double t, std::span<const double> x, double z,
                                                 const Eigen::MatrixXd* row_W) {
   // Before the update: it may turn the direction into an excited one.
@@ -129,11 +137,14 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
       ++innovations_;
       // Innovations tell of the aircraft once everything was excited: what was not is held at a prior, and later at
       // what it was. They do not where the row moves along a combination of parameters that is not known now.
-      if (options_.detect_changes && watching_ && !moves_held) change = detector_.update(t, normalised);
+      if (options_.detect_changes && watching_ && !moves_held) {
+        change = detector_.update(t, options_.watch_against_W ? against_W(u.innovation, row_W) : normalised);
+      }
     }
   }
   if (change) changes_.push_back(*change);
-  watching_ = watching_ || (regression_.usable() && regression_.excited_directions() >= regression_.parameters());
+  watching_ = watching_ || (regression_.usable() && regression_.excited_directions() >= regression_.parameters() &&
+                            static_cast<double>(regression_.rows()) >= options_.watch_after_s * rate_Hz_);
   if (first_) next_s_ = t;
   first_ = false;
   if (t >= next_s_ - 1e-9) remember(t);

@@ -27,7 +27,12 @@ struct TrackerOptions {
   /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
   /// `detection_settling`: see ChangeDetectionOptions.
   ChangeDetectionOptions detection = {};
-  double history_Hz = 5.0;  ///< `history_rate`: of what is kept for the report
+  /// Innovations are watched over the noise that W gives a row, whatever the residual and the estimate's error bar are
+  /// at the moment: where the noise is small against the signal these grow with a change at once and would hide it. Not
+  /// a key; domains choose.
+  bool watch_against_W = false;
+  double watch_after_s = 0.0;  ///< rows before this are not watched: the estimate finds itself. Not a key
+  double history_Hz = 5.0;     ///< `history_rate`: of what is kept for the report
 
   /// Reads the keys above; a key that is not there keeps what `*this` says.
   /// @throws InputError naming file, line and key.
@@ -78,6 +83,7 @@ class RegressionTracker {
   void remember(double t);
   [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
   [[nodiscard]] double noise_ratio(const Eigen::MatrixXd& row_W) const;
+  [[nodiscard]] double against_W(double innovation, const Eigen::MatrixXd* row_W) const;
 
   TrackerOptions options_;
   double rate_Hz_;

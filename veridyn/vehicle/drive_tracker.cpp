@@ -61,6 +61,8 @@ DriveTrackOptions::DriveTrackOptions() {
   // A row is a quarter of the kernel; colour of the road's roughness and of the filters' overlap stays within a block.
   detection.block_s = 0.5;
   detection.learn_s = 25.0;
+  watch_against_W = true;
+  watch_after_s = 10.0;
   detection.memory_s = 200.0;
 }
 
@@ -128,10 +130,18 @@ double DriveTracker::begin_sigma(TrackedAxle axle) const {
   return gain * std::hypot(sigma_f_ * start_.b / start_.C_f, sigma_r_ * start_.a / start_.C_r);
 }
 
+/// Parameters are followed in units of these, so that all are of order one: a held one then stays where it is instead
+/// of moving in place of a constant.
+double DriveTracker::scale(TrackedAxle axle) const {
+  if (axle == TrackedAxle::kFront) return start_.C_f;
+  if (axle == TrackedAxle::kRear) return start_.C_r;
+  return 0.5 * start_.mass / start_.wheelbase() * (start_.b / start_.C_f + start_.a / start_.C_r);
+}
+
 double DriveTracker::value(TrackedAxle axle) const {
   if (!started()) return begin_value(axle);
   const double theta = regression(axle).regression().theta()(0);
-  return axle == TrackedAxle::kUndersteer ? theta : 1.0 / theta;
+  return axle == TrackedAxle::kUndersteer ? theta * scale(axle) : scale(axle) / theta;
 }
 
 double DriveTracker::sigma(TrackedAxle axle) const {
@@ -139,7 +149,7 @@ double DriveTracker::sigma(TrackedAxle axle) const {
   const estimation::RecursiveRegression& r = regression(axle).regression();
   if (!r.usable()) return kInfinity;
   const double theta = r.theta()(0);
-  return axle == TrackedAxle::kUndersteer ? r.sigma()(0) : r.sigma()(0) / (theta * theta);
+  return scale(axle) * (axle == TrackedAxle::kUndersteer ? r.sigma()(0) : r.sigma()(0) / (theta * theta));
 }
 
 double DriveTracker::filtered(std::size_t column, const FirKernel& kernel) const {
@@ -168,30 +178,33 @@ void DriveTracker::begin(double u) {
     trackers_.back().start(theta, sigma.cwiseAbs2().asDiagonal(), 0.0, 0.0);
   };
   NoiseTerms front(3, noise_, taps), rear(3, noise_, taps), understeer(4, noise_, taps);
-  front.add(0, kAccelNoise, gain * b, d);
-  front.add(0, kYawNoise, gain * k, dd);
+  front.add(0, kAccelNoise, gain * b / start_.C_f, d);
+  front.add(0, kYawNoise, gain * k / start_.C_f, dd);
   front.add(2, kSteerNoise, 1.0, d);
   front.add(2, kAccelNoise, -1.0 / u, h);
   front.add(2, kYawNoise, 1.0, h);
   front.add(2, kYawNoise, -a / u, d);
-  rear.add(0, kAccelNoise, gain * a, d);
-  rear.add(0, kYawNoise, -gain * k, dd);
+  rear.add(0, kAccelNoise, gain * a / start_.C_r, d);
+  rear.add(0, kYawNoise, -gain * k / start_.C_r, dd);
   rear.add(2, kYawNoise, 1.0, h);
   rear.add(2, kAccelNoise, -1.0 / u, h);
   rear.add(2, kYawNoise, b / u, d);
-  understeer.add(0, kAccelNoise, 1.0, h);
-  understeer.add(1, kYawNoise, 1.0, d);
+  const double lag = lag_scale();
+  understeer.add(0, kAccelNoise, scale(TrackedAxle::kUndersteer), h);
+  understeer.add(1, kYawNoise, lag, d);
   understeer.add(3, kSteerNoise, 1.0, h);
   understeer.add(3, kYawNoise, -L / u, h);
   static_cast<void>(kSpeedNoise);
-  add({"1/C_f", "constant"}, front, Eigen::Vector2d(1.0 / start_.C_f, 0.0),
-      Eigen::Vector2d(sigma_f_ / start_.C_f, kRateConstant));
-  add({"1/C_r", "constant"}, rear, Eigen::Vector2d(1.0 / start_.C_r, 0.0),
-      Eigen::Vector2d(sigma_r_ / start_.C_r, kRateConstant));
-  const double lag = 0.5 * start_.I_z / L * (1.0 / start_.C_f + 1.0 / start_.C_r);
-  add({"understeer_gradient", "yaw_lag", "constant"}, understeer,
-      Eigen::Vector3d(understeer_gradient(start_), lag, 0.0),
-      Eigen::Vector3d(begin_sigma(TrackedAxle::kUndersteer), std::max(sigma_f_, sigma_r_) * lag, kSteerConstant));
+  add({"C_f0/C_f", "constant"}, front, Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(sigma_f_, kRateConstant));
+  add({"C_r0/C_r", "constant"}, rear, Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(sigma_r_, kRateConstant));
+  const double K_0 = scale(TrackedAxle::kUndersteer);
+  add({"understeer_gradient/K_0", "yaw_lag/T_0", "constant"}, understeer,
+      Eigen::Vector3d(understeer_gradient(start_) / K_0, 1.0, 0.0),
+      Eigen::Vector3d(begin_sigma(TrackedAxle::kUndersteer) / K_0, std::max(sigma_f_, sigma_r_), kSteerConstant));
+}
+
+double DriveTracker::lag_scale() const {
+  return 0.5 * start_.I_z / start_.wheelbase() * (1.0 / start_.C_f + 1.0 / start_.C_r);
 }
 
 void DriveTracker::form_row(std::vector<DriveChange>& found) {
@@ -211,11 +224,11 @@ void DriveTracker::form_row(std::vector<DriveChange>& found) {
       found.push_back(changes_.back());
     }
   };
-  const std::array<double, 2> front{gain * (b * d_ua + k * d_ur) / u, 1.0};
+  const std::array<double, 2> front{gain * (b * d_ua + k * d_ur) / (u * start_.C_f), 1.0};
   feed(TrackedAxle::kFront, front, (filtered(kSpeedSteer, d) + v_prime - a * dr) / u);
-  const std::array<double, 2> rear{gain * (a * d_ua - k * d_ur) / u, 1.0};
+  const std::array<double, 2> rear{gain * (a * d_ua - k * d_ur) / (u * start_.C_r), 1.0};
   feed(TrackedAxle::kRear, rear, (v_prime + b * dr) / u);
-  const std::array<double, 3> understeer{a_y, dr, 1.0};
+  const std::array<double, 3> understeer{a_y * scale(TrackedAxle::kUndersteer), dr * lag_scale(), 1.0};
   feed(TrackedAxle::kUndersteer, understeer, filtered(kDelta, h) - L * filtered(kCurvature, h));
   ++rows_;
   if (time >= next_history_ - 1e-9) remember(time);

@@ -86,7 +86,8 @@ class DriveTracker {
   [[nodiscard]] double row_rate_Hz() const { return rate_Hz_ / static_cast<double>(stride_); }
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] double last_time() const { return last_; }  ///< of the last sample; -infinity before
-  /// Of 1/C_f, 1/C_r or the understeer gradient. Only when started.
+  /// Of C_f0/C_f, C_r0/C_r or the understeer gradient over K_0 = m/(2L) (b/C_f0 + a/C_r0), where 0 is the start.
+  /// Only when started.
   [[nodiscard]] const estimation::RegressionTracker& regression(TrackedAxle axle) const;
   [[nodiscard]] const DriveTrackHistory& history(TrackedAxle axle) const;
   [[nodiscard]] const std::vector<DriveChange>& changes() const { return changes_; }
@@ -103,6 +104,8 @@ class DriveTracker {
   void remember(double time);
   [[nodiscard]] double filtered(std::size_t column, const numerics::FirKernel& kernel) const;
 
+  [[nodiscard]] double scale(TrackedAxle axle) const;
+  [[nodiscard]] double lag_scale() const;
   [[nodiscard]] double begin_value(TrackedAxle axle) const;
   [[nodiscard]] double begin_sigma(TrackedAxle axle) const;
 
