@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/scaled_driver.hpp"
-#include "veridyn/vehicle/scaled_model.hpp"
+#include "veridyn/vehicle/scaled_drive.hpp"
 #include "veridyn/vehicle/trajectory_table.hpp"
 
 namespace veridyn::vehicle {
@@ -33,27 +32,6 @@ MotionDifference difference(const std::string& name, const std::string& unit, co
     d.range = std::max(d.range, std::abs(a[k]));
   }
   return d;
-}
-
-/// The exactly similar vehicle, tyres and longitudinal dynamics included.
-Vehicle scaled_vehicle(const Vehicle& vehicle, const ScaleFactors& factors) {
-  Vehicle model = vehicle;
-  model.name += ", scaled";
-  model.parameters = scaled(vehicle.parameters, factors);
-  std::visit(
-      [&](auto& tyres) {
-        tyres.front = scaled(tyres.front, factors);
-        tyres.rear = scaled(tyres.rear, factors);
-      },
-      model.tyres);
-  FourWheelOptions options;
-  options.longitudinal = vehicle.longitudinal;
-  options.relaxation_length = vehicle.relaxation_length;
-  options = scaled(options, factors);
-  model.longitudinal = *options.longitudinal;
-  model.relaxation_length = options.relaxation_length;
-  if (model.speed) model.speed = *model.speed * factors.speed;
-  return model;
 }
 
 }  // namespace
@@ -145,7 +123,8 @@ ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
   ScaleAnalysis analysis;
   analysis.scaled = scale(study.prototype, study.request);
   const ScaleFactors& factors = analysis.scaled.factors;
-  analysis.twin = scaled_vehicle(study.drive.vehicle, factors);
+  analysis.twin = scaled(study.drive.vehicle, factors);
+  analysis.twin.name += ", scaled";
   analysis.twin_report = compare(study.prototype, analysis.scaled.model, study.repeating);
   if (study.given) analysis.given_report = compare(study.prototype, study.given_subject, study.repeating);
 
