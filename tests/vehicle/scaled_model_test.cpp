@@ -7,7 +7,7 @@
 
 #include "veridyn/vehicle/builtin_vehicles.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
-#include "veridyn/vehicle/scaled_driver.hpp"
+#include "veridyn/vehicle/scaled_drive.hpp"
 #include "veridyn/vehicle/vehicle_simulation.hpp"
 #include "veridyn/vehicle/vehicle_simulation_loop.hpp"
 
