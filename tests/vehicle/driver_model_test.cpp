@@ -154,15 +154,7 @@ TEST(DriverModel, MeasuresTheUndersteerGradientOnACircle) {
   const VehicleTrajectory t = simulate(car, *m.driver, nullptr, {.duration = 60.0, .speed = 10.0}, silent);
   ASSERT_EQ(t.end, SimulationEnd::kCompleted) << t.message();
   EXPECT_NEAR(t.u.back(), 18.0, 0.3);
-  VehicleTrajectory settled;  // without the first seconds, in which the circle is found
-  for (std::size_t i = 1500; i < t.size(); ++i) {
-    settled.time.push_back(t.time[i]);
-    for (auto column : {&VehicleTrajectory::u, &VehicleTrajectory::v, &VehicleTrajectory::r, &VehicleTrajectory::steer,
-                        &VehicleTrajectory::roll}) {
-      (settled.*column).push_back((t.*column)[i]);
-    }
-  }
-  const std::vector<Metric> list = steady_state_metrics(settled, p.wheelbase());
+  const std::vector<Metric> list = manoeuvre_metrics(t, m, p);
   const double expected =
       characteristics(LinearBicycle<double>{p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, 15.0}).understeer_gradient;
   EXPECT_EQ(list[0].name, "understeer_gradient");
