@@ -12,6 +12,8 @@
 #include "veridyn/vehicle/lane_change.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
+#include "veridyn/vehicle/manoeuvre_metrics.hpp"
+#include "veridyn/vehicle/similarity.hpp"
 #include "veridyn/vehicle/vehicle_simulation.hpp"
 #include "veridyn/vehicle/vehicle_simulation_loop.hpp"
 
@@ -119,6 +121,44 @@ TEST(DriverModel, KeepsTheLanesOfTheDoubleLaneChangeAt80AndLeavesThemTooFast) {
   EXPECT_TRUE(good.finished);
   EXPECT_FALSE(pass(140.0 / 3.6, 1.0).within);
   EXPECT_FALSE(pass(80.0 / 3.6, 0.3).within);  // on snow
+}
+
+// The same driver in the exactly similar small car on the small course: every margin one fifth.
+TEST(DriverModel, DrivesTheScaledCarThroughTheScaledCourseAlike) {
+  const SimilaritySubject prototype{.parameters = {}, .speed = 80.0 / 3.6};
+  const ScaledVehicle twin = scale(prototype, {.length_ratio = 0.2});
+  const auto pass = [](const SimilaritySubject& subject, double size) {
+    const VehicleParameters<double>& p = subject.parameters;
+    const Manoeuvre m = double_lane_change({.parameters = p, .speed = subject.speed}, 0.0, size);
+    const BicycleModel<double, LinearTyre<double>> car{p, {.stiffness = p.C_f}, {.stiffness = p.C_r}};
+    return check_lanes(drive(car, *m.driver, subject.speed, m.default_duration), *m.course, m.body);
+  };
+  const LaneCheck full = pass(prototype, 1.0), small = pass(twin.model, 0.2);
+  EXPECT_TRUE(small.within);
+  EXPECT_NEAR(5.0 * small.margin, full.margin, 1e-6);
+  EXPECT_EQ(small.lane, full.lane);
+}
+
+// ISO 4138 at constant radius: the driver holds the circle while drive torque raises the speed; the understeer gradient
+// measured so is that of the linear tyres. Linear tyres do not feel their load, and the drive is at the rear, whose
+// torque is small.
+TEST(DriverModel, MeasuresTheUndersteerGradientOnACircle) {
+  VehicleParameters<double> p;
+  p.K_tf = p.K_tr = 200000.0;
+  const ManoeuvreContext context{.parameters = p, .speed = 10.0};
+  const Manoeuvre m = constant_radius_circle(context, 80.0, 18.0, 60.0, {.delay = 0.1});
+  const LinearTyre<double> front{.stiffness = p.C_f}, rear{.stiffness = p.C_r};
+  const FourWheelModel<double, LinearTyre<double>> car(p, {front, front, rear, rear},
+                                                       {.longitudinal = LongitudinalParameters{}});
+  Progress silent;
+  const VehicleTrajectory t = simulate(car, *m.driver, nullptr, {.duration = 60.0, .speed = 10.0}, silent);
+  ASSERT_EQ(t.end, SimulationEnd::kCompleted) << t.message();
+  EXPECT_NEAR(t.u.back(), 18.0, 0.3);
+  const std::vector<Metric> list = manoeuvre_metrics(t, m, p);
+  const double expected =
+      characteristics(LinearBicycle<double>{p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, 15.0}).understeer_gradient;
+  EXPECT_EQ(list[0].name, "understeer_gradient");
+  EXPECT_NEAR(list[0].value, expected, 0.03 * expected);
 }
 
 TEST(DriverModel, RefusesOptionsThatMakeNoSense) {
