@@ -92,6 +92,12 @@ void RegressionTracker::start(const Eigen::VectorXd& theta_0, const Eigen::Matri
   regression_.start(theta_0, P_0, rows, residual_sd);
 }
 
+void RegressionTracker::restart(const Eigen::VectorXd& sigma) {
+  const Eigen::VectorXd theta = regression_.theta();
+  regression_ = RecursiveRegression(regression_.names(), regression_.options());
+  regression_.start(theta, sigma.cwiseAbs2().asDiagonal());
+}
+
 bool RegressionTracker::moves_held_direction(std::span<const double> x) const {
   const SmallMatrix& held = regression_.unexcited();
   const auto n = static_cast<Eigen::Index>(x.size());

@@ -66,6 +66,10 @@ class RegressionTracker {
   /// Hybrid start; see RecursiveRegression::start.
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);
 
+  /// Forgets the rows so far: theta stays, with standard deviations `sigma` (as a hybrid start). History, changes and
+  /// the detector go on. For a change that is known to have happened.
+  void restart(const Eigen::VectorXd& sigma);
+
   /// Takes a row [x, z] of time `t` [s]. Beyond the history nothing is allocated.
   /// @param row_W error covariance of this row where it is known: errors that grow with the signal (a coefficient has
   /// those of the dynamic pressure) are then not taken for a change. Null: W.

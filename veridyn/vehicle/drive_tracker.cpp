@@ -22,6 +22,8 @@ constexpr double kRowsPerCutoff = 4.0;
 /// Standard deviations of the constants at the start: of rates [rad/s] and of the steering [rad].
 constexpr double kRateConstant = 0.05;
 constexpr double kSteerConstant = 0.03;
+/// Standard deviation after a change, relative to the values at the start.
+constexpr double kAfterChange = 1.0;
 /// Share of a parameter in held directions from which it is said to be held.
 constexpr double kHeldShare = 0.05;
 
@@ -230,6 +232,12 @@ void DriveTracker::form_row(std::vector<DriveChange>& found) {
   feed(TrackedAxle::kRear, rear, (v_prime + b * dr) / u);
   const std::array<double, 3> understeer{a_y * scale(TrackedAxle::kUndersteer), dr * lag_scale(), 1.0};
   feed(TrackedAxle::kUndersteer, understeer, filtered(kDelta, h) - L * filtered(kCurvature, h));
+  if (!found.empty()) {
+    // The road or the tyres are not what they were: what was learned of them is forgotten, by all three.
+    trackers_[0].restart(Eigen::Vector2d(kAfterChange, kRateConstant));
+    trackers_[1].restart(Eigen::Vector2d(kAfterChange, kRateConstant));
+    trackers_[2].restart(Eigen::Vector3d(kAfterChange, kAfterChange, kSteerConstant));
+  }
   ++rows_;
   if (time >= next_history_ - 1e-9) remember(time);
 }
