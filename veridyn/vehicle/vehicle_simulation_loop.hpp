@@ -197,11 +197,18 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
   FourWheelState<double> state = model.steady_start(options.speed);
   FourWheelRates<double> rates;
   std::array<WheelControls<double>, 3> controls;
-  // What the end of the last step was steered by: mostly also what the next begins with.
-  Controls at_wheels;
-  controls[2] = model.wheel_controls(at_wheels);
-  const auto same = [](const Controls& a, const Controls& b) {
-    return a.steer == b.steer && a.drive_torque == b.drive_torque && a.brake_torque == b.brake_torque;
+  // Controls mostly stay as they were, at the latest from the end of a step to the beginning of the next.
+  struct {
+    Controls controls;
+    WheelControls<double> at_wheels;
+  } latest{{}, model.wheel_controls(Controls{})};
+  const auto at_wheels = [&](const Controls& now) -> const WheelControls<double>& {
+    const Controls& before = latest.controls;
+    if (now.steer != before.steer || now.drive_torque != before.drive_torque ||
+        now.brake_torque != before.brake_torque) {
+      latest = {now, model.wheel_controls(now)};
+    }
+    return latest.at_wheels;
   };
   internal::LiftOffs lift_offs;
   progress.stage("driving");
@@ -210,11 +217,7 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
     driver.look(begin,
                 {.x = state(kX), .y = state(kY), .yaw = state(kYaw), .u = state(kU), .v = state(kV), .r = state(kR)});
     const Controls now = internal::controls_at(driver, begin, spins);
-    if (same(now, at_wheels)) {
-      controls[0] = controls[2];
-    } else {
-      controls[0] = model.wheel_controls(now);
-    }
+    controls[0] = at_wheels(now);
     const PerWheel<double> under = heights(state);
     model.rates(state, controls[0], under, rates);
     lift_offs.see(begin, rates.Fz, out.lift_offs);
@@ -247,9 +250,8 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
         controls[0] = controls[2];
         model.rates(state, controls[0], heights(state), rates);
       }
-      controls[1] = model.wheel_controls(internal::controls_at(driver, t + 0.5 * h, spins));
-      at_wheels = internal::controls_at(driver, part + 1 == parts ? begin + step : t + h, spins);
-      controls[2] = model.wheel_controls(at_wheels);
+      controls[1] = at_wheels(internal::controls_at(driver, t + 0.5 * h, spins));
+      controls[2] = at_wheels(internal::controls_at(driver, part + 1 == parts ? begin + step : t + h, spins));
       const WheelArray<double> before = state.segment<4>(kWheelSpin).array();
       four_wheel_step(model, heights, controls, h, rates, state);
       if (!spins) continue;
