@@ -105,6 +105,9 @@ struct MagicFormulaTyre {
   };
   [[nodiscard]] Terms at(const Scalar& load, const Scalar& gamma) const;
 
+  /// S_Vyk, the side force that a slip ratio adds, (4.E66) and (4.E67); file convention.
+  [[nodiscard]] Scalar induced_Fy(const Terms& t, const Scalar& kappa, const Scalar& alpha) const;
+
  private:
   [[nodiscard]] Scalar Fx0(const Terms& t, const Scalar& kappa) const;
   [[nodiscard]] Scalar Fy0(const Terms& t, const Scalar& alpha) const;
@@ -229,8 +232,6 @@ Scalar MagicFormulaTyre<Scalar>::Fy0(const Terms& t, const Scalar& alpha) const 
 template <typename Scalar>
 TyreForces<Scalar> MagicFormulaTyre<Scalar>::weighted(const Terms& t, const Scalar& kappa, const Scalar& alpha) const {
   using magic_formula::vanishes;
-  using std::atan;
-  using std::sin;
   using std::sqrt;
   const MagicFormulaCoefficients<Scalar>& c = coefficients;
   // cos(atan(x)) = 1/sqrt(1 + x^2).
@@ -244,13 +245,19 @@ TyreForces<Scalar> MagicFormulaTyre<Scalar>::weighted(const Terms& t, const Scal
   const Scalar SH_y = c.RHY1 + c.RHY2 * t.dfz;
   const Scalar G_y = magic_formula::weight(B_y, c.RCY1, E_y, SH_y, kappa);
   TyreForces<Scalar> out{G_x * Fx0(t, kappa), G_y * Fy0(t, alpha)};
-  if (!vanishes(kappa)) {
-    const Scalar slope_v = c.RVY4 * alpha;
-    const Scalar D_v =
-        t.mu_y * t.Fz * (c.RVY1 + c.RVY2 * t.dfz + c.RVY3 * t.gamma) / sqrt(1.0 + slope_v * slope_v);  // (4.E67)
-    out.Fy += D_v * sin(c.RVY5 * atan(c.RVY6 * kappa)) * c.LVYKA;                                      // (4.E66)
-  }
+  if (!vanishes(kappa)) out.Fy += induced_Fy(t, kappa, alpha);
   return out;
+}
+
+template <typename Scalar>
+Scalar MagicFormulaTyre<Scalar>::induced_Fy(const Terms& t, const Scalar& kappa, const Scalar& alpha) const {
+  using std::atan;
+  using std::sin;
+  using std::sqrt;
+  const MagicFormulaCoefficients<Scalar>& c = coefficients;
+  const Scalar slope = c.RVY4 * alpha;
+  const Scalar D = t.mu_y * t.Fz * (c.RVY1 + c.RVY2 * t.dfz + c.RVY3 * t.gamma) / sqrt(1.0 + slope * slope);
+  return D * sin(c.RVY5 * atan(c.RVY6 * kappa)) * c.LVYKA;
 }
 
 template <typename Scalar>
