@@ -118,13 +118,6 @@ struct MagicFormulaTyre {
 
 namespace magic_formula {
 
-/// The argument of the sine or cosine: C atan(y - E (y - atan(y))).
-template <typename Scalar>
-[[nodiscard]] Scalar angle(const Scalar& C, const Scalar& E, const Scalar& y) {
-  using std::atan;
-  return C * atan(y - E * (y - atan(y)));
-}
-
 template <typename Scalar>
 [[nodiscard]] Scalar clamped(const Scalar& x, double lowest, double highest) {
   if (x < lowest) return Scalar(lowest);
@@ -137,6 +130,14 @@ template <typename Scalar>
 [[nodiscard]] bool vanishes(const Scalar& x) {
   if constexpr (std::is_floating_point_v<Scalar>) return x == 0.0;
   return false;
+}
+
+/// The argument of the sine or cosine: C atan(y - E (y - atan(y))).
+template <typename Scalar>
+[[nodiscard]] Scalar angle(const Scalar& C, const Scalar& E, const Scalar& y) {
+  using std::atan;
+  if (vanishes(E)) return C * atan(y);
+  return C * atan(y - E * (y - atan(y)));
 }
 
 /// A curvature factor, at most 1.
