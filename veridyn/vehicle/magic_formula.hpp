@@ -203,6 +203,7 @@ Scalar MagicFormulaTyre<Scalar>::Fx0(const Terms& t, const Scalar& kappa) const 
   using std::sin;
   const MagicFormulaCoefficients<Scalar>& c = coefficients;
   const Scalar shifted = kappa + t.SH_x;
+  if (magic_formula::vanishes(shifted)) return t.SV_x;
   const Scalar sign(shifted < 0.0 ? -1.0 : 1.0);
   const Scalar E = magic_formula::curvature(
       Scalar((c.PEX1 + t.dfz * (c.PEX2 + t.dfz * c.PEX3)) * (1.0 - c.PEX4 * sign) * c.LEX));  // (4.E14)
@@ -235,18 +236,21 @@ TyreForces<Scalar> MagicFormulaTyre<Scalar>::weighted(const Terms& t, const Scal
   using magic_formula::vanishes;
   using std::sqrt;
   const MagicFormulaCoefficients<Scalar>& c = coefficients;
-  // cos(atan(x)) = 1/sqrt(1 + x^2).
-  const Scalar slope_x = c.RBX2 * kappa;
-  const Scalar B_x = c.RBX1 * c.LXAL / sqrt(1.0 + slope_x * slope_x);  // (4.E54)
-  const Scalar E_x = magic_formula::curvature(Scalar(c.REX1 + c.REX2 * t.dfz));
-  const Scalar G_x = magic_formula::weight(B_x, c.RCX1, E_x, c.RHX1, alpha);
-  const Scalar slope_y = c.RBY2 * (alpha - c.RBY3);
-  const Scalar B_y = c.RBY1 * c.LYKA / sqrt(1.0 + slope_y * slope_y);  // (4.E62)
-  const Scalar E_y = magic_formula::curvature(Scalar(c.REY1 + c.REY2 * t.dfz));
-  const Scalar SH_y = c.RHY1 + c.RHY2 * t.dfz;
-  const Scalar G_y = magic_formula::weight(B_y, c.RCY1, E_y, SH_y, kappa);
-  TyreForces<Scalar> out{G_x * Fx0(t, kappa), G_y * Fy0(t, alpha)};
-  if (!vanishes(kappa)) out.Fy += induced_Fy(t, kappa, alpha);
+  TyreForces<Scalar> out{Fx0(t, kappa), Fy0(t, alpha)};
+  // cos(atan(x)) = 1/sqrt(1 + x^2). A force that is 0 needs no weight: a rolling wheel without shifts.
+  if (!vanishes(out.Fx)) {
+    const Scalar slope = c.RBX2 * kappa;
+    const Scalar B = c.RBX1 * c.LXAL / sqrt(1.0 + slope * slope);  // (4.E54)
+    const Scalar E = magic_formula::curvature(Scalar(c.REX1 + c.REX2 * t.dfz));
+    out.Fx *= magic_formula::weight(B, c.RCX1, E, c.RHX1, alpha);
+  }
+  if (!vanishes(kappa)) {
+    const Scalar slope = c.RBY2 * (alpha - c.RBY3);
+    const Scalar B = c.RBY1 * c.LYKA / sqrt(1.0 + slope * slope);  // (4.E62)
+    const Scalar E = magic_formula::curvature(Scalar(c.REY1 + c.REY2 * t.dfz));
+    const Scalar shift = c.RHY1 + c.RHY2 * t.dfz;
+    out.Fy = out.Fy * magic_formula::weight(B, c.RCY1, E, shift, kappa) + induced_Fy(t, kappa, alpha);
+  }
   return out;
 }
 
