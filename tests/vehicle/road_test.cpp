@@ -307,6 +307,17 @@ TEST(CrgReader, ReadsEveryFormatToTheSameSurface) {
   }
 }
 
+TEST(CrgReader, TakesSectionsFromLeftToRightToo) {
+  const std::string bytes =
+      "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 1\n$\n$KD_Definition\n#:LRFI\nD:long section at v = 2.0,m\n"
+      "D:long section at v = 0.5,m\nD:long section at v = -1.0,m\n$\n$$$$\n 0.3000000 0.2000000 0.1000000\n"
+      " 0.3000000 0.2000000 0.1000000\n";
+  const CrgRoad road = parse_crg(bytes, "r.crg");
+  EXPECT_THAT(road.grid().v, ::testing::ElementsAre(-1.0, 0.5, 2.0));
+  EXPECT_FLOAT_EQ(static_cast<float>(road.height({0.3, 2.0, 0.0, 0.0})), 0.3F);
+  EXPECT_FLOAT_EQ(static_cast<float>(road.height({0.3, -1.0, 0.0, 0.0})), 0.1F);
+}
+
 TEST(CrgReader, TurnsWithItsHeading) {
   const CrgRoad road = parse_crg(
       [] {
