@@ -63,6 +63,9 @@ TEST(LaneChange, SeesABodyThatTouchesACone) {
   const LaneCheck check = check_lanes(slanted, course, thin);
   EXPECT_NEAR(check.margin, 0.5 * (1.1 * 1.75 + 0.25) - (0.5 * std::sin(0.3) + 0.01 * std::cos(0.3)), 1e-9);
   EXPECT_FALSE(check.finished);
+  // Moved to the left all corners pass, and the flank hits the last cone of the lane.
+  slanted.y = {course.lanes[0].left + 0.05};
+  EXPECT_NEAR(check_lanes(slanted, course, thin).margin, -(0.05 + 0.01 / std::cos(0.3)), 1e-9);
 }
 
 TEST(LaneChange, ScalesWithTheCourse) {
