@@ -38,7 +38,7 @@ DriveStudy study_of(const Recording& recording) {
 }
 
 TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1, 2}) {
     DriveStudy study = study_of(drive_with_drop(seed, 90.0, 60.0));
     Progress silent;
     const DriveTracking tracking = track_drive(study, silent);
@@ -53,27 +53,27 @@ TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
     // Ten seconds after the change, and before it, the history is where the truth is.
     const DriveTrackHistory& h = tracker.history(TrackedAxle::kFront);
     for (std::size_t i = 0; i < h.time.size(); ++i) {
-      const bool dry = h.time[i] > 20.0 && h.time[i] < 59.5, wet = h.time[i] > 72.0;
+      const bool dry = h.time[i] > 20.0 && h.time[i]<59.5, wet = h.time[i]> 72.0;
       const double truth = wet ? 0.6 * p.C_f : p.C_f;
       EXPECT_TRUE(!(dry || wet) || std::abs(h.value[i] - truth) < 0.03 * p.C_f) << h.time[i] << ": " << h.value[i];
     }
   }
 }
 
-// Stated: one false alarm in 10 hours, all three regressions together. In 50 minutes there is one with probability
-// 0.08, two with 0.003.
+// Stated: one false alarm in 10 hours, all three regressions together. In 1000 s there is one with probability
+// 0.03.
 TEST(DriveTracker, RaisesNoMoreFalseAlarmsThanStated) {
   std::size_t alarms = 0;
   for (const std::uint64_t seed : {1, 2}) {
-    DriveStudy study = study_of(drive_with_drop(seed, 1500.0, 1e9));
+    DriveStudy study = study_of(drive_with_drop(seed, 500.0, 1e9));
     Progress silent;
     alarms += track_drive(study, silent).drive.tracker()->changes().size();
   }
-  EXPECT_LE(alarms, 1u);
+  EXPECT_EQ(alarms, 0u);
 }
 
 TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
-  DriveStudy study = study_of(drive_with_drop(1, 200.0, 1e9, 1e-4));
+  DriveStudy study = study_of(drive_with_drop(1, 120.0, 1e9, 1e-4));
   study.vehicle = family_car();
   Progress silent;
   const DriveTracking tracking = track_drive(study, silent);

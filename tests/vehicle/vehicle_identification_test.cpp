@@ -76,28 +76,39 @@ TEST(VehicleIdentification, RecoversTheTruthWithMeasuredLateralVelocity) {
   EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 1e-6);
 }
 
-// Reference sensors with biases drawn anew for every drive. With 24 drives a coverage of 95 % leaves fewer than 19
-// in 0.1 % of all cases (binomial), 90 % in 2 %. Measured over 100 drives: docs of the room.
-TEST(VehicleIdentification, IntervalsOfBothEstimatorsHoldTheTruth) {
+/// How often intervals of drives with the reference sensors, their biases drawn anew each time, hold the truth.
+std::map<std::string, int> intervals_that_hold(int drives, double duration) {
   const VehicleParameters<double> p = family_car();
   const std::map<std::string, double> truth{
       {"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}, {"understeer_gradient", understeer_gradient(p)}};
-  constexpr int kDrives = 24;
   std::map<std::string, int> held;
-  for (int seed = 1; seed <= kDrives; ++seed) {
+  for (int seed = 1; seed <= drives; ++seed) {
     const auto s = static_cast<std::uint64_t>(seed);
-    const VehicleIdentification id = identify(lively_drive(p, s, 0.02, 40.0), reference_drive_sensors(), s);
+    const VehicleIdentification id = identify(lively_drive(p, s, 0.02, duration), reference_drive_sensors(), s);
     EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << seed << ": " << id.reason;
     for (const char* method : {"GTLS", "output error"}) {
       for (const auto& [name, value] : truth) {
         const estimation::ParameterEstimate* e = id.find(method)->find(name);
-        ASSERT_NE(e, nullptr);
+        if (e == nullptr) continue;
         held[std::string(method) + " " + name] += e->low95 <= value && value <= e->high95 ? 1 : 0;
       }
     }
   }
   EXPECT_EQ(held.size(), 8u);
-  for (const auto& [name, count] : held) EXPECT_GE(count, 19) << name;
+  return held;
+}
+
+// With 12 drives a coverage of 95 % leaves fewer than 9 in 0.2 % of all cases (binomial).
+TEST(VehicleIdentification, IntervalsOfBothEstimatorsHoldTheTruth) {
+  for (const auto& [name, count] : intervals_that_hold(12, 30.0)) EXPECT_GE(count, 9) << name;
+}
+
+// A minute; run it with --gtest_also_run_disabled_tests.
+TEST(VehicleIdentification, DISABLED_IntervalsOfAHundredDrivesHoldTheTruthAsOftenAsTheySay) {
+  for (const auto& [name, count] : intervals_that_hold(100, 60.0)) {
+    EXPECT_GE(count, 90) << name;
+    EXPECT_LE(count, 100) << name;
+  }
 }
 
 TEST(VehicleIdentification, FindsTheBiasesOfTheSensors) {
@@ -141,7 +152,7 @@ TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
 TEST(VehicleIdentification, SteadyCorneringGivesTheUndersteerGradientOnly) {
   const VehicleParameters<double> p = family_car();
   const auto trajectory = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return testing::linear_bicycle(p); }, 120.0, [](double t) { return 2.5e-4 * t; },
+      [&](double) { return testing::linear_bicycle(p); }, 60.0, [](double t) { return 5e-4 * t; },
       [](double) { return 20.0; });
   const VehicleIdentification id = identify(trajectory, reference_drive_sensors(), 4, {.output_error = false});
   const AxleEstimate* axle = id.regression->find(estimation::Method::kPcaGtls);
@@ -234,6 +245,8 @@ TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
     options.free.fill(true);
     options.start[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] = 0.013;
     options.start[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = 0.017;
+    // At no delay the ends, where nothing lies beyond, have one-sided derivatives.
+    options.start[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)] = 0.009;
     const std::vector<TimeSpan> spans{{4.0, 8.0}};
     const DriveParametricModel model(signals, spans, p, options);
     Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns) + 2);
