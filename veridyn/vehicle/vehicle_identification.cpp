@@ -255,6 +255,8 @@ class Identification {
     const DriveParametricModel model(s_, segments_.identification, begin, model_options);
     estimation::OutputErrorOptions oe;
     oe.significance = o_.significance;
+    // What is not determined by then crawls along a valley: more relaxations would not help it.
+    oe.max_relaxations = 12;
     oe.max_lag = std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * s_.grid.rate_Hz()));
     out_.output_error = estimation::output_error(model, model.measured(), oe, progress_);
     const estimation::OutputErrorEstimate& result = *out_.output_error;

@@ -169,10 +169,12 @@ SimulationEnd ended(const FourWheelState<double>& s, bool speed_varies) {
 }  // namespace internal
 
 // One line a tyre.
-#define VERIDYN_SIMULATE_ON(Tyre)                                                                \
-  template VehicleTrajectory simulate(const FourWheelModel<double, Tyre>&, Driver&, const Road*, \
-                                      const SimulationOptions&, Progress&);                      \
-  template VehicleTrajectory simulate(const BicycleModel<double, Tyre>&, Driver&, const SimulationOptions&, Progress&)
+#define VERIDYN_SIMULATE_ON(Tyre)                                                                                      \
+  template VehicleTrajectory simulate(const FourWheelModel<double, Tyre>&, Driver&, const Road*,                       \
+                                      const SimulationOptions&, Progress&,                                             \
+                                      std::span<const ModelChange<FourWheelModel<double, Tyre>>>);                     \
+  template VehicleTrajectory simulate(const BicycleModel<double, Tyre>&, Driver&, const SimulationOptions&, Progress&, \
+                                      std::span<const ModelChange<BicycleModel<double, Tyre>>>)
 
 VERIDYN_SIMULATE_ON(LinearTyre<double>);
 VERIDYN_SIMULATE_ON(FialaTyre<double>);

@@ -176,14 +176,25 @@ class LiftOffs {
   PerWheel<double> since_{-1.0, -1.0, -1.0, -1.0};
 };
 
+/// The model from `time` on.
+template <typename Model>
+void change_model(double time, std::span<const ModelChange<Model>>& changes, Model& model) {
+  while (!changes.empty() && time >= changes.front().time - 1e-9) {
+    model = changes.front().model;
+    changes = changes.subspan(1);
+  }
+}
+
 /// Whether the vehicle's motion ends here, and how; kCompleted: it goes on.
 [[nodiscard]] SimulationEnd ended(const FourWheelState<double>& state, bool speed_varies);
 
 }  // namespace internal
 
 template <typename Tyre>
-VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& driver, const Road* road,
-                           const SimulationOptions& options, Progress& progress) {
+VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& driver, const Road* road,
+                           const SimulationOptions& options, Progress& progress,
+                           std::span<const ModelChange<FourWheelModel<double, Tyre>>> changes) {
+  FourWheelModel<double, Tyre> model = start;
   options.validate();
   internal::check_parameters(model.parameters());
   const bool spins = model.options().longitudinal.has_value();
@@ -214,6 +225,7 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
   progress.stage("driving");
   for (long k = 0;; ++k) {
     const double begin = plan.time(k);
+    internal::change_model(begin, changes, model);
     driver.look(begin,
                 {.x = state(kX), .y = state(kY), .yaw = state(kYaw), .u = state(kU), .v = state(kV), .r = state(kR)});
     const Controls now = internal::controls_at(driver, begin, spins);
@@ -266,8 +278,9 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
 }
 
 template <typename Tyre>
-VehicleTrajectory simulate(const BicycleModel<double, Tyre>& model, Driver& driver, const SimulationOptions& options,
-                           Progress& progress) {
+VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driver, const SimulationOptions& options,
+                           Progress& progress, std::span<const ModelChange<BicycleModel<double, Tyre>>> changes) {
+  BicycleModel<double, Tyre> model = start;
   options.validate();
   internal::check_parameters(model.parameters);
   const double u = options.speed;
@@ -297,6 +310,7 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& model, Driver& driv
   progress.stage("driving");
   for (long k = 0;; ++k) {
     const double begin = plan.time(k), step = plan.time(k + 1) - begin;
+    internal::change_model(begin, changes, model);
     driver.look(begin, {.x = state(kX), .y = state(kY), .yaw = state(kYaw), .u = u, .v = state(kV), .r = state(kR)});
     const double steer = internal::controls_at(driver, begin, false).steer;
     BicycleRates<double> rates, unused;
