@@ -35,6 +35,36 @@ FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
   return options;
 }
 
+/// A tyre with a share of its stiffness and friction.
+template <typename Tyre>
+Tyre slipperier(Tyre tyre, double grip) {
+  tyre.stiffness *= grip;
+  tyre.slip_stiffness *= grip;
+  tyre.mu *= grip;
+  return tyre;
+}
+
+MagicFormulaTyre<double> slipperier(MagicFormulaTyre<double> tyre, double grip) {
+  auto& c = tyre.coefficients;
+  for (double* scaling : {&c.LKX, &c.LKY, &c.LMUX, &c.LMUY}) *scaling *= grip;
+  return tyre;
+}
+
+std::vector<GripChange> read_grip(const StudyTable& drive) {
+  std::vector<GripChange> changes;
+  for (const StudyTable& table : drive.tables("change")) {
+    GripChange change;
+    change.time = table.number("time", "s");
+    if (!changes.empty() && !(change.time > changes.back().time))
+      table.fail("time", "must be later than the one before");
+    const double both = table.positive_or("grip", "1", 1.0);
+    change.front = table.positive_or("front", "1", both);
+    change.rear = table.positive_or("rear", "1", both);
+    changes.push_back(change);
+  }
+  return changes;
+}
+
 }  // namespace
 
 std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
@@ -73,6 +103,7 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
   if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
     drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
 
+  study.grip = read_grip(drive);
   if (root.has("road")) {
     study.road = read_road(root.table("road"), study.seed);
     if (study.road && study.model != VehicleModelKind::kFourWheel)
@@ -87,17 +118,35 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
 
 VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
                                 Driver& driver, const Road* road, const SimulationOptions& simulation,
-                                Progress& progress) {
+                                Progress& progress, std::span<const GripChange> grip) {
+  const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
   return std::visit(
       [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
+        // The model of the beginning and those of the changes, made and driven alike.
+        const auto drive = [&](const auto& make, const auto& run) {
+          using Model = decltype(make(tyres));
+          std::vector<ModelChange<Model>> changes;
+          for (const GripChange& change : grip) {
+            const AxleTyres<Tyre> changed{slipperier(tyres.front, change.front), slipperier(tyres.rear, change.rear)};
+            changes.push_back({change.time, make(changed)});
+          }
+          return run(make(tyres), std::span<const ModelChange<Model>>(changes));
+        };
         if (model == VehicleModelKind::kFourWheel) {
-          const FourWheelModel<double, Tyre> four_wheel(vehicle.parameters, mounted(tyres), options);
-          return simulate(four_wheel, driver, road, simulation, progress);
+          return drive(
+              [&](const AxleTyres<Tyre>& t) {
+                return FourWheelModel<double, Tyre>(vehicle.parameters, mounted(t), options);
+              },
+              [&](const auto& start, auto changes) {
+                return simulate(start, driver, road, simulation, progress, changes);
+              });
         }
-        const BicycleModel<double, Tyre> bicycle{
-            vehicle.parameters, symmetric_tyre(tyres.front), symmetric_tyre(tyres.rear), options.gravity,
-            model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles};
-        return simulate(bicycle, driver, simulation, progress);
+        return drive(
+            [&](const AxleTyres<Tyre>& t) {
+              return BicycleModel<double, Tyre>{vehicle.parameters, symmetric_tyre(t.front), symmetric_tyre(t.rear),
+                                                options.gravity, geometry};
+            },
+            [&](const auto& start, auto changes) { return simulate(start, driver, simulation, progress, changes); });
       },
       vehicle.tyres);
 }
@@ -107,7 +156,7 @@ VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress) {
   const VehicleParameters<double>& p = study.vehicle.parameters;
   const double gravity = study.four_wheel.gravity;
   run.trajectory = drive_vehicle(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver,
-                                 study.road.get(), study.simulation, progress);
+                                 study.road.get(), study.simulation, progress, study.grip);
   const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, gravity);
   run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
   run.characteristics = characteristics(run.linear);
