@@ -5,165 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <utility>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/units.hpp"
+#include "veridyn/vehicle/tir_lines.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{4} << 20;  // real ones have some 15 kB
-
-struct Entry {
-  std::string value;
-  bool quoted = false;
-  std::size_t line = 0;
-};
-
-std::string_view trim(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return result;
-}
-
-// For a message: short and printable.
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, 40));
-  for (char& c : result) {
-    if (c < 0x20 || c > 0x7e) c = '?';
-  }
-  return text.size() > 40 ? result + "..." : result;
-}
-
-bool is_key(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  });
-}
-
-/// The lines of a file, by key.
-class TirLines {
- public:
-  TirLines(std::string_view text, std::string source) : source_(std::move(source)) {
-    if (text.size() > kLargestFile)
-      throw InputError(source_, fmt::format("has {} bytes; a tyre file has at most {}", text.size(), kLargestFile));
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    std::size_t number = 0;
-    while (!text.empty()) {
-      const std::size_t end = text.find('\n');
-      ++number;
-      read_line(text.substr(0, end), number);
-      text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
-    }
-    if (entries_.empty()) throw InputError(source_, "is no tyre file: it holds no line KEY = value");
-  }
-
-  [[nodiscard]] const std::map<std::string, Entry, std::less<>>& entries() const { return entries_; }
-  [[nodiscard]] const Entry* find(std::string_view key) const {
-    const auto found = entries_.find(key);
-    return found == entries_.end() ? nullptr : &found->second;
-  }
-  [[nodiscard]] std::string place(std::string_view key) const {
-    const Entry* entry = find(key);
-    return entry == nullptr ? source_ : fmt::format("{}:{}", source_, entry->line);
-  }
-  [[noreturn]] void fail(std::string_view key, std::string_view what) const {
-    throw InputError(place(key), fmt::format("{} {}", key, what));
-  }
-  [[nodiscard]] std::optional<double> number(std::string_view key) const {
-    const Entry* entry = find(key);
-    if (entry == nullptr) return std::nullopt;
-    double value = 0.0;
-    std::string_view text = entry->value;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (entry->quoted || stop != text.data() + text.size() || text.empty() ||
-        (error != std::errc() && error != std::errc::result_out_of_range))
-      fail(key, fmt::format("= {} is not a number", shown(entry->value)));
-    // Below the smallest double is 0; above the largest is refused with infinity itself.
-    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(text).c_str(), nullptr);
-    if (!std::isfinite(value)) fail(key, fmt::format("= {} must be finite", shown(entry->value)));
-    return value;
-  }
-  [[nodiscard]] double number_or(std::string_view key, double otherwise) const {
-    return number(key).value_or(otherwise);
-  }
-  [[nodiscard]] std::string text_or(std::string_view key, std::string_view otherwise) const {
-    const Entry* entry = find(key);
-    return entry == nullptr ? std::string(otherwise) : entry->value;
-  }
-
- private:
-  void read_line(std::string_view raw, std::size_t number) {
-    const auto refuse = [&](std::string_view what) { throw InputError(fmt::format("{}:{}", source_, number), what); };
-    for (const char c : raw) {
-      const auto byte = static_cast<unsigned char>(c);
-      if ((byte < 0x20 && c != '\t' && c != '\r') || byte == 0x7f) refuse("is no tyre file: this line is not text");
-    }
-    std::string_view line = trim(raw);
-    // A comment sign inside a quoted text belongs to the text.
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == '\'') quoted = !quoted;
-      if (!quoted && (line[i] == '$' || line[i] == '!')) {
-        line = trim(line.substr(0, i));
-        break;
-      }
-    }
-    if (line.empty()) return;
-    if (line.front() == '[') {
-      if (line.back() != ']') refuse(fmt::format("'{}': a section is written [NAME]", shown(line)));
-      section_ = upper(trim(line.substr(1, line.size() - 2)));
-      in_table_ = false;
-      return;
-    }
-    if (line.front() == '{') {
-      in_table_ = true;
-      return;
-    }
-    const std::size_t equals = line.find('=');
-    if (equals == std::string_view::npos) {
-      if (in_table_) return;
-      // Free text before the first section is a comment that lost its sign in some files; after it, a broken line.
-      refuse(fmt::format("'{}' is neither KEY = value, [SECTION] nor a comment", shown(line)));
-    }
-    in_table_ = false;
-    const std::string key = upper(trim(line.substr(0, equals)));
-    std::string_view value = trim(line.substr(equals + 1));
-    if (!is_key(key)) refuse(fmt::format("'{}' is not the name of a key", shown(key)));
-    Entry entry;
-    entry.line = number;
-    if (!value.empty() && value.front() == '\'') {
-      if (value.size() < 2 || value.back() != '\'') refuse(fmt::format("{}: the closing quote is missing", key));
-      entry.quoted = true;
-      value = trim(value.substr(1, value.size() - 2));
-    }
-    if (value.empty() && !entry.quoted) refuse(fmt::format("{} has no value", key));
-    entry.value = std::string(value);
-    const auto [at, inserted] = entries_.try_emplace(key, std::move(entry));
-    if (!inserted) refuse(fmt::format("{} is given twice, first in line {}", key, at->second.line));
-  }
-
-  std::string source_;
-  std::string section_;
-  bool in_table_ = false;
-  std::map<std::string, Entry, std::less<>> entries_;
-};
+using internal::shown;
+using internal::TirLines;
+using internal::upper;
 
 /// How the words of tyre files are called in this project.
 struct UnitWord {
@@ -186,7 +41,7 @@ constexpr UnitWord kUnitWords[] = {{"METER", "m"},         {"METRE", "m"},      
                                    {"MPASCAL", "MPa"},     {"BAR", "bar"},        {"PSI", "psi"}};
 
 double scale_of(const TirLines& lines, std::string_view key, std::string_view si, TirFile& file) {
-  const Entry* entry = lines.find(key);
+  const TirLines::Entry* entry = lines.find(key);
   if (entry == nullptr) {
     if (key != "PRESSURE") file.warnings.push_back(fmt::format("[UNITS] has no {}; taken as {}", key, si));
     return 1.0;
@@ -280,7 +135,7 @@ bool known_without_effect(std::string_view key) {
 }
 
 void check_format(const TirLines& lines, TirFile& file) {
-  const Entry* entry = lines.find("PROPERTY_FILE_FORMAT");
+  const TirLines::Entry* entry = lines.find("PROPERTY_FILE_FORMAT");
   if (entry == nullptr) throw InputError(file.source, "PROPERTY_FILE_FORMAT is missing: is this a tyre file?");
   file.format = entry->value;
   const std::string format = upper(entry->value);
