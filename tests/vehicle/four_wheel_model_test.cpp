@@ -513,6 +513,25 @@ TEST(FourWheelModel, LagsItsSlipByTheRelaxationLength) {
   EXPECT_NEAR(rates.derivative(kLaggedSlip + 2), -0.02 * 20.0 / 0.5, 1e-9);
 }
 
+struct LeaningTyre {
+  [[nodiscard]] TyreForces<double> forces(const double& load, const double& /*ratio*/, const double& /*angle*/,
+                                          const double& camber) const {
+    return {0.0, load * camber};
+  }
+  [[nodiscard]] double cornering_stiffness(const double& load) const { return load; }
+};
+
+TEST(FourWheelModel, LeansItsWheelsWithTheBody) {
+  FourWheelOptions options;
+  options.camber_per_roll = 0.3;
+  const FourWheelModel<double, LeaningTyre> car(uneven_car(), {}, options);
+  FourWheelState<double> state = car.steady_start(20.0);
+  state(kRoll) = 0.1;
+  FourWheelRates<double> rates;
+  car.rates(state, car.wheel_controls(0.0), {}, rates);
+  for (Eigen::Index i = 0; i < 4; ++i) EXPECT_NEAR(rates.Fy(i), 0.03 * rates.Fz(i), 1e-9);
+}
+
 TEST(FourWheelModel, HasTheDerivativesOfItsDifferences) {
   constexpr std::size_t kParameters = kVehicleFields.size() - 1;  // without mu, which is infinite
   using Jet = ceres::Jet<double, kParameters>;

@@ -514,6 +514,72 @@ TEST(FourWheelSimulation, SamplesAtItsOutputStepAndAtTheEnd) {
   EXPECT_NEAR(out.x[5], 20.0 * 1.0005, 1e-12);
 }
 
+TEST(FourWheelSimulation, ShowsTheDriverWhereItIsOnceAStep) {
+  struct Passenger : Driver {
+    std::vector<double> times, y;
+    void look(double time, const PlanarMotion& motion) override {
+      times.push_back(time);
+      y.push_back(motion.y);
+    }
+    [[nodiscard]] Controls controls(double time) const override { return slalom(time); }
+  };
+  Progress nobody;
+  const SimulationOptions options{.duration = 0.5, .output_step = 1e-3};
+  const VehicleParameters<double> p = road_car();
+  const BicycleModel<double, LinearTyre<double>> bicycle{p, {.stiffness = p.C_f}, {.stiffness = p.C_r}};
+  Passenger in_four, in_two;
+  const auto four = simulate(linear_car(p), in_four, nullptr, options, nobody);
+  const auto two = simulate(bicycle, in_two, options, nobody);
+  EXPECT_EQ(in_four.times, four.time);
+  EXPECT_EQ(in_four.y, four.y);
+  EXPECT_EQ(in_two.times, two.time);
+  EXPECT_EQ(in_two.y, two.y);
+}
+
+TEST(FourWheelSimulation, RecordsColumnsThatFitEachOther) {
+  const SignalRoad road(bumps);
+  FourWheelOptions options;
+  options.longitudinal.emplace();
+  const auto controls = [](double t) { return Controls{.steer = slalom(t).steer, .drive_torque = 400.0}; };
+  const VehicleParameters<double> p = road_car();
+  const auto out = drive(linear_car(p, options), controls, {.duration = 1.0, .output_step = 1e-3}, &road);
+  using Columns = std::vector<double>;
+  const auto slope = [&](const Columns& x, std::size_t k) { return (x[k + 1] - x[k - 1]) / 2e-3; };
+  const double ahead = 2.0 * p.unsprung_mass * (p.b - p.a) / (p.mass - 4.0 * p.unsprung_mass);
+  for (std::size_t k = 200; k + 1 < out.size(); k += 50) {
+    EXPECT_EQ(out.steer[k], slalom(out.time[k]).steer);
+    EXPECT_NEAR(slope(out.yaw, k), out.r[k], 1e-4);
+    EXPECT_NEAR(slope(out.r, k), out.yaw_acceleration[k], 1e-3);
+    EXPECT_NEAR(slope(out.roll, k), out.roll_rate[k], 1e-4);
+    EXPECT_NEAR(slope(out.pitch, k), out.pitch_rate[k], 1e-4);
+    EXPECT_NEAR(slope(out.heave, k), out.heave_rate[k], 1e-4);
+    EXPECT_NEAR(slope(out.v, k) + out.r[k] * out.u[k], out.lateral_acceleration[k], 1e-3);
+    EXPECT_NEAR(slope(out.u, k) - out.r[k] * out.v[k], out.longitudinal_acceleration[k], 1e-3);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const double x = (is_front(i) ? p.a : -p.b) - ahead, y = (is_left(i) ? 0.5 : -0.5) * p.track_f;
+      const double corner = out.heave[k] + y * out.roll[k] - x * out.pitch[k] +
+                            0.5 * p.cg_height * (out.roll[k] * out.roll[k] + out.pitch[k] * out.pitch[k]);
+      EXPECT_NEAR(out.suspension_travel[i][k], out.wheel_height[i][k] - corner, 1e-14);
+      const double pressed = static_loads(p, kGravity)[i] + p.K_tf * (out.road[i][k] - out.wheel_height[i][k]);
+      EXPECT_NEAR(out.Fz[i][k], std::max(0.0, pressed), 1e-8);
+      EXPECT_EQ(out.Fx[i][k], 100000.0 * out.slip_ratio[i][k]);
+      EXPECT_EQ(out.Fy[i][k], (is_front(i) ? p.C_f : p.C_r) * out.slip_angle[i][k]);
+    }
+  }
+}
+
+TEST(FourWheelSimulation, MeasuresTheDistanceOnItsPath) {
+  const SignalRoad slope([](const RoadPoint& at) { return 1e-6 * at.distance; });
+  const auto out = drive(
+      linear_car(road_car()), [](double) { return Controls{.steer = 0.1}; },
+      {.duration = 6.0, .output_step = 1e-3, .speed = 8.0}, &slope);
+  double length = 0.0;
+  for (std::size_t k = 1; k < out.size(); ++k) length += std::hypot(out.x[k] - out.x[k - 1], out.y[k] - out.y[k - 1]);
+  EXPECT_GT(std::abs(out.v.back()), 0.2);
+  EXPECT_NEAR(1e6 * out.road[kFrontRight].back(), length + 1.25, 1e-3);
+  EXPECT_NEAR(1e6 * out.road[kRearLeft].back(), length - 1.00, 1e-3);
+}
+
 struct BadInput {
   const char* message;
   std::function<void()> run;

@@ -104,7 +104,7 @@ struct FourWheelRates {
 /// - `mass` is the whole vehicle: lateral, longitudinal and yaw motion use it, and I_z. The sprung mass
 ///   m_s = m - 4 M_w moves in heave, with I_x and I_y about its own centre of gravity. All mass is at one height c.
 ///   The wheels' masses sit at the axles, so the sprung centre of gravity is x_s = 2 M_w (b - a)/m_s ahead of the
-///   whole one; arms below are measured from there, and static tyre loads are m g b/(2 L) and m g a/(2 L).
+///   whole one: the arms x_i of the corner heights count from there. Static tyre loads are m g b/(2 L), m g a/(2 L).
 /// - Exact planar motion, small roll and pitch. Height of a corner to second order, less its rest,
 ///       z_i = z + y_i roll - x_i pitch + c/2 (roll^2 + pitch^2)
 ///   and all generalised forces by virtual work from it: gravity's tilting moment m_s g c roll comes from the static
@@ -138,7 +138,8 @@ class FourWheelModel {
     return wheel_controls(Scalar(controls.steer), controls.drive_torque, controls.brake_torque);
   }
 
-  /// Derivative and forces at `state` over a road of the heights `road` under the wheels.
+  /// Derivative and forces at `state` over a road of the heights `road` under the wheels. (Its definition is flattened:
+  /// compilers give up inlining small array operations where many tyres are compiled at once, and lose half the speed.)
   void rates(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
              FourWheelRates<Scalar>& out) const;
 
@@ -217,7 +218,7 @@ template <typename Scalar, typename Tyre>
 [[gnu::flatten]] WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar& steer,
                                                                                     double drive_torque,
                                                                                     double brake_torque) const {
-  using std::atan;
+  using std::atan2;
   using std::tan;
   WheelControls<Scalar> out;
   const Scalar none(0.0), one(1.0);
@@ -225,8 +226,8 @@ template <typename Scalar, typename Tyre>
   if (options_.ackermann != 0.0) {
     // The wheel's axis through the turning centre, which lies L/tan(steer) to the left of the rear axle's middle.
     const Scalar slope = tan(steer), across = p_.track_f / (2.0 * p_.wheelbase()) * slope;
-    left += options_.ackermann * (atan(slope / (1.0 - across)) - steer);
-    right += options_.ackermann * (atan(slope / (1.0 + across)) - steer);
+    left += options_.ackermann * (atan2(slope, Scalar(1.0 - across)) - steer);
+    right += options_.ackermann * (atan2(slope, Scalar(1.0 + across)) - steer);
   }
   out.steer << left, right, none, none;
   out.cos.setConstant(one);

@@ -20,19 +20,26 @@ template <int kMoving, typename Scalar, typename Tyre, typename Heights>
 void runge_kutta_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& heights,
                       const std::array<WheelControls<Scalar>, 3>& controls, double h,
                       const FourWheelRates<Scalar>& first, FourWheelState<Scalar>& state) {
-  const auto moving = [](auto& x) { return x.template head<kMoving>(); };
-  const Scalar half(0.5 * h), whole(h), two(2.0), sixth(h / 6.0);
+  // Plain loops, which compilers vectorise wherever they stand.
+  const auto each = [](const auto& set) {
+    for (Eigen::Index i = 0; i < kMoving; ++i) set(i);
+  };
   FourWheelRates<Scalar> stage;
+  const FourWheelState<Scalar>&k = stage.derivative, &k1 = first.derivative;
   FourWheelState<Scalar> at = state, sum;
-  moving(at) += half * moving(first.derivative);
+  each([&](Eigen::Index i) { at.data()[i] = state.data()[i] + 0.5 * h * k1.data()[i]; });
   model.rates(at, controls[1], heights(at), stage);
-  moving(sum) = moving(first.derivative) + two * moving(stage.derivative);
-  moving(at) = moving(state) + half * moving(stage.derivative);
+  each([&](Eigen::Index i) {
+    sum.data()[i] = k1.data()[i] + 2.0 * k.data()[i];
+    at.data()[i] = state.data()[i] + 0.5 * h * k.data()[i];
+  });
   model.rates(at, controls[1], heights(at), stage);
-  moving(sum) += two * moving(stage.derivative);
-  moving(at) = moving(state) + whole * moving(stage.derivative);
+  each([&](Eigen::Index i) {
+    sum.data()[i] += 2.0 * k.data()[i];
+    at.data()[i] = state.data()[i] + h * k.data()[i];
+  });
   model.rates(at, controls[2], heights(at), stage);
-  moving(state) += sixth * (moving(sum) + moving(stage.derivative));
+  each([&](Eigen::Index i) { state.data()[i] += h / 6.0 * (sum.data()[i] + k.data()[i]); });
 }
 
 }  // namespace internal
