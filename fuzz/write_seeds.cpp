@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/support/synthetic_logs.hpp"
+#include "tests/vehicle/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -26,6 +27,16 @@ int main(int count, char** arguments) {
     write("storage",
           "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\nendheader\ntime\tshoulder\telbow\n0.0\t1.5\t-"
           "2e1\n0.1\t3\t+4\n");
+    std::string array = std::string("\x93NUMPY\x01\0\x46\0", 10);
+    array += "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1), }";
+    array.resize(80, ' ');
+    write("npy", array + std::string("\x00\x00\xc0\x3f\x00\x00\x00\xc0", 8));
+    write("tir", veridyn::vehicle::testing::small_tir());
+    const std::string road =
+        "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";
+    write("crg", road +
+                     "$KD_Definition\n#:LRFI\nD:long section 1,m\nD:long section 2,m\n$\n$$$$\n 0.0000000 0.1000000\n"
+                     " 0.2000000-1.0000000\n");
   } catch (const veridyn::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -1,12 +1,14 @@
-// veridyn demo: the whole way on a built-in aircraft and a simulated flight, and an arm that lifts a weight; needs no
-// file.
+// veridyn demo: the whole way on a built-in aircraft and a simulated flight, a car and its scaled model, and an arm
+// that lifts a weight; needs no file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/results.hpp"
+#include "apps/veridyn/scale.hpp"
 #include "apps/veridyn/simulate_muscle.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/files.hpp"
@@ -71,6 +73,47 @@ int muscle_demo(const CommonOptions& options) {
   return simulate_muscle(Study::load(path), path, own, "demo");
 }
 
+constexpr const char* kVehicleDemo =
+    R"(# The vehicle's part of `veridyn demo`: the reference car is driven with random steering, then found again from what
+# production-car sensors recorded; and compared with its published model of one fifth the size.
+title = "reference car"
+seed = 1
+
+[subject]
+kind = "vehicle"
+builtin = "reference"
+
+[drive]
+model = "bicycle"
+manoeuvre = "random steer"
+amplitude = "2 deg"
+high = 2.0
+length = 60
+
+[sensors]
+set = "reference"
+
+[scale]
+length_ratio = 0.2
+mass = "8.8 kg"
+speed = "4 m/s"
+[scale.model]
+builtin = "reference_1to5"
+)";
+
+int vehicle_demo(const CommonOptions& options) {
+  CommonOptions own = options;
+  own.out = (std::filesystem::path(options.out) / "vehicle").string();
+  own.json = false;  // the summary is the aircraft's
+  make_folder(own.out);
+  const std::string path = (std::filesystem::path(own.out) / "study.toml").string();
+  write_file(path, kVehicleDemo);
+  const int exit_code = identify_vehicle(Study::load(path), path, own, "demo");
+  if (exit_code != kDone) return exit_code;
+  own.out = (std::filesystem::path(own.out) / "scale").string();
+  return scale_vehicle(Study::load(path), path, own, "demo");
+}
+
 int aircraft_demo(const CommonOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(options.out) / "aircraft";
   make_folder(folder);
@@ -92,7 +135,8 @@ int aircraft_demo(const CommonOptions& options) {
 }
 
 int demo(const CommonOptions& options) {
-  const int exit_code = aircraft_demo(options);
+  int exit_code = aircraft_demo(options);
+  if (exit_code == kDone) exit_code = vehicle_demo(options);
   return exit_code == kDone ? muscle_demo(options) : exit_code;
 }
 
@@ -101,7 +145,7 @@ int demo(const CommonOptions& options) {
 void add_demo(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<CommonOptions>();
   CLI::App* verb =
-      program.add_subcommand("demo", "complete runs on a built-in aircraft and a built-in arm; needs no input");
+      program.add_subcommand("demo", "complete runs on a built-in aircraft, a car and an arm; needs no input");
   add_common(*verb, *options, "out/demo", "veridyn demo --seed 3");
   verb->callback([options, &exit_code] { exit_code = demo(*options); });
 }

@@ -5,12 +5,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/ground.hpp"
 #include "apps/veridyn/results.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/vehicle/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -23,6 +25,7 @@ struct Options {
 int identify(const Options& options) {
   const Study study = load_study(options.study, options.common);
   if (is_ground_study(study)) return identify_ground(study, options.study, options.common);
+  if (vehicle::is_vehicle_study(study.root())) return identify_vehicle(study, options.study, options.common);
   if (muscle::is_muscle_study(study.root())) {
     throw InputError(study.root().place("subject"),
                      "is a musculoskeletal model, whose parameters this version does not estimate yet; `veridyn "
@@ -52,8 +55,9 @@ void add_identify(CLI::App& program, int& exit_code) {
   CLI::App* verb = program.add_subcommand("identify", "from recording to parameters, validation and report");
   verb->add_option(
           "STUDY", options->study,
-          "study file (TOML) of an aircraft's flight, a swing test or a calibration; `veridyn init` writes one to "
-          "start from. Studies of muscles (`model` in [subject]) are for `veridyn simulate`: estimating muscle "
+          "study file (TOML) of an aircraft's flight, a vehicle's drive, a swing test or a calibration; `veridyn init` "
+          "writes one to start from. Studies of muscles (`model` in [subject]) are for `veridyn simulate`: estimating "
+          "muscle "
           "parameters is not there yet")
       ->required();
   add_common(*verb, options->common, "out/identify",

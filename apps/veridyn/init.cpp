@@ -1,4 +1,4 @@
-// veridyn init aircraft|swing-test|calibration|muscle: a commented study file to start from.
+// veridyn init aircraft|vehicle|swing-test|calibration|muscle: a commented study file to start from.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "apps/veridyn/muscle_template.hpp"
 #include "apps/veridyn/options.hpp"
 #include "apps/veridyn/output.hpp"
+#include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
@@ -188,6 +189,19 @@ void add_init(CLI::App& program, int& exit_code) {
   model->callback([muscle, &exit_code] {
     write_study(*muscle, filled(kMuscleStudy, "@MODEL@", quoted_path(muscle->log, folder_of(*muscle))),
                 "choose method and motion", "simulate");
+    exit_code = kDone;
+  });
+  auto car = std::make_shared<Options>();
+  CLI::App* vehicle = verb->add_subcommand("vehicle", "study of a road vehicle: study.toml in --out");
+  vehicle->add_option("--log", car->log, "a drive log that the study is about; none: the drive is simulated")
+      ->type_name("FILE");
+  vehicle->add_flag("--force", car->force, "replace an existing study.toml");
+  add_common(*vehicle, car->common, ".", "veridyn init vehicle --log drive.csv --out my_car");
+  vehicle->callback([car, &exit_code] {
+    const std::string data =
+        car->log.empty() ? kNoDriveLog : filled(kDriveLog, "@LOG@", quoted_path(car->log, folder_of(*car)));
+    write_study(*car, filled(kVehicleStudy, "@DATA@", data), "fill in the vehicle",
+                car->log.empty() ? "simulate" : "identify");
     exit_code = kDone;
   });
   CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");

@@ -130,10 +130,10 @@ void add_inspect(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = program.add_subcommand(
       "inspect", "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles");
-  verb->add_option(
-          "FILE", options->file,
-          "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV; OpenSim model .osim, or the "
-          "built-in model 'arm'")
+  verb->add_option("FILE", options->file,
+                   "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV, a folder of NumPy "
+                   "arrays; OpenSim model .osim, or the "
+                   "built-in model 'arm'")
       ->required();
   verb->add_flag("--events", options->events, "list flight modes and messages");
   verb->add_flag("--parameters", options->parameters, "list the autopilot's parameters");

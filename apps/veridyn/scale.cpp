@@ -1,4 +1,6 @@
 // veridyn scale STUDY: similarity scaling of a vehicle, and how like the original a scaled one is.
+#include "apps/veridyn/scale.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -68,22 +70,23 @@ nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const Sca
   return s;
 }
 
-int scale(const Options& options) {
-  const Study study = load_study(options.study, options.common);
+}  // namespace
+
+int scale_vehicle(const Study& study, const std::string& path, const CommonOptions& options, const std::string& verb) {
   if (!is_vehicle_study(study.root()))
     throw InputError(study.root().place("subject"), "is no vehicle: `veridyn scale` needs kind = \"vehicle\"");
   ScaleStudy scale_study = read_scale_study(study.root());
   for (const char* table : {"sensors", "data", "signals", "segments", "identify", "validate", "track"})
     static_cast<void>(study.root().has(table));
   study.root().finish();
-  TerminalProgress progress(options.common.quiet);
+  TerminalProgress progress(options.quiet);
   progress.stage("driving prototype and models");
   const ScaleAnalysis analysis = run_scale_study(scale_study, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;
   }
-  const std::filesystem::path folder = options.common.out;
+  const std::filesystem::path folder = options.out;
   make_folder(folder);
   const SimilarityReport& r = judged(analysis);
   write_file(folder / "groups.csv", groups_csv(r));
@@ -92,22 +95,19 @@ int scale(const Options& options) {
   io::write_csv(to_recording(analysis.runs.back().own), folder / "model.csv");
   report::write_html(report::similarity_report(scale_study, analysis, "veridyn " VERIDYN_VERSION),
                      folder / "report.html");
-  RunRecord record{"scale", study.name(), study.to_toml(), scale_study.drive.seed, scale_study.drive.inputs};
-  record.inputs.emplace_back(options.study);
-  write_run_record(folder, record, options.common);
+  RunRecord record{verb, study.name(), study.to_toml(), scale_study.drive.seed, scale_study.drive.inputs};
+  record.inputs.emplace_back(path);
+  write_run_record(folder, record, options);
   for (const GroupComparison& g : r.mismatches())
-    tell(options.common, fmt::format("  {:<22} {:+.3g} %   {}", g.formula, g.mismatch_percent, g.affects));
-  tell(options.common,
-       fmt::format("  {:<22} {:+.3g} %   (gravity, apart)", r.gravity.formula, r.gravity.mismatch_percent));
-  for (const std::string& line : r.gravity_changes) tell(options.common, "    " + line);
-  tell(options.common, r.message());
-  tell(options.common,
+    tell(options, fmt::format("  {:<22} {:+.3g} %   {}", g.formula, g.mismatch_percent, g.affects));
+  tell(options, fmt::format("  {:<22} {:+.3g} %   (gravity, apart)", r.gravity.formula, r.gravity.mismatch_percent));
+  for (const std::string& line : r.gravity_changes) tell(options, "    " + line);
+  tell(options, r.message());
+  tell(options,
        fmt::format("wrote groups.csv, scaled.toml, prototype.csv, model.csv, report.html in {}", folder.string()));
-  print_summary(summary_of(folder, analysis), options.common);
+  print_summary(summary_of(folder, analysis), options);
   return kDone;
 }
-
-}  // namespace
 
 void add_scale(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
@@ -119,7 +119,9 @@ void add_scale(CLI::App& program, int& exit_code) {
       ->required();
   add_common(*verb, options->common, "out/scale",
              "veridyn scale car.toml --set scale.length_ratio=0.2 --set scale.mass=\"8.8 kg\"");
-  verb->callback([options, &exit_code] { exit_code = scale(*options); });
+  verb->callback([options, &exit_code] {
+    exit_code = scale_vehicle(load_study(options->study, options->common), options->study, options->common);
+  });
 }
 
 }  // namespace veridyn::app

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/output.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
@@ -20,6 +19,7 @@
 #include "veridyn/io/estimate_json.hpp"
 #include "veridyn/report/html.hpp"
 #include "veridyn/report/tracking_report.hpp"
+#include "veridyn/vehicle/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -30,8 +30,7 @@ using Clock = std::chrono::steady_clock;
 struct Options {
   std::string study;
   bool live = false;
-  double idle_s = 15.0;
-  double interval_s = 1.0;
+  FollowOptions follow;
   CommonOptions common;
 };
 
@@ -133,67 +132,24 @@ int replay(const Options& options, const Study& study) {
   return kDone;
 }
 
-/// Bytes of all files of the recording; 0 while one is missing.
-std::uintmax_t size_of(const std::vector<std::filesystem::path>& files) {
-  std::uintmax_t sum = 0;
-  for (const auto& file : files) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error) return 0;
-    sum += size;
-  }
-  return sum;
-}
-
 int follow(const Options& options, const Study& study) {
-  const StudyTable& root = study.root();
-  if (!root.has("data")) root.fail("data", "is missing: --live follows the recording that it names");
-  const StudyTable data = root.table("data");
-  const std::vector<std::filesystem::path> files = data.files(data.has("file") ? "file" : "files");
-  TerminalProgress signals(true);  // for its signals; a bar would fight with the table
   LiveView view(options.common);
   std::optional<FlightStudy> flight_study;
   std::optional<TrackedFlight> flight;
-  std::uintmax_t seen = 0;
-  std::string obstacle;
-  Clock::time_point grown = Clock::now();
-  double pause_s = options.interval_s;
-  tell(options.common, fmt::format("following {}; ends {:g} s after the last new data, or with Ctrl-C",
-                                   files.front().string(), options.idle_s));
-  while (true) {
-    const bool stop = signals.interrupted();
-    const std::uintmax_t size = size_of(files);
-    const bool news = size != seen;
-    if (news) grown = Clock::now();
-    const bool finished = stop || (!news && Clock::now() - grown > std::chrono::duration<double>(options.idle_s));
-    if (news || finished) {
-      seen = size;
-      const Clock::time_point begun = Clock::now();
-      try {
-        Progress silent;
-        flight_study = read_flight_study(study, silent);
-        if (!flight) flight.emplace(*flight_study);
-        view.show(*flight, flight->advance(flight_study->mapped, *flight_study, finished, silent));
-        obstacle.clear();
-      } catch (const InputError& error) {
-        // The head of a log may hold too little yet; what is wrong for good is still wrong at the end.
-        if (finished) throw;
-        if (obstacle != error.what()) tell(options.common, fmt::format("waiting: {}", error.what()));
-        obstacle = error.what();
-      }
-      // A long log takes longer to read: never more than a third of the time.
-      const double took = std::chrono::duration<double>(Clock::now() - begun).count();
-      pause_s = std::max(options.interval_s, 2.0 * took);
-    }
-    if (finished) break;
-    std::this_thread::sleep_for(std::chrono::duration<double>(news ? pause_s : std::min(pause_s, 0.2)));
-  }
+  follow_files(followed_files(study.root()), options.follow, options.common, [&](bool finished) {
+    Progress silent;
+    flight_study = read_flight_study(study, silent);
+    if (!flight) flight.emplace(*flight_study);
+    view.show(*flight, flight->advance(flight_study->mapped, *flight_study, finished, silent));
+  });
   write_results(options, study, *flight_study, *flight);
   return kDone;
 }
 
 int track(const Options& options) {
   const Study study = load_study(options.study, options.common);
+  if (vehicle::is_vehicle_study(study.root()))
+    return track_vehicle(study, options.study, options.live, options.follow, options.common);
   return options.live ? follow(options, study) : replay(options, study);
 }
 
@@ -204,11 +160,11 @@ void add_track(CLI::App& program, int& exit_code) {
   CLI::App* verb = program.add_subcommand("track", "recursive identification, replayed or live, with change detection");
   verb->add_option("STUDY", options->study, "study file; its table [track] holds the options")->required();
   verb->add_flag("--live", options->live, "follow the recording while it is being written");
-  verb->add_option("--idle", options->idle_s, "with --live: end this long after the last new data")
+  verb->add_option("--idle", options->follow.idle_s, "with --live: end this long after the last new data")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("SECONDS");
-  verb->add_option("--interval", options->interval_s, "with --live: look for new data this often")
+  verb->add_option("--interval", options->follow.interval_s, "with --live: look for new data this often")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("SECONDS");

@@ -5,10 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/results.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/estimate_json.hpp"
+#include "veridyn/vehicle/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -20,8 +22,10 @@ struct Options {
 };
 
 int validate(const Options& options) {
-  const estimation::Estimate estimate = io::read_estimate(options.estimate);
   const Study study = load_study(options.study, options.common);
+  if (vehicle::is_vehicle_study(study.root()))
+    return validate_vehicle(study, options.study, options.estimate, options.common);
+  const estimation::Estimate estimate = io::read_estimate(options.estimate);
   TerminalProgress progress(options.common.quiet);
   aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
   aircraft::FlightAnalysis analysis = aircraft::validate_estimate(flight, estimate, progress);
@@ -43,8 +47,8 @@ int validate(const Options& options) {
 
 void add_validate(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand("validate", "an estimate tried on a flight that it has not seen");
-  verb->add_option("STUDY", options->study, "study file of the other flight")->required();
+  CLI::App* verb = program.add_subcommand("validate", "an estimate tried on a flight or drive that it has not seen");
+  verb->add_option("STUDY", options->study, "study file of the other flight or drive")->required();
   verb->add_option("--estimate", options->estimate, "estimate.json of an identification")
       ->required()
       ->type_name("FILE");

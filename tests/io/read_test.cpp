@@ -37,14 +37,15 @@ TEST(ReadLog, RefusesWhatItCannotReadInOneSentence) {
   const testing::TemporaryFolder folder;
   const std::string place = folder.path().string();
   EXPECT_EQ(message_of([&] { (void)read_log(folder.path() / "missing.bin"); }), place + "/missing.bin: no such file");
-  EXPECT_EQ(message_of([&] { (void)read_log(folder.path()); }), place + ": is a directory, expected a file");
+  EXPECT_THAT(message_of([&] { (void)read_log(folder.path()); }),
+              HasSubstr(place + ": is a directory without NumPy arrays that have stamps"));
   EXPECT_EQ(message_of([&] { (void)read_log(folder.write("empty.bin", "")); }),
             place + "/empty.bin: the file is empty");
   EXPECT_EQ(message_of([&] { (void)read_log(folder.write("zero.bin", std::string(5000, '\0'))); }),
             place +
                 "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are "
-                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB (.mat), OpenSim storage (.sto, .mot) and "
-                "CSV with a header row");
+                "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB (.mat), OpenSim storage (.sto, .mot), "
+                "CSV and folders of NumPy arrays");
   EXPECT_THAT(
       message_of([&] { (void)read_log(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10))); }),
       HasSubstr("not a known log; known are"));

@@ -10,8 +10,10 @@
 #include <numbers>
 #include <string>
 
+#include "tests/vehicle/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
+#include "veridyn/vehicle/tir_reader.hpp"
 #include "veridyn/vehicle/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
@@ -172,6 +174,31 @@ TEST(FourWheelSimulation, MirrorsToTheLastBit) {
       EXPECT_EQ(a.wheel_speed[i][k], b.wheel_speed[mirrored(i)][k]);
     }
   }
+}
+
+// Tyres of a file pull to one side; in mirrored copies left and right the car does not.
+TEST(FourWheelSimulation, MirrorsWithTheTyresOfAFile) {
+  const TirFile tir = parse_tir(testing::small_tir(), "small.tir");
+  const auto left = tir.on(TyreSide::kLeft), right = tir.on(TyreSide::kRight);
+  using Car = FourWheelModel<double, MagicFormulaTyre<double>>;
+  Progress nobody;
+  const auto run = [&](const Car& car, double sign) {
+    SignalDriver driver([sign](double t) { return Controls{.steer = sign * slalom(t).steer, .drive_torque = 300.0}; });
+    return simulate(car, driver, nullptr, {.duration = 3.0}, nobody);
+  };
+  FourWheelOptions options;
+  options.longitudinal.emplace();
+  options.relaxation_length = 0.3;
+  const Car even(road_car(), {left, right, left, right}, options),
+      uneven(road_car(), {left, left, left, left}, options);
+  const auto a = run(even, 1.0), b = run(even, -1.0), c = run(uneven, 1.0), d = run(uneven, -1.0);
+  ASSERT_EQ(a.end, SimulationEnd::kCompleted) << a.message();
+  EXPECT_GT(std::abs(a.y.back()), 0.5);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a.y[k], -b.y[k]);
+    EXPECT_EQ(a.Fy[0][k], -b.Fy[1][k]);
+  }
+  EXPECT_GT(std::abs(c.y.back() + d.y.back()), 1e-3);
 }
 
 // In a steady turn the body leans by c sum F_y over the roll stiffness less gravity's tilting moment: tyre, spring and

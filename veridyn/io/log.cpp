@@ -56,6 +56,12 @@ void add_damage(const Log& log, Recording& recording) {
   for (const std::string& note : damage.notes) recording.warnings.push_back(note);
 }
 
+std::string channel_name(const std::string& prefix, const std::string& field) {
+  if (prefix.empty()) return field;
+  const bool element = field.empty() || field.front() == '[';
+  return element ? prefix + field : prefix + "." + field;
+}
+
 template <typename SomeLog>
 Recording convert(SomeLog& log, const RecordingOptions& options) {
   Recording recording;
@@ -79,7 +85,7 @@ Recording convert(SomeLog& log, const RecordingOptions& options) {
       const Unit unit = unit_of(field);
       if (unit.name == "1" && field.unit != "1") unknown_units.insert(field.unit);
       Channel channel;
-      channel.name = prefix.empty() ? field.name : prefix + "." + field.name;
+      channel.name = channel_name(prefix, field.name);
       channel.unit = unit.si();
       channel.recorded_unit = field.unit;
       channel.time = topic.time;

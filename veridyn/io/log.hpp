@@ -15,7 +15,7 @@ namespace veridyn::io {
 /// One field of a topic. `scale * values.number(i)` is in `unit`, which is written as `parse_unit` reads it; "1" also
 /// where the log does not say.
 struct LogField {
-  std::string name;
+  std::string name;  ///< empty, or "[0]", where the topic is the quantity itself
   std::string unit = "1";
   double scale = 1.0;
   Column values;
@@ -76,10 +76,10 @@ struct RecordingOptions {
   std::function<bool(std::string_view)> keep_topic;
 };
 
-/// The channels of a log: `TOPIC.field`, `IMU[1].AccX` for further instances, in SI and radians; the fields of a topic
-/// share their time base. Text columns and topics that describe the log itself make no channels. Parameters, events and
-/// information are carried over, and every damage becomes a warning. The rvalue form releases each column once it is
-/// converted, which halves the peak of memory.
+/// The channels of a log: `TOPIC.field` (`TOPIC` and `TOPIC[0]` of fields without a name), `IMU[1].AccX` for further
+/// instances, in SI and radians; the fields of a topic share their time base. Text columns and topics that describe the
+/// log itself make no channels. Parameters, events and information are carried over, and every damage becomes a
+/// warning. The rvalue form releases each column once it is converted, which halves the peak of memory.
 [[nodiscard]] Recording to_recording(const Log& log, const RecordingOptions& options = {});
 [[nodiscard]] Recording to_recording(Log&& log, const RecordingOptions& options = {});
 

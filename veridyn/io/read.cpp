@@ -10,6 +10,7 @@
 #include "veridyn/io/dataflash_text.hpp"
 #include "veridyn/io/mapped_file.hpp"
 #include "veridyn/io/mat.hpp"
+#include "veridyn/io/npy.hpp"
 #include "veridyn/io/storage.hpp"
 #include "veridyn/io/ulog.hpp"
 
@@ -71,10 +72,13 @@ const char* name_of(Format format) {
 }  // namespace
 
 Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
+  if (std::error_code error; std::filesystem::is_directory(path, error)) return read_npy_folder(path);
   const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   const Format expected = by_extension(path);
   Format format = by_content(bytes);
+  if (is_npy(bytes))
+    throw InputError(path.string(), "is one NumPy array without stamps; give the folder that holds it and its t.npy");
   if (format == Format::kUnknown && is_text(bytes)) format = Format::kCsv;
   if (format == Format::kUnknown ||
       (format == Format::kCsv && expected != Format::kCsv && bytes.find('\n') == std::string_view::npos)) {
@@ -84,7 +88,7 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
     throw InputError(
         path.string(),
         fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
-                    "(.mat), OpenSim storage (.sto, .mot) and CSV with a header row",
+                    "(.mat), OpenSim storage (.sto, .mot), CSV and folders of NumPy arrays",
                     claim));
   }
   Log log;

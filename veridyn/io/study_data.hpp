@@ -9,7 +9,7 @@ namespace veridyn::io {
 
 /// The recording that a study's `[data]` names:
 ///
-///     file  = "flight.bin"                    # one log of any known format, or
+///     file  = "flight.bin"                    # one log of any known format (or folder of arrays), or
 ///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
 ///     from = 342, to = 850                    # [s] only this part, on the log's clock
 ///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::string_view kPlace = "frequency response";
 
-/// Transforms of Hann-windowed half overlapping segments, one a row; scaled so that |X|^2 is a one-sided density.
+/// Transforms of Hann-windowed segments that overlap by a half or a little more, one a row; scaled so that |X|^2 is a
+/// one-sided density.
 std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<const double> x, double rate_Hz,
                                                                   std::size_t segment) {
   std::vector<double> window(segment);
@@ -28,11 +29,15 @@ std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<cons
   std::vector<std::vector<std::complex<double>>> all;
   std::vector<double> piece(segment);
   std::vector<std::complex<double>> spectrum;
-  for (std::size_t begin = 0; begin + segment <= x.size(); begin += segment / 2) {
+  // Spread evenly, so that the end of the record counts as well.
+  const std::size_t room = x.size() - segment;
+  const std::size_t last = (2 * room + segment - 1) / segment;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const std::size_t begin = last == 0 ? 0 : room * i / last;
     double mean = 0.0;
-    for (std::size_t i = 0; i < segment; ++i) mean += x[begin + i];
+    for (std::size_t k = 0; k < segment; ++k) mean += x[begin + k];
     mean /= static_cast<double>(segment);
-    for (std::size_t i = 0; i < segment; ++i) piece[i] = scale * window[i] * (x[begin + i] - mean);
+    for (std::size_t k = 0; k < segment; ++k) piece[k] = scale * window[k] * (x[begin + k] - mean);
     fft.fwd(spectrum, piece);
     all.emplace_back(spectrum.begin(), spectrum.begin() + static_cast<std::ptrdiff_t>(segment / 2 + 1));
   }
@@ -63,9 +68,9 @@ std::vector<ResponseEstimate> spectral_response(std::span<const double> input, s
   }
   const auto X = segment_transforms(input, rate_Hz, segment);
   const auto Y = segment_transforms(output, rate_Hz, segment);
-  // Half overlapping Hann windows tell about 1.9/2 as much each as separate ones would (Welch 1967); separate ones fit
-  // (segments + 1)/2 times.
-  const double independent = X.size() == 1 ? 1.0 : 0.95 * static_cast<double>(X.size());
+  // Half overlapping Hann windows tell 0.95 as much each as separate ones would (Welch 1967).
+  const double half_overlapping = 2.0 * static_cast<double>(input.size()) / static_cast<double>(segment) - 1.0;
+  const double independent = std::max(1.0, 0.95 * half_overlapping);
   const double spacing = rate_Hz / static_cast<double>(segment);
   std::vector<ResponseEstimate> list;
   std::vector<double> density;

@@ -208,8 +208,9 @@ TimeSeries prediction_figure(const DriveValidation& v, const std::string& title)
   Panel v_panel{.label = "lateral velocity", .unit = "m/s"};
   if (std::any_of(lateral.begin(), lateral.end(), known))
     v_panel.lines.push_back({.name = "measured", .y = lateral, .role = Role::kMeasured});
-  v_panel.lines.push_back({.name = "predicted", .y = lateral_hat});
-  figure.panels.push_back(std::move(v_panel));
+  if (std::any_of(lateral_hat.begin(), lateral_hat.end(), known))
+    v_panel.lines.push_back({.name = "predicted", .y = lateral_hat});
+  if (!v_panel.lines.empty()) figure.panels.push_back(std::move(v_panel));
   return figure;
 }
 

@@ -11,11 +11,11 @@ namespace veridyn::report {
 
 /// A published result beside ours, whatever the domain.
 struct ReproducedRow {
-  std::string title;
-  std::string finding;        ///< what was published, in words
-  std::string ours;           ///< how it was done here, in a sentence
-  std::vector<Check> checks;  ///< what must be seen
-  std::vector<Block> blocks;  ///< numbers side by side, pictures
+  std::string title = {};
+  std::string finding = {};        ///< what was published, in words
+  std::string ours = {};           ///< how it was done here, in a sentence
+  std::vector<Check> checks = {};  ///< what must be seen
+  std::vector<Block> blocks = {};  ///< numbers side by side, pictures
 
   [[nodiscard]] bool passed() const;
 };

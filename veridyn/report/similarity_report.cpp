@@ -62,7 +62,7 @@ Table behaviour_table(const SimilarityReport& r) {
                    {.name = "unit", .align = Align::kLeft},
                    {.name = "change", .align = Align::kRight}};
   for (const BehaviourComparison& b : r.behaviour) {
-    const ReadableNumber p = readable(b.prototype, b.unit), m = readable(b.model, b.unit);
+    const ReadableNumber p = readable(b.prototype, b.unit, b.name), m = readable(b.model, b.unit, b.name);
     table.rows.push_back({.cells = {text_cell(b.name), number_cell(p.value), number_cell(m.value), text_cell(p.unit),
                                     text_cell(percent(b.change_percent))}});
   }
@@ -132,15 +132,19 @@ Section group_section(const ScaleAnalysis& analysis) {
 }
 
 std::vector<Section> overlay_sections(const ScaleStudy& study, const ScaleAnalysis& analysis) {
-  std::vector<ShownDrive> drives{{.name = "prototype", .trajectory = &analysis.prototype, .role = Role::kReference}};
-  for (const ScaledRun& run : analysis.runs) drives.push_back({.name = run.name, .trajectory = &run.rescaled});
+  // The model of most interest, and on top of it the prototype.
+  const ScaledRun& model = analysis.runs.back();
+  const std::vector<ShownDrive> drives{
+      {.name = model.name, .trajectory = &model.rescaled},
+      {.name = "prototype", .trajectory = &analysis.prototype, .role = Role::kReference}};
   const double gravity = study.drive.four_wheel.gravity;
   // Static loads do not scale unless gravity does: what the drive adds to them does.
-  std::vector<PerWheel<double>> loads(drives.size(), static_loads(study.prototype.parameters, gravity));
-  for (std::size_t i = 0; i < analysis.runs.size(); ++i) {
-    const auto& Fz = analysis.runs[i].rescaled.Fz;
-    for (std::size_t w = 0; w < kWheels; ++w)
-      if (!Fz[w].empty()) loads[i + 1][w] = Fz[w].front();
+  std::vector<PerWheel<double>> loads(drives.size());
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    for (std::size_t w = 0; w < kWheels; ++w) {
+      const std::vector<double>& Fz = drives[i].trajectory->Fz[w];
+      loads[i][w] = Fz.empty() ? 0.0 : Fz.front();
+    }
   }
   std::vector<Section> sections;
   sections.push_back({.title = "Path", .blocks = {path_figure(drives), g_g_figure(drives, gravity)}});

@@ -71,7 +71,7 @@ Table metric_table(std::span<const Metric> metrics) {
                    {.name = "source", .align = Align::kLeft},
                    {.name = "meaning", .align = Align::kLeft}};
   for (const Metric& m : metrics) {
-    const ReadableNumber r = readable(m.value, m.unit);
+    const ReadableNumber r = readable(m.value, m.unit, m.name);
     table.rows.push_back({.cells = {text_cell(m.name), number_cell(r.value), text_cell(r.unit), text_cell(m.source),
                                     text_cell(m.meaning)}});
   }
@@ -86,7 +86,7 @@ Table characteristic_table(const BicycleCharacteristics<double>& c) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::string name = kBicycleCharacteristicFields[i].name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    const ReadableNumber r = readable(values[i], kBicycleCharacteristicFields[i].unit);
+    const ReadableNumber r = readable(values[i], kBicycleCharacteristicFields[i].unit, name);
     table.rows.push_back({.cells = {text_cell(name), number_cell(r.value), text_cell(r.unit)}});
   }
   return table;
@@ -110,7 +110,9 @@ Table mode_table(std::span<const Mode> modes) {
 
 }  // namespace
 
-ReadableNumber readable(double value, const std::string& unit) {
+ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
+  const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
+  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * std::numbers::pi), "Hz"};
   static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
       {"rad", "deg", 1.0 / kDegree},
       {"rad/s", "deg/s", 1.0 / kDegree},

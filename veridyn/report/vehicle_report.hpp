@@ -23,11 +23,12 @@ struct NamedBicycle {
 };
 [[nodiscard]] std::vector<Block> frequency_response_figures(std::span<const NamedBicycle> bicycles);
 
-/// A number in the unit that people read: angles in deg, understeer gradients in deg/g.
+/// A number in the unit that people read: angles in deg, understeer gradients in deg/g, and what its name calls a
+/// frequency or bandwidth in Hz.
 struct ReadableNumber {
   double value = 0.0;
   std::string unit;
 };
-[[nodiscard]] ReadableNumber readable(double value, const std::string& unit);
+[[nodiscard]] ReadableNumber readable(double value, const std::string& unit, std::string_view name = {});
 
 }  // namespace veridyn::report

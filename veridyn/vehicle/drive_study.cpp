@@ -25,9 +25,8 @@ constexpr double kWarm_s = 2.0;
 DriveStudy read_tables(const Study& study) {
   const StudyTable& root = study.root();
   DriveStudy out;
-  out.name = study.name();
+  out.name = root.text_or("title", study.name());
   out.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
-  static_cast<void>(root.text_or("title", ""));
   const StudyTable subject = root.table("subject");
   const Vehicle vehicle = read_vehicle(subject, VehicleNeeds::kGeometry);
   out.subject_name = vehicle.name.empty() ? "vehicle" : vehicle.name;

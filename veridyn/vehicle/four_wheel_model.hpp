@@ -9,6 +9,7 @@
 #include "veridyn/vehicle/bicycle_model.hpp"
 #include "veridyn/vehicle/driver.hpp"
 #include "veridyn/vehicle/longitudinal.hpp"
+#include "veridyn/vehicle/trigonometry.hpp"
 #include "veridyn/vehicle/tyre.hpp"
 #include "veridyn/vehicle/vehicle_parameters.hpp"
 #include "veridyn/vehicle/wheel_arrays.hpp"
@@ -213,11 +214,10 @@ FourWheelState<Scalar> FourWheelModel<Scalar, Tyre>::steady_start(const Scalar& 
 }
 
 template <typename Scalar, typename Tyre>
-WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar& steer, double drive_torque,
-                                                                   double brake_torque) const {
+[[gnu::flatten]] WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar& steer,
+                                                                                    double drive_torque,
+                                                                                    double brake_torque) const {
   using std::atan;
-  using std::cos;
-  using std::sin;
   using std::tan;
   WheelControls<Scalar> out;
   const Scalar none(0.0), one(1.0);
@@ -232,12 +232,10 @@ WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar&
   out.cos.setConstant(one);
   out.sin.setConstant(none);
   if (options_.geometry == BicycleGeometry::kExact) {
-    out.cos[0] = out.cos[1] = cos(left);
-    out.sin[0] = out.sin[1] = sin(left);
-    if (options_.ackermann != 0.0) {
-      out.cos[1] = cos(right);
-      out.sin[1] = sin(right);
-    }
+    const SineCosine<Scalar> at_left = sine_cosine(left);
+    const SineCosine<Scalar> at_right = options_.ackermann == 0.0 ? at_left : sine_cosine(right);
+    out.cos << at_left.cos, at_right.cos, one, one;
+    out.sin << at_left.sin, at_right.sin, none, none;
   }
   out.drive.setZero();
   out.brake.setZero();
@@ -252,135 +250,129 @@ WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar&
 }
 
 template <typename Scalar, typename Tyre>
-void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
-                                         const PerWheel<double>& road, FourWheelRates<Scalar>& out) const {
-  using std::cos;
-  using std::sin;
+[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
+                                                          const PerWheel<double>& road,
+                                                          FourWheelRates<Scalar>& out) const {
   using std::sqrt;
   using Wheels = WheelArray<Scalar>;
   const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
-  const bool spins = options_.longitudinal.has_value();
-  const Scalar &u = s(kU), &v = s(kV), &r = s(kR);
-  const Scalar &roll = s(kRoll), &pitch = s(kPitch), &roll_rate = s(kRollRate), &pitch_rate = s(kPitchRate);
   State& d = out.derivative;
+  const Scalar u = s(kU), v = s(kV), r = s(kR);
+  const Scalar roll = s(kRoll), pitch = s(kPitch);
+  const Scalar heave_rate = s(kHeaveRate), roll_rate = s(kRollRate), pitch_rate = s(kPitchRate);
+  const Wheels height = s.template segment<4>(kWheelHeight).array();
+  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
+
+  // Slips: the velocity of the contact points in vehicle axes, then in wheel axes.
+  const Wheels contact_x = (u - contact_height_ * pitch_rate) - r * y_;
+  const Wheels contact_y = (v + contact_height_ * roll_rate) + r * x_;
+  out.contact_x = contact_x;
+  out.contact_y = contact_y;
+  const Wheels along = controls.cos * contact_x + controls.sin * contact_y;
+  const Wheels speed = along.abs().max(Scalar(kLeastSpeedOfAngle));
+  Wheels slip_angle, slip_ratio, lag;
+  if (options_.geometry == BicycleGeometry::kExact) {
+    const Wheels across = controls.cos * contact_y - controls.sin * contact_x;
+    slip_angle = -arc_tangents<Scalar>(across / speed);
+  } else {
+    slip_angle = controls.steer - contact_y / contact_x;
+  }
+  lag.setConstant(Scalar(0.0));
+  if (options_.relaxation_length > 0.0) {
+    const Wheels lagged = s.template segment<4>(kLaggedSlip).array();
+    lag = (slip_angle - lagged) * speed / Scalar(options_.relaxation_length);
+    slip_angle = lagged;
+  }
+  slip_ratio.setConstant(Scalar(0.0));
+  const Wheels spin = s.template segment<4>(kWheelSpin).array();
+  if (options_.longitudinal) {
+    slip_ratio = (Scalar(options_.longitudinal->wheel_radius) * spin - along) / speed.max(Scalar(kLeastSpeedOfRatio));
+  }
+  out.slip_angle = slip_angle;
+  out.slip_ratio = slip_ratio;
+  d.template segment<4>(kLaggedSlip) = lag.matrix();
 
   // Suspension and tyres up and down, as deviations from rest.
   const Scalar body = s(kHeave) + 0.5 * contact_height_ * (roll * roll + pitch * pitch);
-  const Scalar body_rate = s(kHeaveRate) + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
-  const Wheels height = s.template segment<4>(kWheelHeight).array();
-  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
+  const Scalar body_rate = heave_rate + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
   const Wheels travel = height - ((body - pitch * arm_) + roll * y_);
   const Scalar bar_f = bar_[0] * (travel[0] - travel[1]), bar_r = bar_[1] * (travel[2] - travel[3]);
-  Wheels lift = spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_));
-  lift[0] += bar_f;
-  lift[1] -= bar_f;
-  lift[2] += bar_r;
-  lift[3] -= bar_r;
-  Wheels ground;
-  for (Eigen::Index i = 0; i < 4; ++i) ground[i] = Scalar(road[static_cast<std::size_t>(i)]);
+  const Wheels bars(bar_f, -bar_f, bar_r, -bar_r);
+  const Wheels lift =
+      spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_)) + bars;
+  const Wheels ground{{Scalar(road[0]), Scalar(road[1]), Scalar(road[2]), Scalar(road[3])}};
   Wheels normal = tyre_ * (ground - height);
-  out.Fz = rest_ + normal;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    if (out.Fz[i] > 0.0) continue;
-    out.Fz[i] = Scalar(0.0);
-    if (ours) normal[i] = -rest_[i];
-  }
+  if (ours) normal = normal.max(-rest_);
+  const Wheels Fz = (rest_ + normal).max(Scalar(0.0));
   out.suspension_travel = travel;
   out.suspension_force = lift;
-
-  // Slips: the velocity of the contact points in vehicle axes, then in wheel axes.
-  out.contact_x = (u - contact_height_ * pitch_rate) - r * y_;
-  out.contact_y = (v + contact_height_ * roll_rate) + r * x_;
-  const Wheels along = controls.cos * out.contact_x + controls.sin * out.contact_y;
-  Wheels speed = along;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    if (speed[i] < 0.0) speed[i] = -speed[i];
-    if (!(speed[i] > kLeastSpeedOfAngle)) speed[i] = Scalar(kLeastSpeedOfAngle);
-  }
-  if (options_.geometry == BicycleGeometry::kExact) {
-    const Wheels across = controls.cos * out.contact_y - controls.sin * out.contact_x;
-    out.slip_angle = -atan_of_wheels<Scalar>(across / speed);
-  } else {
-    out.slip_angle = controls.steer - out.contact_y / out.contact_x;
-  }
-  auto lag = d.template segment<4>(kLaggedSlip);
-  if (options_.relaxation_length > 0.0) {
-    const auto lagged = s.template segment<4>(kLaggedSlip).array();
-    lag = ((out.slip_angle - lagged) * speed / Scalar(options_.relaxation_length)).matrix();
-    out.slip_angle = lagged;
-  } else {
-    lag.setConstant(Scalar(0.0));
-  }
-  const auto spin = s.template segment<4>(kWheelSpin).array();
-  if (spins) {
-    for (Eigen::Index i = 0; i < 4; ++i) {
-      const Scalar least = speed[i] > kLeastSpeedOfRatio ? speed[i] : Scalar(kLeastSpeedOfRatio);
-      out.slip_ratio[i] = (options_.longitudinal->wheel_radius * spin[i] - along[i]) / least;
-    }
-  } else {
-    out.slip_ratio.setConstant(Scalar(0.0));
-  }
+  out.Fz = Fz;
+  d.template segment<4>(kWheelHeight) = height_rate.matrix();
+  d.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
+  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
+  const Scalar lift_rolls = sum_of_wheels<Scalar>(y_ * lift), lift_pitches = sum_of_wheels<Scalar>(arm_ * lift);
 
   // Forces of the tyres, in wheel axes, then in vehicle axes.
   const Scalar camber = options_.camber_per_roll * roll;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const TyreForces<Scalar> f =
-        tyres_[static_cast<std::size_t>(i)].forces(out.Fz[i], out.slip_ratio[i], out.slip_angle[i], camber);
-    out.Fx[i] = f.Fx;
-    out.Fy[i] = f.Fy;
-  }
-  const Wheels X = controls.cos * out.Fx - controls.sin * out.Fy;
-  const Wheels Y = controls.sin * out.Fx + controls.cos * out.Fy;
+  const auto force = [&](std::size_t wheel) {
+    const auto w = static_cast<Eigen::Index>(wheel);
+    return tyres_[wheel].forces(Fz[w], slip_ratio[w], slip_angle[w], camber);
+  };
+  const TyreForces<Scalar> fl = force(0), fr = force(1), rl = force(2), rr = force(3);
+  const Wheels Fx(fl.Fx, fr.Fx, rl.Fx, rr.Fx), Fy(fl.Fy, fr.Fy, rl.Fy, rr.Fy);
+  out.Fx = Fx;
+  out.Fy = Fy;
+  const Wheels X = controls.cos * Fx - controls.sin * Fy;
+  const Wheels Y = controls.sin * Fx + controls.cos * Fy;
   const Scalar sum_X = sum_of_wheels<Scalar>(X), sum_Y = sum_of_wheels<Scalar>(Y);
 
-  // The wheels' spin. Coulomb friction: against it, and at rest as much as it takes to stay there.
+  // The body in the plane.
+  Scalar longitudinal_acceleration, holding_force(0.0), pitching_force = sum_X, u_rate(0.0);
   auto spin_up = d.template segment<4>(kWheelSpin);
   spin_up.setConstant(Scalar(0.0));
-  if (spins) {
+  if (options_.longitudinal) {
     const LongitudinalParameters& l = *options_.longitudinal;
+    const Scalar drag = 0.5 * l.air_density * l.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
+    longitudinal_acceleration = (sum_X - drag) * per_mass_ - gravity_along_;
+    u_rate = longitudinal_acceleration + r * v;
     for (Eigen::Index i = 0; i < 4; ++i) {
-      const Scalar turning = controls.drive[i] - l.wheel_radius * out.Fx[i];
-      const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * out.Fz[i];
+      // Coulomb friction: against the spin, and at rest as much as it takes to stay there.
+      const Scalar turning = controls.drive[i] - l.wheel_radius * Fx[i];
+      const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * Fz[i];
       const bool rests = !(spin[i] > 0.0) && !(spin[i] < 0.0);
       if (spin[i] > 0.0 || (rests && turning > friction)) spin_up[i] = (turning - friction) / l.wheel_inertia;
       if (spin[i] < 0.0 || (rests && turning < -friction)) spin_up[i] = (turning + friction) / l.wheel_inertia;
     }
-  }
-
-  // The body in the plane.
-  out.lateral_acceleration = sum_Y * per_mass_;
-  Scalar pitching_force = sum_X;
-  if (spins) {
-    const LongitudinalParameters& l = *options_.longitudinal;
-    const Scalar drag = 0.5 * l.air_density * l.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
-    out.longitudinal_acceleration = (sum_X - drag) * per_mass_ - gravity_along_;
-    out.holding_force = Scalar(0.0);
-    d(kU) = out.longitudinal_acceleration + r * v;
   } else {
-    out.longitudinal_acceleration = -(r * v);
-    out.holding_force = p_.mass * out.longitudinal_acceleration - sum_X;
-    d(kU) = Scalar(0.0);
-    if (ours) pitching_force = p_.mass * out.longitudinal_acceleration;
+    longitudinal_acceleration = -(r * v);
+    holding_force = p_.mass * longitudinal_acceleration - sum_X;
+    if (ours) pitching_force = p_.mass * longitudinal_acceleration;
   }
-  d(kV) = out.lateral_acceleration - r * u;
-  d(kR) = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
-  const Scalar c_yaw = cos(s(kYaw)), s_yaw = sin(s(kYaw));
-  d(kX) = u * c_yaw - v * s_yaw;
-  d(kY) = u * s_yaw + v * c_yaw;
-  d(kYaw) = r;
-  d(kDistance) = sqrt(u * u + v * v);
+  const Scalar lateral_acceleration = sum_Y * per_mass_;
+  out.longitudinal_acceleration = longitudinal_acceleration;
+  out.lateral_acceleration = lateral_acceleration;
+  out.holding_force = holding_force;
+  const Scalar r_rate = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
+  const SineCosine<Scalar> yaw = sine_cosine<Scalar>(s(kYaw));
 
   // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
-  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
   const Scalar tilting = tilting_ + contact_height_ * sum_lift;
-  d(kHeave) = s(kHeaveRate);
+  const Scalar roll_moment = lift_rolls + tilting * roll + p_.cg_height * sum_Y;
+  const Scalar pitch_moment = tilting * pitch - lift_pitches - p_.cg_height * pitching_force;
+
+  d(kX) = u * yaw.cos - v * yaw.sin;
+  d(kY) = u * yaw.sin + v * yaw.cos;
+  d(kYaw) = r;
+  d(kU) = u_rate;
+  d(kV) = lateral_acceleration - r * u;
+  d(kR) = r_rate;
+  d(kHeave) = heave_rate;
   d(kRoll) = roll_rate;
   d(kPitch) = pitch_rate;
   d(kHeaveRate) = sum_lift * per_heaving_mass_;
-  d(kRollRate) = (sum_of_wheels<Scalar>(y_ * lift) + tilting * roll + p_.cg_height * sum_Y) * per_I_x_;
-  d(kPitchRate) = (tilting * pitch - sum_of_wheels<Scalar>(arm_ * lift) - p_.cg_height * pitching_force) * per_I_y_;
-  d.template segment<4>(kWheelHeight) = height_rate.matrix();
-  d.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
+  d(kRollRate) = roll_moment * per_I_x_;
+  d(kPitchRate) = pitch_moment * per_I_y_;
+  d(kDistance) = sqrt(u * u + v * v);
 }
 
 }  // namespace veridyn::vehicle

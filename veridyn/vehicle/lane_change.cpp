@@ -11,6 +11,9 @@
 namespace veridyn::vehicle {
 namespace {
 
+/// Straight way before the first lane [m].
+constexpr double kApproach = 40.0;
+
 struct Corner {
   double x, y;
 };
@@ -38,15 +41,16 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
   const double w = vehicle_width / scale;
   const std::array<double, 3> width{1.1 * w + 0.25, 1.2 * w + 0.25, 1.3 * w + 0.25};
   const double right = -0.5 * width[0];
-  course.lanes = {{{0.0, 15.0, right, right + width[0]},
-                   {45.0, 70.0, right + 3.5, right + 3.5 + width[1]},
-                   {95.0, 125.0, right, right + width[2]}}};
+  const double first = kApproach;
+  course.lanes = {{{first, first + 15.0, right, right + width[0]},
+                   {first + 45.0, first + 70.0, right + 3.5, right + 3.5 + width[1]},
+                   {first + 95.0, first + 125.0, right, right + width[2]}}};
   for (Lane& lane : course.lanes) lane = {scale * lane.begin, scale * lane.end, scale * lane.right, scale * lane.left};
   const auto middle = [&](std::size_t i) { return 0.5 * (course.lanes[i].right + course.lanes[i].left); };
-  // Shifts begin and end within the lanes, as far as the room beside the vehicle allows: a gentler curve.
-  const double early = 7.0 * scale;
-  course.path = Path(-40.0 * scale, 0.0);
-  course.path.append_line(55.0 * scale - early)
+  // Shifts begin and end a little within the lanes, where the room beside the vehicle allows it: a gentler curve. A
+  // driver who looks ahead rounds it further.
+  const double early = 2.0 * scale;
+  course.path.append_line((kApproach + 15.0) * scale - early)
       .append_lane_change(30.0 * scale + 2.0 * early, middle(1))
       .append_line(25.0 * scale - 2.0 * early)
       .append_lane_change(25.0 * scale + 2.0 * early, middle(2) - middle(1))

@@ -18,12 +18,13 @@ struct Lane {
 /// The severe double lane change of ISO 3888-1: three lanes of 15, 25 and 30 m with 30 and 25 m between them, the
 /// second 3.5 m to the left of the first (right edge to right edge). Widths follow the vehicle's width w: 1.1 w + 0.25
 /// m, 1.2 w
-/// + 0.25 m, 1.3 w + 0.25 m. The first lane begins at x = 0, its middle is y = 0.
+/// + 0.25 m, 1.3 w + 0.25 m. The first lane begins at x = 40 m (times `scale`), its
+/// middle is y = 0: a vehicle that starts at the origin has 40 m to settle.
 struct DoubleLaneChange {
   double vehicle_width = 1.75;  ///< w, without mirrors [m]
   double scale = 1.0;           ///< all lengths of the course, for a scaled car; vehicle_width is the real one
   std::array<Lane, 3> lanes{};
-  Path path;  ///< for a driver: from 40 m before the first lane, through the middles of the lanes
+  Path path;  ///< for a driver: from the origin through the middles of the lanes
 };
 /// @throws InputError when width or scale is not > 0.
 [[nodiscard]] DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale = 1.0);

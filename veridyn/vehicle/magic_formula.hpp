@@ -105,6 +105,9 @@ struct MagicFormulaTyre {
   };
   [[nodiscard]] Terms at(const Scalar& load, const Scalar& gamma) const;
 
+  /// S_Vyk, the side force that a slip ratio adds, (4.E66) and (4.E67); file convention.
+  [[nodiscard]] Scalar induced_Fy(const Terms& t, const Scalar& kappa, const Scalar& alpha) const;
+
  private:
   [[nodiscard]] Scalar Fx0(const Terms& t, const Scalar& kappa) const;
   [[nodiscard]] Scalar Fy0(const Terms& t, const Scalar& alpha) const;
@@ -114,13 +117,6 @@ struct MagicFormulaTyre {
 };
 
 namespace magic_formula {
-
-/// The argument of the sine or cosine: C atan(y - E (y - atan(y))).
-template <typename Scalar>
-[[nodiscard]] Scalar angle(const Scalar& C, const Scalar& E, const Scalar& y) {
-  using std::atan;
-  return C * atan(y - E * (y - atan(y)));
-}
 
 template <typename Scalar>
 [[nodiscard]] Scalar clamped(const Scalar& x, double lowest, double highest) {
@@ -134,6 +130,14 @@ template <typename Scalar>
 [[nodiscard]] bool vanishes(const Scalar& x) {
   if constexpr (std::is_floating_point_v<Scalar>) return x == 0.0;
   return false;
+}
+
+/// The argument of the sine or cosine: C atan(y - E (y - atan(y))).
+template <typename Scalar>
+[[nodiscard]] Scalar angle(const Scalar& C, const Scalar& E, const Scalar& y) {
+  using std::atan;
+  if (vanishes(E)) return C * atan(y);
+  return C * atan(y - E * (y - atan(y)));
 }
 
 /// A curvature factor, at most 1.
@@ -199,6 +203,7 @@ Scalar MagicFormulaTyre<Scalar>::Fx0(const Terms& t, const Scalar& kappa) const 
   using std::sin;
   const MagicFormulaCoefficients<Scalar>& c = coefficients;
   const Scalar shifted = kappa + t.SH_x;
+  if (magic_formula::vanishes(shifted)) return t.SV_x;
   const Scalar sign(shifted < 0.0 ? -1.0 : 1.0);
   const Scalar E = magic_formula::curvature(
       Scalar((c.PEX1 + t.dfz * (c.PEX2 + t.dfz * c.PEX3)) * (1.0 - c.PEX4 * sign) * c.LEX));  // (4.E14)
@@ -229,28 +234,35 @@ Scalar MagicFormulaTyre<Scalar>::Fy0(const Terms& t, const Scalar& alpha) const 
 template <typename Scalar>
 TyreForces<Scalar> MagicFormulaTyre<Scalar>::weighted(const Terms& t, const Scalar& kappa, const Scalar& alpha) const {
   using magic_formula::vanishes;
+  using std::sqrt;
+  const MagicFormulaCoefficients<Scalar>& c = coefficients;
+  TyreForces<Scalar> out{Fx0(t, kappa), Fy0(t, alpha)};
+  // cos(atan(x)) = 1/sqrt(1 + x^2). A force that is 0 needs no weight: a rolling wheel without shifts.
+  if (!vanishes(out.Fx)) {
+    const Scalar slope = c.RBX2 * kappa;
+    const Scalar B = c.RBX1 * c.LXAL / sqrt(1.0 + slope * slope);  // (4.E54)
+    const Scalar E = magic_formula::curvature(Scalar(c.REX1 + c.REX2 * t.dfz));
+    out.Fx *= magic_formula::weight(B, c.RCX1, E, c.RHX1, alpha);
+  }
+  if (!vanishes(kappa)) {
+    const Scalar slope = c.RBY2 * (alpha - c.RBY3);
+    const Scalar B = c.RBY1 * c.LYKA / sqrt(1.0 + slope * slope);  // (4.E62)
+    const Scalar E = magic_formula::curvature(Scalar(c.REY1 + c.REY2 * t.dfz));
+    const Scalar shift = c.RHY1 + c.RHY2 * t.dfz;
+    out.Fy = out.Fy * magic_formula::weight(B, c.RCY1, E, shift, kappa) + induced_Fy(t, kappa, alpha);
+  }
+  return out;
+}
+
+template <typename Scalar>
+Scalar MagicFormulaTyre<Scalar>::induced_Fy(const Terms& t, const Scalar& kappa, const Scalar& alpha) const {
   using std::atan;
   using std::sin;
   using std::sqrt;
   const MagicFormulaCoefficients<Scalar>& c = coefficients;
-  // cos(atan(x)) = 1/sqrt(1 + x^2).
-  const Scalar slope_x = c.RBX2 * kappa;
-  const Scalar B_x = c.RBX1 * c.LXAL / sqrt(1.0 + slope_x * slope_x);  // (4.E54)
-  const Scalar E_x = magic_formula::curvature(Scalar(c.REX1 + c.REX2 * t.dfz));
-  const Scalar G_x = magic_formula::weight(B_x, c.RCX1, E_x, c.RHX1, alpha);
-  const Scalar slope_y = c.RBY2 * (alpha - c.RBY3);
-  const Scalar B_y = c.RBY1 * c.LYKA / sqrt(1.0 + slope_y * slope_y);  // (4.E62)
-  const Scalar E_y = magic_formula::curvature(Scalar(c.REY1 + c.REY2 * t.dfz));
-  const Scalar SH_y = c.RHY1 + c.RHY2 * t.dfz;
-  const Scalar G_y = magic_formula::weight(B_y, c.RCY1, E_y, SH_y, kappa);
-  TyreForces<Scalar> out{G_x * Fx0(t, kappa), G_y * Fy0(t, alpha)};
-  if (!vanishes(kappa)) {
-    const Scalar slope_v = c.RVY4 * alpha;
-    const Scalar D_v =
-        t.mu_y * t.Fz * (c.RVY1 + c.RVY2 * t.dfz + c.RVY3 * t.gamma) / sqrt(1.0 + slope_v * slope_v);  // (4.E67)
-    out.Fy += D_v * sin(c.RVY5 * atan(c.RVY6 * kappa)) * c.LVYKA;                                      // (4.E66)
-  }
-  return out;
+  const Scalar slope = c.RVY4 * alpha;
+  const Scalar D = t.mu_y * t.Fz * (c.RVY1 + c.RVY2 * t.dfz + c.RVY3 * t.gamma) / sqrt(1.0 + slope * slope);
+  return D * sin(c.RVY5 * atan(c.RVY6 * kappa)) * c.LVYKA;
 }
 
 template <typename Scalar>

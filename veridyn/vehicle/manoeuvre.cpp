@@ -44,6 +44,24 @@ class SineDriver final : public Driver {
   double amplitude_, frequency_, start_, periods_, dwell_;
 };
 
+/// Steers as another and adds torques.
+class TorqueDriver final : public Driver {
+ public:
+  TorqueDriver(std::unique_ptr<Driver> steering, PiecewiseLinear drive, PiecewiseLinear brake)
+      : steering_(std::move(steering)), drive_(std::move(drive)), brake_(std::move(brake)) {}
+  void look(double time, const PlanarMotion& motion) override { steering_->look(time, motion); }
+  [[nodiscard]] Controls controls(double time) const override {
+    Controls c = steering_->controls(time);
+    c.drive_torque += drive_(time);
+    c.brake_torque += brake_(time);
+    return c;
+  }
+
+ private:
+  std::unique_ptr<Driver> steering_;
+  PiecewiseLinear drive_, brake_;
+};
+
 /// Half a cosine from 0 to 1 while x goes from 0 to 1.
 double smooth(double x) { return 0.5 * (1.0 - std::cos(kPi * std::clamp(x, 0.0, 1.0))); }
 
@@ -252,6 +270,20 @@ Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque, P
               end > 0.0 ? end : 20.0, begin, peak);
 }
 
+void add_torques(Manoeuvre& manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque) {
+  for (const double torque : brake_torque.values()) require(torque >= 0.0, "brake_torque", torque, "N m", ">= 0");
+  manoeuvre.driver =
+      std::make_unique<TorqueDriver>(std::move(manoeuvre.driver), std::move(drive_torque), std::move(brake_torque));
+}
+
+void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context) {
+  for (const double u : speed.values()) require_positive(u, "target_speed", "m/s");
+  manoeuvre.speed = speed;
+  manoeuvre.driver = std::make_unique<SpeedControlledDriver>(
+      std::move(manoeuvre.driver), std::move(speed),
+      SpeedControllerOptions{.mass = context.parameters.mass, .wheel_radius = context.wheel_radius});
+}
+
 LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context) {
   require_positive(context.speed, "speed", "m/s");
   const VehicleParameters<double>& p = context.parameters;
@@ -260,11 +292,10 @@ LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context) {
 
 Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
                       const PreviewDriverOptions& options) {
+  path = std::make_shared<const Path>(path->from_origin());
   Manoeuvre m =
       with(ManoeuvreKind::kFollowPath, std::make_unique<PreviewDriver>(expected_bicycle(context), path, options),
            path->length() / context.speed, 0.0, options.max_steer);
-  const PathPoint begin = path->at(0.0);
-  m.initial = {.x = begin.x, .y = begin.y, .yaw = begin.heading};
   m.path = std::move(path);
   return m;
 }
@@ -291,7 +322,7 @@ Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius,
   m.kind = ManoeuvreKind::kSteadyStateCircle;
   m.radius = radius;
   m.default_duration = duration;
-  m.speed = PiecewiseLinear({0.0, duration}, {context.speed, end_speed});
+  add_speed_control(m, PiecewiseLinear({0.0, duration}, {context.speed, end_speed}), context);
   return m;
 }
 

@@ -45,11 +45,9 @@ struct Manoeuvre {
   double radius = 0.0;             ///< of a constant-radius circle [m]
   std::optional<DoubleLaneChange> course{};
   BodyOutline body{};
-  std::shared_ptr<const Path> path{};  ///< which is followed
+  std::shared_ptr<const Path> path{};  ///< which is followed: from the origin along x, where simulations start
   /// Speed over time that the manoeuvre needs to vary; empty: constant.
   PiecewiseLinear speed{};
-  /// Place and heading at the start, for manoeuvres that follow a path; its velocities are the caller's.
-  PlanarMotion initial{};
 };
 
 // Open loop. Angles at the road wheels [rad], times [s], frequencies [Hz]. All throw InputError for amplitudes beyond
@@ -81,9 +79,18 @@ struct ManoeuvreContext {
   double speed = 20.0;
   double gravity = 9.80665;
   std::uint64_t seed = 1;
+  double wheel_radius = 0.30;  ///< for the torque of a driver who holds a speed [m]
   /// Cornering stiffnesses of one tyre that a driver expects; those of the parameters when absent.
   std::optional<double> C_f{}, C_r{};
 };
+
+// Torques, for models with longitudinal dynamics; whatever steers goes on.
+
+/// Adds drive and brake torques over time [N m]: braking or power off in a turn (ISO 7975, ISO 9816).
+/// @throws InputError for a negative brake torque.
+void add_torques(Manoeuvre& manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque);
+/// Drive and brakes hold a speed over time [m/s] (`SpeedControlledDriver`).
+void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context);
 
 /// What a driver expects of the vehicle. @throws InputError when the speed is not > 0.
 [[nodiscard]] LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context);
@@ -95,8 +102,8 @@ struct ManoeuvreContext {
                                            double course_scale = 1.0, const PreviewDriverOptions& options = {});
 [[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
                                     const PreviewDriverOptions& options = {});
-/// A circle of constant radius (negative: to the right) on which the speed is to grow from `context.speed` to
-/// `end_speed` over `duration`; `speed` of the result says how.
+/// A circle of constant radius (negative: to the right) on which the speed grows from `context.speed` to `end_speed`
+/// over `duration`, by drive torque.
 [[nodiscard]] Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius, double end_speed,
                                                double duration = 120.0, const PreviewDriverOptions& options = {});
 
@@ -113,6 +120,8 @@ struct ManoeuvreContext {
 ///   (`radius` [m], `end_speed` [m/s], `length` [s]).
 /// - double lane change: `vehicle_width` [m] (7/6 of the track), `course_scale` (1), `front_overhang`, `rear_overhang`
 ///   [m] (0). follow path: `file`, or `radius` and `direction` = "left" | "right" of a circle.
+/// - all, with `longitudinal = true`: `hold_speed` (false) or `target_speed` [m/s]: drive and brakes keep it;
+///   `drive_torque`, `brake_torque` [N m]: a number, or as many as there are in `torque_time` [s], straight between.
 /// - drivers of both: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
 /// - signal: `file` (CSV with time[s], steer[rad], and optionally drive_torque[N m], brake_torque[N m]) or arrays
 /// `time`

@@ -151,8 +151,8 @@ std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& t) {
   const double second = t.steer[first] > 0.0 ? -1.0 : 1.0;  // sign of the second half
   std::size_t reversal = first;
   while (reversal <= last && second * t.steer[reversal] <= 0.0) ++reversal;
-  // The peak belongs to the second half of the steer; the vehicle may reach it after the steer has ended.
-  const Peak peak = peak_of(t.time, t.r, second, reversal, t.size());
+  // While the steer lasts: what a vehicle that spins does later is no answer to it.
+  const Peak peak = peak_of(t.time, t.r, second, reversal, std::min(last + 2, t.size()));
   const double c = std::cos(t.yaw[0]), s = std::sin(t.yaw[0]);
   std::vector<double> side(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) side[i] = c * (t.y[i] - t.y[0]) - s * (t.x[i] - t.x[0]);
@@ -167,14 +167,15 @@ std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& t) {
   return list;
 }
 
-std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double wheelbase, double low, double high) {
+std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double wheelbase, double begin, double low,
+                                         double high) {
   std::vector<double> acceleration, beyond, sideslip, roll;
   const bool rolls = t.roll.size() == t.size();
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double speed = std::hypot(t.u[i], t.v[i]);
     const double centripetal = speed * t.r[i];
     const double size = std::abs(centripetal);
-    if (!(size >= low && size <= high)) continue;
+    if (!(size >= low && size <= high && t.time[i] >= begin)) continue;
     const double sign = centripetal < 0.0 ? -1.0 : 1.0;
     acceleration.push_back(size);
     beyond.push_back(sign * (t.steer[i] - wheelbase * t.r[i] / speed));
@@ -200,7 +201,7 @@ std::vector<Metric> lane_change_metrics(const VehicleTrajectory& t, const Double
                                              : "the drive ended before the last lane did"},
                            {"lane_margin", check.margin, "m", "ISO 3888-1",
                             fmt::format("smallest, in lane {} at {:.2f} s; negative outside", check.lane, check.time)}};
-  const double entry = crossing(t.time, t.x, 1e-9);
+  const double entry = crossing(t.time, t.x, course.lanes[0].begin);
   list.push_back({"entry_speed", std::isfinite(entry) ? at_time(t.time, t.u, entry) : kNone, "m/s", "ISO 3888-1", ""});
   return list;
 }
@@ -276,7 +277,7 @@ std::vector<Metric> peak_metrics(const VehicleTrajectory& t, double gravity) {
       if (left + right > 0.0) transfer = std::max(transfer, std::abs(left - right) / (left + right));
       for (std::size_t wheel = 0; wheel < kWheels; ++wheel) {
         const double share = t.Fz[wheel][i] / t.Fz[wheel][0];
-        if (share < least) {
+        if (t.Fz[wheel][0] > 0.0 && share < least) {
           least = share;
           lightest = wheel;
         }
@@ -295,7 +296,7 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
   std::vector<Metric> list;
   switch (manoeuvre.kind) {
     case ManoeuvreKind::kStepSteer:
-      list = step_steer_metrics(t);
+      if (t.end == SimulationEnd::kCompleted) list = step_steer_metrics(t);
       break;
     case ManoeuvreKind::kSineWithDwell:
       list = sine_with_dwell_metrics(t);
@@ -303,11 +304,17 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
     case ManoeuvreKind::kSweep:
     case ManoeuvreKind::kRandomSteer:
       if (t.end == SimulationEnd::kCompleted && t.size() >= 64) {
-        list = frequency_response_metrics(measured_frequency_response(t, manoeuvre.frequency, manoeuvre.end_frequency));
+        // No higher than the samples can tell, and nothing from a drive too short for the band.
+        const double duration = t.time.back() - t.time.front();
+        const double high = std::min(manoeuvre.end_frequency, 0.5 * static_cast<double>(t.size() - 1) / duration);
+        const double low = std::max(manoeuvre.frequency, 8.0 / duration);
+        if (low < high) list = frequency_response_metrics(measured_frequency_response(t, low, high));
       }
       break;
     case ManoeuvreKind::kSteadyStateCircle:
-      list = steady_state_metrics(t, parameters.wheelbase());
+      // On a given circle the beginning is the driver's way onto it.
+      list = steady_state_metrics(t, parameters.wheelbase(),
+                                  manoeuvre.radius != 0.0 ? 0.15 * manoeuvre.default_duration : 0.0);
       break;
     case ManoeuvreKind::kDoubleLaneChange:
       if (manoeuvre.course) list = lane_change_metrics(t, *manoeuvre.course, manoeuvre.body);
@@ -322,8 +329,10 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
   }
   const std::vector<Metric> peaks = peak_metrics(t, gravity);
   list.insert(list.end(), peaks.begin(), peaks.end());
-  const std::vector<Metric> ride = ride_metrics(t);
-  list.insert(list.end(), ride.begin(), ride.end());
+  if (std::ranges::any_of(t.road, [](const std::vector<double>& height) { return largest(height) > 0.0; })) {
+    const std::vector<Metric> ride = ride_metrics(t);
+    list.insert(list.end(), ride.begin(), ride.end());
+  }
   return list;
 }
 

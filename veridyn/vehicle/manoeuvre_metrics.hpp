@@ -20,7 +20,7 @@ struct Metric {
   std::string meaning{};
 };
 
-/// The metrics of a manoeuvre's own standard, then those of any drive.
+/// The metrics of a manoeuvre's own standard, then peaks, then those of the ride where the road is uneven.
 [[nodiscard]] std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& trajectory, const Manoeuvre& manoeuvre,
                                                     const VehicleParameters<double>& parameters,
                                                     double gravity = 9.80665);
@@ -36,10 +36,10 @@ struct Metric {
 [[nodiscard]] std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& trajectory);
 
 /// ISO 4138: slopes over lateral acceleration, by least squares over the samples between `low` and `high` [m/s^2] of
-/// absolute lateral acceleration: understeer gradient d(delta - L/R)/d a_y, sideslip gradient, roll gradient (where
-/// there is a roll angle).
+/// absolute lateral acceleration, from the time `begin` [s] on: understeer gradient d(delta - L/R)/d a_y, sideslip
+/// gradient, roll gradient (where there is a roll angle).
 [[nodiscard]] std::vector<Metric> steady_state_metrics(const VehicleTrajectory& trajectory, double wheelbase,
-                                                       double low = 0.5, double high = 4.0);
+                                                       double begin = 0.0, double low = 0.5, double high = 4.0);
 
 /// ISO 3888-1: whether and by how much the body stayed within the lanes; entry speed and peaks.
 [[nodiscard]] std::vector<Metric> lane_change_metrics(const VehicleTrajectory& trajectory,
@@ -69,7 +69,7 @@ struct MeasuredFrequencyResponse {
 /// rms of suspension travel and of the change of wheel load over its mean. Empty when the model has no vertical motion.
 [[nodiscard]] std::vector<Metric> ride_metrics(const VehicleTrajectory& trajectory);
 
-/// |W_k| of ISO 2631-1 (1997, annex A) at a frequency: vertical vibration of seated people. 0.77 at 2.5 Hz and 1.04
+/// |W_k| of ISO 2631-1 (1997, annex A) at a frequency: vertical vibration of seated people. 0.63 at 2.5 Hz and 1.05
 /// near 6 Hz.
 [[nodiscard]] double iso2631_weight(double frequency_Hz);
 

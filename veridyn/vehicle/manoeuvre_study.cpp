@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
 #include "veridyn/io/table.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 
@@ -34,6 +36,33 @@ PiecewiseLinear column(const io::Table& table, std::string_view name, std::strin
     return {table.at("time").value, found->value};
   } catch (const InputError& wrong) {
     throw InputError(fmt::format("{}: {}", table.source, name), wrong.what());
+  }
+}
+
+/// A torque that is one number or one a moment of `torque_time`.
+PiecewiseLinear read_torque(const StudyTable& drive, const char* key) {
+  if (!drive.has(key)) return {};
+  if (!drive.is_array(key)) return PiecewiseLinear(drive.number(key, "N m"));
+  const std::vector<double> time = drive.numbers("torque_time", "s");
+  try {
+    return {time, drive.numbers(key, "N m")};
+  } catch (const InputError& wrong) {
+    if (wrong.place() != "signal") throw;
+    drive.fail(key, std::string_view(wrong.what()).substr(wrong.place().size() + 2));
+  }
+}
+
+/// What drives and brakes, beside the steering.
+void read_longitudinal(Manoeuvre& manoeuvre, const StudyTable& drive, const ManoeuvreContext& context) {
+  const bool hold = drive.flag_or("hold_speed", false);
+  const bool torques = drive.has("drive_torque") || drive.has("brake_torque");
+  for (const char* key : {"hold_speed", "target_speed", "drive_torque", "brake_torque"}) {
+    if (drive.has(key) && !drive.flag_or("longitudinal", false)) drive.fail(key, "needs longitudinal = true");
+  }
+  if (torques) add_torques(manoeuvre, read_torque(drive, "drive_torque"), read_torque(drive, "brake_torque"));
+  if (hold || drive.has("target_speed")) {
+    if (!manoeuvre.speed.empty()) drive.fail(hold ? "hold_speed" : "target_speed", "this manoeuvre has its own speed");
+    add_speed_control(manoeuvre, PiecewiseLinear(drive.positive_or("target_speed", "m/s", context.speed)), context);
   }
 }
 
@@ -118,10 +147,15 @@ Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& contex
                                                  "continuous sine",    "sine with dwell", "sweep",
                                                  "random steer",       "fishhook",        "steady-state circle",
                                                  "double lane change", "follow path",     "signal"};
-  const std::string name = drive.choice_or("manoeuvre", names, names[0]);
+  const std::string name = drive.text_or("manoeuvre", names[0]);
+  if (std::ranges::find(names, name) == names.end()) {
+    drive.fail("manoeuvre", fmt::format("no manoeuvre is called '{}'{}", name, suggestion(name, names)));
+  }
   if (!(context.speed > 0.0)) drive.fail("speed", fmt::format("= {:g} m/s must be > 0", context.speed));
   try {
-    return read_one(name, drive, context);
+    Manoeuvre manoeuvre = read_one(name, drive, context);
+    read_longitudinal(manoeuvre, drive, context);
+    return manoeuvre;
   } catch (const InputError& wrong) {
     // What the library refuses is told with the place of the key that asked for it, where it can be known.
     if (wrong.place() != "manoeuvre" && wrong.place() != "driver" && wrong.place() != "signal") throw;

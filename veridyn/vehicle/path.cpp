@@ -123,6 +123,32 @@ void Path::close() {
   closed_ = true;
 }
 
+Path Path::from_origin() const {
+  Path moved = *this;
+  const double c = std::cos(start_.heading), s = std::sin(start_.heading);
+  const auto move = [&](PathPoint& point) {
+    const double dx = point.x - start_.x, dy = point.y - start_.y;
+    point.x = c * dx + s * dy;
+    point.y = c * dy - s * dx;
+    point.heading -= start_.heading;
+  };
+  for (Piece& piece : moved.pieces_) {
+    move(piece.start);
+    piece.heading -= start_.heading;
+    Polynomial turned;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double x = piece.polynomial.x[k] - (k == 0 ? start_.x : 0.0);
+      const double y = piece.polynomial.y[k] - (k == 0 ? start_.y : 0.0);
+      turned.x[k] = c * x + s * y;
+      turned.y[k] = c * y - s * x;
+    }
+    piece.polynomial = turned;
+  }
+  move(moved.start_);
+  move(moved.end_);
+  return moved;
+}
+
 Path Path::circle(double radius, int direction) {
   VERIDYN_ASSERT(radius > 0.0 && direction != 0);
   Path path;

@@ -40,6 +40,9 @@ class Path {
   /// The end joins the beginning from here on (position and heading must agree to a thousandth of the length).
   void close();
 
+  /// The same curve moved and turned so that it begins at the origin along x.
+  [[nodiscard]] Path from_origin() const;
+
   /// Radius > 0 [m]; positive `direction` turns left. Closed; starts at the origin along x.
   [[nodiscard]] static Path circle(double radius, int direction = 1);
   /// A quintic spline through at least three points (chord-length parameter).

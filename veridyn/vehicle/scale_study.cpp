@@ -124,7 +124,7 @@ ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
   analysis.scaled = scale(study.prototype, study.request);
   const ScaleFactors& factors = analysis.scaled.factors;
   analysis.twin = scaled(study.drive.vehicle, factors);
-  analysis.twin.name = study.drive.vehicle.name + ", scaled";
+  analysis.twin.name += ", scaled";
   analysis.twin_report = compare(study.prototype, analysis.scaled.model, study.repeating);
   if (study.given) analysis.given_report = compare(study.prototype, study.given_subject, study.repeating);
 

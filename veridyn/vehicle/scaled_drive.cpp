@@ -1,27 +1,8 @@
 #include "veridyn/vehicle/scaled_drive.hpp"
 
+#include "veridyn/vehicle/scaled_model.hpp"
+
 namespace veridyn::vehicle {
-namespace {
-
-template <typename Tyre>
-Tyre scaled_tyre(Tyre tyre, double force) {
-  tyre.stiffness *= force;
-  tyre.slip_stiffness *= force;
-  if constexpr (requires { tyre.nominal_load; }) tyre.nominal_load *= force;
-  return tyre;
-}
-
-MagicFormulaTyre<double> scaled_tyre(MagicFormulaTyre<double> tyre, double force, double length) {
-  // All other coefficients are dimensionless.
-  tyre.coefficients.FNOMIN *= force;
-  tyre.coefficients.UNLOADED_RADIUS *= length;
-  tyre.range.load_min *= force;
-  tyre.range.load_max *= force;
-  return tyre;
-}
-
-}  // namespace
-
 void ScaledDriver::look(double time, const PlanarMotion& motion) {
   PlanarMotion seen = motion;
   seen.x /= factors_.length;
@@ -50,16 +31,11 @@ double ScaledRoad::height(const RoadPoint& point) const {
 Vehicle scaled(const Vehicle& vehicle, const ScaleFactors& factors) {
   Vehicle model = vehicle;
   model.parameters = scaled(vehicle.parameters, factors);
-  const double force = factors.force(), length = factors.length;
+  const double length = factors.length;
   std::visit(
-      [&]<typename Tyre>(AxleTyres<Tyre>& tyres) {
-        for (Tyre* tyre : {&tyres.front, &tyres.rear}) {
-          if constexpr (std::is_same_v<Tyre, MagicFormulaTyre<double>>) {
-            *tyre = scaled_tyre(*tyre, force, length);
-          } else {
-            *tyre = scaled_tyre(*tyre, force);
-          }
-        }
+      [&](auto& tyres) {
+        tyres.front = scaled(tyres.front, factors);
+        tyres.rear = scaled(tyres.rear, factors);
       },
       model.tyres);
   LongitudinalParameters& l = model.longitudinal;

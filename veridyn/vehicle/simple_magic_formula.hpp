@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "veridyn/vehicle/magic_formula.hpp"
 #include "veridyn/vehicle/tyre.hpp"
 
 namespace veridyn::vehicle {
@@ -32,7 +33,6 @@ struct SimpleMagicFormulaTyre {
 
   [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
                                           const Scalar& /*camber*/) const {
-    using std::atan;
     using std::sin;
     using std::sqrt;
     if (!(load > 0.0)) return {};
@@ -45,7 +45,7 @@ struct SimpleMagicFormulaTyre {
     const Scalar linear = sqrt(squared);
     const Scalar D = mu * load / (1.0 + mu_load * (x - 1.0));
     const Scalar y = linear / (C * D);
-    const Scalar share = D * sin(C * atan(y - E * (y - atan(y)))) / linear;
+    const Scalar share = D * sin(magic_formula::angle(C, E, y)) / linear;
     return {share * Fx, share * Fy};
   }
 

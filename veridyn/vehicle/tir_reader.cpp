@@ -467,7 +467,8 @@ TirFile parse_tir(std::string_view text, std::string source) {
   check_admissible(lines, file);
 
   if (lines.number_or("LKG", 1.0) != 1.0) file.warnings.emplace_back("LKG is not 1; it is not modelled");
-  for (const auto& [key, entry] : lines.entries()) {
+  for (const auto& entry : lines.entries()) {
+    const std::string& key = entry.first;
     const auto& fields = kMagicFormulaFields<double>;
     const bool coefficient = std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return f.name == key; });
     if (!coefficient && !known_without_effect(key)) file.unknown_keys.push_back(key);

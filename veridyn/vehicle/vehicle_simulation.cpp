@@ -8,7 +8,10 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/fiala_tyre.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
+#include "veridyn/vehicle/magic_formula.hpp"
+#include "veridyn/vehicle/simple_magic_formula.hpp"
 #include "veridyn/vehicle/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
@@ -131,7 +134,8 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
   }
 }
 
-void LiftOffs::see(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
+void LiftOffs::change(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
+  any_off_ = false;
   for (std::size_t i = 0; i < kWheels; ++i) {
     const bool off = !(normal_force[static_cast<Eigen::Index>(i)] > 0.0), was_off = since_[i] >= 0.0;
     if (off && !was_off) since_[i] = time;
@@ -139,6 +143,7 @@ void LiftOffs::see(double time, const WheelArray<double>& normal_force, std::vec
       found.push_back({.wheel = i, .from = since_[i], .to = time});
       since_[i] = -1.0;
     }
+    any_off_ |= off;
   }
 }
 
@@ -163,10 +168,19 @@ SimulationEnd ended(const FourWheelState<double>& s, bool speed_varies) {
 
 }  // namespace internal
 
-// One line a tyre, for each of the two models.
-template VehicleTrajectory simulate(const FourWheelModel<double, LinearTyre<double>>&, Driver&, const Road*,
-                                    const SimulationOptions&, Progress&);
-template VehicleTrajectory simulate(const BicycleModel<double, LinearTyre<double>>&, Driver&, const SimulationOptions&,
-                                    Progress&);
+// One line a tyre.
+#define VERIDYN_SIMULATE_ON(Tyre)                                                                                      \
+  template VehicleTrajectory simulate(const FourWheelModel<double, Tyre>&, Driver&, const Road*,                       \
+                                      const SimulationOptions&, Progress&,                                             \
+                                      std::span<const ModelChange<FourWheelModel<double, Tyre>>>);                     \
+  template VehicleTrajectory simulate(const BicycleModel<double, Tyre>&, Driver&, const SimulationOptions&, Progress&, \
+                                      std::span<const ModelChange<BicycleModel<double, Tyre>>>)
+
+VERIDYN_SIMULATE_ON(LinearTyre<double>);
+VERIDYN_SIMULATE_ON(FialaTyre<double>);
+VERIDYN_SIMULATE_ON(SimpleMagicFormulaTyre<double>);
+VERIDYN_SIMULATE_ON(MagicFormulaTyre<double>);
+
+#undef VERIDYN_SIMULATE_ON
 
 }  // namespace veridyn::vehicle

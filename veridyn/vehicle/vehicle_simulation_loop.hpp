@@ -13,6 +13,30 @@
 /// The definitions behind vehicle_simulation.hpp, for tyres that vehicle_simulation.cpp does not compile.
 namespace veridyn::vehicle {
 
+namespace internal {
+
+/// The step below for a model of which only the first `kMoving` states move.
+template <int kMoving, typename Scalar, typename Tyre, typename Heights>
+void runge_kutta_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& heights,
+                      const std::array<WheelControls<Scalar>, 3>& controls, double h,
+                      const FourWheelRates<Scalar>& first, FourWheelState<Scalar>& state) {
+  const auto moving = [](auto& x) { return x.template head<kMoving>(); };
+  const Scalar half(0.5 * h), whole(h), two(2.0), sixth(h / 6.0);
+  FourWheelRates<Scalar> stage;
+  FourWheelState<Scalar> at = state, sum;
+  moving(at) += half * moving(first.derivative);
+  model.rates(at, controls[1], heights(at), stage);
+  moving(sum) = moving(first.derivative) + two * moving(stage.derivative);
+  moving(at) = moving(state) + half * moving(stage.derivative);
+  model.rates(at, controls[1], heights(at), stage);
+  moving(sum) += two * moving(stage.derivative);
+  moving(at) = moving(state) + whole * moving(stage.derivative);
+  model.rates(at, controls[2], heights(at), stage);
+  moving(state) += sixth * (moving(sum) + moving(stage.derivative));
+}
+
+}  // namespace internal
+
 /// One step of the classical Runge-Kutta method of order 4 for the four-wheel model. `first` holds the rates at the
 /// beginning (from `FourWheelModel::rates`); `heights(state)` gives the road under the wheels; controls at the
 /// beginning, middle and end of the step are in `controls`. Usable with Jets; does not allocate.
@@ -20,16 +44,11 @@ template <typename Scalar, typename Tyre, typename Heights>
 void four_wheel_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& heights,
                      const std::array<WheelControls<Scalar>, 3>& controls, double h,
                      const FourWheelRates<Scalar>& first, FourWheelState<Scalar>& state) {
-  FourWheelRates<Scalar> stage;
-  FourWheelState<Scalar> at = state + (0.5 * h) * first.derivative;
-  model.rates(at, controls[1], heights(at), stage);
-  FourWheelState<Scalar> sum = first.derivative + 2.0 * stage.derivative;
-  at = state + (0.5 * h) * stage.derivative;
-  model.rates(at, controls[1], heights(at), stage);
-  sum += 2.0 * stage.derivative;
-  at = state + h * stage.derivative;
-  model.rates(at, controls[2], heights(at), stage);
-  state += (h / 6.0) * (sum + stage.derivative);
+  if (model.options().longitudinal || model.options().relaxation_length > 0.0) {
+    internal::runge_kutta_step<kFourWheelStates>(model, heights, controls, h, first, state);
+  } else {
+    internal::runge_kutta_step<kWheelSpin>(model, heights, controls, h, first, state);
+  }
 }
 
 /// The heights of a road under the four wheels of a model; null: flat. Derivatives do not go through it.
@@ -39,9 +58,9 @@ struct RoadUnderWheels {
   const Road* road;
 
   [[nodiscard]] PerWheel<double> operator()(const typename Model::State& state) const {
-    PerWheel<double> heights{};
-    if (road == nullptr) return heights;
-    const double c = std::cos(state(kYaw)), s = std::sin(state(kYaw));
+    if (road == nullptr) return {};
+    PerWheel<double> heights;
+    const auto [s, c] = sine_cosine<double>(state(kYaw));
     for (std::size_t i = 0; i < kWheels; ++i) {
       const auto w = static_cast<Eigen::Index>(i);
       const double ahead = model.wheel_x()[w], left = model.wheel_y()[w];
@@ -144,12 +163,27 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
 /// Which wheels are off the ground, since when.
 class LiftOffs {
  public:
-  void see(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found);
+  void see(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found) {
+    const bool all_on = normal_force.minCoeff() > 0.0;
+    if (!all_on || any_off_) change(time, normal_force, found);
+  }
   void end(double time, std::vector<LiftOff>& found) const;
 
  private:
+  void change(double time, const WheelArray<double>& normal_force, std::vector<LiftOff>& found);
+
+  bool any_off_ = false;
   PerWheel<double> since_{-1.0, -1.0, -1.0, -1.0};
 };
+
+/// The model from `time` on.
+template <typename Model>
+void change_model(double time, std::span<const ModelChange<Model>>& changes, Model& model) {
+  while (!changes.empty() && time >= changes.front().time - 1e-9) {
+    model = changes.front().model;
+    changes = changes.subspan(1);
+  }
+}
 
 /// Whether the vehicle's motion ends here, and how; kCompleted: it goes on.
 [[nodiscard]] SimulationEnd ended(const FourWheelState<double>& state, bool speed_varies);
@@ -157,8 +191,10 @@ class LiftOffs {
 }  // namespace internal
 
 template <typename Tyre>
-VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& driver, const Road* road,
-                           const SimulationOptions& options, Progress& progress) {
+VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& driver, const Road* road,
+                           const SimulationOptions& options, Progress& progress,
+                           std::span<const ModelChange<FourWheelModel<double, Tyre>>> changes) {
+  FourWheelModel<double, Tyre> model = start;
   options.validate();
   internal::check_parameters(model.parameters());
   const bool spins = model.options().longitudinal.has_value();
@@ -172,14 +208,28 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
   FourWheelState<double> state = model.steady_start(options.speed);
   FourWheelRates<double> rates;
   std::array<WheelControls<double>, 3> controls;
+  // Controls mostly stay as they were, at the latest from the end of a step to the beginning of the next.
+  struct {
+    Controls controls;
+    WheelControls<double> at_wheels;
+  } latest{{}, model.wheel_controls(Controls{})};
+  const auto at_wheels = [&](const Controls& now) -> const WheelControls<double>& {
+    const Controls& before = latest.controls;
+    if (now.steer != before.steer || now.drive_torque != before.drive_torque ||
+        now.brake_torque != before.brake_torque) {
+      latest = {now, model.wheel_controls(now)};
+    }
+    return latest.at_wheels;
+  };
   internal::LiftOffs lift_offs;
   progress.stage("driving");
   for (long k = 0;; ++k) {
     const double begin = plan.time(k);
+    internal::change_model(begin, changes, model);
     driver.look(begin,
                 {.x = state(kX), .y = state(kY), .yaw = state(kYaw), .u = state(kU), .v = state(kV), .r = state(kR)});
     const Controls now = internal::controls_at(driver, begin, spins);
-    controls[0] = model.wheel_controls(now);
+    controls[0] = at_wheels(now);
     const PerWheel<double> under = heights(state);
     model.rates(state, controls[0], under, rates);
     lift_offs.see(begin, rates.Fz, out.lift_offs);
@@ -212,15 +262,14 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
         controls[0] = controls[2];
         model.rates(state, controls[0], heights(state), rates);
       }
-      controls[1] = model.wheel_controls(internal::controls_at(driver, t + 0.5 * h, spins));
-      controls[2] =
-          model.wheel_controls(internal::controls_at(driver, part + 1 == parts ? begin + step : t + h, spins));
-      const FourWheelState<double> before = state;
+      controls[1] = at_wheels(internal::controls_at(driver, t + 0.5 * h, spins));
+      controls[2] = at_wheels(internal::controls_at(driver, part + 1 == parts ? begin + step : t + h, spins));
+      const WheelArray<double> before = state.segment<4>(kWheelSpin).array();
       four_wheel_step(model, heights, controls, h, rates, state);
       if (!spins) continue;
-      for (Eigen::Index i = kWheelSpin; i < kWheelSpin + 4; ++i) {
+      for (Eigen::Index i = 0; i < 4; ++i) {
         // Friction stops a wheel and never turns it the other way.
-        if (before(i) * state(i) < 0.0) state(i) = 0.0;
+        if (before[i] * state(kWheelSpin + i) < 0.0) state(kWheelSpin + i) = 0.0;
       }
     }
   }
@@ -229,8 +278,9 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& model, Driver& dr
 }
 
 template <typename Tyre>
-VehicleTrajectory simulate(const BicycleModel<double, Tyre>& model, Driver& driver, const SimulationOptions& options,
-                           Progress& progress) {
+VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driver, const SimulationOptions& options,
+                           Progress& progress, std::span<const ModelChange<BicycleModel<double, Tyre>>> changes) {
+  BicycleModel<double, Tyre> model = start;
   options.validate();
   internal::check_parameters(model.parameters);
   const double u = options.speed;
@@ -260,6 +310,7 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& model, Driver& driv
   progress.stage("driving");
   for (long k = 0;; ++k) {
     const double begin = plan.time(k), step = plan.time(k + 1) - begin;
+    internal::change_model(begin, changes, model);
     driver.look(begin, {.x = state(kX), .y = state(kY), .yaw = state(kYaw), .u = u, .v = state(kV), .r = state(kR)});
     const double steer = internal::controls_at(driver, begin, false).steer;
     BicycleRates<double> rates, unused;

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/road_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -60,7 +61,8 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
   ManoeuvreContext context{.parameters = study.vehicle.parameters,
                            .speed = s.speed,
                            .gravity = study.four_wheel.gravity,
-                           .seed = study.seed};
+                           .seed = study.seed,
+                           .wheel_radius = study.vehicle.longitudinal.wheel_radius};
   const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
   context.C_f = C_f;
   context.C_r = C_r;
@@ -72,6 +74,7 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
     drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
 
   if (root.has("road")) {
+    study.road = read_road(root.table("road"), study.seed);
     if (study.road && study.model != VehicleModelKind::kFourWheel)
       root.fail("road", "needs model = \"four-wheel\": the bicycle does not move up and down");
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,12 @@ enum class VehicleModelKind {
 /// The word of the study: "linear bicycle", "bicycle", "four-wheel".
 [[nodiscard]] std::string_view to_string(VehicleModelKind kind);
 
+/// From `time` on the tyres have that share of their stiffness and friction at the beginning.
+struct GripChange {
+  double time = 0.0;  ///< [s]
+  double front = 1.0, rear = 1.0;
+};
+
 /// What a study drives: vehicle, model, manoeuvre and road, read and checked.
 struct VehicleStudy {
   std::string title;
@@ -38,6 +45,7 @@ struct VehicleStudy {
   SimulationOptions simulation;
   FourWheelOptions four_wheel;  ///< gravity counts for all models
   Manoeuvre manoeuvre;
+  std::vector<GripChange> grip;      ///< by time
   std::shared_ptr<const Road> road;  ///< null: flat
   std::optional<DriveSensorSet> sensors;
   std::vector<std::filesystem::path> inputs;
@@ -59,6 +67,9 @@ struct VehicleStudy {
 ///     longitudinal = false           # true: speed follows from torques, drag and grade ([subject.longitudinal])
 ///     convention = "first principles"  # "source": that of the published similarity study
 ///     geometry = "exact"             # four-wheel: "small angles"
+///     [[drive.change]]               # the tyres change on the way, by time
+///     time = 60                      # [s]
+///     grip = 0.6                     # factor on stiffness and friction of the beginning; or `front`, `rear`
 ///     [road]                         # see read_road; needs the four-wheel model
 ///     [sensors]                      # see read_drive_sensors; with it what sensors record is written too
 ///
@@ -69,7 +80,8 @@ struct VehicleStudy {
 /// Drives a vehicle with any of the models. @throws InputError for a step too long or controls out of range.
 [[nodiscard]] VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model,
                                               const FourWheelOptions& options, Driver& driver, const Road* road,
-                                              const SimulationOptions& simulation, Progress& progress);
+                                              const SimulationOptions& simulation, Progress& progress,
+                                              std::span<const GripChange> grip = {});
 
 /// What became of a drive.
 struct VehicleRun {

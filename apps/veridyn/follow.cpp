@@ -1,0 +1,77 @@
+// Following a recording while it is being written, for `veridyn track --live` of every domain.
+#include "apps/veridyn/follow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+
+#include "apps/veridyn/output.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/progress.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Bytes of all files of the recording; 0 while one is missing.
+std::uintmax_t size_of(const std::vector<std::filesystem::path>& files) {
+  std::uintmax_t sum = 0;
+  for (const auto& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) return 0;
+    sum += size;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> followed_files(const StudyTable& root) {
+  if (!root.has("data")) root.fail("data", "is missing: --live follows the recording that it names");
+  const StudyTable data = root.table("data");
+  return data.files(data.has("file") ? "file" : "files");
+}
+
+void follow_files(const std::vector<std::filesystem::path>& files, const FollowOptions& follow,
+                  const CommonOptions& options, const std::function<void(bool finished)>& advance) {
+  TerminalProgress signals(true);  // for its signals; a bar would fight with a table
+  std::uintmax_t seen = 0;
+  std::string obstacle;
+  double pause_s = follow.interval_s;
+  Clock::time_point grown = Clock::now();
+  tell(options, fmt::format("following {}; ends {:g} s after the last new data, or with Ctrl-C", files.front().string(),
+                            follow.idle_s));
+  while (true) {
+    const bool stop = signals.interrupted();
+    const std::uintmax_t size = size_of(files);
+    const bool news = size != seen;
+    if (news) grown = Clock::now();
+    const bool finished = stop || (!news && Clock::now() - grown > std::chrono::duration<double>(follow.idle_s));
+    if (news || finished) {
+      seen = size;
+      const Clock::time_point begun = Clock::now();
+      try {
+        advance(finished);
+        obstacle.clear();
+      } catch (const InputError& error) {
+        // The head of a log may hold too little yet; what is wrong for good is still wrong at the end.
+        if (finished) throw;
+        if (obstacle != error.what()) tell(options, fmt::format("waiting: {}", error.what()));
+        obstacle = error.what();
+      }
+      // A long log takes longer to read: never more than a third of the time.
+      const double took = std::chrono::duration<double>(Clock::now() - begun).count();
+      pause_s = std::max(follow.interval_s, 2.0 * took);
+    }
+    if (finished) return;
+    std::this_thread::sleep_for(std::chrono::duration<double>(news ? pause_s : std::min(pause_s, 0.2)));
+  }
+}
+
+}  // namespace veridyn::app
