@@ -35,7 +35,7 @@ struct VehicleIdentifyOptions {
   double max_unmodelled = 0.1;
   double contradiction_level = 1e-3;  ///< `contradiction_level`: p below which methods or data parts contradict
   /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
-  double max_relative_sigma = 0.5;
+  double max_relative_sigma = 0.25;
   /// `[identify.uncertainty]`: standard deviations of what is taken as known: `mass` [kg], `a`, `b` [m]. Motion alone
   /// shows only ratios to the mass: C_f/m, C_r/m and I_z/m; the rest of the error bars comes from here.
   double mass_sigma = 0.0;
