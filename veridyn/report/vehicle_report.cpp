@@ -92,18 +92,33 @@ Table characteristic_table(const BicycleCharacteristics<double>& c) {
   return table;
 }
 
-Table mode_table(std::span<const Mode> modes) {
-  Table table{.title = "Eigenvalues"};
-  table.columns = {{.name = "real part", .unit = "1/s"},
-                   {.name = "imaginary part", .unit = "1/s"},
-                   {.name = "frequency", .unit = "Hz"},
-                   {.name = "damping ratio"},
-                   {.name = "", .align = Align::kLeft}};
-  for (const Mode& m : modes) {
-    table.rows.push_back({.cells = {number_cell(m.eigenvalue.real()), number_cell(m.eigenvalue.imag()),
-                                    number_cell(m.frequency_Hz), number_cell(m.damping_ratio),
-                                    status_cell(m.stable ? Status::kGood : Status::kBad,
-                                                m.stable ? (m.oscillates ? "oscillates" : "decays") : "grows")}});
+/// Eigenvalues; `name` says what a mode moves.
+template <typename AnyMode>
+Table mode_table(const std::string& title, const std::vector<AnyMode>& modes) {
+  Table table{.title = title};
+  constexpr bool kNamed = requires(const AnyMode& m) { m.name; };
+  if constexpr (kNamed) {
+    table.caption = "Named after what has most of the kinetic energy, its share beside it.";
+    table.columns.push_back({.name = "mode", .align = Align::kLeft});
+    table.columns.push_back({.name = "share", .unit = "%", .digits = 2});
+  }
+  const std::vector<Column> numbers{{.name = "real part", .unit = "1/s"},
+                                    {.name = "imaginary part", .unit = "1/s"},
+                                    {.name = "frequency", .unit = "Hz"},
+                                    {.name = "damping ratio"},
+                                    {.name = "", .align = Align::kLeft}};
+  table.columns.insert(table.columns.end(), numbers.begin(), numbers.end());
+  for (const AnyMode& m : modes) {
+    Row row;
+    if constexpr (kNamed) row.cells = {text_cell(m.name), number_cell(100.0 * m.share)};
+    row.cells.push_back(number_cell(m.eigenvalue.real()));
+    row.cells.push_back(number_cell(m.eigenvalue.imag()));
+    row.cells.push_back(number_cell(m.frequency_Hz));
+    row.cells.push_back(number_cell(m.damping_ratio));
+    row.cells.push_back(status_cell(m.stable ? Status::kGood : Status::kBad, !m.stable      ? "grows"
+                                                                             : m.oscillates ? "oscillates"
+                                                                                            : "decays"));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -223,7 +238,9 @@ Document vehicle_report(const VehicleStudy& study, const VehicleRun& run, const 
 
   Section linear{.title = "Linear analysis"};
   linear.blocks.emplace_back(characteristic_table(run.characteristics));
-  linear.blocks.emplace_back(mode_table(run.modes));
+  linear.blocks.emplace_back(mode_table("Eigenvalues of the bicycle", run.modes));
+  if (!run.vehicle_modes.empty())
+    linear.blocks.emplace_back(mode_table("Modes of the four-wheel model", run.vehicle_modes));
   const std::array bicycles{NamedBicycle{"bicycle", run.linear}};
   for (Block& block : frequency_response_figures(bicycles)) linear.blocks.push_back(std::move(block));
   document.sections.push_back(std::move(linear));

@@ -161,6 +161,14 @@ VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress) {
   run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
   run.characteristics = characteristics(run.linear);
   run.modes = modes(run.linear.A());
+  if (study.model == VehicleModelKind::kFourWheel) {
+    std::visit(
+        [&]<typename Tyre>(const AxleTyres<Tyre>& t) {
+          const FourWheelModel<double, Tyre> model(p, mounted(t), study.four_wheel);
+          run.vehicle_modes = modes(linearise(model, study.simulation.speed));
+        },
+        study.vehicle.tyres);
+  }
   if (!run.trajectory.usable()) return run;
   run.metrics = manoeuvre_metrics(run.trajectory, study.manoeuvre, p, gravity);
   if (study.sensors) run.measured = record_drive(run.trajectory, *study.sensors, study.seed);

@@ -14,6 +14,7 @@
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/bicycle_analysis.hpp"
 #include "veridyn/vehicle/drive_sensors.hpp"
+#include "veridyn/vehicle/four_wheel_analysis.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 #include "veridyn/vehicle/manoeuvre_metrics.hpp"
 #include "veridyn/vehicle/road.hpp"
@@ -90,7 +91,8 @@ struct VehicleRun {
   std::vector<Metric> metrics;
   LinearBicycle<double> linear;  ///< the bicycle about straight running at the study's speed
   BicycleCharacteristics<double> characteristics;
-  std::vector<Mode> modes;
+  std::vector<Mode> modes;                   ///< of the bicycle
+  std::vector<FourWheelMode> vehicle_modes;  ///< of the four-wheel model, where it was driven
 };
 
 /// Drives. @throws InputError for a step too long or controls out of range.
