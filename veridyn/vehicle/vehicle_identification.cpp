@@ -497,10 +497,11 @@ class Identification {
       const bool coloured_there = r->lag1 > kColoured && !(fit->lag1 > kColoured);
       const bool holds = !systematic && !coloured_there;
       check("residual on the hold-out", holds, r->fit.rmse, kBeyondNoise * fit->fit.rmse,
-            fmt::format("the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), correlation of "
-                        "neighbours {:.2f} ({:.2f}){}",
-                        r->fit.rmse, fit->fit.rmse, r->lag1, fit->lag1,
-                        holds ? "" : ": the model is systematically off where it was not identified"));
+            fmt::format(
+                "the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), correlation of "
+                "neighbours {:.2f} ({:.2f}){}",
+                r->fit.rmse, fit->fit.rmse, r->lag1, fit->lag1,
+                holds ? "" : ": the model is systematically off where it was not identified"));
     }
 
     const auto reject = [&](std::string reason) {
