@@ -224,6 +224,12 @@ class Identification {
       add("understeer_gradient", "rad s^2/m", axle.understeer);
       if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
       mark(e);
+      // Without the lateral velocity all three come out of the same coefficients: what noise does to one of them (it
+      // pulls p and q towards zero) it does to all.
+      const auto lost = [](const ParameterEstimate& p) { return p.status == ParameterStatus::kNotExcited; };
+      if (std::any_of(e.parameters.begin(), e.parameters.begin() + 3, lost)) {
+        for (std::size_t i = 0; i < 3; ++i) e.parameters[i].status = ParameterStatus::kNotExcited;
+      }
       out_.estimates.push_back(std::move(e));
     }
   }
