@@ -513,9 +513,12 @@ class Identification {
     const auto reject = [&](std::string reason) {
       out_.verdict = VehicleVerdict::kRejected;
       out_.reason = std::move(reason);
-      for (ParameterEstimate& p : best.parameters) {
-        if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
-          p.status = ParameterStatus::kRejected;
+      // What the drive does that the model does not is in all methods.
+      for (VehicleEstimate& e : out_.estimates) {
+        for (ParameterEstimate& p : e.parameters) {
+          if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
+            p.status = ParameterStatus::kRejected;
+        }
       }
       out_.identified = start_;
     };
