@@ -10,8 +10,9 @@ namespace veridyn::numerics {
 ///     int h(s) x'(t+s) ds = -int h'(s) x(t+s) ds,     int h x'' = int h'' x,
 ///
 /// so x is never differentiated, and x, x', x'' come out of one and the same filter exactly: a linear relation between
-/// them holds for the smoothed ones. h(s) is proportional to (1 - (s/T)^2)^6, which leaves no boundary term and whose
-/// sums over samples equal its integrals to rounding for five samples and more in T. Not flat in its pass band: gain
+/// them holds for the smoothed ones. h(s) is proportional to (1 - (s/T)^2)^6, which leaves no boundary term. Sums
+/// over samples stand for the integrals: with 8 samples in T the second derivative of what is in the pass band is right
+/// to 2.5e-4, with 26 to better than 1e-4. Not flat in its pass band: gain
 /// about exp(-(2 pi f)^2 T^2/30), which relations do not mind.
 struct ModulatingKernel {
   FirKernel smooth;  ///< h, sum 1

@@ -224,6 +224,12 @@ class Identification {
       add("understeer_gradient", "rad s^2/m", axle.understeer);
       if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
       mark(e);
+      // Without the lateral velocity all three come out of the same coefficients: what noise does to one of them (it
+      // pulls p and q towards zero) it does to all.
+      const auto lost = [](const ParameterEstimate& p) { return p.status == ParameterStatus::kNotExcited; };
+      if (std::any_of(e.parameters.begin(), e.parameters.begin() + 3, lost)) {
+        for (std::size_t i = 0; i < 3; ++i) e.parameters[i].status = ParameterStatus::kNotExcited;
+      }
       out_.estimates.push_back(std::move(e));
     }
   }
@@ -497,18 +503,22 @@ class Identification {
       const bool coloured_there = r->lag1 > kColoured && !(fit->lag1 > kColoured);
       const bool holds = !systematic && !coloured_there;
       check("residual on the hold-out", holds, r->fit.rmse, kBeyondNoise * fit->fit.rmse,
-            fmt::format("the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), correlation of "
-                        "neighbours {:.2f} ({:.2f}){}",
-                        r->fit.rmse, fit->fit.rmse, r->lag1, fit->lag1,
-                        holds ? "" : ": the model is systematically off where it was not identified"));
+            fmt::format(
+                "the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), correlation of "
+                "neighbours {:.2f} ({:.2f}){}",
+                r->fit.rmse, fit->fit.rmse, r->lag1, fit->lag1,
+                holds ? "" : ": the model is systematically off where it was not identified"));
     }
 
     const auto reject = [&](std::string reason) {
       out_.verdict = VehicleVerdict::kRejected;
       out_.reason = std::move(reason);
-      for (ParameterEstimate& p : best.parameters) {
-        if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
-          p.status = ParameterStatus::kRejected;
+      // What the drive does that the model does not is in all methods.
+      for (VehicleEstimate& e : out_.estimates) {
+        for (ParameterEstimate& p : e.parameters) {
+          if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
+            p.status = ParameterStatus::kRejected;
+        }
       }
       out_.identified = start_;
     };

@@ -27,7 +27,7 @@ struct VehicleIdentifyOptions {
   /// `method`: "auto" takes output error where it converged, else the equation error that its comparison recommends;
   /// "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
   std::string method = "auto";
-  DriveModelOptions model = {};       ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
+  DriveModelOptions model = {};  ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;    ///< `significance`: level of the t-tests
   double min_holdout_r2 = 0.5;   ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
