@@ -145,7 +145,7 @@ void tell_analysis(const DriveAnalysis& analysis, const std::filesystem::path& f
     tell(options, fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
   }
   for (const std::string& warning : analysis.estimate.warnings) tell(options, "warning: " + warning);
-  tell(options, fmt::format("{}: {}", to_string(id.verdict), id.reason));
+  tell(options, id.reason);
   tell(options, fmt::format("report: {}", (folder / "report.html").string()));
 }
 

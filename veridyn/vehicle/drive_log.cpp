@@ -295,6 +295,27 @@ class Preparation {
     return relation;
   }
 
+  /// Means over two seconds about each sample; NaN where one is missing.
+  [[nodiscard]] std::vector<double> slow(const std::vector<double>& values) const {
+    const auto half = static_cast<std::size_t>(1.0 / out_.grid.step);
+    std::vector<double> out(values.size(), std::numeric_limits<double>::quiet_NaN());
+    double sum = 0.0;
+    std::size_t filled = 0;  // finite samples up to the window's end
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (!std::isfinite(values[k])) {
+        sum = 0.0;
+        filled = 0;
+        continue;
+      }
+      sum += values[k];
+      ++filled;
+      const std::size_t window = 2 * half + 1;
+      if (filled > window) sum -= values[k - window];
+      if (filled >= window) out[k - half] = sum / static_cast<double>(window);
+    }
+    return out;
+  }
+
   void check_signs() {
     const std::vector<double>& u = out_[DriveSignal::kSpeed].value;
     const std::vector<double>& r = out_[DriveSignal::kYawRate].value;
@@ -304,7 +325,8 @@ class Preparation {
     constexpr std::size_t kEnough = 50;
     const GridSignal& accel = out_[DriveSignal::kAccelY];
     if (accel.available()) {
-      const Relation relation = relate(centripetal, accel.value, kLeast_mps2);
+      // In quick transients a_y is not u r: the lateral velocity changes too.
+      const Relation relation = relate(slow(centripetal), slow(accel.value), kLeast_mps2);
       if (relation.count >= kEnough && relation.correlation < -0.5) {
         throw InputError(
             recording_.source,

@@ -60,8 +60,9 @@ constexpr std::size_t kSteerNoise = 0, kSpeedNoise = 1, kYawNoise = 2, kAccelNoi
 
 DriveTrackOptions::DriveTrackOptions() {
   memory_s = 40.0;
-  // A row is a quarter of the kernel; colour of the road's roughness and of the filters' overlap stays within a block.
-  detection.block_s = 0.5;
+  // Shorter than half a period of quick steering, whose innovations would cancel within a block; what correlation the
+  // overlap of the filters leaves between blocks the detector follows.
+  detection.block_s = 0.2;
   detection.learn_s = 25.0;
   watch_against_W = true;
   watch_after_s = 10.0;

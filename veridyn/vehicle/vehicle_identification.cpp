@@ -477,7 +477,9 @@ class Identification {
       const bool white = !(q.lag1 > kColoured) || !(q.fit.rmse > kBeyondNoise * sigma);
       check(fmt::format("colour of {}", q.name), white, q.lag1, kColoured,
             white
-                ? fmt::format("the residual of {} is white enough (correlation of neighbours {:.2f})", q.name, q.lag1)
+                ? fmt::format("the residual of {} is {} (correlation of neighbours {:.2f})", q.name,
+                              q.lag1 > kColoured ? "no larger than sensors and noisy steering leave" : "white enough",
+                              q.lag1)
                 : fmt::format("the residual of {} is coloured (correlation of neighbours {:.2f}, rms {:.3g} {} against "
                               "{:.3g} of the sensor): something that moves this vehicle is not in the bicycle model",
                               q.name, q.lag1, q.fit.rmse, q.unit, sigma));
@@ -530,6 +532,16 @@ class Identification {
           fmt::format("rejected: it explains {:.0f} % of the yaw rate's variance on the hold-out, less than "
                       "{:.0f} %",
                       100.0 * std::max(0.0, r->fit.r2), 100.0 * o_.min_holdout_r2));
+    // No bicycle moves like this: error bars then mean nothing, however well the yaw rate is predicted.
+    for (const char* name : {"surplus equation", "agreement of methods", "agreement of data parts"}) {
+      const HonestyCheck* c = find_check(name);
+      if (c != nullptr && !c->passed) {
+        return reject(
+            fmt::format("rejected: {}. Rolling is not in the model: record roll or give signals.roll_gradient, and a "
+                        "lower signals.pass_band",
+                        c->text));
+      }
+    }
     std::vector<std::string> identified, unexcited;
     for (const ParameterEstimate& p : best.parameters) {
       const bool vehicle = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu" || p.name == "a" ||

@@ -1,0 +1,196 @@
+// The program on studies of vehicles.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.hpp"
+#include "veridyn/io/csv.hpp"
+
+namespace veridyn {
+namespace {
+
+using testing::HasSubstr;
+
+class VehicleProgram : public ProgramTest {
+ protected:
+  [[nodiscard]] static std::string study(const std::string& name) {
+    return std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/vehicle/" + name + ".toml";
+  }
+  [[nodiscard]] std::filesystem::path in_out(const std::string& name) const { return folder_ / "out" / name; }
+
+  /// A drive log of 30 s at 100 Hz, `row(t)` giving steer, speed, yaw_rate, accel_y; and a study of it.
+  template <typename Row>
+  std::string logged(const std::string& name, const Row& row) const {
+    std::string csv = "time[s],steer[rad],speed[m/s],yaw_rate[rad/s],accel_y[m/s^2]\n";
+    for (int k = 0; k < 3000; ++k) {
+      const double t = 0.01 * k;
+      const std::array<double, 4> v = row(t);
+      csv += std::to_string(t);
+      for (const double x : v) csv += "," + (std::isfinite(x) ? std::to_string(x) : std::string("nan"));
+      csv += "\n";
+    }
+    file(name + ".csv", csv);
+    return file(name + ".toml",
+                "[subject]\nkind = \"vehicle\"\nmass = 1000\na = 1.2\nb = 1.3\n[data]\nfile = \"" + name + ".csv\"\n");
+  }
+};
+
+TEST_F(VehicleProgram, DrivesScalesAndIdentifiesItsOwnTemplate) {
+  ASSERT_EQ(run("init vehicle --quiet --out " + folder_.string()).exit_code, 0);
+  const std::string own = (folder_ / "study.toml").string();
+  const Outcome driven = run("simulate " + own + " --json" + out());
+  ASSERT_EQ(driven.exit_code, 0) << driven.text;
+  for (const char* name : {"motion.csv", "recording.csv", "metrics.csv", "subject.toml", "report.html", "run.json"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  const auto summary = nlohmann::json::parse(driven.text);
+  EXPECT_EQ(summary["completed"], true);
+  EXPECT_EQ(summary["manoeuvre"], "step steer");
+  const Recording motion = io::to_recording(io::read_csv_file(in_out("motion.csv")));
+  EXPECT_TRUE(motion.has("normal_force_fl"));
+  EXPECT_EQ(run("inspect " + in_out("recording.csv").string()).exit_code, 0);
+  EXPECT_EQ(run("scale " + own + out()).exit_code, 0);
+  for (const char* name : {"groups.csv", "scaled.toml", "prototype.csv", "model.csv"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  EXPECT_EQ(
+      run("identify " + own + " --set drive.manoeuvre=sweep --set drive.length=20 --set drive.duration=24" + out())
+          .exit_code,
+      0);
+  EXPECT_TRUE(std::filesystem::exists(in_out("estimate.json")));
+}
+
+TEST_F(VehicleProgram, WritesAVehicleThatItReadsAgain) {
+  ASSERT_EQ(run("simulate " + study("step_steer") + out()).exit_code, 0);
+  const std::string written = read_file(in_out("subject.toml"));
+  const std::string again = file("again.toml", written +
+                                                   "\n[drive]\nmanoeuvre = \"step steer\"\nspeed = \"100 km/h\"\n"
+                                                   "amplitude = \"2 deg\"\nduration = 6\n");
+  const std::string first = read_file(in_out("motion.csv"));
+  ASSERT_EQ(run("simulate " + again + out()).exit_code, 0);
+  EXPECT_EQ(read_file(in_out("motion.csv")), first);
+}
+
+TEST_F(VehicleProgram, ScaleFindsWhatThePublishedModelGetsWrong) {
+  const Outcome scaled = run("scale " + study("scale") + " --json" + out());
+  ASSERT_EQ(scaled.exit_code, 0) << scaled.text;
+  const auto summary = nlohmann::json::parse(scaled.text);
+  for (const auto& group : summary["groups"]) {
+    const double mismatch = group["mismatch_percent"];
+    const std::string name = group["quantity"];
+    if (name == "C_f" || name == "C_r") {
+      EXPECT_NEAR(mismatch, 4.2, 0.05) << name;
+    } else if (name == "I_x") {
+      EXPECT_NEAR(mismatch, -0.4, 0.05);
+    } else {
+      EXPECT_LT(std::abs(mismatch), 0.1) << name;
+    }
+  }
+  EXPECT_NEAR(summary["gravity"]["mismatch_percent"], 400.0, 1e-6);
+}
+
+TEST_F(VehicleProgram, SameSeedSameResultWhateverTheThreads) {
+  const std::string drive = study("identify_sweep") + " --set drive.length=20 --set drive.duration=25";
+  ASSERT_EQ(run("identify " + drive + " --threads 1" + out()).exit_code, 0);
+  const std::string one = read_file(in_out("estimate.json")), recorded = read_file(in_out("recording.csv"));
+  ASSERT_EQ(run("identify " + drive + " --threads 2" + out()).exit_code, 0);
+  EXPECT_EQ(read_file(in_out("estimate.json")), one);
+  ASSERT_EQ(run("identify " + drive + " --seed 8" + out()).exit_code, 0);
+  EXPECT_NE(read_file(in_out("recording.csv")), recorded);
+}
+
+TEST_F(VehicleProgram, TrackingSeesTheGripDrop) {
+  const Outcome tracked = run("track " + study("grip_drop") + " --json" + out());
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
+  const auto changes = nlohmann::json::parse(tracked.text)["changes"];
+  ASSERT_FALSE(changes.empty());
+  // Rows are about the middle of a filter of half a second: the first that the change reaches is a quarter earlier.
+  EXPECT_GT(changes[0]["detected_s"], 59.7);
+  EXPECT_LT(changes[0]["detected_s"], 65.0);
+}
+
+TEST_F(VehicleProgram, RollOfTheBodyIsNotTakenForTheTyres) {
+  const Outcome identified = run("identify " + study("step_steer") +
+                                 " --set drive.manoeuvre=\"random steer\" --set drive.amplitude=0.035 --set "
+                                 "drive.duration=60 --json" +
+                                 out());
+  ASSERT_EQ(identified.exit_code, 0) << identified.text;
+  EXPECT_EQ(nlohmann::json::parse(identified.text)["verdict"], "rejected");
+}
+
+TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
+  ASSERT_EQ(run("identify " + study("identify_sweep") + out()).exit_code, 0);
+  const std::string estimate = file("estimate.json", read_file(in_out("estimate.json")));
+  const Outcome validated =
+      run("validate " + study("identify_sweep") + " --seed 99 --json --estimate " + estimate + out());
+  ASSERT_EQ(validated.exit_code, 0) << validated.text;
+  EXPECT_EQ(nlohmann::json::parse(validated.text)["verdict"], "identified");
+}
+
+TEST_F(VehicleProgram, RefusesWhatNoVehicleCanBeOrDo) {
+  const auto refused = [&](const std::string& set, const std::string& message) {
+    expect_refusal("simulate " + study("step_steer") + " --set " + set + out(), message);
+  };
+  refused("drive.speed=0", "drive.speed: is 0 m/s; must be > 0");
+  refused("drive.speed=nan", "drive.speed: is nan");
+  refused("'drive.speed=\"20 kg\"'", "unit 'kg' is a mass");
+  refused("subject.track=0", "track_f is 0 m; must be > 0");
+  refused("subject.C_f=-100", "C_f is -100 N/rad; must be > 0");
+  refused("'drive.amplitude=\"95 deg\"'", "must be within 90 deg");
+  refused("drive.manoeuvre=stepsteer", "did you mean 'step steer'");
+  refused("drive.step=0.005", "step");
+  refused("drive.amplitud=1", "did you mean 'amplitude'");
+  refused("subject.tyre=missing.tir", "missing.tir: no such file");
+  refused("subject.unsprung_mass=500", "four must be lighter");
+  expect_refusal("simulate " + study("rough_road") + " --set road.class=Z" + out(), "is not one of A, B");
+  expect_refusal("simulate " + study("rough_road") + " --set drive.model=bicycle" + out(),
+                 "needs model = \"four-wheel\"");
+  expect_refusal("scale " + study("scale") + " --set scale.length_ratio=-1" + out(), "must be > 0");
+  expect_refusal("scale " + study("scale") + " --set 'scale.repeating=[\"m\",\"L\",\"a\"]'" + out(), "not independent");
+}
+
+TEST_F(VehicleProgram, RefusesLogsThatHoldNoDrive) {
+  const double nan = std::nan("");
+  using Row = std::array<double, 4>;
+  const auto refused = [&](const std::string& name, const auto& row, const std::string& message) {
+    expect_refusal("identify " + logged(name, row) + out(), message);
+  };
+  refused(
+      "standing",
+      [](double t) {
+        return Row{0.01 * std::sin(t), 0.0, 0.0, 0.0};
+      },
+      "the vehicle never drives");
+  refused(
+      "nothing",
+      [&](double) {
+        return Row{0.0, 20.0, nan, 0.0};
+      },
+      "yaw_rate holds no numbers");
+  refused(
+      "degrees",
+      [](double t) {
+        return Row{2.0 * std::sin(t), 20.0, 0.1 * std::sin(t), 2.0 * std::sin(t)};
+      },
+      "is it the hand wheel's angle, or in degrees?");
+  refused(
+      "mirrored",
+      [](double t) {
+        return Row{0.02 * std::sin(t), 20.0, -0.1 * std::sin(t), 2.0 * std::sin(t)};
+      },
+      "accel_y goes against yaw_rate x speed");
+  expect_refusal("identify " + file("bare.toml", "[subject]\nkind = \"vehicle\"\n") + out(), "data: is missing");
+  file("empty.csv", "time[s],steer[rad],speed[m/s],yaw_rate[rad/s],accel_y[m/s^2]\n");
+  expect_refusal(
+      "identify " +
+          file("empty.toml", "[subject]\nkind = \"vehicle\"\nmass = 1\na = 1\nb = 1\n[data]\nfile = \"empty.csv\"\n") +
+          out(),
+      "not one row of data");
+}
+
+TEST_F(VehicleProgram, StraightDrivingIsNoErrorAndIdentifiesNothing) {
+  const std::string straight = logged("straight", [](double) { return std::array<double, 4>{0.0, 20.0, 0.0, 0.0}; });
+  const Outcome identified = run("identify " + straight + " --json" + out());
+  ASSERT_EQ(identified.exit_code, 0) << identified.text;
+  EXPECT_NE(nlohmann::json::parse(identified.text)["verdict"], "identified");
+}
+
+}  // namespace
+}  // namespace veridyn
