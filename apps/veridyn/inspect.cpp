@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/vehicle/drive_log.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -58,7 +59,10 @@ int inspect(const Options& options) {
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
   const Recording recording = io::to_recording(std::move(log));
-  const aircraft::MappedRecording mapped = aircraft::map_channels(recording, StudyTable("data.map"), {});
+  // Frames tell vehicles from aircraft.
+  const bool vehicle = recording.frame == Frame::kFlu;
+  const io::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
+                                             : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
 
   nlohmann::ordered_json summary;
@@ -99,8 +103,8 @@ int inspect(const Options& options) {
   }
   summary["mapping"] = nlohmann::ordered_json::object();
   if (!mapped.origins.empty()) {
-    text += fmt::format("\nfor an aircraft study ({} log):\n", mapped.log_kind);
-    for (const aircraft::ChannelOrigin& origin : mapped.origins) {
+    text += fmt::format("\nfor {} study ({} log):\n", vehicle ? "a vehicle" : "an aircraft", mapped.log_kind);
+    for (const io::ChannelOrigin& origin : mapped.origins) {
       summary["mapping"][origin.channel] = origin.source;
       text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
                           origin.note.empty() ? "" : ", " + origin.note);

@@ -135,7 +135,7 @@ TEST_F(VehicleProgram, RefusesWhatNoVehicleCanBeOrDo) {
   refused("subject.C_f=-100", "C_f is -100 N/rad; must be > 0");
   refused("'drive.amplitude=\"95 deg\"'", "must be within 90 deg");
   refused("drive.manoeuvre=stepsteer", "did you mean 'step steer'");
-  refused("drive.step=0.005", "step");
+  refused("drive.step=0.05 --set drive.output_step=0.05", "step");
   refused("drive.amplitud=1", "did you mean 'amplitude'");
   refused("subject.tyre=missing.tir", "missing.tir: no such file");
   refused("subject.unsprung_mass=500", "four must be lighter");

@@ -48,6 +48,13 @@ ScaleStudy read_scale_study(const StudyTable& root) {
   study.repeating = scale.has("repeating") ? scale.texts("repeating")
                                            : std::vector<std::string>(default_repeating_variables().begin(),
                                                                       default_repeating_variables().end());
+  try {
+    static_cast<void>(similarity_groups(study.prototype, study.repeating));
+  } catch (const InputError& error) {
+    // At its place in the study, not in the mechanism's words for it.
+    const std::string what = error.what();
+    throw InputError(scale.place("repeating"), what.substr(std::min(what.size(), error.place().size() + 2)));
+  }
   study.requested = study.request.length_ratio || study.request.mass || study.request.speed;
   if (!scale.has("model")) {
     if (!study.requested)

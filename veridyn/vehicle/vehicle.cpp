@@ -213,8 +213,10 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
   for (const std::string_view name : {"mass", "a", "b"}) {
     const std::size_t i = index_of(name);
     if (!given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));  // says that it is missing
+    // What is assumed below follows from these.
+    if (!(field_of(p, i) > 0.0))
+      subject.fail(name, fmt::format("is {:g} {}; must be > 0", field_of(p, i), kVehicleFields[i].unit));
   }
-  check(subject, p);
   read_tyres(subject, vehicle, given);
   for (const std::string_view name : needed(needs)) {
     const std::size_t i = index_of(name);

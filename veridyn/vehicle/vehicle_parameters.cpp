@@ -15,8 +15,8 @@ std::string inadmissible(const VehicleParameters<double>& p) {
         name == "C_sf" || name == "C_sr" || name == "K_bf" || name == "K_br" || name == "cg_height";
     const bool may_be_infinite = name == "mu";
     if (!(may_be_zero ? value >= 0.0 : value > 0.0)) {
-      return fmt::format("{} is {:g} {}; must be {}", name, value, kVehicleFields[i].unit,
-                         may_be_zero ? ">= 0" : "> 0");
+      const std::string unit = may_be_infinite ? "" : fmt::format(" {}", kVehicleFields[i].unit);
+      return fmt::format("{} is {:g}{}; must be {}", name, value, unit, may_be_zero ? ">= 0" : "> 0");
     }
     if (!may_be_infinite && !(value < std::numeric_limits<double>::infinity())) {
       return fmt::format("{} is infinite", name);
