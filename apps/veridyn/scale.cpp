@@ -102,6 +102,7 @@ int scale_vehicle(const Study& study, const std::string& path, const CommonOptio
     tell(options, fmt::format("  {:<22} {:+.3g} %   {}", g.formula, g.mismatch_percent, g.affects));
   tell(options, fmt::format("  {:<22} {:+.3g} %   (gravity, apart)", r.gravity.formula, r.gravity.mismatch_percent));
   for (const std::string& line : r.gravity_changes) tell(options, "    " + line);
+  for (const std::string& line : analysis.ended_early()) tell(options, "warning: " + line);
   tell(options, r.message());
   tell(options,
        fmt::format("wrote groups.csv, scaled.toml, prototype.csv, model.csv, report.html in {}", folder.string()));

@@ -101,8 +101,11 @@ Table scaled_table(const ScaleStudy& study, const ScaleAnalysis& a) {
 }
 
 Table difference_table(const ScaleAnalysis& a) {
-  Table table{.title = "Largest differences over the drive",
-              .caption = "After bringing each to the prototype's size, as shares of the prototype's largest value."};
+  Table table{
+      .title = "Largest differences over the drive",
+      .caption =
+          "After bringing each to the prototype's size, as shares of the prototype's largest value; of a drive that "
+          "ended early until then."};
   table.columns = {{.name = "quantity", .align = Align::kLeft}};
   for (const ScaledRun& run : a.runs)
     table.columns.push_back({.name = "difference", .unit = "%", .digits = 3, .group = run.name});
@@ -128,6 +131,15 @@ Section group_section(const ScaleAnalysis& analysis) {
   section.blocks.emplace_back(gravity_table(r));
   if (!r.gravity_changes.empty()) section.blocks.emplace_back(List{r.gravity_changes, Tone::kNote});
   if (!r.behaviour.empty()) section.blocks.emplace_back(behaviour_table(r));
+  return section;
+}
+
+Section difference_section(const ScaleAnalysis& analysis) {
+  Section section{.title = "Differences"};
+  if (const std::vector<std::string> early = analysis.ended_early(); !early.empty()) {
+    section.blocks.emplace_back(List{early, Tone::kWarning});  // differences are those until then
+  }
+  section.blocks.emplace_back(difference_table(analysis));
   return section;
 }
 
@@ -165,6 +177,7 @@ Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysi
   document.verdict.level = r.similar() ? Level::kGood : similar ? Level::kCaution : Level::kBad;
   document.verdict.word = r.similar() ? "Similar" : similar ? "Similar but for gravity" : "Not similar";
   document.verdict.headline = r.message();
+  for (const std::string& line : analysis.ended_early()) document.verdict.lines.push_back(line + ".");
   for (const std::string& line : r.gravity_changes) {
     if (document.verdict.lines.size() < 3) document.verdict.lines.push_back(line);
   }
@@ -181,7 +194,7 @@ Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysi
   if (!analysis.scaled.chosen.empty()) numbers.blocks.emplace_back(List{analysis.scaled.chosen, Tone::kNote});
   document.sections.push_back(std::move(numbers));
   if (!analysis.runs.empty() && analysis.prototype.size() > 1) {
-    document.sections.push_back({.title = "Differences", .blocks = {difference_table(analysis)}});
+    document.sections.push_back(difference_section(analysis));
     for (Section& section : overlay_sections(study, analysis)) document.sections.push_back(std::move(section));
   }
   return document;

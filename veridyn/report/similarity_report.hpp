@@ -13,6 +13,7 @@ namespace veridyn::report {
                                          const std::string& program);
 
 /// The sections of that report which other reports show too.
+[[nodiscard]] Section difference_section(const vehicle::ScaleAnalysis& analysis);
 [[nodiscard]] Section group_section(const vehicle::ScaleAnalysis& analysis);
 [[nodiscard]] std::vector<Section> overlay_sections(const vehicle::ScaleStudy& study,
                                                     const vehicle::ScaleAnalysis& analysis);

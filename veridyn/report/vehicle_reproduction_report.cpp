@@ -38,6 +38,7 @@ ReproducedRow reproduced_row(const VehicleReproduction& r) {
                   to_string(drive.manoeuvre.kind), 1e3 * drive.simulation.step);
   if (!r.numbers.empty()) row.blocks.emplace_back(number_table(r.numbers));
   for (Block& block : group_section(r.analysis).blocks) row.blocks.push_back(std::move(block));
+  for (Block& block : difference_section(r.analysis).blocks) row.blocks.push_back(std::move(block));
   for (Section& section : overlay_sections(r.study, r.analysis))
     for (Block& block : section.blocks) row.blocks.push_back(std::move(block));
   // Rows zoom apart from each other: their time axes differ.

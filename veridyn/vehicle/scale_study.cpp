@@ -126,6 +126,15 @@ std::vector<MotionDifference> motion_differences(const VehicleTrajectory& protot
   return list;
 }
 
+std::vector<std::string> ScaleAnalysis::ended_early() const {
+  std::vector<std::string> texts;
+  if (prototype.end != SimulationEnd::kCompleted) texts.push_back("prototype: " + prototype.message());
+  for (const ScaledRun& run : runs) {
+    if (run.own.end != SimulationEnd::kCompleted) texts.push_back(run.name + ": " + run.own.message());
+  }
+  return texts;
+}
+
 ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
   ScaleAnalysis analysis;
   analysis.scaled = scale(study.prototype, study.request);

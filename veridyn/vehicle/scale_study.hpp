@@ -64,6 +64,9 @@ struct ScaleAnalysis {
   /// given model under it.
   std::vector<ScaledRun> runs;
   bool interrupted = false;
+
+  /// Drives that ended before the prototype's did, in sentences: "exact twin: the vehicle rolls ... (at 4.8 s)".
+  [[nodiscard]] std::vector<std::string> ended_early() const;
 };
 
 /// Scales, compares and drives. @throws InputError as `compare` and `simulate` do.
