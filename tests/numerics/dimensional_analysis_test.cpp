@@ -5,19 +5,10 @@
 #include <array>
 #include <random>
 
-#include "veridyn/core/error.hpp"
+#include "tests/refusal.hpp"
 
 namespace veridyn::numerics {
 namespace {
-
-std::string why(const auto& work) {
-  try {
-    work();
-  } catch (const InputError& wrong) {
-    return wrong.what();
-  }
-  return "nothing was refused";
-}
 
 TEST(DimensionalAnalysis, FractionsAreExactAndInLowestTerms) {
   EXPECT_EQ(Fraction(2, -4).text(), "-1/2");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/vehicle/cars.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 #include "veridyn/vehicle/vehicle_simulation.hpp"
@@ -15,15 +16,7 @@
 namespace veridyn::vehicle {
 namespace {
 
-VehicleParameters<double> road_car() {
-  VehicleParameters<double> p;
-  p.K_sf = 31000.0;
-  p.K_sr = 27000.0;
-  p.C_sf = 2500.0;
-  p.C_sr = 2100.0;
-  p.K_tf = p.K_tr = 200000.0;
-  return p;
-}
+using testing::road_car;
 
 FourWheelModel<double, LinearTyre<double>> car_of(const VehicleParameters<double>& p, const FourWheelOptions& o = {}) {
   const LinearTyre<double> front{.stiffness = p.C_f}, rear{.stiffness = p.C_r};

@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/vehicle/cars.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
@@ -18,14 +19,8 @@
 namespace veridyn::vehicle {
 namespace {
 
-template <typename Scalar>
-using LinearCar = FourWheelModel<Scalar, LinearTyre<Scalar>>;
-
-template <typename Scalar>
-LinearCar<Scalar> linear_car(const VehicleParameters<Scalar>& p, const FourWheelOptions& options = {}) {
-  const LinearTyre<Scalar> front{.stiffness = p.C_f, .mu = p.mu}, rear{.stiffness = p.C_r, .mu = p.mu};
-  return {p, {front, front, rear, rear}, options};
-}
+using testing::linear_car;
+using testing::LinearCar;
 
 /// Unlike in front and behind in everything, with bars: nothing cancels.
 VehicleParameters<double> uneven_car() {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "veridyn/core/error.hpp"
+#include "tests/refusal.hpp"
 #include "veridyn/numerics/spectral_response.hpp"
 
 namespace veridyn::vehicle {
@@ -16,15 +16,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
-
-std::string why(const auto& work) {
-  try {
-    work();
-  } catch (const InputError& wrong) {
-    return wrong.what();
-  }
-  return "nothing was refused";
-}
 
 double steer(const Manoeuvre& m, double time) { return m.driver->controls(time).steer; }
 

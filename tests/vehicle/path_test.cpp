@@ -8,21 +8,12 @@
 #include <numbers>
 #include <string>
 
-#include "veridyn/core/error.hpp"
+#include "tests/refusal.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-std::string why(const auto& work) {
-  try {
-    work();
-  } catch (const InputError& wrong) {
-    return wrong.what();
-  }
-  return "nothing was refused";
-}
 
 TEST(Path, ACircleHasItsRadiusAndGrowsWithTheLaps) {
   const Path path = Path::circle(33.0, -1);

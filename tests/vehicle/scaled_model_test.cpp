@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "tests/vehicle/cars.hpp"
 #include "veridyn/vehicle/builtin_vehicles.hpp"
 #include "veridyn/vehicle/manoeuvre.hpp"
 #include "veridyn/vehicle/scaled_drive.hpp"
@@ -14,15 +15,7 @@
 namespace veridyn::vehicle {
 namespace {
 
-VehicleParameters<double> road_car() {
-  VehicleParameters<double> p;
-  p.K_sf = 31000.0;
-  p.K_sr = 27000.0;
-  p.C_sf = 2500.0;
-  p.C_sr = 2100.0;
-  p.K_tf = p.K_tr = 200000.0;
-  return p;
-}
+using testing::road_car;
 
 SimulationOptions options_of(double speed, const ScaleFactors& factors) {
   return {.duration = 12.0 * factors.time(),

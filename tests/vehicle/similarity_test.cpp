@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "veridyn/core/error.hpp"
+#include "tests/refusal.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/bicycle_model.hpp"
 #include "veridyn/vehicle/builtin_vehicles.hpp"
@@ -24,15 +24,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 SimilaritySubject subject_of(std::string_view name) {
   const BuiltinVehicle& vehicle = builtin_vehicle(name);
   return {.parameters = vehicle.parameters, .speed = vehicle.speed};
-}
-
-std::string why(const auto& work) {
-  try {
-    work();
-  } catch (const InputError& wrong) {
-    return wrong.what();
-  }
-  return "nothing was refused";
 }
 
 using State = Eigen::Matrix<double, 5, 1>;  // v, r, yaw, x, y

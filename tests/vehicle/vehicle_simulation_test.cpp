@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/vehicle/cars.hpp"
 #include "tests/vehicle/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
@@ -18,6 +19,9 @@
 
 namespace veridyn::vehicle {
 namespace {
+
+using testing::linear_car;
+using testing::LinearCar;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kGravity = 9.80665;
@@ -38,24 +42,11 @@ struct SignalRoad : Road {
   [[nodiscard]] double height(const RoadPoint& point) const override { return signal(point); }
 };
 
-template <typename Scalar>
-using LinearCar = FourWheelModel<Scalar, LinearTyre<Scalar>>;
-
-template <typename Scalar>
-LinearCar<Scalar> linear_car(const VehicleParameters<Scalar>& p, const FourWheelOptions& options = {}) {
-  const LinearTyre<Scalar> front{.stiffness = p.C_f, .mu = p.mu}, rear{.stiffness = p.C_r, .mu = p.mu};
-  return {p, {front, front, rear, rear}, options};
-}
-
+/// With anti-roll bars.
 VehicleParameters<double> road_car() {
-  VehicleParameters<double> p;
-  p.K_sf = 31000.0;
-  p.K_sr = 27000.0;
-  p.C_sf = 2500.0;
-  p.C_sr = 2100.0;
+  VehicleParameters<double> p = testing::road_car();
   p.K_bf = 9000.0;
   p.K_br = 4000.0;
-  p.K_tf = p.K_tr = 200000.0;
   return p;
 }
 

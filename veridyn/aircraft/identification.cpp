@@ -13,6 +13,7 @@
 #include "veridyn/aircraft/estimated_subject.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/estimation/agreement.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -101,17 +102,7 @@ const RegressionEstimate* choose(const RegressionComparison& comparison, const s
 
 /// p of the hypothesis that two independent estimates are of the same parameters.
 double contradiction_p(const RegressionEstimate& a, const RegressionEstimate& b) {
-  const Eigen::VectorXd difference = a.theta - b.theta;
-  const Eigen::MatrixXd covariance = a.covariance + b.covariance;
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0.0)) return 1.0;
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  const Eigen::VectorXd d = inverse.asDiagonal() * difference;
-  const double chi_square = d.dot(factor.solve(d));
-  return std::isfinite(chi_square)
-             ? numerics::chi_square_upper_p(std::max(0.0, chi_square), static_cast<double>(d.size()))
-             : 1.0;
+  return estimation::agreement_p(a.theta - b.theta, a.covariance + b.covariance);
 }
 
 class CoefficientIdentification {

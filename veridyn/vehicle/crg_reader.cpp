@@ -15,37 +15,15 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view trim(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return result;
-}
-
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, 40));
-  for (char& c : result) {
-    if (c < 0x20 || c > 0x7e) c = '?';
-  }
-  return text.size() > 40 ? result + "..." : result;
-}
-
 std::optional<double> to_number(std::string_view text) {
-  text = trim(text);
+  text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -108,10 +86,10 @@ class CrgParser {
       if (line.starts_with("$$$$")) break;
       if (line.starts_with('*')) continue;
       if (section != "CT") line = line.substr(0, line.find('!'));
-      line = trim(line);
+      line = trimmed(line);
       if (line.empty()) continue;
       if (line.front() == '$') {
-        section = upper(trim(line.substr(1, line.find_first_of(" !") - 1)));
+        section = upper(trimmed(line.substr(1, line.find_first_of(" !") - 1)));
         if (section == "ROAD_CRG_FILE") fail(line_number, "$ROAD_CRG_FILE: data in another file are not supported");
         continue;
       }
@@ -132,14 +110,14 @@ class CrgParser {
   void read_key(std::string_view line, std::size_t number) {
     const std::size_t equals = line.find('=');
     if (equals == std::string_view::npos) fail(number, fmt::format("'{}' is not KEY = value", shown(line)));
-    const std::string key = upper(trim(line.substr(0, equals)));
-    const auto [at, inserted] = keys_.try_emplace(key, Entry{std::string(trim(line.substr(equals + 1))), number});
+    const std::string key = upper(trimmed(line.substr(0, equals)));
+    const auto [at, inserted] = keys_.try_emplace(key, Entry{std::string(trimmed(line.substr(equals + 1))), number});
     if (!inserted) fail(number, fmt::format("{} is given twice, first in line {}", shown(key), at->second.line));
   }
 
   void read_definition(std::string_view line, std::size_t number) {
     if (line.starts_with("#:")) {
-      format_ = upper(trim(line.substr(2)));
+      format_ = upper(trimmed(line.substr(2)));
       if (format_ != "LRFI" && format_ != "LDFI" && format_ != "KRBI" && format_ != "KDBI")
         fail(number, fmt::format("format '{}' is not one of LRFI, LDFI, KRBI, KDBI", shown(format_)));
       return;
@@ -147,8 +125,8 @@ class CrgParser {
     if (line.starts_with("U:")) return;  // the same as the increment of $ROAD_CRG
     if (!line.starts_with("D:")) fail(number, fmt::format("'{}' is no definition of a channel", shown(line)));
     const std::size_t comma = line.rfind(',');
-    const std::string text = upper(trim(line.substr(2, comma == std::string_view::npos ? comma : comma - 2)));
-    const std::string_view unit = comma == std::string_view::npos ? "" : trim(line.substr(comma + 1));
+    const std::string text = upper(trimmed(line.substr(2, comma == std::string_view::npos ? comma : comma - 2)));
+    const std::string_view unit = comma == std::string_view::npos ? "" : trimmed(line.substr(comma + 1));
     Channel channel;
     channel.line = number;
     constexpr std::string_view kReference = "REFERENCE LINE ";
@@ -304,14 +282,14 @@ class CrgParser {
       std::string_view line = rest.substr(0, end);
       rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
       if (line.ends_with('\r')) line.remove_suffix(1);
-      if (in_row == 0 && (trim(line).empty() || line.starts_with('*'))) {
+      if (in_row == 0 && (trimmed(line).empty() || line.starts_with('*'))) {
         // A field may start with stars ("**unused**"), a comment has a blank or letter after one.
         if (!line.starts_with("**")) continue;
       }
       const std::size_t expected = std::min(per_line, channels_.size() - in_row);
       for (std::size_t k = 0; k < expected; ++k) {
         const std::size_t from = k * width;
-        const std::string_view field = trim(from < line.size() ? line.substr(from, width) : std::string_view());
+        const std::string_view field = trimmed(from < line.size() ? line.substr(from, width) : std::string_view());
         if (field.empty() && end == std::string_view::npos) return values;  // cut here: counted by the caller
         const auto value = to_number(field);
         // "**unused**", "**missing*" and the like stand where there is no number.

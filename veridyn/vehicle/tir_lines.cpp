@@ -9,18 +9,12 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::vehicle::internal {
 namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{4} << 20;  // real ones have some 15 kB
-
-std::string_view trim(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 bool is_key(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
@@ -29,22 +23,6 @@ bool is_key(std::string_view text) {
 }
 
 }  // namespace
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return result;
-}
-
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, 40));
-  for (char& c : result) {
-    if (c < 0x20 || c > 0x7e) c = '?';
-  }
-  return text.size() > 40 ? result + "..." : result;
-}
 
 TirLines::TirLines(std::string_view text, std::string source) : source_(std::move(source)) {
   if (text.size() > kLargestFile)
@@ -103,13 +81,13 @@ void TirLines::read_line(std::string_view raw, std::size_t number) {
     const auto byte = static_cast<unsigned char>(c);
     if ((byte < 0x20 && c != '\t' && c != '\r') || byte == 0x7f) refuse("is no tyre file: this line is not text");
   }
-  std::string_view line = trim(raw);
+  std::string_view line = trimmed(raw);
   // A comment sign inside a quoted text belongs to the text.
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '\'') quoted = !quoted;
     if (!quoted && (line[i] == '$' || line[i] == '!')) {
-      line = trim(line.substr(0, i));
+      line = trimmed(line.substr(0, i));
       break;
     }
   }
@@ -129,15 +107,15 @@ void TirLines::read_line(std::string_view raw, std::size_t number) {
     refuse(fmt::format("'{}' is neither KEY = value, [SECTION] nor a comment", shown(line)));
   }
   in_table_ = false;
-  const std::string key = upper(trim(line.substr(0, equals)));
-  std::string_view value = trim(line.substr(equals + 1));
+  const std::string key = upper(trimmed(line.substr(0, equals)));
+  std::string_view value = trimmed(line.substr(equals + 1));
   if (!is_key(key)) refuse(fmt::format("'{}' is not the name of a key", shown(key)));
   Entry entry;
   entry.line = number;
   if (!value.empty() && value.front() == '\'') {
     if (value.size() < 2 || value.back() != '\'') refuse(fmt::format("{}: the closing quote is missing", key));
     entry.quoted = true;
-    value = trim(value.substr(1, value.size() - 2));
+    value = trimmed(value.substr(1, value.size() - 2));
   }
   if (value.empty() && !entry.quoted) refuse(fmt::format("{} has no value", key));
   entry.value = std::string(value);

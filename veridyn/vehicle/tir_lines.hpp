@@ -8,10 +8,6 @@
 
 namespace veridyn::vehicle::internal {
 
-[[nodiscard]] std::string upper(std::string_view text);
-/// For a message: at most 40 characters, printable.
-[[nodiscard]] std::string shown(std::string_view text);
-
 /// The lines `KEY = value` of a tyre file, by key (in capitals).
 class TirLines {
  public:

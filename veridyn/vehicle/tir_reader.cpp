@@ -10,15 +10,14 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/vehicle/tir_lines.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-using internal::shown;
 using internal::TirLines;
-using internal::upper;
 
 /// How the words of tyre files are called in this project.
 struct UnitWord {

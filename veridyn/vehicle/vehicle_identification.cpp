@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/agreement.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
@@ -63,19 +64,6 @@ Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
   const double L = p.wheelbase(), m = p.mass;
   return {-0.5 * m * p.b / (L * p.C_f * p.C_f), 0.5 * m * p.a / (L * p.C_r * p.C_r),
           -0.5 * m / L * (1.0 / p.C_f + 1.0 / p.C_r)};
-}
-
-/// Two normal estimates of the same: p of "they agree".
-double agreement_p(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0.0) || !covariance.allFinite()) return 1.0;
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  const Eigen::VectorXd d = inverse.asDiagonal() * difference;
-  const double chi_square = d.dot(factor.solve(d));
-  return std::isfinite(chi_square)
-             ? numerics::chi_square_upper_p(std::max(0.0, chi_square), static_cast<double>(d.size()))
-             : 1.0;
 }
 
 class Identification {
@@ -610,7 +598,7 @@ class Identification {
         covariance += out_.output_error->covariance.topLeftCorner(3, 3);
         // Small angles, which only equation error takes.
         covariance.diagonal() += (kSmallAngles * axle->value).cwiseAbs2();
-        const double p = agreement_p(difference, covariance);
+        const double p = estimation::agreement_p(difference, covariance);
         check("agreement of methods", p >= o_.contradiction_level, p, o_.contradiction_level,
               p >= o_.contradiction_level
                   ? fmt::format("equation error and output error agree (p = {:.2g})", p)
@@ -623,7 +611,7 @@ class Identification {
     const DriveRegressionResult unseen = regress(segments_.holdout, start_);
     const AxleEstimate* again = unseen.find(method);
     if (again == nullptr || !again->usable) return;
-    const double p = agreement_p(again->value - axle->value, again->covariance + axle->covariance);
+    const double p = estimation::agreement_p(again->value - axle->value, again->covariance + axle->covariance);
     check("agreement of data parts", p >= o_.contradiction_level, p, o_.contradiction_level,
           p >= o_.contradiction_level
               ? fmt::format("identification and hold-out data, estimated apart, agree (p = {:.2g})", p)

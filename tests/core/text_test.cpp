@@ -1,0 +1,21 @@
+#include "veridyn/core/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace veridyn {
+namespace {
+
+TEST(Text, IsTrimmedAtItsEndsOnly) {
+  EXPECT_EQ(trimmed(" \ta b\r "), "a b");
+  EXPECT_EQ(trimmed(" \t\r"), "");
+}
+
+TEST(Text, IsShownPrintableAndShort) {
+  EXPECT_EQ(shown(std::string("a\0b\xff", 4)), "a?b?");
+  EXPECT_EQ(shown(std::string(50, 'x')), std::string(40, 'x') + "...");
+}
+
+TEST(Text, CapitalsAreThoseOfAscii) { EXPECT_EQ(upper("pac2002_\xc3\xa9"), "PAC2002_\xc3\xa9"); }
+
+}  // namespace
+}  // namespace veridyn

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace veridyn {
+
+/// Without blanks, tabulators and carriage returns at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// ASCII letters as capitals.
+[[nodiscard]] std::string upper(std::string_view text);
+
+/// Bytes of a file for a message: at most 40, what is not printable as '?'.
+[[nodiscard]] std::string shown(std::string_view text);
+
+}  // namespace veridyn
