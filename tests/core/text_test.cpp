@@ -12,7 +12,9 @@ TEST(Text, IsTrimmedAtItsEndsOnly) {
 
 TEST(Text, IsShownPrintableAndShort) {
   EXPECT_EQ(shown(std::string("a\0b\xff", 4)), "a?b?");
-  EXPECT_EQ(shown(std::string(50, 'x')), std::string(40, 'x') + "...");
+  const std::string shortened = shown(std::string(50, 'x'));
+  EXPECT_EQ(shortened.size(), 43u);
+  EXPECT_TRUE(shortened.ends_with("x..."));
 }
 
 TEST(Text, CapitalsAreThoseOfAscii) { EXPECT_EQ(upper("pac2002_\xc3\xa9"), "PAC2002_\xc3\xa9"); }
