@@ -28,8 +28,6 @@ struct Options {
   CommonOptions common;
 };
 
-const SimilarityReport& judged(const ScaleAnalysis& a) { return a.given_report ? *a.given_report : a.twin_report; }
-
 std::string groups_csv(const SimilarityReport& r) {
   std::string text = "quantity,group,prototype,model,mismatch_percent,affects\n";
   const auto line = [&](const GroupComparison& g) {
@@ -51,7 +49,7 @@ nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const Sca
         {"mismatch_percent", std::isfinite(g.mismatch_percent) ? nlohmann::ordered_json(g.mismatch_percent)
                                                                : nlohmann::ordered_json(nullptr)}};
   };
-  const SimilarityReport& r = judged(a);
+  const SimilarityReport& r = a.judged();
   nlohmann::ordered_json s;
   s["folder"] = folder.string();
   s["factors"] = {{"length", r.factors.length}, {"mass", r.factors.mass},
@@ -88,7 +86,7 @@ int scale_vehicle(const Study& study, const std::string& path, const CommonOptio
   }
   const std::filesystem::path folder = options.out;
   make_folder(folder);
-  const SimilarityReport& r = judged(analysis);
+  const SimilarityReport& r = analysis.judged();
   write_file(folder / "groups.csv", groups_csv(r));
   write_file(folder / "scaled.toml", write_vehicle_toml(analysis.twin));
   io::write_csv(to_recording(analysis.prototype), folder / "prototype.csv");

@@ -1,28 +1,11 @@
 // Counts calls of operator new, hence in a file of its own: a longer drive with the same samples must not call it more.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 
+#include "tests/counting_new.hpp"
 #include "veridyn/vehicle/linear_tyre.hpp"
 #include "veridyn/vehicle/vehicle_simulation.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size > 0 ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // both are replaced
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-#pragma GCC diagnostic pop
 
 namespace veridyn::vehicle {
 namespace {

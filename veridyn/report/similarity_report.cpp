@@ -18,8 +18,6 @@ std::string percent(double value) {
   return std::abs(value) < 1e-9 ? "0 %" : fmt::format("{:+.3g} %", value);
 }
 
-const SimilarityReport& judged(const ScaleAnalysis& a) { return a.given_report ? *a.given_report : a.twin_report; }
-
 Row group_row(const GroupComparison& g, double tolerance, bool apart = false) {
   const bool off = !(std::abs(g.mismatch_percent) <= tolerance);
   const Status status = off ? (apart ? Status::kCaution : Status::kBad) : Status::kGood;
@@ -125,7 +123,7 @@ Table difference_table(const ScaleAnalysis& a) {
 }  // namespace
 
 Section group_section(const ScaleAnalysis& analysis) {
-  const SimilarityReport& r = judged(analysis);
+  const SimilarityReport& r = analysis.judged();
   Section section{.title = "Pi groups"};
   section.blocks.emplace_back(group_table(r, analysis.given_report ? "Groups of the given model" : "Groups"));
   section.blocks.emplace_back(gravity_table(r));
@@ -168,7 +166,7 @@ std::vector<Section> overlay_sections(const ScaleStudy& study, const ScaleAnalys
 }
 
 Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysis, const std::string& program) {
-  const SimilarityReport& r = judged(analysis);
+  const SimilarityReport& r = analysis.judged();
   Document document;
   document.title = study.drive.title;
   document.subtitle = study.drive.vehicle.description;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/error.hpp"
+#include "veridyn/core/at_place.hpp"
 #include "veridyn/vehicle/scaled_drive.hpp"
 #include "veridyn/vehicle/trajectory_table.hpp"
 
@@ -48,13 +48,7 @@ ScaleStudy read_scale_study(const StudyTable& root) {
   study.repeating = scale.has("repeating") ? scale.texts("repeating")
                                            : std::vector<std::string>(default_repeating_variables().begin(),
                                                                       default_repeating_variables().end());
-  try {
-    static_cast<void>(similarity_groups(study.prototype, study.repeating));
-  } catch (const InputError& error) {
-    // At its place in the study, not in the mechanism's words for it.
-    const std::string what = error.what();
-    throw InputError(scale.place("repeating"), what.substr(std::min(what.size(), error.place().size() + 2)));
-  }
+  at_place(scale.place("repeating"), [&] { static_cast<void>(similarity_groups(study.prototype, study.repeating)); });
   study.requested = study.request.length_ratio || study.request.mass || study.request.speed;
   if (!scale.has("model")) {
     if (!study.requested)
@@ -125,6 +119,8 @@ std::vector<MotionDifference> motion_differences(const VehicleTrajectory& protot
   }
   return list;
 }
+
+const SimilarityReport& ScaleAnalysis::judged() const { return given_report ? *given_report : twin_report; }
 
 std::vector<std::string> ScaleAnalysis::ended_early() const {
   std::vector<std::string> texts;

@@ -65,6 +65,8 @@ struct ScaleAnalysis {
   std::vector<ScaledRun> runs;
   bool interrupted = false;
 
+  /// The report on the given model, where there is one, else on the twin.
+  [[nodiscard]] const SimilarityReport& judged() const;
   /// Drives that ended before the prototype's did, in sentences: "exact twin: the vehicle rolls ... (at 4.8 s)".
   [[nodiscard]] std::vector<std::string> ended_early() const;
 };

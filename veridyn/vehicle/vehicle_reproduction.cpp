@@ -135,7 +135,7 @@ VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress
   }
   check_groups(expect, r.analysis, r.checks);
   if (expect.has("gravity")) {
-    const SimilarityReport& report = r.analysis.given_report ? *r.analysis.given_report : r.analysis.twin_report;
+    const SimilarityReport& report = r.analysis.judged();
     const double wanted = expect.number("gravity", "1");
     r.checks.push_back(
         {std::abs(report.gravity.mismatch_percent - wanted) <= 0.5,

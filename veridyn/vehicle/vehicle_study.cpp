@@ -3,6 +3,7 @@
 #include <array>
 #include <variant>
 
+#include "veridyn/core/at_place.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/road_study.hpp"
 
@@ -100,12 +101,7 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
   s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
   s.step = drive.positive_or("step", "s", s.step);
   s.output_step = drive.positive_or("output_step", "s", s.output_step);
-  try {
-    s.validate();
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    throw InputError(root.place("drive"), what.substr(std::min(what.size(), error.place().size() + 2)));
-  }
+  at_place(root.place("drive"), [&] { s.validate(); });
   if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
     drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
 
