@@ -9,7 +9,7 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${CCACHE_PROGRAM})
 endif()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
@@ -31,19 +31,49 @@ target_compile_options(
 target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
                     $<$<BOOL:${VERIDYN_FUZZ}>:-fsanitize=address,undefined>)
 
-# veridyn_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [DEPENDS Veridyn::core ...] [PRIVATE lib ...])
-# A room: static library veridyn_NAME, alias Veridyn::NAME, headers installed with their folders.
-function(veridyn_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;DEPENDS;PRIVATE" ${ARGN})
+# Headers that nearly every source needs, precompiled once for the library and once for the tests. They must be built with the
+# flags of those who use them: GCC takes the level of optimisation from the precompiled header, whatever the command line says,
+# so sources with a level of their own do without it (veridyn_optimise).
+# veridyn_precompiled(TARGET LIBRARIES lib ... HEADERS <a.hpp> ...)
+function(veridyn_precompiled target)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp CONTENT "")
+  add_library(${target} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} Eigen3::Eigen fmt::fmt)
+  target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
+endfunction()
+veridyn_precompiled(
+  veridyn_library_headers
+  LIBRARIES veridyn_build
+  HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
+
+# veridyn_optimise(a.cpp ...)
+# Sources whose loops over small matrices have to be unrolled: -O3, without the precompiled header (see above). The check
+# `build.OptimisedSources` of the tests reads the flags that the compiler really used.
+function(veridyn_optimise)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:Release>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY VERIDYN_OPTIMISED_SOURCES ${ARGN})
+endfunction()
+
+# veridyn_module(NAME [DEPENDS Veridyn::core ...] [PRIVATE lib ...] [SOURCES generated.cpp ...] [WITHOUT a.cpp ...])
+# A module: static library veridyn_NAME, alias Veridyn::NAME, of all sources and headers in its folder and the folders below;
+# headers are installed with their folders.
+function(veridyn_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE;SOURCES;WITHOUT" ${ARGN})
   set(target veridyn_${name})
-  add_library(${target} ${ARG_SOURCES})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS *.hpp)
+  list(REMOVE_ITEM sources ${ARG_WITHOUT})
+  add_library(${target} ${sources} ${ARG_SOURCES})
   add_library(Veridyn::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:veridyn_build> ${ARG_PRIVATE})
   if(NOT name STREQUAL "core")
-    target_precompile_headers(${target} PRIVATE <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <map> <string> <vector>)
+    target_precompile_headers(${target} REUSE_FROM veridyn_library_headers)
   endif()
   install(
     TARGETS ${target}
@@ -67,19 +97,19 @@ function(veridyn_embed_texts output header namespace function)
   file(CONFIGURE OUTPUT ${output} CONTENT "${code}" @ONLY)
 endfunction()
 
-# veridyn_room_tests(NAME SOURCES a_test.cpp ... [DEPENDS ...])
-# One test binary a room: veridyn_NAME_tests, its cases registered with CTest. VERIDYN_SHARED_DIR is where recordings by
-# others may lie; tests that read them skip when it is missing.
-function(veridyn_room_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+# veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
+# One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
+# label NAME.
+function(veridyn_module_tests name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
-  add_executable(${target} ${ARG_SOURCES})
-  target_link_libraries(${target} PRIVATE Veridyn::${name} ${ARG_DEPENDS} veridyn_build GTest::gtest GTest::gmock GTest::gtest_main)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_compile_definitions(${target} PRIVATE VERIDYN_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared"
-                                               VERIDYN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # Tests are compiled once and run once: optimising them takes longer than it saves. What they test is optimised.
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${target} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <string> <vector> <fmt/format.h>)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cpp)
+  list(REMOVE_ITEM sources ${ARG_WITHOUT})
+  add_executable(${target} ${sources})
+  if(TARGET Veridyn::${name})
+    target_link_libraries(${target} PRIVATE Veridyn::${name})
+  endif()
+  target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
+  target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
 endfunction()

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "veridyn/core/recording.hpp"
-#include "veridyn/io/csv.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/read.hpp"
 
 namespace {

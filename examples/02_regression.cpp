@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "veridyn/estimation/regression.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/random.hpp"
 
 int main() {

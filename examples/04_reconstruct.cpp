@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "veridyn/aircraft/reconstruct.hpp"
-#include "veridyn/aircraft/simulate_study.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/study.hpp"
 
 int main() try {

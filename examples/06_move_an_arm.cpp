@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "veridyn/muscle/builtin_models.hpp"
-#include "veridyn/muscle/forward_simulation.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
 
 int main() {
   using namespace veridyn::muscle;

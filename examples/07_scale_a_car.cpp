@@ -2,8 +2,8 @@
 // built is similar.
 #include <cstdio>
 
-#include "veridyn/vehicle/builtin_vehicles.hpp"
-#include "veridyn/vehicle/similarity.hpp"
+#include "veridyn/vehicle/model/builtin_vehicles.hpp"
+#include "veridyn/vehicle/similarity/similarity.hpp"
 
 int main() {
   using namespace veridyn::vehicle;

@@ -4,13 +4,13 @@
 #include <cstdio>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/bicycle_model.hpp"
-#include "veridyn/vehicle/drive_segments.hpp"
-#include "veridyn/vehicle/drive_sensors.hpp"
-#include "veridyn/vehicle/linear_tyre.hpp"
-#include "veridyn/vehicle/manoeuvre.hpp"
-#include "veridyn/vehicle/vehicle_identification.hpp"
-#include "veridyn/vehicle/vehicle_simulation.hpp"
+#include "veridyn/vehicle/model/bicycle_model.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 int main() {
   using namespace veridyn;

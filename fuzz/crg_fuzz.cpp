@@ -2,7 +2,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/crg_reader.hpp"
+#include "veridyn/vehicle/road/crg_reader.hpp"
 
 // A road is read or refused; one that was read has a height everywhere.
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {

@@ -1,6 +1,6 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/npy.hpp"
+#include "veridyn/io/tables/npy.hpp"
 
 // An array is read or refused; its columns are as long as it says.
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {

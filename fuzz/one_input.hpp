@@ -5,7 +5,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/log.hpp"
+#include "veridyn/io/log/log.hpp"
 
 namespace veridyn::fuzz {
 

@@ -1,6 +1,6 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/muscle/osim_reader.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
 
 // A model is read or refused; what is read writes back as it was.
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {

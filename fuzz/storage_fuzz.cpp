@@ -1,5 +1,5 @@
 #include "fuzz/one_input.hpp"
-#include "veridyn/io/storage.hpp"
+#include "veridyn/io/opensim/storage.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
   return veridyn::fuzz::one_input(data, size,

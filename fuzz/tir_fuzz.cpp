@@ -2,7 +2,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/tir_reader.hpp"
+#include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 // A tyre file is read or refused; a tyre that was read has finite forces.
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "tests/support/synthetic_logs.hpp"
-#include "tests/vehicle/small_tir.hpp"
+#include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 

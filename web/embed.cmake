@@ -6,7 +6,7 @@ string(REGEX REPLACE "(0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x
 file(
   WRITE ${OUTPUT}
   "// Generated from the front end's bundle.
-#include \"veridyn/report/page.hpp\"
+#include \"veridyn/report/document/page.hpp\"
 
 namespace veridyn::report::internal {
 

@@ -12,13 +12,13 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/drive_report.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/vehicle/drive_study.hpp"
-#include "veridyn/vehicle/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::app {

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "apps/veridyn/output.hpp"
-#include "veridyn/aircraft/estimated_subject.hpp"
-#include "veridyn/aircraft/jsbsim.hpp"
+#include "veridyn/aircraft/model/estimated_subject.hpp"
+#include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "apps/veridyn/results.hpp"
-#include "veridyn/aircraft/air_data_calibration.hpp"
-#include "veridyn/aircraft/swing_test.hpp"
+#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
+#include "veridyn/aircraft/sensors/swing_test.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/ground_report.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -12,7 +12,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -9,10 +9,10 @@
 #include "apps/veridyn/inspect_model.hpp"
 #include "apps/veridyn/options.hpp"
 #include "apps/veridyn/output.hpp"
-#include "veridyn/aircraft/channel_map.hpp"
+#include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
-#include "veridyn/vehicle/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -61,7 +61,7 @@ int inspect(const Options& options) {
   const Recording recording = io::to_recording(std::move(log));
   // Frames tell vehicles from aircraft.
   const bool vehicle = recording.frame == Frame::kFlu;
-  const io::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
+  const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
                                              : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
 
@@ -104,7 +104,7 @@ int inspect(const Options& options) {
   summary["mapping"] = nlohmann::ordered_json::object();
   if (!mapped.origins.empty()) {
     text += fmt::format("\nfor {} study ({} log):\n", vehicle ? "a vehicle" : "an aircraft", mapped.log_kind);
-    for (const io::ChannelOrigin& origin : mapped.origins) {
+    for (const recording::ChannelOrigin& origin : mapped.origins) {
       summary["mapping"][origin.channel] = origin.source;
       text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
                           origin.note.empty() ? "" : ", " + origin.note);

@@ -7,8 +7,8 @@
 
 #include "apps/veridyn/output.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/muscle/builtin_models.hpp"
-#include "veridyn/muscle/pose_table.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/simulation/pose_table.hpp"
 
 namespace veridyn::app {
 namespace {

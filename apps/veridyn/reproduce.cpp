@@ -9,14 +9,14 @@
 
 #include "apps/veridyn/output.hpp"
 #include "apps/veridyn/reproduce_studies.hpp"
-#include "veridyn/aircraft/reproduction.hpp"
+#include "veridyn/aircraft/reproduction/reproduction.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/aircraft_reproduction.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_reproduction_report.hpp"
 
 namespace veridyn::app {

@@ -8,12 +8,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "veridyn/aircraft/jsbsim.hpp"
+#include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/aircraft_report.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 
 namespace veridyn::app {
 namespace {

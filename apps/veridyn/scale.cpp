@@ -12,11 +12,11 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/report/similarity_report.hpp"
 #include "veridyn/vehicle/scale_study.hpp"
-#include "veridyn/vehicle/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
 
 namespace veridyn::app {
 namespace {

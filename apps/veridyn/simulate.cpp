@@ -10,12 +10,12 @@
 #include "apps/veridyn/output.hpp"
 #include "apps/veridyn/simulate_muscle.hpp"
 #include "apps/veridyn/simulate_vehicle.hpp"
-#include "veridyn/aircraft/simulate_study.hpp"
+#include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {

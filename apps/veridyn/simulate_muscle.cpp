@@ -10,9 +10,9 @@
 #include "apps/veridyn/output.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_report.hpp"
 
 namespace veridyn::app {

@@ -10,10 +10,10 @@
 #include "apps/veridyn/output.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_report.hpp"
-#include "veridyn/vehicle/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::app {

@@ -15,11 +15,11 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/report/document/html.hpp"
 #include "veridyn/report/tracking_report.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {

@@ -9,8 +9,8 @@
 #include "apps/veridyn/results.hpp"
 #include "veridyn/aircraft/flight_study.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {

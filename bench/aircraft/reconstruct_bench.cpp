@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include "tests/aircraft/reconstruct_flight.hpp"
+#include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
 
 namespace {
 

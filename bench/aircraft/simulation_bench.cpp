@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "veridyn/aircraft/builtin_subjects.hpp"
-#include "veridyn/aircraft/simulation.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/aircraft/simulation/simulation.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "veridyn/estimation/recursive_regression.hpp"
+#include "veridyn/estimation/recursive/recursive_regression.hpp"
 
 namespace {
 using namespace veridyn::estimation;

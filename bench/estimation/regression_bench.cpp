@@ -6,10 +6,10 @@
 #include <Eigen/SVD>
 #include <random>
 
-#include "veridyn/estimation/augmented_qr.hpp"
-#include "veridyn/estimation/ordinary_least_squares.hpp"
-#include "veridyn/estimation/pca_total_least_squares.hpp"
-#include "veridyn/estimation/regression.hpp"
+#include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/estimation/regression/ordinary_least_squares.hpp"
+#include "veridyn/estimation/regression/pca_total_least_squares.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 
 namespace {
 using namespace veridyn::estimation;

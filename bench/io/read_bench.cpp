@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "tests/support/synthetic_logs.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/dataflash.hpp"
-#include "veridyn/io/ulog.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/dataflash/dataflash.hpp"
+#include "veridyn/io/ulog/ulog.hpp"
 
 namespace {
 

@@ -3,11 +3,11 @@
 #include <benchmark/benchmark.h>
 #include <ceres/jet.h>
 
-#include "tests/muscle/model_trees.hpp"
-#include "veridyn/muscle/coordinate_reduction.hpp"
-#include "veridyn/muscle/dynamics.hpp"
+#include "tests/muscle/dynamics/model_trees.hpp"
+#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/dynamics/dynamics.hpp"
 #ifdef VERIDYN_HAS_SIMBODY
-#include "tests/muscle/simbody_description.hpp"
+#include "tests/support/simbody/simbody_description.hpp"
 #endif
 
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "veridyn/muscle/muscle_group.hpp"
-#include "veridyn/muscle/static_optimization.hpp"
+#include "veridyn/muscle/actuator/muscle_group.hpp"
+#include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace {
 using namespace veridyn::muscle;

@@ -10,15 +10,16 @@
 #include <numbers>
 
 #include "tests/muscle/arm26_scenarios.hpp"
-#include "veridyn/muscle/computed_muscle_control.hpp"
-#include "veridyn/muscle/motion_analysis.hpp"
-#include "veridyn/muscle/muscle_parametric_model.hpp"
-#include "veridyn/muscle/osim_reader.hpp"
+#include "veridyn/muscle/simulation/computed_muscle_control.hpp"
+#include "veridyn/muscle/simulation/motion_analysis.hpp"
+#include "veridyn/muscle/simulation/muscle_parametric_model.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = VERIDYN_SHARED_DIR;
+const std::filesystem::path kShared = test::shared_folder();
 constexpr std::size_t kMuscles = 6;
 
 std::unique_ptr<MusculoskeletalSystem> arm(benchmark::State& state, const char* file, PathSource paths) {

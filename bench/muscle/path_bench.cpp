@@ -11,10 +11,11 @@
 #include <memory>
 #include <string>
 
-#include "veridyn/muscle/builtin_models.hpp"
-#include "veridyn/muscle/muscle_path.hpp"
-#include "veridyn/muscle/osim_reader.hpp"
-#include "veridyn/muscle/path_fit.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/path/muscle_path.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/muscle/path/path_fit.hpp"
 
 namespace {
 using namespace veridyn::muscle;
@@ -44,7 +45,7 @@ struct Case {
 
 std::unique_ptr<Case> load(const std::string& name) {
   if (name == "arm") return std::make_unique<Case>(load_model("arm").model());
-  const std::filesystem::path file = std::filesystem::path(VERIDYN_SHARED_DIR) / "data/opensim" / (name + ".osim");
+  const std::filesystem::path file = test::shared_folder() / "data/opensim" / (name + ".osim");
   if (!std::filesystem::exists(file)) return nullptr;
   return std::make_unique<Case>(read_osim(file));
 }

@@ -6,11 +6,12 @@
 #include <filesystem>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/fiala_tyre.hpp"
-#include "veridyn/vehicle/linear_tyre.hpp"
-#include "veridyn/vehicle/simple_magic_formula.hpp"
-#include "veridyn/vehicle/tir_reader.hpp"
-#include "veridyn/vehicle/vehicle_simulation.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/tyre/tir_reader.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -63,7 +64,7 @@ void BM_SimpleMagicFormula(benchmark::State& state) {
 }
 /// A whole tyre file, PAC2002 with combined slip; skipped where the shared data are not there.
 void BM_MagicFormula(benchmark::State& state) {
-  const std::filesystem::path file = VERIDYN_SHARED_DIR "/data/vehicle/chrono/Sedan_Pac02Tire.tir";
+  const std::filesystem::path file = test::shared_folder() "/data/vehicle/chrono/Sedan_Pac02Tire.tir";
   if (!std::filesystem::exists(file)) {
     state.SkipWithError("no shared data");
     return;

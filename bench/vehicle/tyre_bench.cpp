@@ -2,12 +2,12 @@
 // model calls 16 a millisecond.
 #include <benchmark/benchmark.h>
 
-#include "tests/vehicle/small_tir.hpp"
-#include "veridyn/vehicle/fiala_tyre.hpp"
-#include "veridyn/vehicle/iso8608_road.hpp"
-#include "veridyn/vehicle/linear_tyre.hpp"
-#include "veridyn/vehicle/simple_magic_formula.hpp"
-#include "veridyn/vehicle/tir_reader.hpp"
+#include "tests/vehicle/tyre/small_tir.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/road/iso8608_road.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace {
 

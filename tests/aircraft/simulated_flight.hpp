@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "veridyn/aircraft/builtin_subjects.hpp"
-#include "veridyn/aircraft/reconstruct.hpp"
-#include "veridyn/aircraft/simulation.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/simulation/simulation.hpp"
 
 /// Flights of the built-in UnATRaP without stall, for the tests of filters that know the aircraft.
 namespace veridyn::aircraft::testing {

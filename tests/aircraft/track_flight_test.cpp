@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/io/study_data.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/recording/study_data.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -88,7 +88,7 @@ TEST(TrackFlight, ALogThatGrowsGivesWhatTheWholeLogGives) {
   TrackedFlight live(study);
   MappedRecording part = study.mapped;
   for (const double end : {3.0, 3.2, 10.0, 31.0, 31.5, 77.7, 112.3, 112.4, 140.0}) {
-    part.recording = io::cut(study.mapped.recording, {0.0, end});
+    part.recording = recording::cut(study.mapped.recording, {0.0, end});
     (void)live.advance(part, study, false, silent);
   }
   (void)live.advance(study.mapped, study, true, silent);

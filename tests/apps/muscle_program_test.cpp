@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.hpp"
-#include "veridyn/io/csv.hpp"
+#include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn {
 namespace {

@@ -2,11 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -20,16 +17,7 @@ struct Outcome {
 };
 
 /// Runs the program with these arguments.
-inline Outcome run(const std::string& arguments) {
-  Outcome outcome;
-  FILE* pipe = ::popen((std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
-    outcome.text.append(block.data(), n);
-  const int status = ::pclose(pipe);
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
+[[nodiscard]] Outcome run(const std::string& arguments);
 
 /// A scratch folder for each test, and what every refusal must look like.
 class ProgramTest : public testing::Test {

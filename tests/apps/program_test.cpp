@@ -10,8 +10,9 @@
 #include <thread>
 
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn {
 namespace {
@@ -246,8 +247,8 @@ TEST_F(Program, LeavesNothingBehindWhenItIsInterrupted) {
 // The Thor flight is closed loop in strong wind, without manoeuvres made for identification: published derivatives are
 // not recovered from it by anyone's regression, and the tool has to say so.
 TEST_F(Program, RejectsTheThorFlight) {
-  const fs::path study = fs::path(VERIDYN_SOURCE_DIR) / "examples/studies/real/thor.toml";
-  if (!fs::exists(fs::path(VERIDYN_SHARED_DIR) / "data/flight/umn_thor/thor_flight75_airborne.csv"))
+  const fs::path study = test::source_folder() / "examples/studies/real/thor.toml";
+  if (!fs::exists(test::shared_folder() / "data/flight/umn_thor/thor_flight75_airborne.csv"))
     GTEST_SKIP() << "the recordings beside the repository are missing";
   const Outcome done = run("identify " + study.string() + " --out " + (folder_ / "out").string());
   ASSERT_EQ(done.exit_code, 0) << done.text;
@@ -258,7 +259,7 @@ TEST_F(Program, RejectsTheThorFlight) {
 
 // Every real flight log is read, or refused in one sentence.
 TEST_F(Program, InspectsEveryRealLogOrSaysWhyNot) {
-  const fs::path logs = fs::path(VERIDYN_SHARED_DIR) / "data/flight";
+  const fs::path logs = test::shared_folder() / "data/flight";
   if (!fs::exists(logs)) GTEST_SKIP() << "the recordings beside the repository are missing";
   std::size_t read = 0;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(logs)) {
@@ -274,7 +275,7 @@ TEST_F(Program, InspectsEveryRealLogOrSaysWhyNot) {
 
 TEST_F(Program, IdentifiesTheInertiaOfASwingTest) {
   const Outcome outcome =
-      run("identify " + std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/swing_test/study.toml" + out());
+      run("identify " + test::source_folder().string() + "/examples/studies/swing_test/study.toml" + out());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
   const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
   ASSERT_NE(estimate.find("Jy"), nullptr);
@@ -285,7 +286,7 @@ TEST_F(Program, IdentifiesTheInertiaOfASwingTest) {
 
 TEST_F(Program, CalibratesAirDataAndAppliesItToARecording) {
   const Outcome outcome =
-      run("identify " + std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/calibration/study.toml" + out());
+      run("identify " + test::source_folder().string() + "/examples/studies/calibration/study.toml" + out());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
   const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
   ASSERT_NE(estimate.find("alpha.scale"), nullptr);

@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.hpp"
-#include "veridyn/io/csv.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn {
 namespace {
@@ -13,7 +14,7 @@ using testing::HasSubstr;
 class VehicleProgram : public ProgramTest {
  protected:
   [[nodiscard]] static std::string study(const std::string& name) {
-    return std::string(VERIDYN_SOURCE_DIR) + "/examples/studies/vehicle/" + name + ".toml";
+    return test::source_folder().string() + "/examples/studies/vehicle/" + name + ".toml";
   }
   [[nodiscard]] std::filesystem::path in_out(const std::string& name) const { return folder_ / "out" / name; }
 

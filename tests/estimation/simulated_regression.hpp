@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "veridyn/estimation/regression_data.hpp"
+#include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/numerics/filters.hpp"
 
 namespace veridyn::estimation::testing_support {

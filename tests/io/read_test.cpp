@@ -2,7 +2,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
-#include "veridyn/io/dataflash.hpp"
+#include "veridyn/io/dataflash/dataflash.hpp"
 
 namespace veridyn::io {
 namespace {

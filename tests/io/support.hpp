@@ -10,13 +10,14 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/log.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/io/log/log.hpp"
 
 namespace veridyn::testing {
 
 /// A file of recordings by others; the test is skipped when they are not there.
 inline std::filesystem::path shared_flight(const char* name) {
-  return std::filesystem::path(VERIDYN_SHARED_DIR) / "data" / "flight" / name;
+  return test::shared_folder() / "data" / "flight" / name;
 }
 
 #define VERIDYN_NEEDS_SHARED(path)                                                                         \

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/muscle/muscle_parameters.hpp"
+#include "veridyn/muscle/model/muscle_parameters.hpp"
 
 namespace veridyn::muscle {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "veridyn/muscle/forward_simulation.hpp"
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
 
 namespace veridyn::muscle::test {
 

@@ -1,4 +1,5 @@
 #include "tests/muscle/reference_table.hpp"
+#include "tests/support/folders.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ double ReferenceTable::number(std::size_t row, const std::string& name) const { 
 
 ReferenceTable read_reference(const std::string& path) {
   ReferenceTable table;
-  std::ifstream file(fmt::format("{}/reference/{}", VERIDYN_SHARED_DIR, path));
+  std::ifstream file(fmt::format("{}/reference/{}", test::shared_folder().string(), path));
   const auto split = [](const std::string& line) {
     std::vector<std::string> cells;
     std::stringstream stream(line);

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "tests/refusal.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace veridyn::numerics {
 namespace {

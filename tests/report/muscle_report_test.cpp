@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/report/html.hpp"
-#include "veridyn/report/skeleton_figure.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/figures/skeleton_figure.hpp"
 
 namespace veridyn::report {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
 

@@ -2,7 +2,7 @@
 
 #include "tests/report/sample_document.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/report/html.hpp"
+#include "veridyn/report/document/html.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "veridyn/vehicle/four_wheel_model.hpp"
-#include "veridyn/vehicle/linear_tyre.hpp"
+#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle::testing {
 

@@ -3,16 +3,17 @@
 #include <filesystem>
 
 #include "veridyn/core/error.hpp"
+#include "tests/support/folders.hpp"
 #include "veridyn/vehicle/drive_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
 std::filesystem::path study_file(const char* name) {
-  return std::filesystem::path(VERIDYN_SOURCE_DIR) / "examples/studies/vehicle/real" / name;
+  return test::source_folder() / "examples/studies/vehicle/real" / name;
 }
 
-bool data_is_there() { return std::filesystem::exists(std::filesystem::path(VERIDYN_SHARED_DIR) / "data/vehicle"); }
+bool data_is_there() { return std::filesystem::exists(test::shared_folder() / "data/vehicle"); }
 
 TEST(RealDrives, ADriveWithoutSteeringIsRefusedByName) {
   if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/air_data_calibration.hpp"
-#include "veridyn/aircraft/estimated_subject.hpp"
-#include "veridyn/aircraft/filter_comparison.hpp"
-#include "veridyn/aircraft/simulate_study.hpp"
+#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
+#include "veridyn/aircraft/model/estimated_subject.hpp"
+#include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
+#include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/io/study_data.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/recording/study_data.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -203,7 +203,7 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
     // A study may carry the flight that its recording was simulated from.
     if (root.has("flight")) static_cast<void>(read_simulation(root));
     progress.stage("reading the recording");
-    log = io::read_study_data(data);
+    log = recording::read_study_data(data);
     result.inputs = data.files(data.has("file") ? "file" : "files");
   }
   if (!result.reconstruct.estimate_file.empty()) result.inputs.push_back(result.reconstruct.estimate_file);

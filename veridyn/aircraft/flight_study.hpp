@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/coefficient_tracker.hpp"
-#include "veridyn/aircraft/coefficient_uncertainty.hpp"
-#include "veridyn/aircraft/delays.hpp"
-#include "veridyn/aircraft/identification.hpp"
-#include "veridyn/aircraft/other_estimators.hpp"
-#include "veridyn/aircraft/reconstruct.hpp"
-#include "veridyn/aircraft/simulation.hpp"
-#include "veridyn/aircraft/validation.hpp"
+#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
+#include "veridyn/aircraft/identification/coefficient_uncertainty.hpp"
+#include "veridyn/aircraft/sensors/delays.hpp"
+#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/other_estimators.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/simulation/simulation.hpp"
+#include "veridyn/aircraft/identification/validation.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
 
@@ -21,7 +21,7 @@ namespace veridyn::aircraft {
 ///
 ///     seed = 1
 ///     [subject]      see read_subject
-///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: io::read_study_data;
+///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: recording::read_study_data;
 ///     `[data.map]` see map_channels. Without it the study must have a
 ///     `[flight]`,
 ///                    which is then simulated

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "veridyn/aircraft/direct_air_data.hpp"
-#include "veridyn/aircraft/reconstruct_streams.hpp"
+#include "veridyn/aircraft/tracking/direct_air_data.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/io/study_data.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/recording/study_data.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -47,7 +47,7 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
 
   MappedRecording part = mapped;
   const bool whole = begin <= span.begin;
-  if (!whole) part.recording = io::cut(mapped.recording, {begin, kInfinity});
+  if (!whole) part.recording = recording::cut(mapped.recording, {begin, kInfinity});
   Recording air;
   if (by_sensors) {
     air = direct_air_data(part.recording, study.reconstruct, study.signals);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "veridyn/aircraft/flight_study.hpp"
-#include "veridyn/aircraft/flight_tracker.hpp"
+#include "veridyn/aircraft/tracking/flight_tracker.hpp"
 
 namespace veridyn::aircraft {
 

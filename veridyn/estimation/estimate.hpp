@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/estimation/regression.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {

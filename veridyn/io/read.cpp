@@ -6,13 +6,13 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/dataflash.hpp"
-#include "veridyn/io/dataflash_text.hpp"
-#include "veridyn/io/mapped_file.hpp"
-#include "veridyn/io/mat.hpp"
-#include "veridyn/io/npy.hpp"
-#include "veridyn/io/storage.hpp"
-#include "veridyn/io/ulog.hpp"
+#include "veridyn/io/dataflash/dataflash.hpp"
+#include "veridyn/io/dataflash/dataflash_text.hpp"
+#include "veridyn/io/log/mapped_file.hpp"
+#include "veridyn/io/matlab/mat.hpp"
+#include "veridyn/io/tables/npy.hpp"
+#include "veridyn/io/opensim/storage.hpp"
+#include "veridyn/io/ulog/ulog.hpp"
 
 namespace veridyn::io {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "veridyn/core/recording.hpp"
-#include "veridyn/io/csv.hpp"
-#include "veridyn/io/log.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/io/log/log.hpp"
 
 namespace veridyn::io {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "veridyn/muscle/motion_analysis.hpp"
+#include "veridyn/muscle/simulation/motion_analysis.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
-#include "veridyn/io/storage.hpp"
+#include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
 
 namespace veridyn::muscle {

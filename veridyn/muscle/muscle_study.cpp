@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/muscle/builtin_models.hpp"
-#include "veridyn/muscle/ramp.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/model/ramp.hpp"
 
 namespace veridyn::muscle {
 namespace {

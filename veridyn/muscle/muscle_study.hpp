@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "veridyn/core/study.hpp"
-#include "veridyn/muscle/computed_muscle_control.hpp"
-#include "veridyn/muscle/forward_simulation.hpp"
-#include "veridyn/muscle/musculoskeletal_system.hpp"
-#include "veridyn/muscle/osim_reader.hpp"
-#include "veridyn/muscle/signals.hpp"
-#include "veridyn/muscle/static_optimization.hpp"
+#include "veridyn/muscle/simulation/computed_muscle_control.hpp"
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace veridyn::muscle {
 

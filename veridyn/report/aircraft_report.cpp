@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "veridyn/report/aircraft_figures.hpp"
+#include "veridyn/report/figures/aircraft_figures.hpp"
 
 namespace veridyn::report {
 namespace {

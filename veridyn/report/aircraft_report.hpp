@@ -1,7 +1,7 @@
 #pragma once
 
 #include "veridyn/aircraft/flight_study.hpp"
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "veridyn/aircraft/reproduction.hpp"
+#include "veridyn/aircraft/reproduction/reproduction.hpp"
 #include "veridyn/report/reproduction_report.hpp"
 
 namespace veridyn::report {

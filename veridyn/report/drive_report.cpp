@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "veridyn/report/vehicle_report.hpp"
-#include "veridyn/vehicle/bicycle_analysis.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -327,7 +327,7 @@ Table origin_table(const DriveStudy& study) {
                           {.name = "source", .align = Align::kLeft},
                           {.name = "rate", .unit = "Hz"},
                           {.name = "note", .align = Align::kLeft}}};
-  for (const io::ChannelOrigin& o : study.log.mapped.origins) {
+  for (const recording::ChannelOrigin& o : study.log.mapped.origins) {
     table.rows.push_back(
         {.cells = {text_cell(o.channel), text_cell(o.source), number_cell(o.rate_Hz), text_cell(o.note)}});
   }

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 #include "veridyn/vehicle/drive_study.hpp"
 
 namespace veridyn::report {

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "veridyn/aircraft/air_data_calibration.hpp"
-#include "veridyn/aircraft/swing_test.hpp"
-#include "veridyn/report/document.hpp"
+#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
+#include "veridyn/aircraft/sensors/swing_test.hpp"
+#include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "veridyn/report/skeleton_figure.hpp"
+#include "veridyn/report/figures/skeleton_figure.hpp"
 
 namespace veridyn::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "veridyn/muscle/muscle_run.hpp"
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/check.hpp"
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
 

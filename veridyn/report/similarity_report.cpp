@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/report/vehicle_figures.hpp"
+#include "veridyn/report/figures/vehicle_figures.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 
 namespace veridyn::report {

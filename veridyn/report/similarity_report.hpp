@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "veridyn/report/document.hpp"
+#include "veridyn/report/document/document.hpp"
 #include "veridyn/vehicle/scale_study.hpp"
 
 namespace veridyn::report {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "veridyn/report/track_panels.hpp"
+#include "veridyn/report/figures/track_panels.hpp"
 
 namespace veridyn::report {
 namespace {

@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "veridyn/report/vehicle_figures.hpp"
+#include "veridyn/report/figures/vehicle_figures.hpp"
 
 namespace veridyn::report {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/estimate_json.hpp"
-#include "veridyn/io/study_data.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/recording/study_data.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -220,13 +220,13 @@ TrackedDrive::TrackedDrive(const DriveStudy& study)
   if (!options_.estimate_file.empty()) begin_ = io::read_estimate(options_.estimate_file);
 }
 
-std::vector<DriveChange> TrackedDrive::advance(const io::MappedRecording& mapped, bool finished, Progress& progress) {
+std::vector<DriveChange> TrackedDrive::advance(const recording::MappedRecording& mapped, bool finished, Progress& progress) {
   std::vector<DriveChange> found;
   const TimeSpan span = mapped.recording.span();
   if (!tracker_) {
     if (!finished && span.duration() < kLearn_s) return found;
-    io::MappedRecording first = mapped;
-    first.recording = io::cut(mapped.recording, {span.begin, span.begin + kLearn_s});
+    recording::MappedRecording first = mapped;
+    first.recording = recording::cut(mapped.recording, {span.begin, span.begin + kLearn_s});
     const DriveSignals signals = prepare_drive_signals(first, signals_);
     require_accel(signals);
     notes_ = signals.notes;
@@ -237,10 +237,10 @@ std::vector<DriveChange> TrackedDrive::advance(const io::MappedRecording& mapped
     tracker_.emplace(start_, options_, min_speed_, signals_.rate_Hz, noise, begin_ ? &*begin_ : nullptr);
   }
   const double last = tracker_->last_time();
-  io::MappedRecording part = mapped;
+  recording::MappedRecording part = mapped;
   if (std::isfinite(last)) {
     if (!(span.end > last + kWarm_s) && !finished) return found;
-    part.recording = io::cut(mapped.recording, {last - kWarm_s, kInfinity});
+    part.recording = recording::cut(mapped.recording, {last - kWarm_s, kInfinity});
   }
   const DriveSignals signals = prepare_drive_signals(part, signals_);
   require_accel(signals);

@@ -9,11 +9,11 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/estimate.hpp"
-#include "veridyn/vehicle/drive_log.hpp"
-#include "veridyn/vehicle/drive_segments.hpp"
-#include "veridyn/vehicle/drive_tracker.hpp"
-#include "veridyn/vehicle/vehicle_identification.hpp"
-#include "veridyn/vehicle/vehicle_parameters.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/tracking/drive_tracker.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
 
@@ -76,7 +76,7 @@ class TrackedDrive {
 
   /// Takes what the recording holds beyond what was taken before. `finished`: nothing will follow.
   /// @return the changes found. @throws InputError when channels are missing
-  std::vector<DriveChange> advance(const io::MappedRecording& mapped, bool finished, Progress& progress);
+  std::vector<DriveChange> advance(const recording::MappedRecording& mapped, bool finished, Progress& progress);
 
   /// Null before the first second of the drive: noise and rate are learned from it.
   [[nodiscard]] const DriveTracker* tracker() const { return tracker_ ? &*tracker_ : nullptr; }

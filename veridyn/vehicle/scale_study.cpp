@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "veridyn/core/at_place.hpp"
-#include "veridyn/vehicle/scaled_drive.hpp"
-#include "veridyn/vehicle/trajectory_table.hpp"
+#include "veridyn/vehicle/similarity/scaled_drive.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/vehicle/similarity.hpp"
+#include "veridyn/vehicle/similarity/similarity.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::vehicle {

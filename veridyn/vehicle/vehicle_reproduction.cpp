@@ -8,7 +8,7 @@
 
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/units.hpp"
-#include "veridyn/vehicle/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "veridyn/core/at_place.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/road_study.hpp"
+#include "veridyn/vehicle/road/road_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {

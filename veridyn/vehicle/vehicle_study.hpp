@@ -12,14 +12,14 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/bicycle_analysis.hpp"
-#include "veridyn/vehicle/drive_sensors.hpp"
-#include "veridyn/vehicle/four_wheel_analysis.hpp"
-#include "veridyn/vehicle/manoeuvre.hpp"
-#include "veridyn/vehicle/manoeuvre_metrics.hpp"
-#include "veridyn/vehicle/road.hpp"
-#include "veridyn/vehicle/vehicle.hpp"
-#include "veridyn/vehicle/vehicle_simulation.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
+#include "veridyn/vehicle/model/four_wheel_analysis.hpp"
+#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
+#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
+#include "veridyn/vehicle/road/road.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 namespace veridyn::vehicle {
 

@@ -1,4 +1,4 @@
-// The report as veridyn/report/json.cpp writes it. A missing number is null, an absent text an empty string.
+// The report as veridyn/report/document/json.cpp writes it. A missing number is null, an absent text an empty string.
 
 export type Samples = (number | null)[];
 

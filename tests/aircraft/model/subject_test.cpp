@@ -1,0 +1,106 @@
+#include "veridyn/aircraft/model/subject.hpp"
+
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using testing::HasSubstr;
+
+Subject read(std::string_view text) {
+  const Study study = Study::parse(text, "s.toml");
+  Subject s = read_subject(study.root().table("subject"));
+  study.root().finish();
+  return s;
+}
+
+std::string message(std::string_view text) {
+  try {
+    read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+constexpr std::string_view kGeometry = "[subject]\nmass = 2\nwing_area = 0.45\nspan = 1.88\nchord = 0.24\n";
+
+TEST(Subject, EveryBuiltInOneReadsBackEqualFromItsOwnFile) {
+  for (const std::string& name : builtin_subject_names()) {
+    const Subject s = builtin_subject(name);
+    EXPECT_TRUE(read(write_subject_toml(s)) == s) << write_subject_toml(s);
+    EXPECT_FALSE(s.sign_convention.empty());
+    EXPECT_TRUE(s.model.unknown_parameters().empty());
+  }
+}
+
+// Worked out from the tables: X8 0.104, 0.170, 2.005 kg m^2; Thor 0.0692, 0.0864, 0.1560 kg m^2, a quarter of a percent
+// beyond the rule.
+TEST(Subject, SaysThatThePublishedInertiaOfX8AndThorIsImpossible) {
+  for (const std::string& name : builtin_subject_names()) {
+    EXPECT_EQ(builtin_subject(name).warnings.size(), name == "x8" || name == "thor" ? 1u : 0u) << name;
+  }
+  EXPECT_THAT(builtin_subject("x8").warnings[0],
+              HasSubstr("0.1045, 0.1702, 2.005 kg m^2: the largest exceeds the sum of the others"));
+}
+
+TEST(Subject, OverridesWhatABuiltInOneSays) {
+  const Subject s = read(
+      "[subject]\nbuiltin = \"unatrap\"\nname = \"mine\"\nmass = \"27.8 lb\"\n[subject.model]\nCm = [\"1\", "
+      "\"alpha\"]\n"
+      "[subject.actuators.elevator]\nupper = \"15 deg\"\n[subject.propulsion]\nposition = [-1, 0, 0.1]\n");
+  EXPECT_EQ(s.name, "mine");
+  EXPECT_NEAR(s.mass, 27.8 * 0.45359237, 1e-12);
+  EXPECT_DOUBLE_EQ(s.chord, 0.34);
+  EXPECT_EQ(s.model.at(Coefficient::kCm).size(), 2u);
+  EXPECT_DOUBLE_EQ(*s.model.at(Coefficient::kCL).value_of("alpha"), 3.607);
+  EXPECT_DOUBLE_EQ(s.elevator.lower, -15 * M_PI / 180);
+  EXPECT_EQ(s.propulsion.kind, PropulsionKind::kPolynomial);
+  EXPECT_DOUBLE_EQ(s.propulsion.position[2], 0.1);
+}
+
+TEST(Subject, WithoutInertiaIsASubjectWithoutMoments) {
+  const Subject s = read(kGeometry);
+  EXPECT_FALSE(s.inertia.has_value());
+  EXPECT_NEAR(s.aspect_ratio(), 1.88 * 1.88 / 0.45, 1e-14);
+}
+
+TEST(Subject, RefusesWrongValuesWithPlaceAndRule) {
+  EXPECT_EQ(message("[subject]\nmass = 0\n"), "s.toml:2: subject.mass: = 0 must be > 0");
+  EXPECT_THAT(message("[subject]\nmass = 2\n"), HasSubstr("subject.wing_area: is missing"));
+  EXPECT_THAT(message("[subject]\nbuiltin = \"unatrapp\"\n"),
+              HasSubstr("s.toml:2: subject.builtin: unknown aircraft 'unatrapp' (did you mean 'unatrap'?)"));
+  const std::string base(kGeometry);
+  EXPECT_THAT(message(base + "inertia = { Jx = 1, Jy = 1, Jz = 1, Jxz = 1 }\n"), HasSubstr("not positive definite"));
+  EXPECT_THAT(message(base + "inertia = { Jx = 1, Jy = 0, Jz = 1 }\n"),
+              HasSubstr("subject.inertia.Jy: = 0 must be > 0"));
+  EXPECT_THAT(message(base + "imu_position = [1, 2]\n"), HasSubstr("has 2 numbers, expected 3"));
+  EXPECT_THAT(message(base + "spann = 3\n"), HasSubstr("span"));
+  EXPECT_THAT(message(base + "[subject.actuators.rudder]\nlower = 1\nupper = 0\n"), HasSubstr("is not below upper"));
+  EXPECT_THAT(message(base + "[subject.actuators.flap]\nlower = 1\n"), HasSubstr("flap"));
+  EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"momentum\"\n"), HasSubstr("S_prop: is missing"));
+  EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"polynomial\"\npolynomial = { thrust = 2 }\n"),
+              HasSubstr("is not a product of throttle^i and Va^j"));
+}
+
+// Beard & McLain 2012 eq. 4.15 and the propeller definition, worked out by hand here.
+TEST(Propulsion, FollowsItsPublishedFormulas) {
+  const Propulsion p = builtin_subject("skywalker_2013").propulsion;
+  EXPECT_NEAR(p.load(0.6, 15.0, 1.225, 0.0).thrust, 0.5 * 1.225 * 0.33 * (18.0 * 18.0 - 225.0), 1e-12);
+  EXPECT_DOUBLE_EQ(p.load(0.1, 15.0, 1.225, 0.0).thrust, 0.0);
+
+  const Propulsion map = builtin_subject("skywalker_2013_mod").propulsion;
+  const double omega = 800.0, n = omega / (2 * M_PI), J = 15.0 / (n * 0.28);
+  const auto load = map.load(0.0, 15.0, 1.225, omega);
+  EXPECT_NEAR(load.thrust, 1.225 * n * n * std::pow(0.28, 4) * (0.1133 - 0.0740 * J - 0.1849 * J * J), 1e-12);
+  EXPECT_NEAR(load.torque, -1.225 * n * n * std::pow(0.28, 5) * (0.0440 + 0.0059 * J - 0.0732 * J * J) / (2 * M_PI),
+              1e-13);
+  EXPECT_DOUBLE_EQ(map.load(0.0, 15.0, 1.225, 0.0).thrust, 0.0);
+
+  const Propulsion line = builtin_subject("unatrap").propulsion;
+  EXPECT_NEAR(line.load(0.5, 20.0, 1.225, 0.0).thrust, 55.0 - 12.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

@@ -1,0 +1,495 @@
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+
+#include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
+#include "veridyn/aircraft/reconstruction/information_bound.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using testing::errors_of;
+using testing::FlightCase;
+using ::testing::HasSubstr;
+using testing::MadeFlight;
+using testing::make_flight;
+
+constexpr double kDeg = M_PI / 180.0;
+
+ReconstructOptions reference_options() {
+  ReconstructOptions o;
+  o.sensors = "reference";
+  o.turbulence = "low_moderate";
+  return o;
+}
+
+Reconstruction run(const Recording& recording, const ReconstructOptions& options) {
+  Progress quiet;
+  return reconstruct(recording, options, quiet);
+}
+
+/// The recording without some channels.
+Recording without(const Recording& from, std::initializer_list<const char*> names) {
+  Recording r;
+  r.source = from.source;
+  r.frame = from.frame;
+  for (const Channel& c : from.channels()) {
+    if (std::find(names.begin(), names.end(), c.name) == names.end()) r.add(c);
+  }
+  return r;
+}
+
+const QuantityReport& quantity(const Reconstruction& r, const char* name) {
+  return *std::find_if(r.quantities.begin(), r.quantities.end(), [&](const auto& q) { return q.quantity == name; });
+}
+const SensorReport& sensor(const Reconstruction& r, const char* name) {
+  return *std::find_if(r.sensors.begin(), r.sensors.end(), [&](const auto& s) { return s.channel == name; });
+}
+
+// --- The model ------------------------------------------------------------------------------------------------------
+
+using FullModel = AirDataModel<12, true>;
+
+FullModel::State<double> some_state() {
+  FullModel::State<double> x;
+  x.attitude = numerics::quaternion_from_euler(0.4, -0.3, 2.0);
+  x.velocity << 12.0, 9.0, -2.0;
+  x.gust << 0.4, -0.8, 0.3, 0.6, 0.1;
+  x.wind << 3.0, -4.0, 0.2;
+  x.imu_bias << 0.01, -0.02, 0.005, 0.3, -0.1, 0.2;
+  x.imu_scale << 0.02, -0.03, 0.01, 0.04, -0.02, 0.03;
+  x.air_error << 0.02, -0.01, 0.2, 0.05, 4.0;
+  return x;
+}
+
+FullModel some_model() { return {.spectrum = {200.0, 200.0, 50.0, 2.12, 2.12, 1.4}, .noise = {}}; }
+
+TEST(AirDataModel, TransitionEqualsAutomaticDifferentiation) {
+  const FullModel model = some_model();
+  for (const double scale : {0.0, 1.0, 30.0}) {  // at rest, turning, tumbling
+    const FullModel::Input u{
+        .gyro = Eigen::Vector3d(0.5, -0.3, 0.2) * scale, .specific_force = {1.0, -0.5, -11.0}, .airspeed = 15.0};
+    FullModel::State<double> after, after_automatic;
+    const auto F = model.transition_rows(some_state(), u, 0.02, after);
+    const auto J = estimation::automatic_transition(model, some_state(), u, 0.02, after_automatic);
+    EXPECT_LT((F - J).cwiseAbs().maxCoeff(), 1e-12) << "scale " << scale;
+  }
+}
+
+TEST(AirDataModel, TransitionEqualsFiniteDifferences) {
+  const FullModel model = some_model();
+  const FullModel::Input u{.gyro = {0.5, -0.3, 0.2}, .specific_force = {1.0, -0.5, -11.0}, .airspeed = 15.0};
+  FullModel::State<double> after;
+  const auto F = model.transition_rows(some_state(), u, 0.02, after);
+  constexpr double h = 1e-6;
+  for (int j = 0; j < FullModel::kStates; ++j) {
+    FullModel::Vector e = FullModel::Vector::Zero();
+    e(j) = h;
+    const auto plus = model.propagate<double>(FullModel::retract<double>(some_state(), e), u, 0.02);
+    const auto minus =
+        model.propagate<double>(FullModel::retract<double>(some_state(), FullModel::Vector(-e)), u, 0.02);
+    const FullModel::Vector column =
+        (FullModel::local<double>(after, plus) - FullModel::local<double>(after, minus)) / (2.0 * h);
+    EXPECT_LT((F.col(j) - column.head<FullModel::kDynamic>()).cwiseAbs().maxCoeff(), 1e-8) << "error component " << j;
+  }
+}
+
+TEST(AirDataModel, MeasurementRowsEqualFiniteDifferences) {
+  const FullModel model = some_model();
+  const Eigen::Vector3d arm(0.2, -0.1, 0.4);
+  using State = FullModel::State<double>;
+  bool usable = false;
+  const std::vector<std::function<Prediction<FullModel>(const State&)>> sensors{
+      [&](const State& x) { return predict_ground_velocity<FullModel>(x, 1); },
+      [&](const State& x) { return predict_euler_angle<FullModel>(x, 0, usable); },
+      [&](const State& x) { return predict_euler_angle<FullModel>(x, 1, usable); },
+      [&](const State& x) { return predict_euler_angle<FullModel>(x, 2, usable); },
+      [&](const State& x) { return predict_dynamic_pressure(model, x, 1.1); },
+      [&](const State& x) { return predict_airspeed(model, x); },
+      [&](const State& x) { return predict_alpha(model, x, arm); },
+      [&](const State& x) { return predict_beta(model, x, arm, false); },
+      [&](const State& x) { return predict_beta(model, x, arm, true); }};
+  constexpr double h = 1e-5;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const auto p = sensors[s](some_state());
+    for (int j = 0; j < FullModel::kStates; ++j) {
+      FullModel::Vector e = FullModel::Vector::Zero();
+      e(j) = h;
+      const double slope = (sensors[s](FullModel::retract<double>(some_state(), e)).value -
+                            sensors[s](FullModel::retract<double>(some_state(), FullModel::Vector(-e))).value) /
+                           (2.0 * h);
+      EXPECT_NEAR(p.H(j), slope, 1e-6 * std::max(1.0, std::abs(slope))) << "sensor " << s << ", component " << j;
+    }
+  }
+}
+
+TEST(AirDataModel, KeepsTheGustsStationaryForAnyStep) {
+  FullModel model = some_model();
+  for (const double dt : {1e-3, 0.01, 0.7, 100.0}) {
+    const FullModel::Input u{.airspeed = 22.0};
+    FullModel::State<double> after;
+    const auto F = model.transition_rows(some_state(), u, dt, after);
+    const Eigen::Matrix<double, 5, 5> G = F.block<5, 5>(FullModel::kGust, FullModel::kGust);
+    FullModel::Covariance Q = FullModel::Covariance::Zero();
+    model.add_process_noise(some_state(), u, dt, Q);
+    const Eigen::Matrix<double, 5, 5> Pi = FullModel::stationary_gust_covariance();
+    const Eigen::Matrix<double, 5, 5> next = G * Pi * G.transpose() + Q.block<5, 5>(6, 6);
+    EXPECT_LT((next - Pi).cwiseAbs().maxCoeff(), 1e-14) << dt;
+  }
+}
+
+// The specification's equations of section 5, with the gusts frozen: u_r' = ax - q w_r + r v_r - g sin(theta), ...
+TEST(AirDataModel, ObeysTheSpecificationsEquationsOfMotion) {
+  AirDataModel<0, false> model{.spectrum = {}, .noise = {}};
+  AirDataModel<0, false>::State<double> x;
+  const double phi = 0.4, theta = -0.3, dt = 1e-5;
+  x.attitude = numerics::quaternion_from_euler(phi, theta, 2.0);
+  x.velocity << 12.0, 9.0, -2.0;
+  x.wind << 3.0, -4.0, 0.2;
+  const Eigen::Vector3d omega(0.5, -0.3, 0.2), a(1.0, -0.5, -11.0), v = model.air_velocity(x);
+  const auto next = model.propagate<double>(x, {.gyro = omega, .specific_force = a, .airspeed = 15.0}, dt);
+  const Eigen::Vector3d rate = (model.air_velocity(next) - v) / dt;
+  const double g = 9.80665, p = omega(0), q = omega(1), r = omega(2);
+  EXPECT_NEAR(rate(0), a(0) - q * v(2) + r * v(1) - g * std::sin(theta), 1e-3);
+  EXPECT_NEAR(rate(1), a(1) - r * v(0) + p * v(2) + g * std::cos(theta) * std::sin(phi), 1e-3);
+  EXPECT_NEAR(rate(2), a(2) - p * v(1) + q * v(0) + g * std::cos(theta) * std::cos(phi), 1e-3);
+}
+
+// --- Against the information bound ----------------------------------------------------------------------------------
+
+struct Campaign {
+  double alpha_filter = 0, alpha_smoother = 0, beta_filter = 0, beta_smoother = 0;
+  double worst_bias = 0, covered = 0, nis = 0;
+};
+
+Campaign fly(double speed, int seeds, double duration) {
+  Campaign c;
+  double intervals = 0, sensors = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const MadeFlight f = make_flight({.speed = speed, .duration = duration, .seed = static_cast<std::uint64_t>(seed)});
+    const Reconstruction r = run(f.recording, reference_options());
+    const auto square = [](double x) { return x * x; };
+    c.alpha_filter += square(errors_of(r.filtered, "alpha", f.alpha).rms) / seeds;
+    c.beta_filter += square(errors_of(r.filtered, "beta", f.beta).rms) / seeds;
+    c.alpha_smoother += square(errors_of(r.smoothed, "alpha", f.alpha).rms) / seeds;
+    c.beta_smoother += square(errors_of(r.smoothed, "beta", f.beta).rms) / seeds;
+    for (const Recording* which : {&r.filtered, &r.smoothed}) {
+      c.worst_bias = std::max(c.worst_bias, std::abs(errors_of(*which, "airspeed", f.airspeed).bias));
+      for (const auto& [name, truth] :
+           {std::pair{"alpha", &f.alpha}, std::pair{"beta", &f.beta}, std::pair{"airspeed", &f.airspeed},
+            std::pair{"wind_total_down", &f.wind_down}}) {
+        c.covered += errors_of(*which, name, *truth).covered95;
+        ++intervals;
+      }
+    }
+    for (const SensorReport& s : r.sensors) {
+      EXPECT_LT(s.innovations.rejected, s.innovations.count / 1000) << s.channel;
+      c.nis += s.innovations.nis;
+      ++sensors;
+    }
+  }
+  c.covered /= intervals;
+  c.nis /= sensors;
+  for (double* x : {&c.alpha_filter, &c.alpha_smoother, &c.beta_filter, &c.beta_smoother}) *x = std::sqrt(*x);
+  const InformationBound b = information_bound(gust_spectrum("low_moderate"), speed, 0.6 * kDeg, 100.0);
+  std::printf(
+      "  %g m/s, %d seeds, deg RMS (bound): alpha filter %.3f (%.3f), smoother %.3f (%.3f); beta filter %.3f (%.3f), "
+      "smoother %.3f (%.3f); worst |Va bias| %.3f m/s; 95 %% bands cover %.1f %%; NIS %.3f\n",
+      speed, seeds, c.alpha_filter / kDeg, b.alpha.filter / kDeg, c.alpha_smoother / kDeg, b.alpha.smoother / kDeg,
+      c.beta_filter / kDeg, b.beta.filter / kDeg, c.beta_smoother / kDeg, b.beta.smoother / kDeg, c.worst_bias,
+      100.0 * c.covered, c.nis);
+  // Asked for: 1.2 times the bound. Reached: 1.03. The test holds what was reached.
+  EXPECT_LT(c.alpha_filter, 1.06 * b.alpha.filter);
+  EXPECT_LT(c.alpha_smoother, 1.06 * b.alpha.smoother);
+  EXPECT_LT(c.beta_filter, 1.06 * b.beta.filter);
+  EXPECT_LT(c.beta_smoother, 1.06 * b.beta.smoother);
+  EXPECT_GT(c.alpha_filter, 0.9 * b.alpha.filter) << "better than possible: the test itself would be wrong";
+  EXPECT_LT(c.worst_bias, 0.2);
+  EXPECT_GT(c.covered, 0.93);
+  EXPECT_LT(c.covered, 0.97);
+  EXPECT_NEAR(c.nis, 1.0, 0.02);
+  return c;
+}
+
+TEST(Reconstruct, ReachesTheInformationBoundInModerateTurbulence) { fly(15.0, 2, 80.0); }
+
+// The full campaign: half a minute of computing, so only where VERIDYN_SOAK is set (`make soak`).
+class ReconstructSoak : public ::testing::TestWithParam<double> {};
+TEST_P(ReconstructSoak, ReachesTheInformationBoundOverTenSeeds) {
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  fly(GetParam(), 10, 300.0);
+}
+INSTANTIATE_TEST_SUITE_P(Speeds, ReconstructSoak, ::testing::Values(15.0, 25.0));
+
+TEST(Reconstruct, FindsTheTurbulenceAndTheNoiseByItself) {
+  const MadeFlight f = make_flight({.duration = 80.0});
+  const Reconstruction r = run(f.recording, {});
+  EXPECT_NEAR(r.turbulence.sigma_w, 1.4, 0.45) << r.turbulence_origin;
+  // Gusts change the vane's angle by some tenths of a degree from sample to sample, which counts as noise here.
+  EXPECT_GT(r.sigma.alpha / kDeg, 0.58);
+  EXPECT_LT(r.sigma.alpha / kDeg, 0.72);
+  EXPECT_NEAR(r.sigma.dynamic_pressure, 10.0, 1.0);
+  const InformationBound b = information_bound(gust_spectrum("low_moderate"), 15.0, 0.6 * kDeg, 100.0);
+  EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha).rms, 1.2 * b.alpha.smoother);
+  EXPECT_LT(errors_of(r.smoothed, "beta", f.beta).rms, 1.2 * b.beta.smoother);
+}
+
+TEST(Reconstruct, SmoothsBetterThanItFilters) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  const Reconstruction r = run(f.recording, reference_options());
+  EXPECT_LT(errors_of(r.smoothed, "airspeed", f.airspeed).rms, errors_of(r.filtered, "airspeed", f.airspeed).rms);
+  EXPECT_LT(errors_of(r.smoothed, "wind_total_north", f.wind_north).rms, 0.3);
+  const auto& s = r.smoothed.at("sigma_beta").value;
+  const auto& p = r.filtered.at("sigma_beta").value;
+  for (std::size_t i = 0; i < s.size(); i += 100) EXPECT_LE(s[i], p[i] * 1.0001);
+}
+
+// --- Fewer, worse and later sensors ---------------------------------------------------------------------------------
+
+TEST(Reconstruct, WorksWithoutVanesAndSaysWhatIsThenUnknown) {
+  const MadeFlight f = make_flight({.duration = 80.0});
+  const Reconstruction r = run(without(f.recording, {"alpha", "beta"}), reference_options());
+  const auto beta = errors_of(r.smoothed, "beta", f.beta);
+  EXPECT_GT(beta.rms, 3.0 * kDeg) << "lateral gusts of 2 m/s cannot be seen";
+  EXPECT_GT(beta.covered95, 0.85);
+  EXPECT_GT(errors_of(r.smoothed, "alpha", f.alpha).covered95, 0.85);
+  EXPECT_LT(std::abs(errors_of(r.smoothed, "airspeed", f.airspeed).bias), 0.2);
+  EXPECT_EQ(quantity(r, "airspeed").observability, Observability::kObservable);
+  EXPECT_NE(quantity(r, "alpha").observability, Observability::kObservable);
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("no beta vane")));
+}
+
+TEST(Reconstruct, WorksWithoutPitotAndWidensTheBandOfAirspeed) {
+  const MadeFlight f = make_flight({.duration = 80.0});
+  const Reconstruction with = run(f.recording, reference_options());
+  const Reconstruction r = run(without(f.recording, {"dynamic_pressure"}), reference_options());
+  EXPECT_GT(quantity(r, "airspeed").sigma, 3.0 * quantity(with, "airspeed").sigma);
+  // The error changes over tens of seconds, so that one flight is few samples: within twice the sigma is all it shows.
+  EXPECT_LT(errors_of(r.smoothed, "airspeed", f.airspeed).rms, 2.0 * quantity(r, "airspeed").sigma);
+  EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha).rms, 0.6 * kDeg) << "the vanes still see the angles";
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("no pitot tube")));
+}
+
+TEST(Reconstruct, CallsEverythingUnobservableWhenNothingFeelsTheAir) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  const Reconstruction r = run(without(f.recording, {"dynamic_pressure", "alpha", "beta"}), reference_options());
+  for (const char* name : {"airspeed", "alpha", "beta", "wind_north", "wind_east", "wind_down"}) {
+    EXPECT_EQ(quantity(r, name).observability, Observability::kNotObservable) << name;
+  }
+  EXPECT_GT(errors_of(r.smoothed, "airspeed", f.airspeed).covered95, 0.9);
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("neither pitot tube nor vanes")));
+}
+
+TEST(Reconstruct, DropsSpikes) {
+  MadeFlight f = make_flight({.duration = 60.0});
+  Recording bad = f.recording;
+  numerics::RandomStream random(1, "spikes");
+  std::size_t spikes = 0;
+  for (const char* name : {"alpha", "beta", "dynamic_pressure", "vel_north", "roll"}) {
+    Channel c = bad.at(name);
+    for (std::size_t i = 10; i < c.size(); ++i) {
+      if (random.uniform() < 0.01) {
+        c.value[i] += name[0] == 'd' ? 500.0 : name[0] == 'v' ? 30.0 : 1.0;
+        ++spikes;
+      }
+    }
+    bad.set(c);
+  }
+  const Reconstruction clean = run(f.recording, reference_options());
+  const Reconstruction r = run(bad, reference_options());
+  std::size_t rejected = 0;
+  for (const SensorReport& s : r.sensors) rejected += s.innovations.rejected;
+  EXPECT_NEAR(static_cast<double>(rejected), static_cast<double>(spikes), 0.02 * static_cast<double>(spikes) + 3.0);
+  EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha).rms, 1.05 * errors_of(clean.smoothed, "alpha", f.alpha).rms);
+  EXPECT_LT(errors_of(r.smoothed, "airspeed", f.airspeed).rms,
+            1.1 * errors_of(clean.smoothed, "airspeed", f.airspeed).rms);
+}
+
+TEST(Reconstruct, EstimatesBiasesOfInertialSensors) {
+  const MadeFlight f = make_flight({.duration = 120.0});
+  Recording biased = f.recording;
+  const auto shift = [&](const char* name, double scale, double bias) {
+    Channel c = biased.at(name);
+    for (double& v : c.value) v = scale * v + bias;
+    biased.set(c);
+  };
+  shift("gyro_x", 1.0, 0.5 * kDeg);
+  shift("accel_y", 1.0, 0.2);
+  ReconstructOptions o = reference_options();
+  o.gyro_bias = o.accel_bias = true;
+  const Reconstruction r = run(biased, o);
+  const std::size_t last = r.smoothed.at("airspeed").size() - 1;
+  const auto expect = [&](const char* name, double truth, double within) {
+    const double value = r.smoothed.at(name).value[last];
+    const double sigma = r.smoothed.at(std::string("sigma_") + name).value[last];
+    EXPECT_NEAR(value, truth, 3.0 * sigma) << name;
+    EXPECT_LT(sigma, within) << name;
+  };
+  expect("gyro_bias_x", 0.5 * kDeg, 0.05 * kDeg);
+  expect("accel_bias_y", 0.2, 0.05);
+}
+
+TEST(Reconstruct, UsesEachSensorAtItsOwnTime) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  Recording thin = without(f.recording, {"alpha", "beta", "dynamic_pressure", "roll", "pitch", "yaw"});
+  const auto keep = [&](const char* name, std::size_t every, std::size_t from) {
+    const Channel& c = f.recording.at(name);
+    std::vector<double> t, v;
+    for (std::size_t i = from; i < c.size(); i += every) {
+      t.push_back(c.times()[i]);
+      v.push_back(c.value[i]);
+    }
+    thin.add(make_channel(name, c.unit.name, make_time_base(t), v));
+  };
+  for (const char* name : {"roll", "pitch", "yaw"}) keep(name, 4, 1);
+  keep("alpha", 2, 0);
+  keep("beta", 7, 3);
+  keep("dynamic_pressure", 10, 9);
+  ReconstructOptions o = reference_options();
+  o.rate_Hz = 40.0;
+  const Reconstruction r = run(thin, o);
+  EXPECT_NEAR(r.smoothed.at("alpha").rate_Hz(), 40.0, 1e-6);
+  const auto half = information_bound(gust_spectrum("low_moderate"), 15.0, 0.6 * kDeg, 50.0);
+  EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha).rms, 1.25 * half.alpha.smoother);
+  EXPECT_NEAR(errors_of(r.smoothed, "beta", f.beta).covered95, 0.95, 0.03);
+  EXPECT_NEAR(sensor(r, "beta").innovations.nis, 1.0, 0.2);
+}
+
+TEST(Reconstruct, TakesOffDelays) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  Recording late = f.recording;
+  for (const char* name : {"vel_north", "vel_east", "vel_down"}) {
+    Channel c = late.at(name);
+    std::vector<double> t(c.times().begin(), c.times().end());
+    for (double& s : t) s += 0.25;
+    c.time = make_time_base(t);
+    late.set(c);
+  }
+  ReconstructOptions o = reference_options();
+  o.delay.velocity = 0.25;
+  EXPECT_NEAR(sensor(run(late, o), "vel_east").innovations.nis, 1.0, 0.15);
+  EXPECT_GT(sensor(run(late, reference_options()), "vel_east").innovations.nis, 1.5) << "a delay does matter";
+}
+
+TEST(Reconstruct, KeepsALongGapAGap) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  Recording holed;
+  holed.frame = Frame::kFrd;
+  for (const Channel& c : f.recording.channels()) {
+    std::vector<double> t, v;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      if (c.times()[i] > 25.0 && c.times()[i] < 31.0) continue;
+      t.push_back(c.times()[i]);
+      v.push_back(c.value[i]);
+    }
+    holed.add(make_channel(c.name, c.unit.name, make_time_base(t), v));
+  }
+  const Reconstruction r = run(holed, reference_options());
+  ASSERT_EQ(r.segments.size(), 2U);
+  const Channel& alpha = r.smoothed.at("alpha");
+  ASSERT_EQ(alpha.gaps(1.0).size(), 1U);
+  EXPECT_NEAR(alpha.gaps(1.0)[0].begin, 25.0, 0.02);
+  EXPECT_NEAR(alpha.gaps(1.0)[0].end, 31.0, 0.06);
+  EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha, 32.0).rms, 0.5 * kDeg);
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("2 parts")));
+}
+
+TEST(Reconstruct, GivesTheSameBytesTwice) {
+  const MadeFlight f = make_flight({.duration = 30.0});
+  const Reconstruction a = run(f.recording, {}), b = run(f.recording, {});
+  for (const Channel& c : a.smoothed.channels()) EXPECT_EQ(c.value, b.smoothed.at(c.name).value) << c.name;
+}
+
+// --- Bad input ------------------------------------------------------------------------------------------------------
+
+std::string message_of(const Recording& recording) {
+  try {
+    static_cast<void>(run(recording, {}));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Reconstruct, RefusesWhatItCannotUseInOneSentence) {
+  const MadeFlight f = make_flight({.duration = 5.0});
+  EXPECT_THAT(message_of(without(f.recording, {"gyro_y"})), HasSubstr("gyro_y"));
+  EXPECT_THAT(message_of(without(f.recording, {"vel_down"})), HasSubstr("vel_down"));
+  EXPECT_THAT(message_of(without(f.recording, {"vel_down"})), HasSubstr("vel_north")) << "says what there is";
+  Recording flu = f.recording;
+  flu.frame = Frame::kFlu;
+  EXPECT_THAT(message_of(flu), HasSubstr("frd"));
+  Recording nan = f.recording;
+  Channel roll = nan.at("roll");
+  std::fill(roll.value.begin(), roll.value.end(), std::nan(""));
+  nan.set(roll);
+  EXPECT_THAT(message_of(nan), HasSubstr("'roll' holds no finite sample"));
+  EXPECT_THAT(message_of(make_flight({.duration = 0.5}).recording), HasSubstr("no second"));
+}
+
+TEST(ReconstructOptions, ReadsEveryKeyAndRefusesWrongOnes) {
+  const auto read = [](const char* text) {
+    const Study study = Study::parse(text, "study.toml");
+    const StudyTable table = study.root().table("reconstruct");
+    const ReconstructOptions o = ReconstructOptions::read(table);
+    study.root().finish();
+    return o;
+  };
+  const ReconstructOptions o = read(R"([reconstruct]
+rate = "50 Hz"
+sensors = "reference"
+turbulence = "medium_light"
+turbulence_scale = 1.5
+estimate = ["alpha_bias", "pitot_scale"]
+without = ["beta"]
+airspeed_is = "equivalent"
+beta_vane = "flank"
+vane_position = [0.5, 0.0, -0.1]
+wind_walk = 0.05
+wind_down_walk = 0.02
+initial_wind = "8 m/s"
+initial_wind_down = "1 m/s"
+min_airspeed = "5 m/s"
+max_gap = "200 ms"
+gate = 4.0
+gate_recovery = "1 s"
+[reconstruct.sigma]
+alpha = "0.8 deg"
+dynamic_pressure = 12.0
+[reconstruct.delay]
+velocity = "0.2 s"
+)");
+  EXPECT_EQ(o.rate_Hz, 50.0);
+  EXPECT_EQ(o.turbulence, "medium_light");
+  EXPECT_TRUE(o.alpha_bias && o.pitot_scale && !o.beta_bias && !o.use_beta && o.use_alpha);
+  EXPECT_TRUE(!o.airspeed_is_true && o.beta_is_flank);
+  EXPECT_EQ(o.vane_position.x(), 0.5);
+  EXPECT_NEAR(o.sigma.alpha.value_or(0.0), 0.8 * kDeg, 1e-12);
+  EXPECT_EQ(o.max_gap, 0.2);
+  EXPECT_EQ(o.delay.velocity, 0.2);
+  const auto message = [&](const char* text) -> std::string {
+    try {
+      static_cast<void>(read(text));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message("[reconstruct]\nturbulense = \"auto\"\n"), HasSubstr("turbulence"));
+  EXPECT_THAT(message("[reconstruct]\nestimate = [\"alfa_bias\"]\n"), HasSubstr("alpha_bias"));
+  EXPECT_THAT(message("[reconstruct]\nmax_gap = \"-1 s\"\n"), HasSubstr("max_gap"));
+  EXPECT_THAT(message("[reconstruct]\nvane_position = [1, 2]\n"), HasSubstr("[x, y, z]"));
+  EXPECT_THAT(message("[reconstruct.sigma]\nalpha = \"2 Pa\"\n"), HasSubstr("rad"));
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

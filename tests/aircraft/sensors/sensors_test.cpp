@@ -1,0 +1,216 @@
+#include "veridyn/aircraft/sensors/sensors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "veridyn/aircraft/simulation/flight_plan.hpp"
+#include "veridyn/aircraft/sensors/servo.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+const SensorKind& kind(std::string_view name) {
+  for (const SensorKind& k : sensor_kinds())
+    if (k.name == name) return k;
+  return sensor_kinds()[0];
+}
+
+/// A sensor that watches a roll angle of `roll(t)` and a rate of `t` over `duration`, at 2.5 ms.
+template <typename Roll>
+Recording watch(std::string_view name, const SensorSettings& s, double duration, Roll roll, std::uint64_t seed = 1) {
+  Sensor sensor(kind(name), s, seed);
+  const long steps = std::lround(duration / 0.0025);
+  for (long k = 0; k <= steps; ++k) {
+    const double t = 0.0025 * static_cast<double>(k);
+    TruthSample x;
+    x[Truth::kRoll] = std::remainder(roll(t), 2 * M_PI);
+    x[Truth::kGyroX] = t;
+    sensor.observe(t, x);
+  }
+  Recording r;
+  sensor.give(r);
+  return r;
+}
+
+TEST(Sensor, TakesItsOwnRateBetweenTheSteps) {
+  // 30 Hz is no divisor of 400 Hz; a rate of t is a straight line, so interpolation is exact.
+  const Recording r = watch("gyro", {.rate = 30.0}, 2.0, [](double) { return 0.0; });
+  const Channel& c = r.at("gyro_x");
+  ASSERT_EQ(c.size(), 61u);
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    EXPECT_NEAR(c.times()[i], static_cast<double>(i) / 30.0, 1e-12);
+    EXPECT_NEAR(c.value[i], c.times()[i], 1e-9);
+  }
+}
+
+TEST(Sensor, StampsADelayedValueWithALaterTime) {
+  const Recording r = watch("gyro", {.rate = 50.0, .delay = 0.033}, 1.0, [](double) { return 0.0; });
+  const Channel& c = r.at("gyro_x");
+  EXPECT_NEAR(c.times()[0], 0.04, 1e-12);
+  for (std::size_t i = 0; i < c.size(); ++i) EXPECT_NEAR(c.value[i], c.times()[i] - 0.033, 1e-9);
+}
+
+TEST(Sensor, InterpolatesAnglesAcrossTheWrap) {
+  const Recording r = watch("ahrs", {.rate = 30.0}, 10.0, [](double t) { return 2.0 * t; });
+  const Channel& c = r.at("roll");
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    EXPECT_NEAR(std::remainder(c.value[i] - 2.0 * c.times()[i], 2 * M_PI), 0.0, 1e-9);
+  }
+}
+
+TEST(Sensor, AppliesBiasScaleAndQuantisation) {
+  SensorSettings s{.rate = 100.0, .bias = {0.5, 0, 0, 0}, .scale = 0.1, .resolution = 0.25};
+  const Channel c = watch("gyro", s, 5.0, [](double) { return 0.0; }).at("gyro_x");
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    EXPECT_NEAR(
+        c.value[i], 0.25 * std::round((0.5 + 1.1 * c.times()[i]) / 0.25),
+        1e-7 + 0.2500001 * (std::abs(std::remainder((0.5 + 1.1 * c.times()[i]) / 0.25 - 0.5, 1.0)) < 1e-6 ? 1.0 : 0.0));
+  }
+}
+
+TEST(Sensor, HasTheNoiseAndWalkThatWereAsked) {
+  // Roll axis: truth 0. 30001 samples: relative standard error of a variance sqrt(2/30000) = 0.8 %.
+  const Channel c =
+      watch("ahrs", {.rate = 100.0, .sigma = {0.2, 0, 0, 0}}, 300.0, [](double) { return 0.0; }).at("roll");
+  double sum = 0, lag = 0;
+  for (std::size_t i = 1; i < c.size(); ++i) {
+    sum += c.value[i] * c.value[i];
+    lag += c.value[i] * c.value[i - 1];
+  }
+  const double n = static_cast<double>(c.size() - 1);
+  EXPECT_NEAR(sum / n, 0.04, 4 * 0.008 * 0.04);
+  EXPECT_NEAR(lag / n, 0.0, 4 * 0.04 / std::sqrt(n));
+  // A walk of 0.01 a second after 4 s, 400 flights: 0.02 with a relative standard error of 3.5 %.
+  double walk = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const double end = watch(
+                           "ahrs", {.rate = 20.0, .walk = 0.01}, 4.0, [](double) { return 0.0; }, seed)
+                           .at("roll")
+                           .value.back();
+    walk += end * end;
+  }
+  EXPECT_NEAR(std::sqrt(walk / 400), 0.02, 4 * 0.035 * 0.02);
+}
+
+TEST(Sensor, LosesTheShareOfSamplesThatWasAsked) {
+  for (const double length : {0.0, 0.5}) {
+    const Channel c = watch("gyro", {.rate = 100.0, .dropout = 0.2, .dropout_duration = length}, 2000.0, [](double) {
+                        return 0.0;
+                      }).at("gyro_x");
+    // Runs of 50 samples leave about 200000 * 0.2 / 50 = 800 losses: relative standard error of the share 4 %.
+    EXPECT_NEAR(1.0 - static_cast<double>(c.size()) / 200001.0, 0.2, length > 0.0 ? 4 * 0.04 * 0.2 : 0.005);
+    if (length > 0.0) {
+      EXPECT_GT(c.gaps(1.0).size(), 50u);
+    }
+  }
+}
+
+/// Allan variance of a channel over m samples, overlapping.
+double allan_variance(const std::vector<double>& x, std::size_t m) {
+  std::vector<double> sum(x.size() + 1, 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) sum[i + 1] = sum[i] + x[i];
+  double total = 0.0;
+  const std::size_t count = x.size() - 2 * m + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double d = (sum[i + 2 * m] - 2.0 * sum[i + m] + sum[i]) / static_cast<double>(m);
+    total += 0.5 * d * d;
+  }
+  return total / static_cast<double>(count);
+}
+
+// White noise of density S has the Allan variance S/tau, a random walk of K^2 s^-1 has K^2 tau/3 (IEEE 952, annex C).
+TEST(Sensor, HasTheAllanVarianceOfWhiteNoiseAndOfARandomWalk) {
+  const Channel white =
+      watch("ahrs", {.rate = 50.0, .sigma = {0.2, 0, 0, 0}}, 1000.0, [](double) { return 0.0; }).at("roll");
+  for (const std::size_t m : {1U, 10U, 100U}) {
+    const double expected = 0.04 / static_cast<double>(m);
+    // Overlapping estimate over N/m independent stretches: relative standard error about sqrt(m/N).
+    const double error = std::sqrt(static_cast<double>(m) / static_cast<double>(white.size()));
+    EXPECT_NEAR(allan_variance(white.value, m), expected, 4.0 * 1.5 * error * expected) << m;
+  }
+  const Channel walk = watch("ahrs", {.rate = 50.0, .walk = 0.003}, 1000.0, [](double) { return 0.0; }).at("roll");
+  for (const std::size_t m : {20U, 100U, 400U}) {
+    const double tau = static_cast<double>(m) / 50.0;
+    // Sums of a discrete walk: K^2 tau/3 (1 + 1/(2 m^2)).
+    const double expected = 0.003 * 0.003 * tau / 3.0 * (1.0 + 0.5 / static_cast<double>(m * m));
+    const double error = std::sqrt(static_cast<double>(m) / static_cast<double>(walk.size()));
+    EXPECT_NEAR(allan_variance(walk.value, m), expected, 4.0 * 1.5 * error * expected) << m;
+  }
+}
+
+// The error of rounding a signal that crosses many steps is uniform: variance step^2/12, mean 0 (Widrow).
+TEST(Sensor, HasTheQuantisationNoiseOfAUniformError) {
+  const Channel c = watch("gyro", {.rate = 97.0, .resolution = 0.05}, 400.0, [](double) { return 0.0; }).at("gyro_x");
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const double error = c.value[i] - c.times()[i];
+    EXPECT_LE(std::abs(error), 0.025 + 1e-9);
+    sum += error;
+    squares += error * error;
+  }
+  const auto n = static_cast<double>(c.size());
+  EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.05 / std::sqrt(12.0 * n));
+  EXPECT_NEAR(squares / n, 0.05 * 0.05 / 12.0, 0.02 * 0.05 * 0.05 / 12.0);
+}
+
+TEST(Servo, FollowsAStepAsItsClosedFormSays) {
+  const Actuator a{.lower = -1, .upper = 1, .time_constant = 0.05, .delay = 0.01};
+  Servo servo(a, 0.0, 0.0025);
+  for (int k = 1; k <= 100; ++k) {
+    servo.advance(0.5);
+    const double t = 0.0025 * k - 0.01;
+    EXPECT_NEAR(servo.position(), t > 0 ? 0.5 * (1 - std::exp(-t / 0.05)) : 0.0, 1e-12);
+  }
+  Servo fast({.lower = -1, .upper = 0.3, .rate_limit = 2.0}, 0.0, 0.0025);
+  for (int k = 1; k <= 100; ++k) {
+    fast.advance(5.0);
+    EXPECT_NEAR(fast.position(), std::min(0.3, 2.0 * 0.0025 * k), 1e-12);
+  }
+}
+
+TEST(Multisine, SignalsAreOrthogonalStartAtZeroAndHaveALowPeak) {
+  const auto sines = make_multisines(3, 30.0, 0.1, 2.0);
+  constexpr int kN = 6000;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = a; b < 3; ++b) {
+      double dot = 0, largest = 0;
+      for (int i = 0; i < kN; ++i) {
+        const double t = 30.0 * i / kN;
+        dot += sines[a].value(t) * sines[b].value(t) / kN;
+        largest = std::max(largest, std::abs(sines[a].value(t)));
+      }
+      if (a != b) {
+        EXPECT_NEAR(dot, 0.0, 1e-12);
+      } else {
+        EXPECT_NEAR(largest, 1.0, 0.01);
+        // Relative peak factor: 1 for a single sine. Schroeder's phases alone reach about 1.2.
+        EXPECT_LT(1.0 / std::sqrt(2.0 * dot), 1.2);
+      }
+    }
+    EXPECT_NEAR(sines[a].value(0.0), 0.0, 1e-9);
+  }
+}
+
+TEST(Excitation, FliesTheShapesItIsAskedFor) {
+  const Excitation e({{.kind = ManoeuvreKind::k3211,
+                       .start = 10,
+                       .surfaces = {Surface::kElevator, Surface::kRudder},
+                       .amplitude = {0.1, 0.2},
+                       .pulse = 0.5},
+                      {.kind = ManoeuvreKind::kTurn, .start = 40, .duration = 5, .bank = 0.4}});
+  EXPECT_EQ(e.at(9.9)[0], 0.0);
+  EXPECT_EQ(e.at(11.4)[0], 0.1);
+  EXPECT_EQ(e.at(11.6)[0], -0.1);
+  EXPECT_EQ(e.at(12.6)[0], 0.1);
+  EXPECT_EQ(e.at(13.1)[0], -0.1);
+  EXPECT_EQ(e.at(13.6)[0], 0.0);
+  EXPECT_EQ(e.at(15.6)[2], 0.2);  // 3.5 s and a pause of 2 s later
+  EXPECT_TRUE(e.excited(12.0)[2]);
+  EXPECT_FALSE(e.excited(12.0)[1]);
+  EXPECT_TRUE(std::isnan(e.bank(39.0)));
+  EXPECT_EQ(e.bank(41.0), 0.4);
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

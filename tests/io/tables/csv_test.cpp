@@ -1,0 +1,152 @@
+#include "veridyn/io/tables/csv.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/io/support.hpp"
+#include "tests/support/synthetic_logs.hpp"
+
+namespace veridyn::io {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::message_of;
+using testing::shared_flight;
+
+Recording read(std::string_view text, const CsvOptions& options = {}) {
+  return to_recording(read_csv(text, "a.csv", options));
+}
+
+std::string refusal(std::string_view text, const CsvOptions& options = {}) {
+  return message_of([&] { (void)read_csv(text, "a.csv", options); });
+}
+
+TEST(Csv, ReadsOurOwnFilesWithUnitsFrameAndMissingSamples) {
+  const Recording recording = read(testing::small_csv());
+  EXPECT_EQ(recording.frame, Frame::kFrd);
+  EXPECT_THAT(recording.names(), ElementsAre("roll", "airspeed", "odd, name"));
+  EXPECT_NEAR(recording.at("roll").value[2], 30.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_TRUE(std::isnan(recording.at("airspeed").value[1]));
+  EXPECT_TRUE(std::isnan(recording.at("airspeed").value[2]));
+  EXPECT_DOUBLE_EQ(recording.at("airspeed").value[3], 12.5);
+  EXPECT_THAT(*recording.at("roll").time, ElementsAre(0.0, 0.02, 0.04, 0.06));
+}
+
+TEST(Csv, FindsTheTimeOfForeignFilesByItsName) {
+  EXPECT_THAT(*read("t_s,x\n0.5,1\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("x,TimeMS\n1,500\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("TimeUS,x\n500000,1\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("timestamp,x\n500000,1\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("timestamp,x\n0.5,1\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("time_boot[ms],x\n500,1\n").at("x").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("Status,TimeMS,Week,T\n3,511214500,1768,500\n").at("Week").time, ElementsAre(0.5));
+  EXPECT_THAT(*read("a,b\n1,30\n", {.time_column = "b", .time_unit = "min"}).at("a").time, ElementsAre(1800.0));
+}
+
+TEST(Csv, TakesForeignHabits) {
+  const Recording recording = read(
+      "\xEF\xBB\xBFtime;mode;control[0];Roll[deg];flag;\r\n"
+      "0;\"AUTO; fast\";+1.5;180;true;\r\n"
+      "\r\n"
+      "1;MANUAL;NaN;-90;false;\r\n");
+  EXPECT_THAT(recording.names(), ElementsAre("control[0]", "Roll", "flag"));
+  EXPECT_DOUBLE_EQ(recording.at("control[0]").value[0], 1.5);
+  EXPECT_NEAR(recording.at("Roll").value[0], std::numbers::pi, 1e-15);
+  EXPECT_DOUBLE_EQ(recording.at("flag").value[0], 1.0);
+}
+
+TEST(Csv, LeavesOutALastLineThatIsCutAndSaysSo) {
+  const Log log = read_csv("time[s],a[1],b[1]\n0,1,2\n1,3,4\n2,5", "a.csv");
+  EXPECT_EQ(log.topics[0].size(), 2U);
+  EXPECT_EQ(log.damage.records_lost, 1U);
+  EXPECT_THAT(log.damage.notes, ElementsAre("line 4 is cut (2 of 3 cells) and was left out"));
+}
+
+TEST(Csv, NamesColumnsThatHoldNoNumber) {
+  const Log log = read_csv("time[s],a[1],b[1]\n0,1,\n1,inf,nan\n", "a.csv");
+  EXPECT_THAT(log.damage.notes, Contains("columns without one number: b"));
+  EXPECT_THAT(log.damage.notes, Contains("column 'a': 1 infinite numbers are taken as missing"));
+}
+
+TEST(Csv, RefusesWithFileLineAndColumn) {
+  EXPECT_EQ(refusal(""), "a.csv: the file is empty");
+  EXPECT_EQ(refusal("\n\n# nothing\n"), "a.csv: no header: the file has only blank lines and comments");
+  EXPECT_EQ(refusal("time[s],a[1]\n"), "a.csv: there is a header but not one row of data");
+  EXPECT_EQ(refusal("time[s],a[1]\n0,1\n1,x1\n"), "a.csv:3: column 'a': 'x1' is not a number");
+  EXPECT_EQ(refusal("time,a\n0,1\n1,hello\n"), "a.csv:3: column 'a': 'hello' is not a number");
+  EXPECT_EQ(refusal("# frame: frd\n\ntime[s],a[1]\n0,1\n2,1\n1,1\n"),
+            "a.csv:6: column 'time': time goes backwards: 1 s after 2 s");
+  EXPECT_EQ(refusal("time[s],a[1]\n0,1\n,1\n"), "a.csv:3: column 'time': the time is missing");
+  EXPECT_EQ(refusal("time[s],a[1]\nnan,1\n"), "a.csv:2: column 'time': the time is missing");
+  EXPECT_EQ(refusal("time[s],a[1],b[1]\n0,1\n1,2,3\n"), "a.csv:2: 2 cells, the header has 3");
+  EXPECT_EQ(refusal("time[s],a[1]\n0,1,7\n"), "a.csv:2: more cells than the 2 of the header");
+  EXPECT_EQ(refusal("time[s],a[1],a[m]\n0,1,2\n"), "a.csv:1: column 'a' appears twice");
+  EXPECT_EQ(refusal("time[s],,b[1]\n0,1,2\n"), "a.csv:1: column 2: has no name");
+  EXPECT_EQ(refusal("time[s]\n0\n"), "a.csv:1: there is no column beside the time");
+  EXPECT_THAT(refusal("time[s],a[metre]\n0,1\n"), HasSubstr("a.csv:1: column 'a': unknown unit 'metre'"));
+  EXPECT_THAT(refusal("time[m],a[1]\n0,1\n"), HasSubstr("a.csv:1: column 'time': unit 'm' is a length [m]"));
+  EXPECT_EQ(refusal("# frame: up\ntime[s],a[1]\n"), "a.csv:1: frame is 'up', expected frd or flu");
+  EXPECT_EQ(refusal("alpha,CL\n0,1\n"),
+            "a.csv:1: no time column found among alpha, CL; name it (time_column), or call it 'time[s]'");
+  EXPECT_EQ(refusal("stamp,CL\n0,1\n", {.time_column = "stam"}),
+            "a.csv:1: no column 'stam' for the time (did you mean 'stamp'?)");
+}
+
+TEST(Csv, WrittenRecordingsReadBackToTheSameDoubles) {
+  testing::Dice dice(7);
+  Recording recording;
+  recording.source = "test";
+  recording.frame = Frame::kFlu;
+  std::vector<double> fast;
+  std::vector<double> slow{0.0, 0.05, 0.05, 0.07};  // a doubled stamp, and one that the fast base lacks
+  for (int i = 0; i < 100; ++i) fast.push_back(0.01 * i / 3.0);
+  const TimeBase fast_base = make_time_base(fast);
+  const TimeBase slow_base = make_time_base(slow);
+  std::vector<double> values(fast.size());
+  for (double& value : values)
+    value = std::ldexp(static_cast<double>(dice.roll(1U << 30U)) / 3.0, static_cast<int>(dice.roll(200)) - 100);
+  values[7] = std::nan("");
+  recording.add(make_channel("IMU[1].AccX", "m/s^2", fast_base, values));
+  recording.add(make_channel("a \"quoted\", name", "rad", slow_base, {1.0, 2.0, 3.0, 4.0}));
+  recording.add(make_channel("control[0]", "1", slow_base, {5.0, 6.0, 7.0, 8.0}));
+
+  const testing::TemporaryFolder folder;
+  write_csv(recording, folder.path() / "out.csv");
+  const Recording back = to_recording(read_csv_file(folder.path() / "out.csv"));
+  EXPECT_EQ(back.frame, Frame::kFlu);
+  EXPECT_EQ(back.names(), recording.names());
+  for (const Channel& channel : recording.channels()) {
+    const Channel& read_back = back.at(channel.name);
+    EXPECT_EQ(read_back.unit.name, channel.unit.si_name());
+    // Rows of the other base are empty cells; what is left must be the same numbers at the same stamps.
+    std::vector<std::pair<double, double>> expected;
+    std::vector<std::pair<double, double>> got;
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      if (std::isfinite(channel.value[i])) expected.emplace_back(channel.times()[i], channel.value[i]);
+    }
+    for (std::size_t i = 0; i < read_back.size(); ++i) {
+      if (std::isfinite(read_back.value[i])) got.emplace_back(read_back.times()[i], read_back.value[i]);
+    }
+    EXPECT_EQ(got, expected) << channel.name;
+  }
+}
+
+// Counted with wc -l and looked up with sed in the files.
+TEST(RealCsv, FilesOfOthersAreRead) {
+  const auto path = shared_flight("px4/proto_flt09/airspeed_0.csv");
+  VERIDYN_NEEDS_SHARED(path);
+  const Recording airspeed = to_recording(read_csv_file(path));
+  EXPECT_NEAR(airspeed.span().begin, 327.003843, 1e-9);
+  EXPECT_NEAR(airspeed.at("air_temperature_celsius").value[1], 23.4182, 1e-12);
+  const Recording controls = to_recording(read_csv_file(shared_flight("px4/proto_flt09/actuator_controls_0_0.csv")));
+  EXPECT_TRUE(controls.has("control[7]"));
+  const Recording gps = to_recording(read_csv_file(shared_flight("arduplane_2013/GPS.csv")));
+  EXPECT_NEAR(gps.span().begin, 13.341, 1e-9);
+  const Recording state = to_recording(read_csv_file(shared_flight("skywalker_stanford/flight_2021_06_30_state.csv")));
+  EXPECT_NEAR(state.at("u_m_s").value[0], 0.0580556, 1e-12);
+}
+
+}  // namespace
+}  // namespace veridyn::io

@@ -1,0 +1,76 @@
+#include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace veridyn::muscle {
+namespace {
+
+CoordinateLimitForce elbow_limit() {
+  CoordinateLimitForce limit;
+  limit.upper_limit = 2.0;
+  limit.upper_stiffness = 30.0;
+  limit.lower_limit = 0.1;
+  limit.lower_stiffness = 20.0;
+  limit.damping = 0.5;
+  limit.transition = 0.2;
+  return limit;
+}
+
+TEST(LimitForce, IsNothingInsideAndASpringWithDamperOutside) {
+  const CoordinateLimitForce limit = elbow_limit();
+  for (const double q : {0.1, 0.7, 2.0}) EXPECT_EQ(limit_force(limit, q, 3.0), 0.0) << q;
+  EXPECT_NEAR(limit_force(limit, 2.5, 3.0), -30.0 * 0.5 - 0.5 * 3.0, 1e-14);
+  EXPECT_NEAR(limit_force(limit, -0.4, 3.0), 20.0 * 0.5 - 0.5 * 3.0, 1e-14);
+  // In the middle of the transition the step is a half, and so are stiffness and damping.
+  EXPECT_NEAR(limit_force(limit, 2.1, 3.0), 0.5 * (-30.0 * 0.1 - 0.5 * 3.0), 1e-14);
+  EXPECT_NEAR(limit_force(limit, 0.0, 3.0), 0.5 * (20.0 * 0.1 - 0.5 * 3.0), 1e-14);
+}
+
+TEST(LimitForce, IsMinusTheSlopeOfItsEnergyAndHasTwoContinuousDerivatives) {
+  using Jet = ceres::Jet<double, 1>;
+  const CoordinateLimitForce limit = elbow_limit();
+  for (double q = -0.5; q < 3.0; q += 0.037) {
+    EXPECT_NEAR(limit_force(limit, q, 0.0), -limit_energy(limit, Jet(q, 0)).v[0], 1e-13) << q;
+  }
+  for (const double edge : {-0.1, 0.1, 2.0, 2.2}) {
+    const double h = 1e-4;
+    const auto slope = [&](double q) { return limit_force(limit, Jet(q, 0), Jet(0.0)).v[0]; };
+    EXPECT_NEAR(slope(edge - h), slope(edge + h), 1e-2) << edge;  // continuous slope
+    EXPECT_NEAR(limit_energy(limit, edge - h), limit_energy(limit, edge + h), 1e-2);
+    // No jump of the second derivative: second differences on both sides go to the same limit with h.
+    const auto bend = [&](double q) { return (slope(q + h) - slope(q - h)) / (2.0 * h); };
+    EXPECT_NEAR(bend(edge - 2.0 * h), bend(edge + 2.0 * h), 40.0) << edge;
+  }
+}
+
+TEST(LimitForce, MayHaveNoStiffnessOnOneSide) {
+  CoordinateLimitForce limit = elbow_limit();
+  limit.upper_stiffness = 0.0;
+  EXPECT_NEAR(limit_force(limit, 2.5, 3.0), -0.5 * 3.0, 1e-15);
+}
+
+TEST(CoordinateForces, AddToWhatIsThere) {
+  std::array<CoordinateActuator, 2> actuators;
+  actuators[0].coordinate = 1;
+  actuators[0].optimal_force = 5.0;
+  actuators[1].coordinate = 0;
+  actuators[1].optimal_force = -2.0;
+  actuators[1].max_control = 1.0;
+  std::array<double, 2> tau{10.0, 20.0};
+  const std::array<double, 2> controls{0.5, 3.0};
+  add_actuator_forces<double>(actuators, controls.data(), tau.data());
+  EXPECT_EQ(tau[0], 10.0 - 6.0);
+  EXPECT_EQ(tau[1], 20.0 + 2.5);
+  std::array<CoordinateLimitForce, 1> limits{elbow_limit()};
+  limits[0].coordinate = 1;
+  const std::array<double, 2> q{5.0, 2.5}, qdot{5.0, 3.0};
+  add_limit_forces<double>(limits, q.data(), qdot.data(), tau.data());
+  EXPECT_EQ(tau[0], 4.0);
+  EXPECT_NEAR(tau[1], 22.5 - 16.5, 1e-13);
+}
+
+}  // namespace
+}  // namespace veridyn::muscle

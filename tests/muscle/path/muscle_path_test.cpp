@@ -1,0 +1,339 @@
+#include "veridyn/muscle/path/muscle_path.hpp"
+
+#include <ceres/jet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+const std::filesystem::path kShared = test::shared_folder();
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+#define SKIP_WITHOUT_REFERENCE()                               \
+  if (!std::filesystem::exists(kShared / "reference/opensim")) \
+  GTEST_SKIP() << "the reference of ../shared is not "         \
+                  "here"
+
+std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(in, line);) {
+    std::vector<std::string> cells;
+    std::stringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    rows.push_back(cells);
+  }
+  return rows;
+}
+
+struct Arm {
+  explicit Arm(Model m, WrapMode mode = WrapMode::kTaut)
+      : model(std::move(m)), mechanism(model), paths(model, mechanism, mode), workspace(paths), kinematics(mechanism) {}
+  void pose(const Eigen::VectorXd& at) {
+    q = at;
+    update_positions(mechanism, q.data(), kinematics);
+    paths.evaluate(kinematics, q.data(), workspace);
+  }
+  void pose_deg(double shoulder, double elbow) { pose(Eigen::Vector2d(shoulder * kDegree, elbow * kDegree)); }
+  [[nodiscard]] double moment_arm(int muscle, int coordinate) const {
+    for (std::size_t k = paths.first_pair(muscle); k < paths.end_pair(muscle); ++k)
+      if (paths.pairs()[k].coordinate == coordinate) return -workspace.gradient[k];
+    return 0.0;
+  }
+  Model model;
+  Mechanism mechanism;
+  MusclePaths paths;
+  PathWorkspace<double> workspace;
+  Kinematics<double> kinematics;
+  Eigen::VectorXd q;
+};
+
+Model arm26() { return read_osim(kShared / "data/opensim/arm26.osim"); }
+
+/// Largest difference between dL/dq and central differences over the poses.
+void expect_differences(Arm& arm, const std::vector<Eigen::VectorXd>& poses, double tolerance) {
+  for (const Eigen::VectorXd& q : poses) {
+    arm.pose(q);
+    const std::vector<double> gradient = arm.workspace.gradient;
+    for (int c = 0; c < arm.paths.coordinates(); ++c) {
+      const double h = 1e-5;
+      Eigen::VectorXd up = q, down = q;
+      up[c] += h;
+      down[c] -= h;
+      arm.pose(up);
+      const std::vector<double> longer = arm.workspace.length;
+      arm.pose(down);
+      std::vector<double> slope(longer.size());
+      for (std::size_t m = 0; m < slope.size(); ++m) slope[m] = (longer[m] - arm.workspace.length[m]) / (2.0 * h);
+      for (std::size_t k = 0; k < gradient.size(); ++k) {
+        if (arm.paths.pairs()[k].coordinate != c) continue;
+        const auto m = static_cast<std::size_t>(arm.paths.pairs()[k].muscle);
+        EXPECT_NEAR(gradient[k], slope[m], tolerance)
+            << arm.model.muscles[m].name() << " about " << arm.model.coordinates[static_cast<std::size_t>(c)].name
+            << " at " << q.transpose();
+        slope[m] = 0.0;
+      }
+      for (const double left : slope) EXPECT_NEAR(left, 0.0, tolerance);  // no pair is missing
+    }
+  }
+}
+
+// The rows left out: TRIlong where OpenSim wraps over TRIlongglen and TRIlonghh at once. From shoulder 70.85 to 144.6
+// deg its path is one that it enters and leaves with jumps of 2.7 and 7.9 mm (a2_arm26_path_jumps.csv); at 64.29 its
+// own two moment arms differ by 2.0e-3 m, and only the length is compared.
+bool opensim_jumps(const std::string& muscle, double shoulder) {
+  return muscle == "TRIlong" && shoulder > 70.85 && shoulder < 144.6;
+}
+bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
+  return opensim_jumps(muscle, shoulder) || (muscle == "TRIlong" && std::abs(shoulder - 64.2857) < 0.01);
+}
+
+TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
+  SKIP_WITHOUT_REFERENCE();
+  Arm arm(arm26());
+  const auto rows = csv(kShared / "reference/opensim/a_arm26_paths_grid.csv");
+  int compared = 0, left_out = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto& row = rows[i];
+    const double shoulder = std::stod(row[0]), elbow = std::stod(row[1]);
+    const std::string& name = row[2];
+    const int m = arm.model.muscle(name);
+    arm.pose_deg(shoulder, elbow);
+    const bool wrapped = row.size() > 12 && !row[12].empty();
+    const std::string at = name + " at " + row[0] + ", " + row[1];
+    if (opensim_jumps(name, shoulder)) {
+      ++left_out;
+      continue;
+    }
+    ++compared;
+    const double tolerance = name == "BICshort" ? 1e-9 : (wrapped ? 1e-4 : 1e-5);
+    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), tolerance) << at;
+    EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[7]), 2e-4) << at;
+    if (!opensim_arm_is_off(name, shoulder)) {
+      EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-4) << at;
+    }
+  }
+  EXPECT_EQ(compared, 1204);
+  EXPECT_EQ(left_out, 56);
+}
+
+TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
+  SKIP_WITHOUT_REFERENCE();
+  Arm arm(arm26());
+  // A jump of 1e-4 m changes an increment by as much; a kink of 0.03 m in dL/dq by 2.6e-5 m a step.
+  for (const double fixed : {0.0, 60.0, 120.0}) {
+    for (const bool shoulder : {true, false}) {
+      std::vector<double> before, change;
+      for (double a = shoulder ? -90.0 : 0.0; a <= (shoulder ? 180.0 : 130.0); a += 0.05) {
+        shoulder ? arm.pose_deg(a, fixed) : arm.pose_deg(fixed, a);
+        const std::vector<double>& now = arm.workspace.length;
+        for (std::size_t m = 0; m < now.size() && !before.empty(); ++m) {
+          const double step = now[m] - before[m];
+          if (change.size() == now.size()) {
+            EXPECT_NEAR(step, change[m], 3e-5) << arm.model.muscles[m].name() << " at " << a << ", the other " << fixed;
+          }
+        }
+        if (!before.empty()) {
+          change.resize(now.size());
+          for (std::size_t m = 0; m < now.size(); ++m) change[m] = now[m] - before[m];
+        }
+        before = now;
+      }
+    }
+  }
+}
+
+TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
+  SKIP_WITHOUT_REFERENCE();
+  Arm arm(arm26());
+  std::vector<Eigen::VectorXd> poses;
+  for (double s = -90.0; s < 180.0; s += 3.1)
+    for (const double e : {5.0, 50.0, 110.0}) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
+  expect_differences(arm, poses, 3e-7);
+}
+
+TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
+  SKIP_WITHOUT_REFERENCE();
+  Arm arm(arm26(), WrapMode::kAsOpenSim);
+  const auto rows = csv(kShared / "reference/opensim/a_arm26_paths_grid.csv");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto& row = rows[i];
+    const std::string& name = row[2];
+    const double shoulder = std::stod(row[0]);
+    // Two objects on one segment: our reading of OpenSim's iteration is 0.1 to 4.5 mm off there.
+    if (opensim_arm_is_off(name, shoulder)) continue;
+    arm.pose_deg(shoulder, std::stod(row[1]));
+    const int m = arm.model.muscle(name);
+    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), 2e-6)
+        << name << " " << row[0] << " " << row[1];
+    // OpenSim's "virtual work" moment arms, which are not the derivatives of its lengths.
+    EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[4]), 3e-5) << name << " " << row[0] << " " << row[1];
+    EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[5]), 5e-6) << name << " " << row[0] << " " << row[1];
+  }
+}
+
+void compare_random_poses(const std::string& file, const std::string& prefix) {
+  Arm arm(read_osim(kShared / "data/opensim" / file));
+  const auto poses = csv(kShared / "reference/opensim" / (prefix + "_poses.csv"));
+  std::map<int, Eigen::VectorXd> at;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    Eigen::VectorXd q = arm.model.default_pose();
+    for (std::size_t c = 1; c + 1 < poses[0].size(); ++c) {
+      std::string name = poses[0][c];
+      name = name.substr(0, name.rfind('_'));
+      ASSERT_GE(arm.model.coordinate(name), 0) << name;
+      q[arm.model.coordinate(name)] = std::stod(poses[i][c]);
+    }
+    at[std::stoi(poses[i][0])] = q;
+  }
+  const auto lengths = csv(kShared / "reference/opensim" / (prefix + "_lengths.csv"));
+  for (std::size_t i = 1; i < lengths.size(); ++i) {
+    arm.pose(at[std::stoi(lengths[i][0])]);
+    const int m = arm.model.muscle(lengths[i][1]);
+    ASSERT_GE(m, 0);
+    EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(lengths[i][2]), 1e-9)
+        << lengths[i][1] << " pose " << lengths[i][0];
+  }
+  const auto arms = csv(kShared / "reference/opensim" / (prefix + "_momentarms.csv"));
+  for (std::size_t i = 1; i < arms.size(); ++i) {
+    if (arms[i][4] == "nan") continue;
+    const Eigen::VectorXd& q = at[std::stoi(arms[i][0])];
+    arm.pose(q);
+    const int m = arm.model.muscle(arms[i][1]), c = arm.model.coordinate(arms[i][2]);
+    double total = arm.moment_arm(m, c);
+    for (const CoordinateCoupler& coupler : arm.model.couplers)
+      if (coupler.independent == c)
+        total += coupler.function.evaluate(q[c]).slope * arm.moment_arm(m, coupler.dependent);
+    EXPECT_NEAR(total, std::stod(arms[i][4]), 2e-9) << arms[i][1] << " about " << arms[i][2] << " pose " << arms[i][0];
+  }
+}
+
+TEST(MusclePaths, OfTheLegWithMovingPointsAreOpenSims) {
+  SKIP_WITHOUT_REFERENCE();
+  compare_random_poses("leg6dof9musc.osim", "f_leg6dof9musc_range0p5");
+}
+
+TEST(MusclePaths, OfTheGaitModelAreOpenSims) {
+  SKIP_WITHOUT_REFERENCE();
+  compare_random_poses("gait10dof18musc.osim", "f_gait10dof18musc_range0p5");
+}
+
+TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {
+  Arm arm(load_model("arm").model());
+  std::vector<Eigen::VectorXd> poses;
+  for (double s = -60.0; s < 130.0; s += 13.7)
+    for (double e = 3.0; e < 130.0; e += 17.3) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
+  expect_differences(arm, poses, 3e-7);
+}
+
+TEST(MusclePaths, JetsCarryTheDerivativesOfTheMomentArms) {
+  Arm arm(load_model("arm").model());
+  using Jet = ceres::Jet<double, 2>;
+  PathWorkspace<Jet> workspace(arm.paths);
+  Kinematics<Jet> kinematics(arm.mechanism);
+  for (const double s : {-30.0, 15.0, 70.0}) {
+    for (const double e : {20.0, 75.0, 120.0}) {
+      const Eigen::Vector2d q(s * kDegree, e * kDegree);
+      const Jet qj[2] = {Jet(q[0], 0), Jet(q[1], 1)};
+      update_positions(arm.mechanism, qj, kinematics);
+      arm.paths.evaluate(kinematics, qj, workspace);
+      arm.pose(q);
+      for (std::size_t k = 0; k < arm.paths.pairs().size(); ++k) {
+        const auto pair = arm.paths.pairs()[k];
+        EXPECT_NEAR(workspace.length[static_cast<std::size_t>(pair.muscle)].v[pair.coordinate],
+                    arm.workspace.gradient[k], 3e-7);
+      }
+      for (int c = 0; c < 2; ++c) {
+        const double h = 1e-5;
+        Eigen::VectorXd up = q, down = q;
+        up[c] += h;
+        down[c] -= h;
+        arm.pose(up);
+        const std::vector<double> more = arm.workspace.gradient;
+        arm.pose(down);
+        for (std::size_t k = 0; k < more.size(); ++k)
+          EXPECT_NEAR(workspace.gradient[k].v[c], (more[k] - arm.workspace.gradient[k]) / (2.0 * h), 2e-5) << k;
+      }
+    }
+  }
+}
+
+TEST(MusclePaths, SpeedsAreTheRatesOfTheLengths) {
+  Arm arm(load_model("arm").model());
+  const Eigen::VectorXd q = Eigen::Vector2d(0.3, 1.1), qdot = Eigen::Vector2d(0.7, -2.0);
+  std::vector<double> speeds(6);
+  arm.pose(q);
+  arm.paths.speeds(arm.workspace, qdot.data(), speeds.data());
+  arm.pose(q + 1e-6 * qdot);
+  const std::vector<double> after = arm.workspace.length;
+  arm.pose(q - 1e-6 * qdot);
+  for (std::size_t m = 0; m < 6; ++m) EXPECT_NEAR(speeds[m], (after[m] - arm.workspace.length[m]) / 2e-6, 1e-6);
+}
+
+TEST(MusclePaths, PolylinesHaveTheLengthOfTheirPathAndStayOnTheObjects) {
+  Arm arm(load_model("arm").model());
+  for (const double e : {10.0, 60.0, 110.0}) {
+    arm.pose_deg(20.0, e);
+    for (int m = 0; m < arm.paths.muscles(); ++m) {
+      const auto line = arm.paths.polyline(arm.kinematics, arm.q.data(), m, 40);
+      double length = 0.0;
+      for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
+      EXPECT_NEAR(length, arm.workspace.length[static_cast<std::size_t>(m)], 2e-4) << m;
+    }
+  }
+}
+
+TEST(MusclePaths, PointInsideAWrapObjectIsNamedAndThePathStaysFinite) {
+  Model model = load_model("arm").model();
+  Muscle* wrapped = nullptr;
+  for (Muscle& muscle : model.muscles)
+    if (!muscle.wraps.empty()) wrapped = &muscle;
+  ASSERT_NE(wrapped, nullptr);
+  const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(wrapped->wraps[0].object)];
+  PathPoint& point = wrapped->points[static_cast<std::size_t>(wrapped->wraps[0].first_point)];
+  point.body = object.body;
+  point.location = object.placement.translation;
+  Arm arm(model);
+  arm.pose(model.default_pose());
+  const auto lines = arm.paths.points_inside(arm.kinematics, arm.q.data());
+  ASSERT_FALSE(lines.empty());
+  EXPECT_THAT(lines, ::testing::Contains(::testing::AllOf(::testing::HasSubstr("muscle " + wrapped->name()),
+                                                          ::testing::HasSubstr("point " + point.name),
+                                                          ::testing::HasSubstr(object.name))));
+  for (const double length : arm.workspace.length) EXPECT_TRUE(std::isfinite(length));
+  for (const double slope : arm.workspace.gradient) EXPECT_TRUE(std::isfinite(slope));
+}
+
+TEST(MusclePaths, RefuseWhatIsNotAPath) {
+  const auto error = [](const auto& spoil) -> std::string {
+    Model model = load_model("arm").model();
+    spoil(model);
+    try {
+      const Mechanism mechanism(model);
+      const MusclePaths paths(model, mechanism);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error([](Model& m) { m.muscles[1].points.resize(1); }), ::testing::HasSubstr("at least two points"));
+  EXPECT_THAT(error([](Model& m) { m.muscles[0].points[1].body = 99; }), ::testing::HasSubstr("fixed to no body"));
+  EXPECT_THAT(error([](Model& m) { m.wrap_objects[0].dimensions[0] = -1.0; }),
+              ::testing::HasSubstr("must be positive"));
+}
+
+}  // namespace
+}  // namespace veridyn::muscle

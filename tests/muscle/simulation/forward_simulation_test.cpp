@@ -1,0 +1,247 @@
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "tests/muscle/arm26_scenarios.hpp"
+#include "tests/muscle/reference_table.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr double kDegree = std::numbers::pi / 180.0;
+const std::filesystem::path kShared = test::shared_folder();
+
+Drive constant_drive(std::size_t muscles, double excitation) {
+  return {ControlSignals(std::vector<double>(muscles, excitation)), {}};
+}
+
+struct Differences {
+  double angle_deg = 0.0, fiber = 0.0, force = 0.0;
+};
+
+/// Largest differences from OpenSim's rows over the second.
+Differences compare(const std::string& kind, int number, PathSource paths) {
+  const test::ReferenceTable table =
+      test::read_reference("opensim/c_arm26_forward_" + kind + "_s" + std::to_string(number) + ".csv");
+  const MusculoskeletalSystem system(
+      read_osim(kShared / "data/opensim" / (kind == "millard" ? "arm26_millard.osim" : "arm26.osim")),
+      {.paths = paths});
+  StartState start = default_start(system.model());
+  start.q << table.number(0, "r_shoulder_elev_rad"), table.number(0, "r_elbow_flex_rad");
+  Progress progress;
+  const MuscleTrajectory t =
+      simulate_forward(system, start, test::arm26_scenario(number, 0.00025), {.accuracy = 1e-8}, progress);
+  EXPECT_TRUE(t.usable()) << t.message();
+  EXPECT_EQ(t.time.size(), table.rows.size());
+  Differences d;
+  for (std::size_t i = 0; i < std::min(t.time.size(), table.rows.size()); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    d.angle_deg = std::max({d.angle_deg, std::abs(t.q(row, 0) - table.number(i, "r_shoulder_elev_rad")) / kDegree,
+                            std::abs(t.q(row, 1) - table.number(i, "r_elbow_flex_rad")) / kDegree});
+    for (std::size_t m = 0; m < system.muscles().size(); ++m) {
+      const std::string& name = system.model().muscles[m].name();
+      const auto column = static_cast<Eigen::Index>(m);
+      d.fiber = std::max(d.fiber, std::abs(t.fiber_length(row, column) - table.number(i, name + "_fiber_length_m")));
+      d.force = std::max(d.force, std::abs(t.tendon_force(row, column) - table.number(i, name + "_tendon_force_N")));
+    }
+  }
+  return d;
+}
+
+TEST(ForwardSimulation, WholeArmStaysWithinHalfADegreeOfOpenSimAndOnItsOwnPathsWithinItsReference) {
+  if (!std::filesystem::exists(kShared / "reference/opensim"))
+    GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here";
+  for (const char* kind : {"thelen", "millard"}) {
+    for (int number = 1; number <= 3; ++number) {
+      SCOPED_TRACE(kind + std::to_string(number));
+      const Differences taut = compare(kind, number, PathSource::kExact);
+      EXPECT_LT(taut.angle_deg, 0.5);
+      // With OpenSim's own path lengths what remains is that its moment arms are not quite their derivatives.
+      const Differences same = compare(kind, number, PathSource::kAsOpenSim);
+      EXPECT_LT(same.angle_deg, 1e-3);
+      EXPECT_LT(same.fiber, 1e-6);
+      EXPECT_LT(same.force, 0.1);
+      RecordProperty(kind + std::to_string(number) + "_taut_deg", std::to_string(taut.angle_deg));
+    }
+  }
+}
+
+class BuiltInArm : public ::testing::Test {
+ protected:
+  MusculoskeletalSystem system{load_model("arm").model()};
+  StartState start = default_start(system.model());
+  Progress progress;
+};
+
+TEST_F(BuiltInArm, TighterAccuracyConvergesToOneMotion) {
+  const Drive drive = constant_drive(6, 0.1);
+  const MuscleTrajectory exact = simulate_forward(system, start, drive, {.end = 0.5, .accuracy = 1e-10}, progress);
+  ASSERT_TRUE(exact.usable());
+  for (const double accuracy : {1e-4, 1e-6}) {
+    const MuscleTrajectory t = simulate_forward(system, start, drive, {.end = 0.5, .accuracy = accuracy}, progress);
+    EXPECT_LT((t.q - exact.q).cwiseAbs().maxCoeff(), 20.0 * accuracy);
+    EXPECT_LT(t.steps, exact.steps);
+  }
+}
+
+TEST_F(BuiltInArm, RowsAreTheSameWhateverTheirRate) {
+  const Drive drive = constant_drive(6, 0.1);
+  const MuscleTrajectory coarse = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 50.0}, progress);
+  const MuscleTrajectory fine = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 500.0}, progress);
+  ASSERT_EQ(coarse.time.size(), 21u);
+  ASSERT_EQ(fine.time.size(), 201u);
+  for (Eigen::Index i = 0; i < 21; ++i) EXPECT_EQ(coarse.q.row(i), fine.q.row(10 * i));
+  const MuscleTrajectory steps = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 0.0}, progress);
+  EXPECT_DOUBLE_EQ(steps.time.back(), 0.4);
+  EXPECT_NEAR(steps.q.row(steps.q.rows() - 1)(1), fine.q(200, 1), 1e-12);
+}
+
+TEST_F(BuiltInArm, ResultsAreBitForBitTheSameOnOneAndTwoThreads) {
+  const auto run = [&](int threads) {
+    std::vector<Eigen::VectorXd> ends(8);
+    numerics::parallel_for(ends.size(), threads, [&](std::size_t i) {
+      Progress quiet;
+      ends[i] =
+          simulate_forward(system, start, constant_drive(6, 0.02 + 0.05 * static_cast<double>(i)), {.end = 0.2}, quiet)
+              .final_state;
+    });
+    return ends;
+  };
+  const auto one = run(1), two = run(2);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i], two[i]);
+}
+
+TEST_F(BuiltInArm, AHeldStepOfTheExcitationActsFromItsInstantOn) {
+  const std::vector<double> rest(6, 0.05);
+  std::vector<double> value = rest;
+  value.insert(value.end(), 6, 0.5);
+  const Drive step{ControlSignals({0.0, 0.1}, value, 6, Interpolation::kHold), {}};
+  const MuscleTrajectory a = simulate_forward(system, start, step, {.end = 0.2}, progress);
+  const MuscleTrajectory b = simulate_forward(system, start, constant_drive(6, 0.05), {.end = 0.2}, progress);
+  EXPECT_LT((a.activation.topRows(21) - b.activation.topRows(21)).cwiseAbs().maxCoeff(), 1e-6);
+  // a' = (u - a)/(tau (0.5 + 1.5 a)) from 0.05 on: (1 - e^{-t/tau}) to first order.
+  EXPECT_GT(a.activation(22, 0), 0.2);
+}
+
+TEST_F(BuiltInArm, SlackTendonsAndShortestFibresAreFoundAsEvents) {
+  // An elbow that starts to flex fast: flexors' tendons go slack.
+  start.q(1) = 0.3;
+  start.qdot(1) = 25.0;
+  const MuscleTrajectory t =
+      simulate_forward(system, start, constant_drive(6, 0.01), {.end = 0.08, .accuracy = 1e-7}, progress);
+  ASSERT_FALSE(t.events.empty());
+  for (const MuscleEvent& e : t.events) {
+    EXPECT_GE(e.time, 0.0);
+    EXPECT_LE(e.time, 0.08);
+    EXPECT_FALSE(event_text(e.kind).empty());
+  }
+}
+
+TEST_F(BuiltInArm, LockedCoordinatesStayWhereTheyStart) {
+  const MusculoskeletalSystem locked(load_model("arm").model(), {.locked = {"shoulder_flexion"}});
+  start.q(0) = 0.4;
+  const MuscleTrajectory t = simulate_forward(locked, start, constant_drive(6, 0.1), {.end = 0.3}, progress);
+  ASSERT_TRUE(t.usable());
+  EXPECT_EQ(t.q.col(0).minCoeff(), 0.4);
+  EXPECT_EQ(t.q.col(0).maxCoeff(), 0.4);
+  EXPECT_GT((t.q.col(1).array() - start.q(1)).abs().maxCoeff(), 1e-3);
+}
+
+TEST_F(BuiltInArm, RigidTendonsHaveNoFibreStateAndMoveMuchAlike) {
+  Model model = load_model("arm").model();
+  for (Muscle& muscle : model.muscles) muscle.parameters.rigid_tendon = true;
+  const MusculoskeletalSystem rigid(model);
+  EXPECT_EQ(rigid.layout().size, 4u + 6u);
+  const MuscleTrajectory a = simulate_forward(rigid, start, constant_drive(6, 0.05), {.end = 0.3}, progress);
+  const MuscleTrajectory b = simulate_forward(system, start, constant_drive(6, 0.05), {.end = 0.3}, progress);
+  ASSERT_TRUE(a.usable());
+  EXPECT_LT((a.q - b.q).cwiseAbs().maxCoeff(), 0.2);
+  EXPECT_GT(a.fiber_length.minCoeff(), 0.0);
+}
+
+TEST_F(BuiltInArm, ADivergingSimulationEndsAndSaysWhichStateAndWhen) {
+  // A reserve that pulls ever harder, far beyond what a body survives.
+  const Drive drive{ControlSignals(std::vector<double>(6, 0.05)), ControlSignals(std::vector<double>{1e9, 1e9})};
+  const MuscleTrajectory t = simulate_forward(system, start, drive, {.end = 10.0, .max_steps = 20000}, progress);
+  EXPECT_FALSE(t.usable());
+  EXPECT_LT(t.end_time, 10.0);
+  EXPECT_THAT(t.message(), HasSubstr("coordinate"));
+  EXPECT_TRUE(t.q.allFinite());
+  EXPECT_EQ(static_cast<std::size_t>(t.q.rows()), t.time.size());
+}
+
+TEST_F(BuiltInArm, AStepLimitEndsTheRun) {
+  const MuscleTrajectory t = simulate_forward(system, start, constant_drive(6, 0.1), {.max_steps = 10}, progress);
+  EXPECT_EQ(t.end, SimulationEnd::kStepLimit);
+  EXPECT_THAT(t.message(), HasSubstr("limit of"));
+}
+
+TEST_F(BuiltInArm, StartsOutsideTheRangeOrNotFiniteAreRefusedByName) {
+  const auto message = [&](double elbow) {
+    start.q(1) = elbow;
+    try {
+      (void)simulate_forward(system, start, constant_drive(6, 0.1), {}, progress);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(message(3.0), HasSubstr("start of coordinate 'elbow_flexion' = 3 rad is outside its range 0 .. 2.2689"));
+  EXPECT_THAT(message(NAN), HasSubstr("'elbow_flexion' is not a finite number"));
+}
+
+TEST(MusculoskeletalSystem, ForcesThatAreNotUnderstoodStopASimulationUnlessItIsToldToGoOn) {
+  Model model = load_model("arm").model();
+  model.unsupported.push_back({"HuntCrossleyForce", "hand_contact", true});
+  try {
+    const MusculoskeletalSystem system(model);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("HuntCrossleyForce 'hand_contact' would change the motion"));
+  }
+  const MusculoskeletalSystem system(model, {.without_unsupported = true});
+  ASSERT_FALSE(system.notes().empty());
+  EXPECT_THAT(system.notes().front(), HasSubstr("hand_contact"));
+}
+
+TEST(MusculoskeletalSystem, MusclesThatAreOffAreLeftOutAndUnknownCoordinatesNamed) {
+  Model model = load_model("arm").model();
+  model.muscles[2].enabled = false;
+  const MusculoskeletalSystem system(model);
+  EXPECT_EQ(system.muscles().size(), 5u);
+  EXPECT_THROW(MusculoskeletalSystem(model, {.locked = {"elbow"}}), InputError);
+}
+
+TEST(MusculoskeletalSystem, EveryModelOfOpenSimIsSimulated) {
+  if (!std::filesystem::exists(kShared / "data/opensim"))
+    GTEST_SKIP() << "the OpenSim models of ../shared/data are not here";
+  for (const auto& entry : std::filesystem::directory_iterator(kShared / "data/opensim")) {
+    if (entry.path().extension() != ".osim") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    const MusculoskeletalSystem system(read_osim(entry.path()), {.without_unsupported = true});
+    StartState start = default_start(system.model());
+    for (Eigen::Index i = 0; i < start.q.size(); ++i) {
+      const Coordinate& c = system.model().coordinates[static_cast<std::size_t>(i)];
+      start.q(i) = std::clamp(start.q(i), c.low, c.high);
+    }
+    Progress progress;
+    const MuscleTrajectory t =
+        simulate_forward(system, start, constant_drive(system.muscles().size(), 0.05), {.end = 0.02}, progress);
+    EXPECT_TRUE(t.usable()) << t.message();
+    EXPECT_TRUE(t.q.allFinite());
+  }
+}
+
+}  // namespace
+}  // namespace veridyn::muscle

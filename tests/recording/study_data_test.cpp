@@ -1,0 +1,106 @@
+#include "veridyn/recording/study_data.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/folders.hpp"
+#include "tests/io/support.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::message_of;
+
+class StudyData : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const char* name, const std::string& text) const {
+    write_file(folder / name, text);
+    return folder / name;
+  }
+  [[nodiscard]] Recording read(const std::string& data) const {
+    const Study study = Study::parse("[data]\n" + data, "study.toml", folder);
+    const StudyTable table = study.root().table("data");
+    Recording recording = read_study_data(table);
+    table.finish();
+    return recording;
+  }
+  void SetUp() override {
+    folder = std::filesystem::temp_directory_path() /
+             ("veridyn_study_data_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+  std::filesystem::path folder;
+};
+
+TEST_F(StudyData, NamesTheColumnsOfATableWithoutAHeader) {
+  write("run.csv", "2024_02_11_23_59_59_900,0.1,-90\n2024_02_12_00_00_00_050,0.2,45\n");
+  const Recording recording = read("file = 'run.csv'\ncolumns = ['time', 'throttle', 'steer[deg]']\n");
+  EXPECT_THAT(recording.names(), ElementsAre("throttle", "steer"));
+  EXPECT_THAT(recording.at("throttle").value, ElementsAre(0.1, 0.2));
+  EXPECT_DOUBLE_EQ(recording.at("steer").value[1], std::numbers::pi / 4.0);
+  // Counted from midnight of the first day, past the next one.
+  EXPECT_NEAR(recording.at("steer").times()[0], 86399.9, 1e-9);
+  EXPECT_NEAR(recording.at("steer").times()[1], 86400.05, 1e-9);
+  EXPECT_EQ(recording.information.at("date"), "2024-02-11");
+}
+
+TEST_F(StudyData, RefusesColumnsThatTheTableDoesNotHave) {
+  write("run.csv", "0,1,2\n1,1,2\n");
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ncolumns = ['time', 'a']\n"); }),
+              HasSubstr("run.csv:1: more cells than the 2 of `columns`"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ncolumns = ['time', 'a', 'b', 'c']\n"); }),
+              HasSubstr("run.csv:1: 3 cells, `columns` has 4"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ncolumns = ['time', 'a[parsec]', 'b']\n"); }),
+              HasSubstr("column 'a'"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ncolumns = ['time', 'a', 'a']\n"); }),
+              HasSubstr("column 'a' appears twice"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\n"); }), HasSubstr("no time column found among column_1"));
+}
+
+TEST_F(StudyData, TakesTheTimeFromWhereTheStudySaysItIs) {
+  write("run.csv", "clock,x\n0,1\n500,2\n");
+  EXPECT_THAT(*read("file = 'run.csv'\ntime = { column = 'clock', unit = 'ms' }\n").at("x").time,
+              ElementsAre(0.0, 0.5));
+  EXPECT_THAT(*read("file = 'run.csv'\ntime.run = { column = 'clock', unit = 'ms' }\n").at("x").time,
+              ElementsAre(0.0, 0.5));
+  const Recording made = read("file = 'run.csv'\ntime = { rate = '10 Hz' }\n");
+  EXPECT_THAT(made.names(), ElementsAre("clock", "x"));
+  EXPECT_THAT(*made.at("x").time, ElementsAre(0.0, 0.1));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ntime = { rate = 0 }\n"); }), HasSubstr("must be > 0"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ntime = { rate = 1, column = 'clock' }\n"); }),
+              HasSubstr("without stamps"));
+  EXPECT_THAT(message_of([&] { (void)read("file = 'run.csv'\ntime = { colum = 'clock' }\n"); }), HasSubstr("colum"));
+}
+
+TEST_F(StudyData, ReadsTheDriveLogsOfOthers) {
+  const std::filesystem::path logs = test::shared_folder() / "data/vehicle";
+  VERIDYN_NEEDS_SHARED(logs);
+  const std::string hunter = (logs / "hunter_se_1to5/onroad_skidpad_30_hz_ccw_clean_t_0_8_s_0_3142.csv").string();
+  const Recording car = read("file = '" + hunter +
+                             "'\ncolumns = ['time', 'throttle', 'steer[rad]', 'ticks_l', 'ticks_r', 'x[m]', 'y[m]', "
+                             "'z[m]', 'roll[rad]', 'pitch[rad]', 'yaw[rad]', 'speed[m/s]', 'p[rad/s]', 'q[rad/s]', "
+                             "'r[rad/s]', 'ax[m/s^2]', 'ay[m/s^2]', 'az[m/s^2]']\n");
+  EXPECT_EQ(car.names().size(), 17U);
+  EXPECT_EQ(car.at("steer").size(), 2479U);  // wc -l
+  EXPECT_NEAR(car.span().end - car.span().begin, 90.1, 0.1);
+  const Recording phone = read("file = '" + (logs / "kalman_balzer82/2016-09-12-Leaning.csv").string() + "'\n");
+  EXPECT_EQ(phone.information.at("date"), "2016-09-12");
+  EXPECT_EQ(phone.at("gyroRotationX").size(), 730U);  // cells that are not empty
+  const Recording drive = read("file = '" + (logs / "kalman_balzer82/2014-03-26-000-Data.csv").string() + "'\n");
+  EXPECT_EQ(drive.information.at("date"), "2014-03-26");
+  // 12:38:25.119 of the clock `millis`, which is UTC.
+  EXPECT_NEAR(drive.span().begin, 45505.119, 1e-3);
+  const Recording path =
+      read("file = '" + (logs / "cpm_lab/test_trajectory.csv").string() + "'\ntime = { unit = 'ns' }\n");
+  EXPECT_NEAR(path.span().end, 29.75, 1e-9);
+  const Recording points =
+      read("file = '" + (logs / "cpm_lab/calibration_points.csv").string() + "'\ntime = { rate = 1 }\n");
+  EXPECT_EQ(points.at("image_x").size(), 1716U);
+}
+
+}  // namespace
+}  // namespace veridyn::recording

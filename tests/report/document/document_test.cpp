@@ -1,0 +1,45 @@
+#include "veridyn/report/document/document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace veridyn::report {
+namespace {
+
+TEST(SectionIds, AreDifferentAndSafeInALink) {
+  const Document document{.sections = {{.title = "What was flown?"},
+                                       {.title = "What was flown?"},
+                                       {.title = "<\"'>"},
+                                       {.title = "x", .id = "what-was-flown-2"},
+                                       {.title = "Report"}}};
+  EXPECT_THAT(section_ids(document),
+              testing::ElementsAre("what-was-flown", "what-was-flown-2", "section", "what-was-flown-2-2", "report-2"));
+}
+
+TEST(Status, ReadsBackItsName) {
+  for (const Status status :
+       {Status::kIdentified, Status::kInsignificant, Status::kNotExcited, Status::kRejected, Status::kFixed}) {
+    EXPECT_EQ(status_from_name(status_name(status)), status);
+  }
+  EXPECT_EQ(status_name(Status::kNotExcited), "not_excited");
+  EXPECT_EQ(status_label(Status::kNotExcited), "not excited");
+  EXPECT_EQ(status_from_name("no such word"), Status::kNone);
+}
+
+TEST(Verdict, HasAWordForEveryLevel) {
+  EXPECT_EQ(verdict_word({.level = Level::kGood}), "Usable");
+  EXPECT_EQ(verdict_word({.level = Level::kCaution}), "Use with care");
+  EXPECT_EQ(verdict_word({.level = Level::kBad}), "Do not use");
+  EXPECT_EQ(verdict_word({.level = Level::kBad, .word = "Closed loop"}), "Closed loop");
+}
+
+TEST(CheckDeathTest, NamesWhatDoesNotFit) {
+  EXPECT_DEATH(check({.sections = {{.blocks = {Table{.columns = {{.name = "a"}}, .rows = {{.cells = {}}}}}}}}),
+               "row.cells.size");
+  EXPECT_DEATH(check({.sections = {{.blocks = {TimeSeries{.samples = {0, 1},
+                                                          .panels = {{.lines = {{.name = "a", .y = {1}}}}}}}}}}),
+               "line.y.size");
+}
+
+}  // namespace
+}  // namespace veridyn::report

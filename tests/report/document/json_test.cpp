@@ -1,0 +1,128 @@
+#include "veridyn/report/document/json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/report/sample_document.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+json parsed(const Document& document, const JsonOptions& options = {}) {
+  return json::parse(to_json(document, options));
+}
+
+json first_block(Block block, const JsonOptions& options = {}) {
+  return parsed({.sections = {{.title = "s", .blocks = {std::move(block)}}}}, options)["sections"][0]["blocks"][0];
+}
+
+TEST(ToJson, HoldsEveryKindOfBlock) {
+  const json report = parsed(sample_document());
+  EXPECT_EQ(report["format"], "veridyn-report");
+  EXPECT_EQ(report["verdict"]["level"], "caution");
+  EXPECT_EQ(report["verdict"]["word"], "Use with care");
+  std::vector<std::string> kinds;
+  for (const json& section : report["sections"]) {
+    EXPECT_FALSE(section["id"].get<std::string>().empty());
+    for (const json& block : section["blocks"]) kinds.push_back(block["kind"]);
+  }
+  for (const char* kind : {"paragraph", "list", "facts", "table", "time_series", "xy", "intervals", "matrix"}) {
+    EXPECT_THAT(kinds, testing::Contains(kind));
+  }
+}
+
+TEST(ToJson, CannotEndTheScriptElementThatItStandsIn) {
+  const std::string text = to_json({.title = kHostileText, .sections = {{.title = kHostileText}}});
+  for (const char c : {'<', '>', '&'}) EXPECT_EQ(text.find(c), std::string::npos);
+  EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
+  EXPECT_THAT(text, HasSubstr("\\u2028"));
+  EXPECT_EQ(json::parse(text)["title"], kHostileText);
+}
+
+TEST(ToJson, ReplacesBytesThatAreNoText) {
+  EXPECT_EQ(parsed({.title = "log\xFF\xC3(name\xE2\x82"})["title"], "log\xEF\xBF\xBD\xEF\xBF\xBD(name\xEF\xBF\xBD");
+}
+
+TEST(ToJson, WritesWhatIsNoNumberAsNull) {
+  const json figure = first_block(
+      TimeSeries{.samples = {0, 1, 2},
+                 .panels = {{.label = "a",
+                             .unit = "m/s",
+                             .lines = {{.name = "b",
+                                        .y = {1.0, kNaN, -INFINITY},
+                                        .band = Band{.low = {0, kNaN, 0}, .high = {2, kNaN, INFINITY}}}}}}});
+  const json& line = figure["panels"][0]["lines"][0];
+  EXPECT_EQ(line["y"], json::parse("[1.0, null, null]"));
+  EXPECT_EQ(line["band"]["high"], json::parse("[2.0, null, null]"));
+  EXPECT_EQ(figure["xs"], json::parse("[[0.0, 1.0, 2.0]]"));
+  EXPECT_EQ(line["x"], 0);
+  EXPECT_EQ(line["band"]["x"], 0);
+  EXPECT_EQ(figure["footnote"], "");
+}
+
+TEST(ToJson, KeepsOwnAbscissaeOfALineApart) {
+  const json figure = first_block(
+      TimeSeries{.samples = {0, 1, 2},
+                 .panels = {{.lines = {{.name = "a", .y = {1, 2, 3}}, {.name = "b", .y = {5, 6}, .x = {0.5, 1.5}}}}}});
+  EXPECT_EQ(figure["xs"], json::parse("[[0.0, 1.0, 2.0], [0.5, 1.5]]"));
+  EXPECT_EQ(figure["panels"][0]["lines"][1]["x"], 1);
+}
+
+TEST(ToJson, SaysInTheFootnoteWhatItLeftOut) {
+  TimeSeries figure{.panels = {{.lines = {{.name = "a"}}}}};
+  for (int k = 0; k < 5000; ++k) {
+    figure.samples.push_back(k);
+    figure.panels[0].lines[0].y.push_back(std::sin(k));
+  }
+  const json block = first_block(figure, {.points_per_line = 100});
+  EXPECT_LE(block["panels"][0]["lines"][0]["y"].size(), 100u);
+  EXPECT_THAT(block["footnote"].get<std::string>(), HasSubstr("of 5000 samples"));
+}
+
+TEST(ToJson, FillsCellsWithTextNumberAndStatus) {
+  const json table =
+      first_block(Table{.columns = {{.name = "a"}, {.name = "b", .unit = "m"}, {.name = "c"}},
+                        .rows = {{.cells = {text_cell("x"), number_cell(1.0 / 3.0), status_cell(Status::kNotExcited)},
+                                  .status = Status::kNotExcited}}});
+  EXPECT_EQ(
+      table["rows"][0]["cells"],
+      json::parse(R"([{"t": "x"}, {"t": "0.3333", "v": 0.333333333}, {"t": "not excited", "s": "not_excited"}])"));
+  EXPECT_EQ(table["rows"][0]["status"], "not_excited");
+  EXPECT_EQ(table["columns"][1]["align"], "right");
+}
+
+// An hour at 50 Hz with thirty lines, two thirds of them with bands.
+TEST(ToJson, KeepsAnHourUnderTenMegabytes) {
+  TimeSeries figure;
+  std::vector<double> y;
+  std::vector<double> low;
+  std::vector<double> high;
+  for (int k = 0; k < 180'000; ++k) {
+    figure.samples.push_back(0.02 * k);
+    y.push_back(20.0 + 3.0 * std::sin(0.013 * k) + 0.2 * std::sin(1.7 * k));
+    low.push_back(y.back() - 0.31);
+    high.push_back(y.back() + 0.32);
+  }
+  for (int k = 0; k < 30; ++k) {
+    figure.panels.push_back(
+        {.label = "p", .lines = {{.name = "a", .y = y, .band = k % 3 == 0 ? std::optional<Band>{} : Band{low, high}}}});
+    for (double& each : y) each += 0.001 * k;
+  }
+  const std::string text = to_json({.sections = {{.title = "s", .blocks = {figure}}}});
+  EXPECT_LT(text.size(), 10'000'000u);
+  RecordProperty("bytes", static_cast<int>(text.size()));
+}
+
+}  // namespace
+}  // namespace veridyn::report

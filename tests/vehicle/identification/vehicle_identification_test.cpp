@@ -1,0 +1,312 @@
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+
+#include "simulated_drive.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::ParameterStatus;
+using testing::drive_bicycle;
+using testing::family_car;
+using testing::lively_drive;
+using testing::mapped;
+using testing::WanderingSteer;
+
+VehicleIdentification identify(const VehicleTrajectory& trajectory, const DriveSensorSet& sensors, std::uint64_t seed,
+                               const VehicleIdentifyOptions& options = {},
+                               VehicleParameters<double> start = family_car()) {
+  start.C_f = 80000.0;
+  start.C_r = 80000.0;
+  start.I_z = 2000.0;
+  const DriveSignalOptions signal_options;
+  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(trajectory, sensors, seed)), signal_options);
+  const DriveSegments segments = find_drive_segments(signals, {});
+  Progress silent;
+  return identify_vehicle(signals, segments, start, signal_options, options, silent);
+}
+
+double relative(const VehicleIdentification& id, const char* method, const char* name, double truth) {
+  return std::abs(id.find(method)->find(name)->value / truth - 1.0);
+}
+
+TEST(VehicleIdentification, RecoversTheTruthFromAPerfectLogByOutputError) {
+  const VehicleParameters<double> p = family_car();
+  const VehicleIdentification id = identify(lively_drive(p, 1), testing::perfect_sensors(), 1);
+  ASSERT_EQ(id.chosen, "output error");
+  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 1e-6);
+  EXPECT_LT(relative(id, "output error", "C_r", p.C_r), 1e-6);
+  EXPECT_LT(relative(id, "output error", "I_z", p.I_z), 1e-6);
+  EXPECT_LT(relative(id, "output error", "understeer_gradient", understeer_gradient(p)), 1e-6);
+  EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << id.reason;
+  // Small angles: alpha^2/3 of slip angles up to 6 deg.
+  EXPECT_LT(relative(id, "GTLS", "C_f", p.C_f), 0.004);
+  EXPECT_LT(relative(id, "GTLS", "C_r", p.C_r), 0.004);
+  EXPECT_LT(relative(id, "GTLS", "I_z", p.I_z), 0.004);
+}
+
+TEST(VehicleIdentification, EstimatesFromSmallAnglesAreExactToTheSquareOfTheAngle) {
+  const VehicleParameters<double> p = family_car();
+  double error[2];
+  for (const bool half : {false, true}) {
+    const VehicleIdentification id =
+        identify(lively_drive(p, 1, half ? 0.01 : 0.02), testing::perfect_sensors(), 1, {.output_error = false});
+    error[half ? 1 : 0] = relative(id, "OLS", "C_f", p.C_f);
+  }
+  EXPECT_NEAR(error[0] / error[1], 4.0, 0.8);
+}
+
+TEST(VehicleIdentification, RecoversTheTruthWithMeasuredLateralVelocity) {
+  const VehicleParameters<double> p = family_car();
+  DriveSensorSet sensors = testing::perfect_sensors();
+  sensors[DriveSensorKind::kLateralVelocity].enabled = true;
+  const VehicleIdentification id = identify(lively_drive(p, 2), sensors, 1);
+  ASSERT_TRUE(id.regression && id.regression->data.direct);
+  // The direct form takes no small angles; what is left is the interpolation of the recording.
+  EXPECT_LT(relative(id, "GTLS", "C_f", p.C_f), 1e-4);
+  EXPECT_LT(relative(id, "GTLS", "C_r", p.C_r), 1e-4);
+  EXPECT_LT(relative(id, "GTLS", "I_z", p.I_z), 1e-4);
+  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 1e-6);
+}
+
+/// How often intervals of drives with the reference sensors, their biases drawn anew each time, hold the truth.
+std::map<std::string, int> intervals_that_hold(int drives, double duration) {
+  const VehicleParameters<double> p = family_car();
+  const std::map<std::string, double> truth{
+      {"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}, {"understeer_gradient", understeer_gradient(p)}};
+  std::map<std::string, int> held;
+  for (int seed = 1; seed <= drives; ++seed) {
+    const auto s = static_cast<std::uint64_t>(seed);
+    const VehicleIdentification id = identify(lively_drive(p, s, 0.02, duration), reference_drive_sensors(), s);
+    EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << seed << ": " << id.reason;
+    for (const char* method : {"GTLS", "output error"}) {
+      for (const auto& [name, value] : truth) {
+        const estimation::ParameterEstimate* e = id.find(method)->find(name);
+        if (e == nullptr) continue;
+        held[std::string(method) + " " + name] += e->low95 <= value && value <= e->high95 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(held.size(), 8u);
+  return held;
+}
+
+// With 12 drives a coverage of 95 % leaves fewer than 9 in 0.2 % of all cases (binomial).
+TEST(VehicleIdentification, IntervalsOfBothEstimatorsHoldTheTruth) {
+  for (const auto& [name, count] : intervals_that_hold(12, 30.0)) EXPECT_GE(count, 9) << name;
+}
+
+// A minute; run it with --gtest_also_run_disabled_tests.
+TEST(VehicleIdentification, DISABLED_IntervalsOfAHundredDrivesHoldTheTruthAsOftenAsTheySay) {
+  for (const auto& [name, count] : intervals_that_hold(100, 60.0)) {
+    EXPECT_GE(count, 90) << name;
+    EXPECT_LE(count, 100) << name;
+  }
+}
+
+TEST(VehicleIdentification, FindsTheBiasesOfTheSensors) {
+  const VehicleParameters<double> p = family_car();
+  DriveSensorSet sensors = testing::perfect_sensors();
+  sensors[DriveSensorKind::kSteer].bias = 0.004;
+  sensors[DriveSensorKind::kYawRate].bias = -0.006;
+  sensors[DriveSensorKind::kAccelY].bias = 0.15;
+  VehicleIdentifyOptions options;
+  options.model.prior.fill(std::numeric_limits<double>::infinity());
+  const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
+  // The speed varies by 10 %, which tells the three apart when there is no noise.
+  EXPECT_NEAR(id.find("output error")->find("steer_bias")->value, 0.004, 1e-6);
+  EXPECT_NEAR(id.find("output error")->find("yaw_rate_bias")->value, -0.006, 1e-6);
+  EXPECT_NEAR(id.find("output error")->find("accel_y_bias")->value, 0.15, 1e-5);
+}
+
+TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
+  const VehicleParameters<double> p = family_car();
+  DriveSensorSet sensors = testing::perfect_sensors();
+  sensors[DriveSensorKind::kYawRate].delay_s = 0.03;
+  sensors[DriveSensorKind::kAccelY].delay_s = 0.03;
+  VehicleIdentifyOptions options;
+  options.model.free[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = true;
+  const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
+  EXPECT_NEAR(id.find("output error")->find("steer_delay")->value, 0.03, 2e-3);
+  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 0.02);
+}
+
+TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
+  const VehicleParameters<double> p = family_car();
+  const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);
+  EXPECT_EQ(id.verdict, VehicleVerdict::kNotExcited);
+  ASSERT_NE(id.best(), nullptr);
+  for (const auto& e : id.best()->parameters) EXPECT_EQ(e.status, ParameterStatus::kNotExcited) << e.name;
+  const estimation::Estimate estimate = make_vehicle_estimate(id, "car");
+  EXPECT_NE(io::to_json(estimate).find("not_excited"), std::string::npos);
+  EXPECT_EQ(id.identified.C_f, 80000.0) << "what is not known stays at the start";
+}
+
+TEST(VehicleIdentification, SteadyCorneringGivesTheUndersteerGradientOnly) {
+  const VehicleParameters<double> p = family_car();
+  const auto trajectory = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
+      [&](double) { return testing::linear_bicycle(p); }, 60.0, [](double t) { return 5e-4 * t; },
+      [](double) { return 20.0; });
+  const VehicleIdentification id = identify(trajectory, reference_drive_sensors(), 4, {.output_error = false});
+  const AxleEstimate* axle = id.regression->find(estimation::Method::kPcaGtls);
+  ASSERT_NE(axle, nullptr);
+  EXPECT_LT(std::abs(axle->understeer - understeer_gradient(p)), 3.0 * axle->understeer_sigma);
+  EXPECT_LT(axle->understeer_sigma, 0.1 * understeer_gradient(p));
+  for (const char* name : {"C_f", "C_r", "I_z"})
+    EXPECT_EQ(id.best()->find(name)->status, ParameterStatus::kNotExcited)
+        << name << ": " << id.best()->find(name)->sigma;
+  EXPECT_EQ(id.best()->find("understeer_gradient")->status, ParameterStatus::kIdentified);
+}
+
+using MagicBicycle = BicycleModel<double, SimpleMagicFormulaTyre<double>>;
+MagicBicycle magic_bicycle(const VehicleParameters<double>& p, double mu) {
+  const auto load = static_loads(p, 9.80665);
+  const auto tyre = [&](double stiffness, double nominal) {
+    return SimpleMagicFormulaTyre<double>{.stiffness = stiffness, .mu = mu, .C = 1.3, .nominal_load = nominal};
+  };
+  return {.parameters = p, .front = tyre(p.C_f, load[kFrontLeft]), .rear = tyre(p.C_r, load[kRearLeft])};
+}
+
+VehicleTrajectory magic_drive(const VehicleParameters<double>& p, double mu, double rms) {
+  const WanderingSteer steer(5, rms, 0.1, 1.0);
+  return drive_bicycle<MagicBicycle>([&](double) { return magic_bicycle(p, mu); }, 60.0,
+                                     [&](double t) { return steer(t); },
+                                     [](double t) { return 18.0 + 2.0 * std::sin(0.2 * t); });
+}
+
+TEST(VehicleIdentification, FindsFrictionAndShapeOfMagicFormulaTyresDrivenHard) {
+  const VehicleParameters<double> p = family_car();
+  VehicleIdentifyOptions options;
+  options.model.tyre = DriveTyre::kMagicFormula;
+  options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
+  options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+  const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.04), reference_drive_sensors(), 1, options);
+  const VehicleEstimate* e = id.find("output error");
+  ASSERT_TRUE(e != nullptr && e->usable) << id.reason;
+  for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, std::pair{"mu", 0.9}, std::pair{"I_z", p.I_z}}) {
+    const auto* q = e->find(name);
+    EXPECT_LT(std::abs(q->value - truth), 4.0 * q->sigma + 2e-3 * truth) << name << " " << q->value << " " << q->sigma;
+    EXPECT_EQ(q->status, ParameterStatus::kIdentified) << name;
+  }
+}
+
+TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
+  const VehicleParameters<double> p = family_car();
+  VehicleIdentifyOptions options;
+  options.model.tyre = DriveTyre::kMagicFormula;
+  options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
+  options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+  const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.004), reference_drive_sensors(), 1, options);
+  const VehicleEstimate* e = id.find("output error");
+  ASSERT_NE(e, nullptr);
+  const auto* mu = e->find("mu");
+  EXPECT_TRUE(mu == nullptr || mu->status == ParameterStatus::kNotExcited) << mu->value << " +- " << mu->sigma;
+}
+
+TEST(VehicleIdentification, NoticesThatTheLinearModelIsWrongForSaturatingTyres) {
+  const VehicleIdentification id = identify(magic_drive(family_car(), 0.7, 0.05), reference_drive_sensors(), 1);
+  const bool rejected = id.verdict == VehicleVerdict::kRejected;
+  const bool warned = std::any_of(id.checks.begin(), id.checks.end(), [](const auto& c) { return !c.passed; });
+  EXPECT_TRUE(rejected || warned) << id.reason;
+  EXPECT_FALSE(id.warnings.empty());
+}
+
+TEST(VehicleIdentification, UncertaintyOfTheMassGoesIntoTheErrorBars) {
+  const VehicleParameters<double> p = family_car();
+  VehicleIdentifyOptions options{.output_error = false};
+  const VehicleTrajectory drive = lively_drive(p, 1);
+  const VehicleIdentification sure = identify(drive, reference_drive_sensors(), 1, options);
+  options.mass_sigma = 75.0;
+  const VehicleIdentification unsure = identify(drive, reference_drive_sensors(), 1, options);
+  const auto* a = sure.find("GTLS")->find("C_f");
+  const auto* b = unsure.find("GTLS")->find("C_f");
+  EXPECT_NEAR(b->sigma, std::hypot(a->sigma, 0.05 * a->value), 1e-6 * b->sigma);
+  // The understeer gradient is a ratio of motions: the mass cancels.
+  EXPECT_NEAR(unsure.find("GTLS")->find("understeer_gradient")->sigma,
+              sure.find("GTLS")->find("understeer_gradient")->sigma, 1e-12);
+}
+
+TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
+  const VehicleParameters<double> p = family_car();
+  for (const DriveTyre tyre : {DriveTyre::kLinear, DriveTyre::kMagicFormula}) {
+    DriveSensorSet sensors = testing::perfect_sensors();
+    sensors[DriveSensorKind::kLateralVelocity].enabled = true;
+    DriveSignals signals = prepare_drive_signals(mapped(record_drive(lively_drive(p, 1, 0.02, 12.0), sensors, 1)), {});
+    signals.accel_position = {0.3, -0.2, 0.1};
+    DriveModelOptions options;
+    options.tyre = tyre;
+    options.free.fill(true);
+    options.start[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] = 0.013;
+    options.start[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = 0.017;
+    // At no delay the ends, where nothing lies beyond, have one-sided derivatives.
+    options.start[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)] = 0.009;
+    const std::vector<TimeSpan> spans{{4.0, 8.0}};
+    const DriveParametricModel model(signals, spans, p, options);
+    Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns) + 2);
+    for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
+    for (std::size_t i = 0; i < 2; ++i)
+      theta(static_cast<Eigen::Index>(kDriveUnknowns + i)) = model.initial_conditions(0)[i].start;
+    std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
+    std::iota(active.begin(), active.end(), Eigen::Index{0});
+    estimation::ModelResponse exact, above, below;
+    ASSERT_TRUE(model.respond(0, theta, active, exact));
+    const Eigen::VectorXd size = theta.cwiseAbs().cwiseMax(0.01);
+    for (const Eigen::Index i : active) {
+      const double h = 1e-5 * size(i);
+      Eigen::VectorXd moved = theta;
+      moved(i) += h;
+      ASSERT_TRUE(model.respond(0, moved, {}, above));
+      moved(i) -= 2.0 * h;
+      ASSERT_TRUE(model.respond(0, moved, {}, below));
+      const estimation::RowMatrix difference = (above.output - below.output) / (2.0 * h);
+      const Eigen::Map<const Eigen::VectorXd> flat(difference.data(), difference.size());
+      const double scale = std::max(flat.cwiseAbs().maxCoeff(), 1e-6 / size(i));
+      EXPECT_LT((flat - exact.sensitivity.col(i)).cwiseAbs().maxCoeff() / scale, 2e-5)
+          << "unknown " << i << " tyre " << static_cast<int>(tyre);
+    }
+  }
+}
+
+TEST(DriveValidation, PredictsTheDriveOfAKnownVehicleAndItsPath) {
+  const VehicleParameters<double> p = family_car();
+  DriveSensorSet sensors = testing::perfect_sensors();
+  sensors[DriveSensorKind::kPosition] = {.enabled = true, .rate_Hz = 100.0};
+  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(lively_drive(p, 7), sensors, 1)), {});
+  const std::vector<TimeSpan> spans{{10.0, 20.0}, {30.0, 40.0}};
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kDriveUnknowns));
+  theta.head(4) << p.C_f, p.C_r, p.I_z, p.a;
+  const DriveValidation v = predict_drive(signals, spans, p, {}, theta);
+  ASSERT_NE(v.find("yaw_rate"), nullptr);
+  EXPECT_GT(v.find("yaw_rate")->fit.r2, 1.0 - 1e-9);
+  EXPECT_GT(v.find("accel_y")->fit.r2, 1.0 - 1e-9);
+  ASSERT_NE(v.find("path"), nullptr);
+  // 200 m of path; trapezoids at 10 ms.
+  EXPECT_LT(v.find("path")->fit.rmse, 0.05);
+}
+
+TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {
+  const auto message = [](const char* toml) -> std::string {
+    try {
+      const Study study = Study::parse(toml, "study.toml");
+      static_cast<void>(VehicleIdentifyOptions::read(study.root().table("identify")));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("[identify]\nestimate = [\"C_ff\"]\n").find("did you mean 'C_f'"), std::string::npos);
+  EXPECT_NE(message("[identify]\nestimate = [\"mu\"]\n").find("linear tyres do not have"), std::string::npos);
+  EXPECT_NE(message("[identify]\nsignal_to_noise = nan\n"), "");
+  EXPECT_NE(message("[identify]\nsmoothing = -1\n").find(">= 0"), std::string::npos);
+  EXPECT_NE(message("[identify]\nuncertainty = { mass = -1 }\n").find("standard deviation"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle

@@ -1,0 +1,47 @@
+// Counts calls of operator new, hence in a file of its own: a longer drive with the same samples must not call it more.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/counting_new.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+struct Slalom : Driver {
+  [[nodiscard]] Controls controls(double time) const override {
+    return {.steer = 0.04 * std::sin(2.0 * time), .drive_torque = 300.0};
+  }
+};
+struct Waves : Road {
+  [[nodiscard]] double height(const RoadPoint& point) const override { return 0.01 * std::sin(point.distance); }
+};
+
+TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
+  const VehicleParameters<double> p;
+  const LinearTyre<double> tyre{.stiffness = p.C_f};
+  FourWheelOptions longitudinal;
+  longitudinal.longitudinal.emplace();
+  const FourWheelModel<double, LinearTyre<double>> constant_speed(p, {tyre, tyre, tyre, tyre});
+  const FourWheelModel<double, LinearTyre<double>> driven(p, {tyre, tyre, tyre, tyre}, longitudinal);
+  const BicycleModel<double, LinearTyre<double>> bicycle{p, tyre, tyre};
+  Slalom driver;
+  const Waves road;
+  Progress nobody;
+  const auto allocated = [&](const auto& run, double duration) {
+    const SimulationOptions options{.duration = duration, .output_step = duration / 10.0};
+    const long before = allocations;
+    const VehicleTrajectory out = run(options);
+    EXPECT_EQ(out.end, SimulationEnd::kCompleted) << out.message();
+    return allocations - before;
+  };
+  const auto check = [&](const auto& run) { EXPECT_EQ(allocated(run, 1.0), allocated(run, 4.0)); };
+  check([&](const SimulationOptions& o) { return simulate(constant_speed, driver, &road, o, nobody); });
+  check([&](const SimulationOptions& o) { return simulate(driven, driver, &road, o, nobody); });
+  check([&](const SimulationOptions& o) { return simulate(bicycle, driver, o, nobody); });
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle

@@ -1,0 +1,155 @@
+#include "veridyn/vehicle/tracking/drive_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "simulated_drive.hpp"
+#include "veridyn/vehicle/drive_study.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using testing::family_car;
+using testing::mapped;
+
+using Linear = BicycleModel<double, LinearTyre<double>>;
+
+/// Grip falls to 60 % at a time.
+Recording drive_with_drop(std::uint64_t seed, double duration, double drop_s, double rms = 0.02) {
+  const VehicleParameters<double> p = family_car();
+  VehicleParameters<double> wet = p;
+  wet.C_f *= 0.6;
+  wet.C_r *= 0.6;
+  const testing::WanderingSteer steer(seed, rms, 0.1, 1.0);
+  const VehicleTrajectory t = testing::drive_bicycle<Linear>(
+      [&](double at) { return testing::linear_bicycle(at < drop_s ? p : wet); }, duration,
+      [&](double at) { return steer(at); }, [](double at) { return 20.0 + 2.0 * std::sin(0.2 * at); });
+  return record_drive(t, reference_drive_sensors(), seed);
+}
+
+DriveStudy study_of(const Recording& recording) {
+  DriveStudy study;
+  study.subject_name = "car";
+  study.vehicle = family_car();
+  study.vehicle.C_f *= 1.2;
+  study.vehicle.C_r *= 0.9;
+  study.log.mapped = mapped(recording);
+  return study;
+}
+
+TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
+  for (const std::uint64_t seed : {1, 2}) {
+    DriveStudy study = study_of(drive_with_drop(seed, 90.0, 60.0));
+    Progress silent;
+    const DriveTracking tracking = track_drive(study, silent);
+    const DriveTracker& tracker = *tracking.drive.tracker();
+    ASSERT_FALSE(tracker.changes().empty()) << seed;
+    for (const DriveChange& c : tracker.changes()) EXPECT_GT(c.change.detected_s, 60.0) << seed;
+    EXPECT_LT(tracker.changes().front().change.detected_s, 65.0) << seed;
+    const VehicleParameters<double> p = family_car();
+    EXPECT_NEAR(tracker.value(TrackedAxle::kFront), 0.6 * p.C_f, 0.02 * p.C_f) << seed;
+    EXPECT_NEAR(tracker.value(TrackedAxle::kRear), 0.6 * p.C_r, 0.02 * p.C_r) << seed;
+    EXPECT_NEAR(tracker.value(TrackedAxle::kUndersteer), understeer_gradient(p) / 0.6, 2e-4) << seed;
+    // Ten seconds after the change, and before it, the history is where the truth is.
+    const DriveTrackHistory& h = tracker.history(TrackedAxle::kFront);
+    for (std::size_t i = 0; i < h.time.size(); ++i) {
+      const bool dry = h.time[i] > 20.0 && h.time[i]<59.5, wet = h.time[i]> 72.0;
+      const double truth = wet ? 0.6 * p.C_f : p.C_f;
+      EXPECT_TRUE(!(dry || wet) || std::abs(h.value[i] - truth) < 0.03 * p.C_f) << h.time[i] << ": " << h.value[i];
+    }
+  }
+}
+
+// Stated: one false alarm in 10 hours, all three regressions together. In 1000 s there is one with probability
+// 0.03.
+TEST(DriveTracker, RaisesNoMoreFalseAlarmsThanStated) {
+  std::size_t alarms = 0;
+  for (const std::uint64_t seed : {1, 2}) {
+    DriveStudy study = study_of(drive_with_drop(seed, 500.0, 1e9));
+    Progress silent;
+    alarms += track_drive(study, silent).drive.tracker()->changes().size();
+  }
+  EXPECT_EQ(alarms, 0u);
+}
+
+TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
+  DriveStudy study = study_of(drive_with_drop(1, 120.0, 1e9, 1e-4));
+  study.vehicle = family_car();
+  Progress silent;
+  const DriveTracking tracking = track_drive(study, silent);
+  const DriveTracker& tracker = *tracking.drive.tracker();
+  for (const TrackedAxle axle : {TrackedAxle::kFront, TrackedAxle::kRear}) {
+    const DriveTrackHistory& h = tracker.history(axle);
+    ASSERT_GT(h.time.size(), 100u);
+    EXPECT_TRUE(h.held.back());
+    // Once held it does not move at all.
+    std::size_t first = h.held.size();
+    while (first > 0 && h.held[first - 1]) --first;
+    ASSERT_LT(first, h.held.size() / 2);
+    for (std::size_t i = first; i < h.value.size(); ++i)
+      EXPECT_NEAR(h.value[i], h.value[first], 1e-6 * std::abs(h.value[first]));
+  }
+  EXPECT_NE(tracker.estimate("car").verdict.find("held at the end"), std::string::npos);
+}
+
+TEST(DriveTracker, DoesNotDependOnThePiecesInWhichARecordingComes) {
+  const Recording whole = drive_with_drop(4, 80.0, 1e9);
+  DriveStudy study = study_of(whole);
+  Progress silent;
+  const DriveTracking at_once = track_drive(study, silent);
+  TrackedDrive pieces(study);
+  for (const double until : {5.0, 21.0, 21.5, 40.0, 77.3}) {
+    Recording part = recording::without_channels(whole);
+    for (Channel channel : whole.channels()) {
+      const auto times = channel.times();
+      const auto n = std::upper_bound(times.begin(), times.end(), until) - times.begin();
+      channel.value.resize(static_cast<std::size_t>(n));
+      channel.time = make_time_base(std::vector<double>(times.begin(), times.begin() + n));
+      part.add(std::move(channel));
+    }
+    static_cast<void>(pieces.advance(mapped(part), false, silent));
+  }
+  static_cast<void>(pieces.advance(mapped(whole), true, silent));
+  const DriveTracker &a = *at_once.drive.tracker(), &b = *pieces.tracker();
+  EXPECT_EQ(a.rows(), b.rows());
+  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
+    const auto axle = static_cast<TrackedAxle>(i);
+    EXPECT_NEAR(a.value(axle), b.value(axle), 1e-9 * std::abs(a.value(axle)));
+  }
+}
+
+TEST(DriveTracker, UsesNoSampleAfterTheOneItWasGiven) {
+  const auto run = [](double spoil_after) {
+    DriveTracker tracker(family_car(), {}, 3.0, 100.0, {1e-3, 0.05, 1e-3, 0.05});
+    const DriveSignals s = prepare_drive_signals(mapped(drive_with_drop(5, 30.0, 1e9)), {});
+    double value = 0.0;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const double t = s.grid.at(k);
+      const double factor = t > spoil_after ? 5.0 : 1.0;
+      static_cast<void>(tracker.append({t, s[DriveSignal::kSteer].value[k] * factor, s[DriveSignal::kSpeed].value[k],
+                                        s[DriveSignal::kYawRate].value[k], s[DriveSignal::kAccelY].value[k]}));
+      if (t <= 20.0) value = tracker.value(TrackedAxle::kFront);
+    }
+    return value;
+  };
+  EXPECT_EQ(run(20.0), run(1e9));
+}
+
+TEST(DriveTracker, LeavesHolesOutAndGoesOn) {
+  DriveTracker tracker(family_car(), {}, 3.0, 100.0, {1e-3, 0.05, 1e-3, 0.05});
+  const DriveSignals s = prepare_drive_signals(mapped(drive_with_drop(5, 60.0, 1e9)), {});
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    DriveSample sample{s.grid.at(k), s[DriveSignal::kSteer].value[k], s[DriveSignal::kSpeed].value[k],
+                       s[DriveSignal::kYawRate].value[k], s[DriveSignal::kAccelY].value[k]};
+    if (sample.time > 10.0 && sample.time < 12.0) continue;
+    if (sample.time > 20.0 && sample.time < 21.0) sample.yaw_rate = std::nan("");
+    if (sample.time > 30.0 && sample.time < 32.0) sample.speed = 0.0;
+    static_cast<void>(tracker.append(sample));
+  }
+  const VehicleParameters<double> p = family_car();
+  EXPECT_NEAR(tracker.value(TrackedAxle::kFront), p.C_f, 0.03 * p.C_f);
+  EXPECT_NEAR(tracker.value(TrackedAxle::kRear), p.C_r, 0.03 * p.C_r);
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle

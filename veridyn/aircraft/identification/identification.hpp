@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/identification/flight_signals.hpp"
+#include "veridyn/aircraft/identification/segments.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/regression/structure_search.hpp"
+
+namespace veridyn::aircraft {
+
+/// What identification may do and what it demands of its result. Study table `[identify]`.
+struct IdentifyOptions {
+  std::vector<Coefficient> coefficients;  ///< `coefficients = ["CL", "Cm"]`; empty: all that the subject models
+  /// `method`: "auto" takes what the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  std::string method = "auto";
+  bool refit_significant = false;  ///< `refit_significant`: drop what fails its t-test and estimate once more
+  double signal_to_noise = 1.0;    ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
+  double significance = 0.05;      ///< `significance`: level of the t-tests
+  /// `min_holdout_r2`: a coefficient that explains less of the hold-out's variance is rejected.
+  double min_holdout_r2 = 0.3;
+  /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
+  /// sensors.
+  double max_unmodelled = 0.1;
+  /// `contradiction_level`: identification and hold-out data, estimated apart, must agree at this level (chi-square).
+  double contradiction_level = 1e-3;
+  /// `structure`: "given" takes the subject's terms; "stepwise" or "orthogonal" chooses among the candidates first.
+  std::string structure = "given";
+  /// `candidates`: terms to choose among, `[identify.candidates] CL = ["1", "alpha", ...]`; coefficients that are not
+  /// named choose among `default_candidates`.
+  std::array<std::vector<Term>, kCoefficients> candidates;
+  bool output_error = false;  ///< `output_error`: output-error maximum likelihood beside regression
+  /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
+  bool output_error_gusts = true;
+  bool output_error_biases = false;  ///< `output_error_biases`: constant biases of the accelerometers, per segment
+  double frequency_low_Hz = 0.0;     ///< `frequency_band = ["0.1 Hz", "2 Hz"]`: equation error in the frequency domain
+  double frequency_high_Hz = 0.0;    ///< 0: not asked for
+  std::size_t bootstrap = 0;         ///< `bootstrap`: replicates of a block bootstrap of the chosen regression; 0: none
+  std::uint64_t seed = 1;            ///< of the bootstrap; the study's
+
+  /// @throws InputError for values that make no sense.
+  [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
+};
+
+/// What may be said of a coefficient as a whole.
+enum class CoefficientVerdict {
+  kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
+  kNotExcited,  ///< the flight does not move what the coefficient depends on
+  kRejected,    ///< an estimate exists and must not be used
+  kSkipped      ///< something that it needs is missing: thrust, a channel
+};
+[[nodiscard]] const char* to_string(CoefficientVerdict verdict);
+
+/// One coefficient: the estimates of all methods, what was chosen, and whether to believe it.
+struct CoefficientResult {
+  Coefficient coefficient = Coefficient::kCL;
+  std::string name;               ///< "Cm", or "Cm/Jy" where the subject has no inertia
+  bool per_unit_inertia = false;  ///< then the model's values are no aerodynamic coefficients
+  Axis axis = Axis::kLongitudinal;
+  CoefficientVerdict verdict = CoefficientVerdict::kSkipped;
+  std::string reason;                           ///< one sentence
+  CoefficientModel model;                       ///< terms; values are the chosen estimate's where there is one
+  estimation::RegressionData data;              ///< identification rows, for further analysis
+  estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
+  std::optional<estimation::RegressionEstimate> chosen;
+  std::optional<estimation::StructureSearch> structure;  ///< how its terms were chosen, where they were
+  double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
+  /// Share of the coefficient's variance that is neither modelled nor explained by twice the sensors' noise:
+  /// (1 - R^2) (1 - 4 / error_ratio).
+  double unmodelled_share = 0.0;
+  /// Change of the parameters per standard deviation of mass, geometry and inertia; see body_sensitivity.
+  Eigen::MatrixXd body_sensitivity;
+  numerics::FitMeasures identification_fit;
+  numerics::FitMeasures holdout_fit;
+  double contradiction_p = 1.0;  ///< of identification against hold-out estimates
+  /// Measured and modelled coefficient at every stride-th grid point in the air, for the report; NaN outside.
+  std::vector<double> time, measured, modelled;
+  numerics::Autocorrelation residual_autocorrelation;  ///< on the identification rows
+  double row_interval_s = 0.0;                         ///< between the rows of a segment
+};
+
+/// Estimates every coefficient of `subject.model` on its axis's segments. Regressor errors are propagated from the
+/// signals' noise by automatic differentiation; the variance of z that they leave unexplained is equation error.
+[[nodiscard]] std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals,
+                                                                   const Segments& segments, const Subject& subject,
+                                                                   const IdentifyOptions& options, Progress& progress);
+
+/// Terms that a structure search chooses among unless told otherwise: those of `model`, the coefficient's usual linear
+/// ones, and second-order ones: alpha^2, alpha q_n, alpha de, de^2 (longitudinal), alpha beta,
+/// alpha p_n, alpha r_n, alpha da, alpha dr, beta^3 (lateral).
+[[nodiscard]] std::vector<Term> default_candidates(const CoefficientModel& model);
+
+/// The axis on which a coefficient is identified: CL, CD, Cm longitudinal, the others lateral.
+[[nodiscard]] Axis axis_of(Coefficient coefficient);
+
+/// Why the coefficient cannot be computed from these signals at all, or empty.
+[[nodiscard]] std::string identification_obstacle(const CoefficientModel& model, const FlightSignals& signals,
+                                                  const Subject& subject);
+
+/// W of the coefficient's row [x, z] at grid point k: J Sigma J' of the signals' classical errors; those of Berkson
+/// kind enter through z alone.
+[[nodiscard]] Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const FlightSignals& signals,
+                                                   std::size_t k, const Subject& subject);
+
+/// Regression rows of a coefficient in the given spans: stride-thinned, rows that miss a signal left out, one segment
+/// id a gapless stretch of a span, W from the signals' noise.
+[[nodiscard]] estimation::RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
+                                                          std::span<const TimeSpan> spans, const Subject& subject);
+
+/// The subject with the identified values in its model; parameters of all other coefficients are unknown, so that
+/// nothing can be simulated with what this flight does not support.
+[[nodiscard]] Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results);
+
+/// The coefficients that may be used.
+[[nodiscard]] std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results);
+
+/// An estimate from elsewhere against all excited segments of this flight: a coefficient is identified when it explains
+/// at least `min_holdout_r2` of the measured one there, else rejected. Parameters that the estimate rejected are not
+/// tried.
+/// @throws InputError when the estimate holds nothing that the subject's model names.
+[[nodiscard]] std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
+                                                               const Subject& subject, const IdentifyOptions& options,
+                                                               const estimation::Estimate& estimate);
+
+/// The parameters of all coefficients, for estimate.json.
+[[nodiscard]] estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,219 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/identification/flight_signals.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/estimation/output_error/parametric_model.hpp"
+
+namespace veridyn::aircraft {
+
+/// The aircraft's motion as a parametric model for output error: simulated from measured deflections and thrust, with
+/// the parameters of the given coefficients as unknowns and an initial state per segment.
+///
+/// State Va, alpha, beta, p, q, r, phi, theta. A state is simulated when the coefficient that moves it is among
+/// `coefficients` (CD: Va, CL: alpha, CY: beta, Cl: p and phi, Cm: q and theta, Cn: r); the others are driven by their
+/// measurement, and a coefficient that is not modelled is taken as measured. With all six it is the full rigid body.
+/// Equations: body-axes forces and moments with the inertia tensor, engine and force point as in `flight_dynamics.hpp`,
+/// velocity relative to the air,
+///
+///     v' = F/m + g - omega x v - a_w,    Va' = v.v'/Va, ...
+///
+/// a_w [m/s^2, body axes] is how fast the air at the aircraft changes its velocity: 0 in uniform air, or the derivative
+/// of the reconstructed gust. Outputs: the simulated states, and specific forces where their coefficients are modelled.
+/// Fourth-order Runge-Kutta over one or two grid steps (at most 20 ms where the grid allows), inputs at their own
+/// samples. Diverged: Va below 2 m/s or an angle of 80 deg.
+class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
+ public:
+  /// @param coefficients terms, with starting values; parameters in this order
+  /// @param gusts whether the reconstructed gust drives the simulation
+  OutputErrorModel(const FlightSignals& signals, std::span<const TimeSpan> spans, const Subject& subject,
+                   std::span<const CoefficientModel> coefficients, bool gusts);
+
+  [[nodiscard]] std::span<const estimation::ModelParameter> parameters() const override { return parameters_; }
+  [[nodiscard]] std::span<const estimation::ModelOutput> outputs() const override { return outputs_; }
+  [[nodiscard]] std::size_t segments() const override { return segments_.size(); }
+  [[nodiscard]] Eigen::Index samples(std::size_t segment) const override { return segments_[segment].samples; }
+  [[nodiscard]] std::span<const estimation::ModelParameter> initial_conditions(std::size_t segment) const override {
+    return segments_[segment].initial;
+  }
+  [[nodiscard]] std::string segment_name(std::size_t segment) const override;
+
+  /// What was measured of the outputs, per segment.
+  [[nodiscard]] std::vector<estimation::RowMatrix> measured() const;
+
+  template <typename Scalar>
+  bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
+
+ private:
+  static constexpr std::size_t kStates = 8;
+  enum StateIndex : std::size_t { kVa, kAlphaState, kBetaState, kPState, kQState, kRState, kPhi, kTheta };
+  template <typename Scalar>
+  using State = std::array<Scalar, kStates>;
+  /// Inputs and measured states at one grid point.
+  struct Drive {
+    State<double> state{};
+    double de = 0.0, da = 0.0, dr = 0.0, thrust = 0.0, torque = 0.0, rho = 1.225;
+    AeroCoefficients<double> measured;
+    std::array<double, 3> force{};  // specific force, measured
+    std::array<double, 3> air_acceleration{};
+  };
+  struct Segment {
+    std::size_t begin = 0;  // into drives_
+    Eigen::Index samples = 0;
+    double from_s = 0.0, to_s = 0.0;
+    std::vector<estimation::ModelParameter> initial;
+  };
+  template <typename Scalar>
+  struct Rates {
+    State<Scalar> state;
+    std::array<Scalar, 3> force;  // specific force, body axes
+  };
+
+  template <typename Scalar>
+  [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const Drive& drive, std::span<const Scalar> parameters) const;
+  template <typename Scalar>
+  void hold_measured(State<Scalar>& x, const Drive& drive) const {
+    for (std::size_t i = 0; i < kStates; ++i)
+      if (!simulated_[i]) x[i] = Scalar(drive.state[i]);
+  }
+  [[nodiscard]] const CoefficientModel* modelled(Coefficient c) const {
+    return which_[static_cast<std::size_t>(c)] < 0
+               ? nullptr
+               : &coefficients_[static_cast<std::size_t>(which_[static_cast<std::size_t>(c)])];
+  }
+
+  const Subject& subject_;
+  std::vector<CoefficientModel> coefficients_;
+  std::array<int, kCoefficients> which_{};           // index into coefficients_, or -1
+  std::array<std::size_t, kCoefficients> offset_{};  // of its first parameter
+  std::array<bool, kStates> simulated_{};
+  std::array<bool, 3> forces_{};  // specific forces among the outputs
+  std::vector<estimation::ModelParameter> parameters_;
+  std::vector<estimation::ModelOutput> outputs_;
+  std::vector<Drive> drives_;
+  std::vector<Segment> segments_;
+  double step_ = 0.02;  // of the integration [s]
+  double gravity_ = 9.80665;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+template <typename Scalar>
+OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const Drive& drive,
+                                                        std::span<const Scalar> parameters) const {
+  using std::cos;
+  using std::sin;
+  using std::tan;
+  hold_measured(x, drive);
+  const Scalar &Va = x[kVa], &alpha = x[kAlphaState], &beta = x[kBetaState];
+  const Scalar &p = x[kPState], &q = x[kQState], &r = x[kRState], &phi = x[kPhi], &theta = x[kTheta];
+  const Scalar qS = Scalar(0.5 * drive.rho * subject_.wing_area) * Va * Va;
+  AeroVariables<Scalar> v;
+  v.alpha = alpha;
+  v.beta = beta;
+  v.p_n = p * Scalar(0.5 * subject_.span) / Va;
+  v.q_n = q * Scalar(0.5 * subject_.chord) / Va;
+  v.r_n = r * Scalar(0.5 * subject_.span) / Va;
+  v.de = Scalar(drive.de);
+  v.da = Scalar(drive.da);
+  v.dr = Scalar(drive.dr);
+  v.CT = Scalar(drive.thrust) / qS;
+  v.Va = Va;
+  const auto value = [&](Coefficient c) -> Scalar {
+    const CoefficientModel* model = modelled(c);
+    if (model == nullptr) return Scalar(select(drive.measured, c));
+    return model->linear(v, parameters.subspan(offset_[static_cast<std::size_t>(c)], model->size()));
+  };
+  const Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD), CY = value(Coefficient::kCY);
+  const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
+  const Scalar cphi = cos(phi), sphi = sin(phi), cth = cos(theta), sth = sin(theta);
+  const Scalar T(drive.thrust);
+  const std::array<Scalar, 3> aero{qS * (CL * sa - CD * ca), qS * CY, qS * (-CD * sa - CL * ca)};
+  Rates<Scalar> out;
+  const Scalar m(subject_.mass), g(gravity_);
+  out.force = {(aero[0] + T) / m, aero[1] / m, aero[2] / m};
+  const Scalar u = Va * ca * cb, vb = Va * sb, w = Va * sa * cb;
+  const Scalar du = out.force[0] + r * vb - q * w - g * sth - Scalar(drive.air_acceleration[0]);
+  const Scalar dv = out.force[1] + p * w - r * u + g * cth * sphi - Scalar(drive.air_acceleration[1]);
+  const Scalar dw = out.force[2] + q * u - p * vb + g * cth * cphi - Scalar(drive.air_acceleration[2]);
+  const Scalar dVa = (u * du + vb * dv + w * dw) / Va;
+  out.state.fill(Scalar(0.0));
+  out.state[kVa] = dVa;
+  out.state[kAlphaState] = (u * dw - w * du) / (u * u + w * w);
+  out.state[kBetaState] = (dv - dVa * sb) / (Va * cb);
+  if (subject_.inertia && (simulated_[kPState] || simulated_[kQState] || simulated_[kRState])) {
+    const Inertia& J = *subject_.inertia;
+    const auto& f = subject_.force_point;
+    const auto& e = subject_.propulsion.position;
+    const Scalar b(subject_.span), c(subject_.chord);
+    const Scalar l =
+        qS * b * value(Coefficient::kCl) + Scalar(drive.torque) + Scalar(f[1]) * aero[2] - Scalar(f[2]) * aero[1];
+    const Scalar M =
+        qS * c * value(Coefficient::kCm) + Scalar(f[2]) * aero[0] - Scalar(f[0]) * aero[2] + Scalar(e[2]) * T;
+    const Scalar n =
+        qS * b * value(Coefficient::kCn) + Scalar(f[0]) * aero[1] - Scalar(f[1]) * aero[0] - Scalar(e[1]) * T;
+    // J omega' = M - omega x (J omega).
+    const Scalar hx = Scalar(J.Jx) * p - Scalar(J.Jxz) * r, hy = Scalar(J.Jy) * q,
+                 hz = Scalar(J.Jz) * r - Scalar(J.Jxz) * p;
+    const Scalar X = l - (q * hz - r * hy), Y = M - (r * hx - p * hz), Z = n - (p * hy - q * hx);
+    const Scalar det(J.Jx * J.Jz - J.Jxz * J.Jxz);
+    out.state[kPState] = (Scalar(J.Jz) * X + Scalar(J.Jxz) * Z) / det;
+    out.state[kQState] = Y / Scalar(J.Jy);
+    out.state[kRState] = (Scalar(J.Jxz) * X + Scalar(J.Jx) * Z) / det;
+  }
+  out.state[kPhi] = p + tan(theta) * (q * sphi + r * cphi);
+  out.state[kTheta] = q * cphi - r * sphi;
+  return out;
+}
+
+template <typename Scalar>
+bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+                                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+  constexpr double kLargest_rad = 80.0 * std::numbers::pi / 180.0;
+  constexpr double kSlowest_mps = 2.0;
+  const Segment& s = segments_[segment];
+  const std::span<const Scalar> parameters(theta.data(), parameters_.size());
+  State<Scalar> x;
+  auto initial = static_cast<Eigen::Index>(parameters_.size());
+  for (std::size_t i = 0; i < kStates; ++i) x[i] = simulated_[i] ? theta(initial++) : Scalar(0.0);
+  const Scalar h(step_), half(0.5 * step_), sixth(step_ / 6.0);
+  const auto moved = [](const State<Scalar>& from, const State<Scalar>& rate, const Scalar& by) {
+    State<Scalar> to;
+    for (std::size_t i = 0; i < kStates; ++i) to[i] = from[i] + by * rate[i];
+    return to;
+  };
+  for (Eigen::Index k = 0; k < s.samples; ++k) {
+    const Drive& now = drives_[s.begin + 2 * static_cast<std::size_t>(k)];
+    hold_measured(x, now);
+    const bool sane = x[kVa] > Scalar(kSlowest_mps) && x[kAlphaState] < Scalar(kLargest_rad) &&
+                      x[kAlphaState] > Scalar(-kLargest_rad) && x[kBetaState] < Scalar(kLargest_rad) &&
+                      x[kBetaState] > Scalar(-kLargest_rad) && x[kTheta] < Scalar(kLargest_rad) &&
+                      x[kTheta] > Scalar(-kLargest_rad);
+    if (!sane) return false;
+    const Rates<Scalar> k1 = rates(x, now, parameters);
+    Eigen::Index column = 0;
+    for (std::size_t i = 0; i < kStates; ++i)
+      if (simulated_[i]) output(k, column++) = x[i];
+    for (std::size_t i = 0; i < 3; ++i)
+      if (forces_[i]) output(k, column++) = k1.force[i];
+    if (k + 1 == s.samples) break;
+    const Drive& mid = drives_[s.begin + 2 * static_cast<std::size_t>(k) + 1];
+    const Drive& next = drives_[s.begin + 2 * static_cast<std::size_t>(k) + 2];
+    const Rates<Scalar> k2 = rates(moved(x, k1.state, half), mid, parameters);
+    const Rates<Scalar> k3 = rates(moved(x, k2.state, half), mid, parameters);
+    const Rates<Scalar> k4 = rates(moved(x, k3.state, h), next, parameters);
+    for (std::size_t i = 0; i < kStates; ++i)
+      x[i] += sixth * (k1.state[i] + Scalar(2.0) * k2.state[i] + Scalar(2.0) * k3.state[i] + k4.state[i]);
+  }
+  return true;
+}
+
+}  // namespace veridyn::aircraft

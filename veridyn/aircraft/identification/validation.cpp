@@ -1,0 +1,203 @@
+#include "veridyn/aircraft/identification/validation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "veridyn/aircraft/model/wind_axes.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// Beyond these the prediction has left what any linear model is about.
+constexpr double kLargestAngle_rad = 60.0 * kDegree;
+constexpr double kLeastAirspeed_mps = 2.0;
+
+using State = std::array<double, 3>;  // Va, alpha, beta
+
+/// The inputs at one grid point.
+struct Drive {
+  FlightSample<double> sample;
+  double roll = 0.0;
+  double pitch = 0.0;
+  double rho = 1.225;
+  [[nodiscard]] bool complete() const {
+    for (const FlightSignal s :
+         {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kAirspeed, FlightSignal::kAx, FlightSignal::kAy,
+          FlightSignal::kAz, FlightSignal::kP, FlightSignal::kQ, FlightSignal::kR, FlightSignal::kElevator,
+          FlightSignal::kAileron, FlightSignal::kRudder, FlightSignal::kThrust}) {
+      if (!std::isfinite(sample[s])) return false;
+    }
+    return std::isfinite(roll) && std::isfinite(pitch);
+  }
+};
+
+Drive middle(const Drive& a, const Drive& b) {
+  Drive m;
+  for (std::size_t i = 0; i < kFlightSignals; ++i) m.sample.value[i] = 0.5 * (a.sample.value[i] + b.sample.value[i]);
+  m.roll = 0.5 * (a.roll + b.roll);
+  m.pitch = 0.5 * (a.pitch + b.pitch);
+  m.rho = 0.5 * (a.rho + b.rho);
+  return m;
+}
+
+class Predictor {
+ public:
+  Predictor(const FlightSignals& signals, const Subject& subject, std::span<const Coefficient> known)
+      : signals_(signals), subject_(subject) {
+    for (const Coefficient c : known) known_[static_cast<std::size_t>(c)] = true;
+  }
+
+  [[nodiscard]] bool knows(Coefficient c) const { return known_[static_cast<std::size_t>(c)]; }
+
+  [[nodiscard]] Drive drive(std::size_t k) const {
+    return {signals_.sample(k), signals_.roll[k], signals_.pitch[k], signals_.air_density[k]};
+  }
+
+  [[nodiscard]] State measured(std::size_t k) const {
+    const FlightSample<double> s = signals_.sample(k);
+    return {s[FlightSignal::kAirspeed], s[FlightSignal::kAlpha], s[FlightSignal::kBeta]};
+  }
+
+  [[nodiscard]] State step(const State& x, const Drive& begin, const Drive& end) const {
+    const double h = signals_.grid.step;
+    const Drive half = middle(begin, end);
+    const State k1 = rate(x, begin);
+    const State k2 = rate(advance(x, k1, 0.5 * h), half);
+    const State k3 = rate(advance(x, k2, 0.5 * h), half);
+    const State k4 = rate(advance(x, k3, h), end);
+    State next = x;
+    for (std::size_t i = 0; i < 3; ++i) next[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+    if (!knows(Coefficient::kCD)) next[0] = end.sample[FlightSignal::kAirspeed];
+    return next;
+  }
+
+ private:
+  static State advance(const State& x, const State& rate, double h) {
+    return {x[0] + h * rate[0], x[1] + h * rate[1], x[2] + h * rate[2]};
+  }
+
+  [[nodiscard]] State rate(const State& x, const Drive& drive) const {
+    FlightSample<double> predicted = drive.sample;
+    predicted[FlightSignal::kAirspeed] = x[0];
+    predicted[FlightSignal::kAlpha] = x[1];
+    predicted[FlightSignal::kBeta] = x[2];
+    const AeroCoefficients<double> model = subject_.model.evaluate(aero_variables(predicted, subject_, drive.rho));
+    // Where the model does not speak, the measurement does: thrust and drag unknown means their sum as measured.
+    const AeroCoefficients<double> measured = measured_coefficients(drive.sample, subject_, drive.rho);
+    const auto pick = [&](Coefficient c) { return knows(c) ? select(model, c) : select(measured, c); };
+    const WindAxesInput<double> input{.CL = pick(Coefficient::kCL),
+                                      .CD = pick(Coefficient::kCD),
+                                      .CY = pick(Coefficient::kCY),
+                                      .p = drive.sample[FlightSignal::kP],
+                                      .q = drive.sample[FlightSignal::kQ],
+                                      .r = drive.sample[FlightSignal::kR],
+                                      .phi = drive.roll,
+                                      .theta = drive.pitch,
+                                      .thrust = drive.sample[FlightSignal::kThrust],
+                                      .dynamic_pressure_area = 0.5 * drive.rho * subject_.wing_area * x[0] * x[0],
+                                      .mass = subject_.mass};
+    const WindAxesRate<double> r = wind_axes_rate(x[0], x[1], x[2], input);
+    return {r.Va, r.alpha, r.beta};
+  }
+
+  const FlightSignals& signals_;
+  const Subject& subject_;
+  std::array<bool, kCoefficients> known_{};
+};
+
+}  // namespace
+
+ValidationOptions ValidationOptions::read(const StudyTable& table) {
+  ValidationOptions options;
+  options.period_s = table.positive_or("period", "s", options.period_s);
+  return options;
+}
+
+Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpan> longitudinal,
+                           std::span<const TimeSpan> lateral, const Subject& subject,
+                           std::span<const Coefficient> known, const ValidationOptions& options) {
+  Validation result;
+  result.period_s = options.period_s;
+  const Predictor predictor(signals, subject, known);
+  result.with_airspeed = predictor.knows(Coefficient::kCD);
+
+  const auto predict = [&](std::span<const TimeSpan> spans, std::vector<std::size_t> which) {
+    static constexpr std::array<const char*, 3> kNames{"airspeed", "alpha", "beta"};
+    std::vector<PredictedQuantity> quantities;
+    for (const std::size_t i : which) quantities.push_back({.name = kNames[i], .unit = i == 0 ? "m/s" : "deg"});
+    std::vector<double> time;
+    const auto per_window = static_cast<std::size_t>(std::max(1.0, std::round(options.period_s / signals.grid.step)));
+    for (const TimeSpan& span : spans) {
+      const auto [first, last] = signals.indices(span);
+      for (std::size_t begin = first; begin < last; begin += per_window) {
+        const std::size_t end = std::min(begin + per_window, last);
+        // A rest too short to say anything would flatter the figures.
+        if (end - begin < per_window / 2) continue;
+        Drive now = predictor.drive(begin);
+        if (!now.complete()) continue;
+        State x = predictor.measured(begin);
+        ++result.windows;
+        for (std::size_t k = begin; k < end; ++k) {
+          const State truth = predictor.measured(k);
+          time.push_back(signals.grid.at(k));
+          for (std::size_t j = 0; j < which.size(); ++j) {
+            quantities[j].measured.push_back(truth[which[j]]);
+            quantities[j].predicted.push_back(x[which[j]]);
+          }
+          if (k + 1 == end) break;
+          const Drive next = predictor.drive(k + 1);
+          if (!next.complete()) break;
+          x = predictor.step(x, now, next);
+          now = next;
+          const bool sane =
+              x[0] > kLeastAirspeed_mps && std::abs(x[1]) < kLargestAngle_rad && std::abs(x[2]) < kLargestAngle_rad;
+          if (!sane) {
+            ++result.diverged;
+            break;
+          }
+        }
+        result.simulated_s += signals.grid.step * static_cast<double>(end - begin);
+        // A gap between windows, so that no line is drawn across the restart.
+        time.push_back(signals.grid.at(end - 1));
+        for (PredictedQuantity& q : quantities) {
+          q.measured.push_back(kNaN);
+          q.predicted.push_back(kNaN);
+        }
+      }
+    }
+    for (PredictedQuantity& q : quantities) {
+      const double scale = q.unit == "deg" ? 1.0 / kDegree : 1.0;
+      std::vector<double> measured = q.measured;
+      std::vector<double> predicted = q.predicted;
+      for (double& v : measured) v *= scale;
+      for (double& v : predicted) v *= scale;
+      q.fit = numerics::fit_measures(measured, predicted);
+      q.time = time;
+      if (q.fit.count > 0) result.quantities.push_back(std::move(q));
+    }
+  };
+  if (predictor.knows(Coefficient::kCL)) {
+    predict(longitudinal, result.with_airspeed ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{1});
+  }
+  if (predictor.knows(Coefficient::kCY)) predict(lateral, {2});
+  if (result.available()) {
+    result.text = fmt::format(
+        "{} windows of {:.1f} s ({:.0f} s in all) flown by the model on data that identification did not see, each "
+        "started from the reconstructed state{}{}",
+        result.windows, result.period_s, result.simulated_s,
+        result.with_airspeed ? "" : "; airspeed was taken from the measurement, since CD was not identified",
+        result.diverged > 0 ? fmt::format("; {} diverged and were cut", result.diverged) : "");
+  } else {
+    result.text = "no validation: neither CL nor CY was identified, or there was no hold-out";
+  }
+  return result;
+}
+
+}  // namespace veridyn::aircraft

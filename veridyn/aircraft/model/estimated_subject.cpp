@@ -1,0 +1,80 @@
+#include "veridyn/aircraft/model/estimated_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::aircraft {
+
+CoefficientModel estimated_coefficient(const CoefficientModel& structure, const std::vector<std::string>& names,
+                                       const estimation::Estimate& estimate) {
+  CoefficientModel model{structure.coefficient, {}, {}};
+  for (std::size_t i = 0; i < structure.size(); ++i) {
+    const estimation::EstimatedParameter* p = estimate.find(names[i]);
+    if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+    model.terms.push_back(structure.terms[i]);
+    model.values.push_back(p->value);
+  }
+  return model;
+}
+
+Subject estimated_subject(const Subject& subject, const estimation::Estimate& estimate, const std::string& place) {
+  Subject result = subject;
+  bool any = false;
+  for (auto& coefficient : result.model.coefficients) {
+    if (!coefficient) continue;
+    CoefficientModel model = estimated_coefficient(*coefficient, coefficient->parameter_names(), estimate);
+    if (model.size() > 0) {
+      coefficient = std::move(model);
+      any = true;
+    } else {
+      std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
+    }
+  }
+  if (!any) throw InputError(place, "holds no usable parameter of the study's model");
+  return result;
+}
+
+std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
+  using Json = nlohmann::ordered_json;
+  Json json;
+  json["name"] = s.name;
+  json["description"] = s.description;
+  json["sign_convention"] = s.sign_convention;
+  json["mass_kg"] = s.mass;
+  json["wing_area_m2"] = s.wing_area;
+  json["span_m"] = s.span;
+  json["chord_m"] = s.chord;
+  if (s.inertia) {
+    json["inertia_kgm2"] = {
+        {"Jx", s.inertia->Jx}, {"Jy", s.inertia->Jy}, {"Jz", s.inertia->Jz}, {"Jxz", s.inertia->Jxz}};
+  }
+  if (s.model.stall) {
+    constexpr const char* forms[] = {"full", "source", "separation"};
+    json["stall"] = {{"M", s.model.stall->M},
+                     {"alpha0_rad", s.model.stall->alpha0},
+                     {"form", forms[static_cast<std::size_t>(s.model.stall->form)]},
+                     {"drag", s.model.stall->drag}};
+  }
+  json["coefficients"] = Json::object();
+  for (const auto& model : s.model.coefficients) {
+    if (!model) continue;
+    Json terms = Json::array();
+    for (std::size_t i = 0; i < model->size(); ++i) {
+      const std::string name = parameter_name(model->coefficient, model->terms[i]);
+      Json term = {{"term", model->terms[i].expression}, {"name", name}, {"unit", model->terms[i].parameter_unit()}};
+      term["value"] = std::isfinite(model->values[i]) ? Json(model->values[i]) : Json(nullptr);
+      if (const auto* p = estimate != nullptr ? estimate->find(name) : nullptr) {
+        term["sigma"] = std::isfinite(p->sigma) ? Json(p->sigma) : Json(nullptr);
+        term["status"] = estimation::to_string(p->status);
+      }
+      terms.push_back(std::move(term));
+    }
+    json["coefficients"][std::string(name_of(model->coefficient))] = std::move(terms);
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace veridyn::aircraft

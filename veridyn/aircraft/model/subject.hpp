@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/model/aero_model.hpp"
+#include "veridyn/aircraft/model/propulsion.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::aircraft {
+
+/// Inertia of an aircraft that is symmetric about its xz plane: J = [Jx 0 -Jxz; 0 Jy 0; -Jxz 0 Jz] [kg m^2], body
+/// axes, about the centre of gravity.
+struct Inertia {
+  double Jx = 0.0, Jy = 0.0, Jz = 0.0, Jxz = 0.0;
+
+  [[nodiscard]] Eigen::Matrix3d matrix() const;
+  /// Why no body can have this inertia, empty when all is well. Two rules: the matrix is positive definite (without it
+  /// the equations of motion are meaningless), and no principal moment exceeds the sum of the other two (a body of
+  /// positive mass density; tables break this more often than one would think: the published Skywalker X8 does).
+  [[nodiscard]] std::string inadmissible() const;
+  [[nodiscard]] bool positive_definite() const;
+
+  friend bool operator==(const Inertia&, const Inertia&) = default;
+};
+
+/// A servo with what it moves, or the engine's throttle: output follows the command through delay, first-order lag,
+/// rate limit and stops.
+struct Actuator {
+  double lower = -0.35;                                         ///< stop [rad]; throttle: 0
+  double upper = 0.35;                                          ///< stop [rad]; throttle: 1
+  double rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]; throttle [1/s]
+  double time_constant = 0.0;                                   ///< [s]; 0 follows at once
+  double delay = 0.0;                                           ///< [s]
+
+  friend bool operator==(const Actuator&, const Actuator&) = default;
+};
+
+/// Standard deviations of the aircraft's constants, as known from scales, drawings and swing tests: errors that all
+/// samples share. Zero: exact. Study table `[subject.sigma]`.
+struct BodySigma {
+  double mass = 0.0;                               ///< [kg]
+  double wing_area = 0.0;                          ///< [m^2]
+  double span = 0.0, chord = 0.0;                  ///< [m]
+  double Jx = 0.0, Jy = 0.0, Jz = 0.0, Jxz = 0.0;  ///< [kg m^2]
+
+  [[nodiscard]] bool any() const { return !(*this == BodySigma{}); }
+  friend bool operator==(const BodySigma&, const BodySigma&) = default;
+};
+
+/// The physical aircraft: what is measured on the bench, and its model of aerodynamics as far as known.
+struct Subject {
+  std::string name;
+  std::string description;         ///< source of the numbers, in words
+  std::string sign_convention;     ///< of deflections, in words: "positive deflection gives positive moment"
+  double mass = 0.0;               ///< [kg]
+  std::optional<Inertia> inertia;  ///< without it forces are identified and moments are not
+  BodySigma sigma;                 ///< how well mass, geometry and inertia are known
+  double wing_area = 0.0;          ///< S [m^2]
+  double span = 0.0;               ///< b [m]
+  double chord = 0.0;              ///< c, mean aerodynamic chord [m]
+  std::array<double, 3> force_point = {0, 0, 0};   ///< where the aerodynamic force acts, from the centre of gravity [m]
+  std::array<double, 3> imu_position = {0, 0, 0};  ///< from the centre of gravity, body axes [m]
+  AeroModel model;
+  Propulsion propulsion;
+  Actuator elevator, aileron, rudder;
+  Actuator throttle{.lower = 0.0, .upper = 1.0};
+  std::vector<std::string> warnings;  ///< what is questionable about the numbers; not written to files
+
+  /// b^2 / S.
+  [[nodiscard]] double aspect_ratio() const { return span * span / wing_area; }
+
+  /// Equal but for `warnings`.
+  friend bool operator==(const Subject& a, const Subject& b);
+};
+
+/// Reads `[subject]`.
+///
+///     builtin = "unatrap"       # start from a built-in subject (see builtin_subjects.hpp); every other key overrides
+///     name, description, sign_convention          # texts
+///     mass = 12.6               # [kg] > 0
+///     wing_area = 0.92          # [m^2] > 0
+///     span = 2.72               # [m] > 0
+///     chord = 0.34              # [m] > 0
+///     force_point = [0, 0, 0]   # [m] where the aerodynamic force acts, from the centre of gravity
+///     imu_position = [0, 0, 0]  # [m] from the centre of gravity, body axes
+///     inertia = { Jx = 1.1, Jy = 1.2, Jz = 2.0, Jxz = 0.1 }      # [kg m^2]; Jxz may be left out
+///     sigma = { mass = 0.02, wing_area = 0.01, span = 0.005, chord = 0.002, Jx = 0.01, Jy = 0.02, Jz = 0.02, Jxz =
+///     0.01 }
+///                               # standard deviations, each optional; they widen the intervals of the derivatives
+///     [subject.model]           # see read_aero_model
+///     [subject.propulsion]      # see read_propulsion
+///     [subject.actuators.elevator]                # likewise aileron, rudder, throttle
+///     lower = "-20 deg"         # stops; upper alone makes them symmetric (throttle: 0 .. 1)
+///     upper = "20 deg"
+///     rate_limit = "300 deg/s"
+///     time_constant = 0.05      # [s]
+///     delay = 0.02              # [s]
+///
+/// Without `builtin`, mass, wing_area, span and chord must be there. Inertia that is not positive definite is refused;
+/// one that breaks the triangle inequality is kept with a warning.
+/// @throws InputError with file, line and key.
+[[nodiscard]] Subject read_subject(const StudyTable& table);
+
+/// The subject as TOML, `[subject]` and its tables, complete and without reference to a built-in one; reading it gives
+/// an equal subject, to the last bit.
+[[nodiscard]] std::string write_subject_toml(const Subject& subject);
+
+}  // namespace veridyn::aircraft

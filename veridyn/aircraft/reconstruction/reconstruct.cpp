@@ -1,0 +1,381 @@
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "veridyn/aircraft/reconstruction/reconstruct_columns.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_run.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_solve.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using internal::FlightRun;
+using internal::FlightStreams;
+using internal::kSensors;
+using internal::monitors_with;
+using internal::noise_of;
+using internal::ResultColumns;
+using internal::RunSetting;
+using internal::Segment;
+using internal::Solution;
+
+std::vector<double> output_stamps(const FlightStreams& s, const Segment& segment, double rate_Hz) {
+  std::vector<double> t;
+  if (rate_Hz > 0.0) {
+    for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k) t.push_back(k / rate_Hz);
+    return t;
+  }
+  const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
+  const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
+  t.assign(first, last);
+  return t;
+}
+
+// --- Turbulence -----------------------------------------------------------------------------------------------------
+
+/// A stretch of at most `length` seconds in the fastest part of the longest segment: where the aircraft surely flies.
+Segment typical_part(const FlightStreams& s, std::span<const Segment> segments, double length) {
+  const Segment longest = *std::max_element(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) {
+    return a.end - a.begin < b.end - b.begin;
+  });
+  if (longest.end - longest.begin <= length) return longest;
+  Segment best = longest;
+  double fastest = -1.0;
+  constexpr int kParts = 16;
+  for (int i = 0; i < kParts; ++i) {
+    const double begin = longest.begin + (longest.end - longest.begin - length) * i / (kParts - 1);
+    const double north = internal::median_within(s.sensors[internal::kVelNorth], begin, length);
+    const double east = internal::median_within(s.sensors[internal::kVelEast], begin, length);
+    double speed = std::hypot(north, east);
+    if (!s.sensors[internal::kPitot].t.empty()) {
+      speed = internal::median_within(s.sensors[internal::kPitot], begin, length);
+    }
+    if (speed > fastest) {
+      fastest = speed;
+      best = {begin, begin + length};
+    }
+  }
+  // A segment begins where attitude and velocity are known.
+  for (const auto i : {internal::kRoll, internal::kPitch, internal::kYaw, internal::kVelNorth, internal::kVelEast,
+                       internal::kVelDown}) {
+    const auto& t = s.sensors[i].t;
+    const auto it = std::lower_bound(t.begin(), t.end(), best.begin);
+    if (it != t.end()) best.begin = std::max(best.begin, *it);
+  }
+  return best;
+}
+
+/// Log likelihood of the innovations over a stretch under a gust spectrum. What the gate refuses counts as an
+/// innovation on the gate, so that a spectrum does not win by refusing.
+double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const Segment& part,
+                      const DrydenSettings& spectrum) {
+  using Model = AirDataModel<0, false>;
+  const std::vector<double> no_output;
+  const RunSetting<Model> setting{
+      .streams = &s, .options = &o, .model = {spectrum, noise_of(s, o)}, .output_t = &no_output};
+  FlightRun<Model> run(setting, part, internal::start_of(setting, part), monitors_with(o.gate), 0);
+  while (run.advance(nullptr)) {
+  }
+  double sum = 0.0;
+  for (const auto& monitor : run.monitors()) {
+    const auto summary = monitor.summary();
+    sum += summary.log_likelihood -
+           0.5 * static_cast<double>(summary.rejected + summary.recovered) * o.gate.threshold * o.gate.threshold;
+  }
+  return sum;
+}
+
+void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
+                       Reconstruction& out) {
+  if (o.turbulence != "auto") {
+    out.turbulence = o.turbulence == "study" ? o.own_turbulence : gust_spectrum(o.turbulence);
+    for (double* sigma : {&out.turbulence.sigma_u, &out.turbulence.sigma_v, &out.turbulence.sigma_w}) {
+      *sigma *= o.turbulence_scale;
+    }
+    out.turbulence_origin = o.turbulence_scale == 1.0
+                                ? o.turbulence
+                                : fmt::format("{}, intensities times {:g}", o.turbulence, o.turbulence_scale);
+    return;
+  }
+  using namespace internal;
+  if (s.sensors[kPitot].t.empty() && s.sensors[kAlpha].t.empty() && s.sensors[kBeta].t.empty()) {
+    out.turbulence = gust_spectrum("low_moderate");
+    out.turbulence_origin = "low_moderate, assumed: no sensor feels the air";
+    return;
+  }
+  const Segment part = typical_part(s, segments, 60.0);
+  constexpr std::array<double, 7> kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0};
+  double best = -std::numeric_limits<double>::infinity();
+  for (const char* setting : {"low_light", "medium_light"}) {
+    for (const double scale : kScales) {
+      const DrydenSettings spectrum = gust_spectrum(setting, scale);
+      const double likelihood = log_likelihood(s, o, part, spectrum);
+      if (likelihood > best) {
+        best = likelihood;
+        out.turbulence = spectrum;
+        out.turbulence_origin = fmt::format("auto: {} times {:g}, by the innovations of {:.0f}..{:.0f} s", setting,
+                                            scale, part.begin, part.end);
+      }
+    }
+  }
+}
+
+// --- Report ---------------------------------------------------------------------------------------------------------
+
+void report_sensors(const FlightStreams& s, const Solution& solution, Reconstruction& out) {
+  for (std::size_t i = 0; i < kSensors; ++i) {
+    const internal::Stream& stream = s.sensors[i];
+    if (stream.t.empty()) continue;
+    const auto summary = solution.monitors[i].summary();
+    out.log_likelihood += summary.log_likelihood;
+    out.sensors.push_back({stream.channel, stream.unit, stream.sigma, stream.rate_Hz, summary});
+    if (summary.count == 0) continue;
+    const double refused = static_cast<double>(summary.rejected) / static_cast<double>(summary.count);
+    if (refused > 0.01) {
+      out.warnings.push_back(fmt::format("{}: {:.1f} % of the samples contradict the estimate and were dropped",
+                                         stream.channel, 100.0 * refused));
+    }
+    if (summary.recovered > 0) {
+      out.warnings.push_back(
+          fmt::format("{}: dropped for long and taken back, {} samples with inflated variance: the estimate or the "
+                      "sensor was wrong for a while",
+                      stream.channel, summary.recovered));
+    }
+    if (summary.count > 100 && summary.nis > 2.0) {
+      out.warnings.push_back(fmt::format(
+          "{}: innovations {:.1f} times the expected size: its error is larger than the assumed {:.3g}{}",
+          stream.channel, std::sqrt(summary.nis), shown(stream.sigma, stream.unit), shown_unit(stream.unit)));
+    }
+  }
+}
+
+void report_quantities(const FlightStreams& s, const ReconstructOptions& o, const ResultColumns& columns,
+                       std::size_t count, Reconstruction& out) {
+  const auto first = [count](const std::vector<double>& v) { return std::span<const double>(v.data(), count); };
+  const double speed = std::max(numerics::median(first(columns.value(0))), 1.0);
+  const DrydenSettings& g = out.turbulence;
+  const bool pitot = !s.sensors[internal::kPitot].t.empty();
+  const bool vane_a = !s.sensors[internal::kAlpha].t.empty();
+  const bool vane_b = !s.sensors[internal::kBeta].t.empty();
+  if (!pitot) out.warnings.emplace_back("no pitot tube: the size of the airspeed is known only through the wind");
+  if (!vane_a) {
+    out.warnings.emplace_back(
+        "no alpha vane: gusts along z stay unknown, so alpha is known only as far as they are small");
+  }
+  if (!vane_b) {
+    out.warnings.emplace_back(
+        "no beta vane: lateral gusts stay unknown, so beta is known only as far as they are small");
+  }
+  if (!pitot && !vane_a && !vane_b) {
+    out.warnings.emplace_back(
+        "neither pitot tube nor vanes: nothing in the recording feels the air; airspeed, alpha, "
+        "beta and wind are assumptions, not estimates");
+  }
+  const auto prior = [&](std::size_t c) -> double {
+    const double vertical = std::hypot(o.initial_wind_down, g.sigma_w);
+    switch (c) {
+      case 0:
+        return std::hypot(o.initial_wind, g.sigma_u);
+      case 1:
+        return std::min(vertical / speed, 1.0);
+      case 2:
+        return std::min(std::hypot(o.initial_wind, g.sigma_v) / speed, 1.0);
+      case 6:
+      case 7:
+        return o.initial_wind;
+      case 8:
+        return o.initial_wind_down;
+      default:
+        return 0.0;
+    }
+  };
+  for (std::size_t c = 0; c < internal::kColumns.size(); ++c) {
+    const double before = prior(c);
+    if (before == 0.0 || !columns.has(c)) continue;
+    QuantityReport q;
+    q.quantity = internal::kColumns[c].name;
+    q.unit = internal::kColumns[c].unit;
+    q.prior_sigma = before;
+    q.sigma = numerics::median(first(columns.sigma(c)));
+    q.observability = observability_of(q.sigma, before);
+    q.statement = fmt::format("{} is {}: sigma {:.3g}{} where {:.3g}{} was assumed beforehand", q.quantity,
+                              to_string(q.observability), shown(q.sigma, q.unit), shown_unit(q.unit),
+                              shown(before, q.unit), shown_unit(q.unit));
+    out.quantities.push_back(std::move(q));
+  }
+}
+
+double error_prior(std::size_t column, const ModelError& model) {
+  using namespace internal;
+  if (column < kFirstImuBias + 3) return kGyroBiasPrior;
+  if (column < kFirstImuScale) return kAccelBiasPrior;
+  if (column < kFirstAirDataError) return kImuScalePrior;
+  constexpr std::array<double, 5> kAir{kVaneBiasPrior, kVaneBiasPrior, kAlphaScalePrior, kPitotScalePrior,
+                                       kPitotBiasPrior};
+  if (column < kFirstCoefficientError) return kAir[column - kFirstAirDataError];
+  return model.sigma(column - kFirstCoefficientError);
+}
+
+void report_sensor_errors(const Solution& solution, const ModelError& model, Reconstruction& out) {
+  std::vector<SensorErrorEstimate> errors;
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < solution.error_columns.size(); ++i) {
+    const std::size_t c = solution.error_columns[i];
+    const double prior = error_prior(c, model);
+    if (!(prior > 0.0)) continue;
+    const auto part = [&](const std::vector<double>& v) { return std::span<const double>(v.data(), solution.count); };
+    errors.push_back({.name = internal::kColumns[c].name,
+                      .unit = internal::kColumns[c].unit,
+                      .value = numerics::median(part(solution.smoothed->value(c))),
+                      .prior_sigma = prior,
+                      .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
+    kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  const auto n = static_cast<Eigen::Index>(kept.size());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = 0; b < n; ++b)
+      covariance(a, b) =
+          solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
+  }
+  out.sensor_errors = judge_sensor_errors(errors, covariance);
+}
+
+void report_guard(const internal::GuardTrace& trace, const std::vector<double>& stamps, std::size_t count,
+                  Reconstruction& out) {
+  GuardReport report;
+  report.falls = trace.falls;
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (trace.model_based[k]) {
+      ++used;
+      continue;
+    }
+    if (k > 0 && !trace.model_based[k - 1] && !report.model_free.empty()) {
+      report.model_free.back().end = stamps[k];
+    } else {
+      report.model_free.push_back({stamps[k], stamps[k]});
+    }
+  }
+  report.model_based_share = count > 0 ? static_cast<double>(used) / static_cast<double>(count) : 0.0;
+  report.statement =
+      report.falls == 0
+          ? std::string("the model-based filter was believed throughout")
+          : fmt::format(
+                "the model-based filter was believed {:.0f} % of the time; its innovations contradicted the "
+                "model {} time{}, first at {:.1f} s",
+                100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
+                report.model_free.empty() ? 0.0 : report.model_free.front().begin);
+  if (report.falls > 0) out.warnings.push_back(report.statement);
+  out.guard = std::move(report);
+}
+
+void add_guard_channels(const internal::GuardTrace& trace, const TimeBase& time, std::size_t count,
+                        Recording& filtered) {
+  const std::vector<double> used(trace.model_based.begin(),
+                                 trace.model_based.begin() + static_cast<std::ptrdiff_t>(count));
+  filtered.add(make_channel("model_based", "1", time, used));
+  filtered.add(make_channel("guard_ratio", "1", time,
+                            {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));
+}
+
+}  // namespace
+
+Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,
+                           const Subject* subject) {
+  if (mapped.frame == Frame::kFlu) {
+    throw InputError(mapped.source, "is in the frame flu; reconstruction of an aircraft needs frd, convert it first");
+  }
+  Reconstruction out;
+  FlightStreams streams = internal::load_streams(mapped, options, out.warnings);
+  out.sigma = streams.sigma;
+  out.filter = options.filter;
+  std::optional<Subject> force_model;
+  if (options.filter != FilterKind::kModelFree) {
+    if (subject == nullptr) {
+      throw InputError(mapped.source, "reconstruct.filter other than \"model-free\" needs a subject with derivatives");
+    }
+    force_model = *subject;
+    internal::load_model_streams(mapped, *force_model, streams, out.warnings);
+  }
+  out.density_origin = streams.density_origin;
+
+  const std::vector<Segment> segments = internal::find_segments(streams, options.max_gap);
+  if (segments.empty()) {
+    throw InputError(
+        mapped.source,
+        fmt::format("holds no second of gyro, accelerometer, attitude and ground velocity together without "
+                    "a gap longer than {:g} s",
+                    options.max_gap));
+  }
+  if (segments.size() > 1) {
+    out.warnings.push_back(
+        fmt::format("gyro or accelerometer pause for more than {:g} s: estimated in {} parts, each "
+                    "with its own start",
+                    options.max_gap, segments.size()));
+  }
+  if (streams.gyro.interval > 0.05) {
+    out.warnings.push_back(
+        fmt::format("gyro at {:.1f} Hz: motion between its samples is not seen", 1.0 / streams.gyro.interval));
+  }
+  std::vector<double> stamps;
+  std::vector<std::size_t> first_stamp;
+  for (const Segment& segment : segments) {
+    out.segments.push_back({segment.begin, segment.end});
+    first_stamp.push_back(stamps.size());
+    const std::vector<double> t = output_stamps(streams, segment, options.rate_Hz);
+    stamps.insert(stamps.end(), t.begin(), t.end());
+  }
+  if (stamps.empty()) throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
+
+  choose_turbulence(streams, options, segments, out);
+  progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.back() - stamps.front()));
+  const internal::SolveTask task{.streams = &streams,
+                                 .options = &options,
+                                 .segments = segments,
+                                 .stamps = &stamps,
+                                 .first_stamp = first_stamp,
+                                 .spectrum = out.turbulence,
+                                 .subject = force_model ? &*force_model : nullptr};
+  Solution solution = options.filter == FilterKind::kGuarded      ? internal::solve_guarded(task, progress)
+                      : options.filter == FilterKind::kModelBased ? internal::solve_model_based(task, progress)
+                                                                  : internal::solve_model_free(task, progress);
+
+  out.interrupted = solution.count < stamps.size();
+  report_sensors(streams, solution, out);
+  report_quantities(streams, options, *solution.smoothed, solution.count, out);
+  if (!solution.air_data_errors_converged) {
+    out.warnings.emplace_back(
+        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
+        "narrow");
+  }
+  if (!force_model && options.wants_air_data_errors()) {
+    out.warnings.emplace_back(
+        "errors of vanes and pitot tube found without a model of the aircraft are biased when pilot or autopilot "
+        "answer "
+        "the gusts, which then look like errors of the sensors; reconstruct.filter = \"model-based\" is not misled so");
+  }
+  report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
+  if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);
+  stamps.resize(solution.count);
+  const TimeBase time = make_time_base(std::move(stamps));
+  const auto finish = [&](Recording& recording, ResultColumns& columns) {
+    recording.source = mapped.source;
+    recording.frame = Frame::kFrd;
+    columns.move_into(recording, time, solution.count);
+  };
+  finish(out.smoothed, *solution.smoothed);
+  if (solution.filtered) finish(out.filtered, *solution.filtered);
+  if (solution.filtered && solution.guard) add_guard_channels(*solution.guard, time, solution.count, out.filtered);
+  return out;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/reconstruction/air_data_filter.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/kalman/innovation.hpp"
+#include "veridyn/estimation/kalman/innovation_guard.hpp"
+
+namespace veridyn::aircraft {
+
+/// Standard deviations (1 sigma) of white sensor errors per sample. The defaults are the specification's reference set,
+/// whose table prints 2 sigma.
+struct SensorSigma {
+  double accelerometer = 0.05;          ///< m/s^2
+  double gyro = 0.35 * M_PI / 180.0;    ///< rad/s
+  double attitude = 0.75 * M_PI / 180;  ///< each Euler angle [rad]
+  double velocity = 0.05;               ///< north and east [m/s]
+  double velocity_down = 0.1;           ///< m/s
+  double dynamic_pressure = 10.0;       ///< Pa
+  double airspeed = 0.5;                ///< m/s
+  double alpha = 0.6 * M_PI / 180.0;    ///< rad
+  double beta = 0.6 * M_PI / 180.0;     ///< rad
+};
+
+/// Which filter delivers the motion through the air.
+enum class FilterKind {
+  kModelFree,   ///< kinematics only (AirDataModel)
+  kModelBased,  ///< the subject's force coefficients are known (ModelBasedAirData)
+  kGuarded      ///< both; the model-based one while its innovations are as they should be (GuardedFilter)
+};
+
+[[nodiscard]] const char* to_string(FilterKind kind);
+
+/// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
+///
+///     [reconstruct]
+///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a
+///     measurement;
+///                              # "guarded": both side by side, the model-based one as long as its innovations allow
+///     estimate_file = "estimate.json"  # where the derivatives of CL, CD, CY come from; without it the subject's
+///     values compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters'
+///     errors too model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the
+///     model is exact model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)] rate = "100 Hz"          #
+///     of the results; without it they come at the gyro's stamps sensors = "auto"         # "reference": the
+///     specification's reference set, right for simulated recordings;
+///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
+///                              # autopilot's errors that are not white amount to (values in `autopilot_floor()`)
+///     turbulence = "auto"      # "none" | "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |
+///                              # "auto": spectrum and intensity of the largest innovation likelihood; or a table
+///                              # { Lu, Lv, Lw, sigma_u, sigma_v, sigma_w } as in a simulation
+///     turbulence_scale = 1.0   # on the intensities, where they are given
+///     estimate = []            # sensor errors to estimate: "gyro_bias", "accel_bias", "gyro_scale", "accel_scale",
+///                              # "alpha_bias", "beta_bias", "alpha_scale" (upwash), "pitot_scale", "pitot_bias"
+///     without = []             # sensors not to use: "alpha", "beta", "pitot"
+///     airspeed_is = "true"     # of a channel `airspeed`: "true" or "equivalent" (indicated by a calibrated tube)
+///     beta_vane = "sideslip"   # what the channel `beta` is: "sideslip" asin(v/Va) or "flank" atan2(v, u)
+///     vane_position = [0,0,0]  # of the vanes from the centre of gravity, body axes [m]
+///     wind_walk = 0.02         # slow wind's random walk, horizontal [m/s / sqrt(s)]: 1.2 m/s in an hour
+///     wind_down_walk = 0.01    # and vertical
+///     initial_wind = "5 m/s"   # 1 sigma of the slow wind before anything is known, north and east
+///     initial_wind_down = "0.5 m/s"
+///     min_airspeed = "3 m/s"   # below it the vanes are not believed
+///     max_gap = "0.5 s"        # without gyro or accelerometer for longer: the estimate ends and starts anew
+///     gate = 5.0               # innovations beyond this many sigma are dropped
+///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
+///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
+///     alpha = "0.6 deg"        # velocity_down, dynamic_pressure, airspeed, alpha, beta
+///     [reconstruct.guard]      # see estimation::GuardOptions
+///     [reconstruct.delay]      # how late a sensor's stamps are: velocity, attitude, pitot, alpha, beta
+///     velocity = "0.1 s"
+struct ReconstructOptions {
+  FilterKind filter = FilterKind::kModelFree;
+  std::filesystem::path estimate_file;  ///< empty: the subject's own values
+  bool compare = true;
+  std::array<double, 3> model_error{0.02, 0.005, 0.01};
+  std::array<double, 3> model_error_walk{5e-4, 2e-4, 2e-4};
+  estimation::GuardOptions guard;
+  double rate_Hz = 0.0;
+  std::string sensors = "auto";
+  std::string turbulence = "auto";
+  double turbulence_scale = 1.0;
+  DrydenSettings own_turbulence;  ///< where `turbulence` is "study"
+  bool gyro_bias = false;
+  bool accel_bias = false;
+  bool gyro_scale = false;
+  bool accel_scale = false;
+  bool alpha_bias = false;
+  bool beta_bias = false;
+  bool alpha_scale = false;
+  bool pitot_scale = false;
+  bool pitot_bias = false;
+  bool use_alpha = true;
+  bool use_beta = true;
+  bool use_pitot = true;
+  bool airspeed_is_true = true;
+  bool beta_is_flank = false;
+  Eigen::Vector3d vane_position = Eigen::Vector3d::Zero();
+  double wind_walk = 0.02;
+  double wind_down_walk = 0.01;
+  double initial_wind = 5.0;
+  double initial_wind_down = 0.5;
+  double min_airspeed = 3.0;
+  double max_gap = 0.5;
+  estimation::InnovationGate gate;
+  struct Sigma {
+    std::optional<double> accelerometer, gyro, attitude, velocity, velocity_down, dynamic_pressure, airspeed, alpha,
+        beta;
+  } sigma;
+  struct Delay {
+    double velocity = 0.0, attitude = 0.0, pitot = 0.0, alpha = 0.0, beta = 0.0;
+  } delay;
+  bool keep_filter = true;  ///< whether the filter's estimate is kept beside the smoother's
+
+  /// Reads the table `[reconstruct]`.
+  /// @throws InputError naming file, line and key.
+  [[nodiscard]] static ReconstructOptions read(const StudyTable& table);
+
+  [[nodiscard]] bool wants_imu_biases() const { return gyro_bias || accel_bias || wants_imu_scales(); }
+  [[nodiscard]] bool wants_imu_scales() const { return gyro_scale || accel_scale; }
+  [[nodiscard]] bool wants_air_data_errors() const {
+    return alpha_bias || beta_bias || alpha_scale || pitot_scale || pitot_bias;
+  }
+  [[nodiscard]] bool wants_sensor_errors() const { return wants_imu_biases() || wants_air_data_errors(); }
+};
+
+/// The least standard deviations that `sensors = "auto"` assumes of an ordinary autopilot. Attitude and velocity of its
+/// own filter, vibration and mounting errors are not white: what the samples scatter by is not how wrong they are.
+/// Accelerometer 0.15 m/s^2, gyro 0.5 deg/s, attitude 2 deg, velocity 0.15 and 0.25 m/s, dynamic pressure 4 Pa,
+/// airspeed 0.3 m/s, vanes 0.4 deg.
+[[nodiscard]] SensorSigma autopilot_floor();
+
+/// What is assumed of sensor errors that are to be estimated, 1 sigma: gyro 1 deg/s, accelerometer 0.5 m/s^2, vane
+/// 5 deg, upwash slope 0.3, pitot scale 0.2 (of the pressure), pitot bias 20 Pa, scale factors of gyro and
+/// accelerometer 0.05.
+inline constexpr double kImuScalePrior = 0.05;
+inline constexpr double kGyroBiasPrior = M_PI / 180.0;
+inline constexpr double kAccelBiasPrior = 0.5;
+inline constexpr double kVaneBiasPrior = 5.0 * M_PI / 180.0;
+inline constexpr double kAlphaScalePrior = 0.3;
+inline constexpr double kPitotScalePrior = 0.2;
+inline constexpr double kPitotBiasPrior = 20.0;
+
+/// A named setting of the specification's table, with its intensities times `scale`: "low_light", "low_moderate",
+/// "medium_light", "medium_moderate", "none".
+[[nodiscard]] DrydenSettings gust_spectrum(const std::string& setting, double scale = 1.0);
+
+}  // namespace veridyn::aircraft

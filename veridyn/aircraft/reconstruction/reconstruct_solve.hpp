@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "veridyn/aircraft/reconstruction/model_based_filter.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_columns.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/kalman/innovation.hpp"
+
+/// Inside of reconstruct.cpp: filters and smoothers over all segments of a recording.
+namespace veridyn::aircraft::internal {
+
+using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
+
+struct SolveTask {
+  const FlightStreams* streams;
+  const ReconstructOptions* options;
+  std::span<const Segment> segments;
+  const std::vector<double>* stamps;         ///< of the results, all segments
+  std::span<const std::size_t> first_stamp;  ///< of each segment
+  DrydenSettings spectrum;
+  const Subject* subject = nullptr;  ///< the force model, for the model-based filter
+};
+
+/// What the guard did along a run, at the stamps of the results.
+struct GuardTrace {
+  std::vector<char> model_based;  ///< whether the estimate is the model-based filter's
+  std::vector<double> nis_ratio;  ///< of the last judged window: largest sum of squared innovations over its limit
+  std::size_t falls = 0;          ///< from model-based to model-free
+};
+
+struct Solution {
+  std::optional<ResultColumns> smoothed, filtered;
+  Monitors monitors;
+  std::size_t count = 0;  ///< samples that hold results
+  /// Covariance of the estimated sensor errors at the end of the longest segment, and their columns.
+  std::vector<std::size_t> error_columns;
+  Eigen::MatrixXd error_covariance;
+  Eigen::Matrix<double, 5, 1> air_error = Eigen::Matrix<double, 5, 1>::Zero();  ///< as estimated, 0 elsewhere
+  bool air_data_errors_converged = true;
+  std::optional<GuardTrace> guard;
+};
+
+[[nodiscard]] Monitors monitors_with(const estimation::InnovationGate& gate);
+[[nodiscard]] AirDataNoise noise_of(const FlightStreams& streams, const ReconstructOptions& options);
+
+[[nodiscard]] ModelError model_error_of(const Subject& subject, const ReconstructOptions& options);
+
+[[nodiscard]] Solution solve_model_free(const SolveTask& task, Progress& progress);
+[[nodiscard]] Solution solve_model_based(const SolveTask& task, Progress& progress);
+/// Filters as GuardedFilter decides; the smoothed estimate is the model-based smoother's but for the time within
+/// `kGuardMargin_s` of where the model was not believed, there the model-free smoother's.
+[[nodiscard]] Solution solve_guarded(const SolveTask& task, Progress& progress);
+inline constexpr double kGuardMargin_s = 3.0;
+
+}  // namespace veridyn::aircraft::internal

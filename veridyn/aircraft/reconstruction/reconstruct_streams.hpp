@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/model/flight_dynamics.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/recording.hpp"
+
+/// Inside of reconstruct.cpp: a recording's channels made ready for event-driven filtering.
+namespace veridyn::aircraft::internal {
+
+/// Scalar sensors in the order in which those of one time stamp are processed: the attitude first, because the rest
+/// depends on it most.
+/// The accelerometer's axes are measurements for the model-based filter only; for the other their streams are empty.
+enum Sensor { kRoll, kPitch, kYaw, kVelNorth, kVelEast, kVelDown, kPitot, kAlpha, kBeta, kAccelX, kAccelY, kAccelZ };
+inline constexpr std::size_t kSensors = 12;
+
+/// Finite samples of a scalar sensor; delays taken off the stamps.
+struct Stream {
+  std::string channel;
+  std::string unit;
+  std::vector<double> t;
+  std::vector<double> v;
+  double sigma = 0.0;
+  double rate_Hz = 0.0;
+};
+
+/// Finite samples of a vector sensor at increasing stamps.
+struct VectorStream {
+  std::vector<double> t;
+  std::vector<Eigen::Vector3d> v;
+  double interval = 0.01;  ///< median [s]
+
+  /// Linear between samples, constant beyond. `cursor` is moved to the last sample at or before `time`, which must not
+  /// run backwards by more than a few samples.
+  [[nodiscard]] Eigen::Vector3d at(double time, std::size_t& cursor) const;
+};
+
+/// What moves the aircraft, for the model-based filter: linear between samples. Channels that the model does not need
+/// are empty and read as 0.
+struct ControlStreams {
+  Stream elevator, aileron, rudder, throttle, rotor_speed;
+
+  /// Positions of the reading cursors, moved by `at`.
+  struct Cursor {
+    std::array<std::size_t, 5> position{};
+  };
+  [[nodiscard]] Controls<double> at(double time, Cursor& cursor) const;
+};
+
+struct FlightStreams {
+  ControlStreams controls;
+  std::array<Stream, kSensors> sensors;
+  VectorStream gyro, accel;
+  std::vector<double> density_t, density;  ///< linear between, constant beyond; one entry when constant
+  std::string density_origin;
+  bool pitot_is_pressure = true;
+  SensorSigma sigma;
+
+  [[nodiscard]] double density_at(double time, std::size_t& cursor) const;
+};
+
+/// @throws InputError naming a missing channel.
+[[nodiscard]] FlightStreams load_streams(const Recording& recording, const ReconstructOptions& options,
+                                         std::vector<std::string>& warnings);
+
+/// Adds what the model-based filter needs beyond `load_streams`: the accelerometer's axes as measurements at the centre
+/// of gravity, deflections, thrust. `subject` becomes the force model to filter with: without moments, and with a
+/// propulsion that turns recorded thrust into thrust where there is a channel `thrust`.
+/// @throws InputError naming a channel or a parameter that the model of CL, CD and CY needs and that is missing.
+void load_model_streams(const Recording& recording, Subject& subject, FlightStreams& streams,
+                        std::vector<std::string>& warnings);
+
+/// A stretch over which gyro and accelerometer have no gap longer than `max_gap`, from where attitude and ground
+/// velocity are known.
+struct Segment {
+  double begin = 0.0;
+  double end = 0.0;
+};
+[[nodiscard]] std::vector<Segment> find_segments(const FlightStreams& streams, double max_gap);
+
+}  // namespace veridyn::aircraft::internal

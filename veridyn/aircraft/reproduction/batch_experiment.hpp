@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/reproduction/experiment.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
+
+namespace veridyn::aircraft {
+
+/// What one method did over all seeds of an experiment.
+struct BatchStatistics {
+  estimation::Method method = estimation::Method::kOls;
+  int estimates = 0;             ///< seeds that gave an estimate
+  Eigen::VectorXd mean, sd;      ///< of the parameters over seeds
+  Eigen::VectorXd mean_sigma;    ///< root mean square of the standard errors that the method stated
+  Eigen::VectorXd coverage;      ///< share of 95 % intervals that hold the truth
+  Eigen::VectorXd output_error;  ///< per seed: largest |z_true - X_true theta| / max |z_true|; NaN without an estimate
+  std::vector<double> example;   ///< X_true theta of the first seed
+
+  /// |mean - truth| in units of the scatter of one estimate.
+  [[nodiscard]] double bias(Eigen::Index parameter, const Eigen::VectorXd& truth) const;
+};
+
+struct BatchExperiment {
+  ExactRows rows;
+  std::vector<BatchStatistics> methods;
+  bool interrupted = false;
+};
+
+/// Estimates the parameters once a seed with every method, on the same noise. Errors are white by construction unless
+/// `noise_time` says otherwise, and so are the error bars.
+[[nodiscard]] BatchExperiment run_batch_experiment(const ExperimentOptions& options,
+                                                   const std::vector<estimation::Method>& methods, Progress& progress);
+
+}  // namespace veridyn::aircraft

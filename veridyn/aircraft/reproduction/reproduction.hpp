@@ -1,0 +1,63 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/reproduction/batch_experiment.hpp"
+#include "veridyn/aircraft/reproduction/tracking_experiment.hpp"
+#include "veridyn/core/check.hpp"
+
+namespace veridyn::aircraft {
+
+/// A published result beside ours: one row of `veridyn reproduce aircraft`, described by a study of its own
+/// (examples/reproduce/aircraft). Beside `[subject]`, `[flight]` and `[experiment]` the study holds
+///
+///     title = "CY, OLS, exact regressors"
+///     finding = "what was published, in words"
+///     [published.OLS]            # published estimates by method and parameter
+///     CY_beta = -0.9804
+///     [experiment]               # see ExperimentOptions, and
+///     methods = ["OLS", "GTLS"]  # batch: these methods once a seed
+///     [[experiment.tracker]]     # or recursive: see read_trackers
+///     [expect]                   # what must be seen; every key is optional
+///     unbiased = "OLS"           # mean over the seeds within 0.1 of an estimate's scatter of the truth, and within 1
+///     %
+///                                # where the truth is larger than ten times the scatter
+///     covers = "OLS"             # 95 % intervals hold the truth in 93 to 97 % of the seeds, every parameter
+///     biased = "OLS"             # some mean is off by more than three times the scatter
+///     output_error_below = { GTLS = 0.02 }     # largest over rows and seeds; see BatchStatistics::output_error
+///     output_error_above = { OLS = 0.10 }
+///     never_settles = ["OLS"]    # trackers; see TrackingRun::settling_s
+///     settles = ["PCA-GTLS"]
+///     settles_when_excited = "PCA-GTLS"        # first every direction is excited, then the estimate settles
+///     settles_last = ["variable"]              # settles in the last phase, in every repetition
+///     loses = { tracker = "GTLS", from = "350 s", to = "480 s" }  # is far off at some time in between: some
+///                                # parameter's error moves the coefficient by more than half of its deviation
+///     faster = { tracker = "variable", than = "constant", factor = 5 }  # median settling after the first change
+///     no_false_alarm = ["variable"]            # neither detector nor forgetting before the first change
+///     detects = ["variable"]     # every change within `detection_window`, in every repetition
+///     detection_window = "30 s"
+///     holds = { tracker = "PCA-GTLS", from = "50 s", to = "300 s" }   # no parameter's error moves the coefficient by
+///                                # more than 5 % of its deviation in 90 % of that time, though a direction was
+///                                unexcited # in more than a tenth of it
+///     cut_off = { tracker = "constant", seconds = 99.8 }      # time to 5 % weight, printed to a tenth of a second
+struct Reproduction {
+  std::string title;
+  std::string finding;
+  std::map<std::string, std::map<std::string, double>> published;
+  ExperimentOptions options;
+  std::optional<BatchExperiment> batch;
+  std::optional<TrackingExperiment> tracking;
+  std::vector<Check> checks;
+  bool interrupted = false;
+
+  [[nodiscard]] bool passed() const;
+};
+
+/// Reads the study, runs its experiment and checks what it expects.
+/// @throws InputError naming file, line and key.
+[[nodiscard]] Reproduction reproduce(const StudyTable& root, Progress& progress);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
+#include "veridyn/aircraft/reproduction/experiment.hpp"
+
+namespace veridyn::aircraft {
+
+/// One way to follow a coefficient, by name: `[[experiment.tracker]]` with `name` and the keys of `[track]`.
+struct TrackerSetting {
+  std::string name;
+  TrackOptions options;
+};
+[[nodiscard]] std::vector<TrackerSetting> read_trackers(const StudyTable& experiment);
+
+/// What one tracker did in one repetition.
+struct TrackingRun {
+  /// Per phase (before the first change, after each): time from its beginning until what changed (at the start: every
+  /// parameter) has settled for the rest of the phase [s]; NaN: it never did. A changed parameter has settled within
+  /// 5 % of its new value; at the start and after events every parameter has to, and has settled when its error moves
+  /// the coefficient by less than 5 % of the coefficient's standard deviation.
+  std::vector<double> settling_s;
+  std::vector<estimation::Change> changes;  ///< alarms of the change detector
+  std::uint64_t triggers = 0;               ///< of variable forgetting
+  TrackHistory history;                     ///< of the first repetition only
+};
+
+struct TrackingExperiment {
+  ExactRows rows;
+  std::vector<double> phase_s;          ///< beginnings of the phases
+  std::vector<std::string> phase_text;  ///< what changed
+  std::vector<TrackerSetting> trackers;
+  std::vector<std::vector<TrackingRun>> runs;  ///< by tracker, by repetition
+  bool interrupted = false;
+
+  /// Settling times of a tracker in a phase over the repetitions, those that never settled as infinity, sorted.
+  [[nodiscard]] std::vector<double> settling(std::size_t tracker, std::size_t phase) const;
+  /// Alarms that no change explains: before the first change, or more than `window_s` after the last one.
+  [[nodiscard]] int false_alarms(std::size_t tracker, double window_s) const;
+  /// Share of repetitions that raise an alarm within `window_s` of the beginning of a phase.
+  [[nodiscard]] double detected(std::size_t tracker, std::size_t phase, double window_s) const;
+};
+
+/// Runs every tracker over the same rows, with the noise of each repetition.
+[[nodiscard]] TrackingExperiment run_tracking_experiment(const ExperimentOptions& options,
+                                                         const std::vector<TrackerSetting>& trackers,
+                                                         Progress& progress);
+
+}  // namespace veridyn::aircraft

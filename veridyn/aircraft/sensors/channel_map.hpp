@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/recording/channel_map.hpp"
+
+namespace veridyn::aircraft {
+
+using recording::ChannelOrigin;
+using recording::MappedRecording;
+using recording::require_channels;
+using recording::StandardChannel;
+
+/// Full throws of the surfaces [rad], to turn servo positions (-1..1) into deflections; from the subject.
+struct SurfaceThrows {
+  double elevator = 0.35;
+  double aileron = 0.35;
+  double rudder = 0.35;
+  bool known = false;  ///< false: the values are the default, which the notes then say
+};
+
+/// Gives the channels of a log their standard names (the list is in docs/aircraft.md).
+///
+/// ArduPilot and PX4 logs are recognised by their messages and mapped through the tables in `ardupilot_map.cpp` and
+/// `px4_map.cpp`; channels that already bear standard names are kept; keys of `map` (the study's `[data.map]`, see
+/// recording::apply_channel_map) come last and win.
+///
+/// A source that never changes (an unconnected sensor) is passed over, with a note.
+/// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
+/// has).
+[[nodiscard]] MappedRecording map_channels(const Recording& log, const StudyTable& map, const SurfaceThrows& throws);
+
+/// All standard names of aircraft recordings with their SI units.
+[[nodiscard]] std::span<const StandardChannel> standard_channels();
+
+}  // namespace veridyn::aircraft

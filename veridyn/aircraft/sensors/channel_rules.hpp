@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/sensors/channel_map.hpp"
+
+namespace veridyn::aircraft::internal {
+
+/// One way to obtain a standard channel. Rules for a channel are tried in order; the first whose source is there and
+/// alive is taken.
+struct ChannelRule {
+  std::string channel;  ///< standard name
+  std::string source;   ///< channel of the log
+  std::string unit;     ///< unit of the raw numbers where the log gives none
+  std::string note;     ///< for the report
+  double scale = 1.0;   ///< applied to the raw number before its unit
+};
+
+/// Takes what is mapped so far and adds to it.
+class MapBuilder {
+ public:
+  MapBuilder(const Recording& log, MappedRecording& mapped) : log_(log), mapped_(mapped) {}
+
+  /// Applies the first usable rule of each channel that is not mapped yet.
+  void apply(std::span<const ChannelRule> rules);
+  /// Adds a channel that was computed from others.
+  void put(std::string channel, std::string unit, TimeBase time, std::vector<double> value, std::string source,
+           std::string note = {});
+  void note(std::string text);
+  /// The log's channel when it is there and changes at all, else null; dead channels are noted once.
+  [[nodiscard]] const Channel* alive(std::string_view name);
+  [[nodiscard]] const Recording& log() const { return log_; }
+  [[nodiscard]] bool mapped(std::string_view channel) const { return mapped_.recording.has(channel); }
+
+ private:
+  const Recording& log_;
+  MappedRecording& mapped_;
+};
+
+using recording::interpolated;
+
+[[nodiscard]] bool is_ardupilot(const Recording& log);
+[[nodiscard]] bool is_px4(const Recording& log);
+void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws);
+void map_px4(MapBuilder& builder, const SurfaceThrows& throws);
+
+}  // namespace veridyn::aircraft::internal

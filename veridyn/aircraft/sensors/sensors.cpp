@@ -1,0 +1,204 @@
+#include "veridyn/aircraft/sensors/sensors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "veridyn/core/assert.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::aircraft {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+void require_not_negative(const StudyTable& t, std::string_view key, double v) {
+  if (!(v >= 0.0)) t.fail(key, fmt::format("= {:g} must be >= 0", v));
+}
+
+/// One number for all channels or one for each.
+void read_each(const StudyTable& t, std::string_view key, const SensorKind& kind, std::array<double, 4>& out,
+               double factor) {
+  if (!t.has(key)) return;
+  const std::vector<double> v = t.numbers(key, kind.unit);
+  if (v.size() != 1 && v.size() != kind.channels) {
+    t.fail(key, fmt::format("has {} numbers, expected 1 or {}", v.size(), kind.channels));
+  }
+  for (std::size_t i = 0; i < kind.channels; ++i) out[i] = factor * v[v.size() == 1 ? 0 : i];
+}
+
+SensorSettings read_sensor(const StudyTable& t, const SensorKind& kind, SensorSettings s) {
+  // Naming a sensor switches it on.
+  s.enabled = t.flag_or("enabled", s.enabled || !t.keys().empty());
+  s.rate = t.positive_or("rate", "1/s", s.rate);
+  if (s.rate > 1e5) t.fail("rate", fmt::format("= {:g} Hz is above 100 kHz", s.rate));
+  if (t.has("sigma") && t.has("two_sigma")) t.fail("sigma", "is given together with two_sigma");
+  read_each(t, "sigma", kind, s.sigma, 1.0);
+  read_each(t, "two_sigma", kind, s.sigma, 0.5);
+  for (const double v : s.sigma) require_not_negative(t, t.has("sigma") ? "sigma" : "two_sigma", v);
+  read_each(t, "bias", kind, s.bias, 1.0);
+  s.bias_sigma = t.number_or("bias_sigma", kind.unit, s.bias_sigma);
+  require_not_negative(t, "bias_sigma", s.bias_sigma);
+  s.walk = t.number_or("walk", kind.unit, s.walk);
+  require_not_negative(t, "walk", s.walk);
+  s.scale = t.number_or("scale", "1", s.scale);
+  s.delay = t.number_or("delay", "s", s.delay);
+  require_not_negative(t, "delay", s.delay);
+  s.resolution = t.number_or("resolution", kind.unit, s.resolution);
+  require_not_negative(t, "resolution", s.resolution);
+  s.dropout = t.number_or("dropout", "1", s.dropout);
+  if (!(s.dropout >= 0.0 && s.dropout < 1.0)) t.fail("dropout", fmt::format("= {:g} must be >= 0 and < 1", s.dropout));
+  s.dropout_duration = t.number_or("dropout_duration", "s", s.dropout_duration);
+  require_not_negative(t, "dropout_duration", s.dropout_duration);
+  return s;
+}
+
+}  // namespace
+
+const std::array<SensorKind, kSensorKinds>& sensor_kinds() {
+  using T = Truth;
+  static constexpr std::array<SensorKind, kSensorKinds> kKinds = {{
+      {"accelerometer", "m/s^2", 3, {T::kImuAccelX, T::kImuAccelY, T::kImuAccelZ}, {"accel_x", "accel_y", "accel_z"}},
+      {"gyro", "rad/s", 3, {T::kGyroX, T::kGyroY, T::kGyroZ}, {"gyro_x", "gyro_y", "gyro_z"}},
+      {"ahrs", "rad", 3, {T::kRoll, T::kPitch, T::kYaw}, {"roll", "pitch", "yaw"}},
+      {"magnetometer", "T", 3, {T::kMagX, T::kMagY, T::kMagZ}, {"mag_x", "mag_y", "mag_z"}},
+      {"gps_velocity", "m/s", 3, {T::kVelNorth, T::kVelEast, T::kVelDown}, {"vel_north", "vel_east", "vel_down"}},
+      {"gps_position", "m", 3, {T::kPosNorth, T::kPosEast, T::kPosDown}, {"pos_north", "pos_east", "pos_down"}},
+      {"barometer", "Pa", 1, {T::kStaticPressure}, {"static_pressure"}},
+      {"thermometer", "K", 1, {T::kAirTemperature}, {"air_temperature"}},
+      {"pitot", "Pa", 1, {T::kDynamicPressure}, {"dynamic_pressure"}},
+      {"alpha_vane", "rad", 1, {T::kAlpha}, {"alpha"}},
+      {"beta_vane", "rad", 1, {T::kBeta}, {"beta"}},
+      {"servos",
+       "1",
+       4,
+       {T::kElevator, T::kAileron, T::kRudder, T::kThrottle},
+       {"elevator", "aileron", "rudder", "throttle"}},
+      {"tachometer", "rad/s", 1, {T::kEngineSpeed}, {"engine_speed"}},
+      {"thrust", "N", 1, {T::kThrust}, {"thrust"}},
+  }};
+  return kKinds;
+}
+
+SensorSet reference_sensors() {
+  SensorSet set;
+  const auto sensor = [&set](std::string_view name) -> SensorSettings& {
+    for (std::size_t i = 0; i < kSensorKinds; ++i) {
+      if (sensor_kinds()[i].name == name) return set[i];
+    }
+    VERIDYN_ASSERT(false);
+    return set[0];
+  };
+  const auto give = [&](std::string_view name, double rate, std::array<double, 4> sigma) {
+    sensor(name).rate = rate;
+    sensor(name).sigma = sigma;
+  };
+  const auto each = [](double s) { return std::array<double, 4>{s, s, s, s}; };
+  give("accelerometer", 100, each(0.05));
+  give("gyro", 100, each(0.35 * kDegree));
+  give("ahrs", 100, each(0.75 * kDegree));
+  give("magnetometer", 50, each(0.2e-6));
+  give("gps_velocity", 20, {0.05, 0.05, 0.1, 0});
+  give("gps_position", 20, {1.0, 1.0, 2.0, 0});
+  give("barometer", 20, each(5.0));
+  give("thermometer", 20, each(0.25));
+  give("pitot", 100, each(10.0));
+  give("alpha_vane", 100, each(0.6 * kDegree));
+  give("beta_vane", 100, each(0.6 * kDegree));
+  give("servos", 100, each(0.0));
+  give("tachometer", 100, each(0.0));
+  give("thrust", 100, each(0.0));
+  sensor("thrust").enabled = false;
+  return set;
+}
+
+SensorSet read_sensors(const StudyTable& table) {
+  SensorSet set = reference_sensors();
+  const std::vector<std::string> sets = {"reference", "perfect"};
+  if (table.choice_or("set", sets, "reference") == "perfect") {
+    for (SensorSettings& s : set) s.sigma = {};
+  }
+  std::vector<std::string> names = {"set"};
+  for (const SensorKind& kind : sensor_kinds()) names.emplace_back(kind.name);
+  for (const std::string& key : table.keys()) {
+    if (std::find(names.begin(), names.end(), key) == names.end()) {
+      table.fail(key, fmt::format("unknown sensor{}", suggestion(key, names)));
+    }
+  }
+  for (std::size_t i = 0; i < kSensorKinds; ++i) {
+    set[i] = read_sensor(table.table_or_empty(sensor_kinds()[i].name), sensor_kinds()[i], set[i]);
+  }
+  return set;
+}
+
+Sensor::Sensor(const SensorKind& kind, const SensorSettings& settings, std::uint64_t seed)
+    : kind_(&kind),
+      settings_(settings),
+      noise_(seed, std::string("sensor.") + std::string(kind.name)),
+      losses_(seed, std::string("dropout.") + std::string(kind.name)) {
+  for (std::size_t i = 0; i < kind.channels; ++i) settings_.bias[i] += settings_.bias_sigma * noise_.normal();
+  count_ = static_cast<long long>(std::ceil(settings_.delay * settings_.rate - 1e-9));
+}
+
+void Sensor::observe(double t, const TruthSample& now) {
+  if (!settings_.enabled) return;
+  constexpr double kSlack = 1e-9;  // a stamp that coincides with a step up to rounding belongs to it
+  while (true) {
+    const double stamp = static_cast<double>(count_) / settings_.rate;
+    const double event = stamp - settings_.delay;
+    if (event > t + kSlack) break;
+    const double span = t - last_time_;
+    const double share = !started_ || span <= 0.0 ? 1.0 : std::min(1.0, std::max(0.0, (event - last_time_) / span));
+    sample(event, stamp, share, now);
+    ++count_;
+  }
+  last_ = now;
+  last_time_ = t;
+  started_ = true;
+}
+
+void Sensor::sample(double /*event_time*/, double stamp, double share, const TruthSample& now) {
+  std::array<double, 4> y{};
+  const double walk_step = settings_.walk / std::sqrt(settings_.rate);
+  for (std::size_t i = 0; i < kind_->channels; ++i) {
+    const Truth source = kind_->source[i];
+    double truth = now[source];
+    const bool angle = kTruthChannels[static_cast<std::size_t>(source)].angle;
+    if (share < 1.0) {
+      double change = now[source] - last_[source];
+      if (angle) change = std::remainder(change, 2.0 * std::numbers::pi);
+      truth = last_[source] + share * change;
+    }
+    wander_[i] += walk_step * noise_.normal();
+    y[i] = settings_.bias[i] + wander_[i] + (1.0 + settings_.scale) * truth + settings_.sigma[i] * noise_.normal();
+    if (angle) y[i] = std::remainder(y[i], 2.0 * std::numbers::pi);
+    if (settings_.resolution > 0.0) y[i] = settings_.resolution * std::round(y[i] / settings_.resolution);
+  }
+  if (settings_.dropout > 0.0) {
+    // Losses begin at random and last for an exponential time, such that the share of lost samples is as asked.
+    if (stamp < lost_until_) return;
+    const double length = std::max(settings_.dropout_duration, 1.0 / settings_.rate) * settings_.rate;
+    const double begin = settings_.dropout / (settings_.dropout + length * (1.0 - settings_.dropout));
+    if (losses_.uniform() < begin) {
+      const double extra = std::max(0.0, settings_.dropout_duration - 1.0 / settings_.rate);
+      lost_until_ = stamp + (1.0 - 1e-9) / settings_.rate - extra * std::log1p(-losses_.uniform());
+      return;
+    }
+  }
+  time_.push_back(stamp);
+  for (std::size_t i = 0; i < kind_->channels; ++i) value_[i].push_back(y[i]);
+}
+
+void Sensor::give(Recording& recording) {
+  if (!settings_.enabled) return;
+  const TimeBase base = make_time_base(std::move(time_));
+  for (std::size_t i = 0; i < kind_->channels; ++i) {
+    const std::string_view unit = kTruthChannels[static_cast<std::size_t>(kind_->source[i])].unit;
+    recording.add(make_channel(std::string(kind_->channel[i]), unit, base, std::move(value_[i])));
+  }
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/aircraft/sensors/flight_truth.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/numerics/random.hpp"
+
+namespace veridyn::aircraft {
+
+/// Error model of one sensor: y = bias + walk(t) + (1 + scale) y_true + white noise, taken at its own rate, with delay,
+/// quantisation and dropouts. Units are those of the channel in SI.
+struct SensorSettings {
+  bool enabled = true;
+  double rate = 100.0;            ///< [Hz]
+  std::array<double, 4> sigma{};  ///< standard deviation of the white noise, each channel
+  std::array<double, 4> bias{};   ///< fixed, each channel
+  double bias_sigma = 0.0;        ///< standard deviation of a further fixed bias, drawn once a flight
+  double walk = 0.0;              ///< of the wandering bias: standard deviation after one second [unit/sqrt(s)]
+  double scale = 0.0;             ///< error of scale [-]
+  double delay = 0.0;             ///< from event to time stamp [s]
+  double resolution = 0.0;        ///< step of the last digit; 0: none
+  double dropout = 0.0;           ///< share of samples that are lost [0, 1)
+  double dropout_duration = 0.0;  ///< mean length of a loss [s]; 0: single samples
+  friend bool operator==(const SensorSettings&, const SensorSettings&) = default;
+};
+
+/// A kind of sensor and what it measures.
+struct SensorKind {
+  std::string_view name;
+  std::string_view unit;  ///< of noise and biases
+  std::size_t channels;
+  std::array<Truth, 4> source;
+  std::array<std::string_view, 4> channel;
+};
+
+/// All sensors, in a fixed order: accelerometer, gyro, ahrs, magnetometer, gps_velocity, gps_position, barometer,
+/// thermometer, pitot, alpha_vane, beta_vane, servos, tachometer, thrust.
+inline constexpr std::size_t kSensorKinds = 14;
+[[nodiscard]] const std::array<SensorKind, kSensorKinds>& sensor_kinds();
+
+/// Settings of every sensor, in the order of `sensor_kinds()`.
+using SensorSet = std::array<SensorSettings, kSensorKinds>;
+
+/// The reference set (two standard deviations): accelerometer 0.1 m/s^2, gyro 0.7 deg/s, AHRS angles 1.5 deg, pitot 20
+/// Pa, vanes 1.2 deg at 100 Hz; GPS velocity 0.1 m/s (down 0.2) at 20 Hz. Ours for the rest: GPS position 2 m (down 4
+/// m) at 20 Hz, barometer 10 Pa and thermometer 0.5 K at 20 Hz, magnetometer 0.4 uT at 50 Hz; servo outputs and
+/// tachometer without error at 100 Hz; the thrust sensor is off.
+[[nodiscard]] SensorSet reference_sensors();
+
+/// Reads `[sensors]`: `set = "reference"` (or "perfect": the same sensors without error), then a table for each sensor
+/// that differs, `[sensors.gyro]`:
+///
+///     enabled = true
+///     rate = 100                  # [Hz]
+///     two_sigma = "0.7 deg/s"     # twice the standard deviation; one value, or one for each channel
+///     sigma = "0.35 deg/s"        # or the standard deviation itself
+///     bias = [0.01, 0, 0]         # one value, or one for each channel
+///     bias_sigma = "0.1 deg/s"    # a fixed bias drawn for each flight
+///     walk = 1e-4                 # standard deviation of the wandering bias after 1 s
+///     scale = 0.01                # error of scale
+///     delay = 0.02                # [s]
+///     resolution = 0.001          # quantisation
+///     dropout = 0.01              # share of lost samples
+///     dropout_duration = 0.5      # mean length of a loss [s]
+[[nodiscard]] SensorSet read_sensors(const StudyTable& table);
+
+/// One sensor at work. Draws from a random stream of its own, so that switching one off leaves the others unchanged.
+class Sensor {
+ public:
+  Sensor(const SensorKind& kind, const SensorSettings& settings, std::uint64_t seed);
+  /// The truth at `t`, `step` seconds after the last call; stamps between are taken on the straight line. The first
+  /// call is at t = 0.
+  void observe(double t, const TruthSample& now);
+  /// The channels measured so far are moved to the recording.
+  void give(Recording& recording);
+
+ private:
+  void sample(double event_time, double stamp, double share, const TruthSample& now);
+
+  const SensorKind* kind_;
+  SensorSettings settings_;
+  numerics::RandomStream noise_;
+  numerics::RandomStream losses_;
+  std::array<double, 4> wander_{};
+  TruthSample last_;
+  double last_time_ = 0.0;
+  bool started_ = false;
+  long long count_ = 0;
+  double lost_until_ = -1.0;
+  std::vector<double> time_;
+  std::array<std::vector<double>, 4> value_;
+};
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,446 @@
+#include "veridyn/aircraft/sensors/swing_test.hpp"
+
+#include <ceres/jet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/read.hpp"
+#include "veridyn/numerics/resample.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Inputs of an axis: mass, cradle mass, filar distance, length, cradle length, offset, frequency, cradle frequency.
+constexpr int kInputs = 8;
+
+template <typename Scalar>
+struct Terms {
+  Scalar whole, cradle, transfer;
+  [[nodiscard]] Scalar sum() const { return whole - cradle - transfer; }
+};
+
+/// The three terms of the inertia: suspension with the aircraft, cradle alone, parallel axis.
+template <typename Scalar>
+Terms<Scalar> terms_of(const SwingAxis& axis, double g, bool with_cradle, const Scalar* v) {
+  const Scalar &m = v[0], &mc = v[1], &d = v[2], &L = v[3], &Lc = v[4], &w = v[6], &wc = v[7];
+  const Scalar total = m + mc;
+  if (axis.suspension == Suspension::kBifilar) {
+    return {total * g * d * d / (4.0 * w * w * L), with_cradle ? mc * g * d * d / (4.0 * wc * wc * Lc) : Scalar(0.0),
+            Scalar(0.0)};
+  }
+  const Scalar own = L + v[5];
+  return {total * g * L / (w * w), with_cradle ? mc * g * Lc / (wc * wc) : Scalar(0.0), m * own * own};
+}
+
+Eigen::VectorXd values_of(const SwingTest& test, const SwingAxis& axis, double w, double wc) {
+  Eigen::VectorXd v(kInputs);
+  v << test.mass, test.cradle_mass, axis.filar_distance, axis.length, axis.cradle_length, axis.offset, w, wc;
+  return v;
+}
+
+double not_negative(const StudyTable& t, std::string_view key, std::string_view unit, double otherwise) {
+  const double value = t.number_or(key, unit, otherwise);
+  if (!(value >= 0.0)) t.fail(key, fmt::format("= {:g} must be >= 0", value));
+  return value;
+}
+
+SwingAxis read_axis(const StudyTable& t, char name, bool cradle) {
+  SwingAxis axis;
+  axis.axis = name;
+  const std::vector<std::string> choices{"bifilar", "pendulum"};
+  const bool bifilar = t.choice_or("suspension", choices, "bifilar") == "bifilar";
+  axis.suspension = bifilar ? Suspension::kBifilar : Suspension::kPendulum;
+  if (bifilar) axis.filar_distance = t.positive("filar_distance", "m");
+  axis.length = t.positive("length", "m");
+  if (!bifilar) axis.offset = t.number_or("offset", "m", 0.0);
+  axis.files = t.files("files");
+  if (axis.files.empty()) t.fail("files", "is empty");
+  if (cradle) {
+    axis.cradle_length = t.positive("cradle_length", "m");
+    axis.cradle_files = t.files("cradle_files");
+    if (axis.cradle_files.empty()) t.fail("cradle_files", "is empty, but there is a cradle_mass");
+  } else if (t.has("cradle_files")) {
+    t.fail("cradle_files", "is given, but cradle_mass is 0");
+  }
+  return axis;
+}
+
+/// Mean of the runs' frequencies and its standard deviation.
+std::pair<double, double> mean_frequency(const std::vector<SwingRun>& runs, bool cradle) {
+  std::vector<double> w;
+  double fits = 0.0;
+  for (const SwingRun& run : runs) {
+    if (run.cradle_alone != cradle || !run.fit.usable()) continue;
+    w.push_back(run.fit.undamped_frequency());
+    fits += run.fit.sigma_frequency * run.fit.sigma_frequency;
+  }
+  if (w.empty()) return {kNaN, kNaN};
+  const auto n = static_cast<double>(w.size());
+  double mean = 0.0;
+  for (const double x : w) mean += x / n;
+  double scatter = 0.0;
+  for (const double x : w) scatter += (x - mean) * (x - mean);
+  const double by_fits = std::sqrt(fits) / n;
+  // Runs are repeated because each hangs a little differently: what a fit does not know, the scatter shows.
+  return {mean, w.size() > 1 ? std::max(by_fits, std::sqrt(scatter / (n - 1.0) / n)) : by_fits};
+}
+
+class Analysis {
+ public:
+  Analysis(const SwingTest& test, Progress& progress) : test_(test), progress_(progress) {}
+
+  SwingTestResult run() {
+    for (const SwingAxis& axis : test_.axes) {
+      progress_.stage(fmt::format("fitting the swings about {}", axis.axis));
+      result_.axes.push_back(analyse(axis));
+    }
+    covariance();
+    check_body();
+    summarise();
+    return std::move(result_);
+  }
+
+ private:
+  bool with_cradle() const { return test_.cradle_mass > 0.0; }
+
+  AxisInertia analyse(const SwingAxis& axis) {
+    AxisInertia inertia;
+    inertia.test = axis;
+    const auto read = [&](const std::vector<std::filesystem::path>& files, bool cradle) {
+      bool any = false;
+      for (const std::filesystem::path& file : files) {
+        SwingRun run;
+        run.file = file.filename().string();
+        run.cradle_alone = cradle;
+        run.swing = swing_angle(io::read_recording(file), test_.channel);
+        std::tie(run.begin, run.end) = free_swing(run.swing, test_.settle_s, test_.fade);
+        const std::size_t count = run.end - run.begin;
+        run.fit = estimation::fit_damped_cosine(std::span<const double>(run.swing.time).subspan(run.begin, count),
+                                                std::span<const double>(run.swing.angle).subspan(run.begin, count));
+        if (run.fit.usable()) {
+          any = true;
+          warn_about(run);
+        } else {
+          result_.warnings.push_back(fmt::format("{} is left out: {}", run.file, to_string(run.fit.end)));
+        }
+        inertia.runs.push_back(std::move(run));
+      }
+      if (!any) {
+        throw InputError(files.front().string(),
+                         fmt::format("neither this nor another {} run about {} holds a decaying oscillation",
+                                     cradle ? "cradle" : "aircraft", axis.axis));
+      }
+    };
+    read(axis.files, false);
+    if (with_cradle()) read(axis.cradle_files, true);
+    std::tie(inertia.frequency, inertia.sigma_frequency) = mean_frequency(inertia.runs, false);
+    if (with_cradle()) {
+      std::tie(inertia.cradle_frequency, inertia.sigma_cradle_frequency) = mean_frequency(inertia.runs, true);
+    } else {
+      inertia.cradle_frequency = 1.0;
+    }
+    propagate(inertia);
+    judge(inertia);
+    return inertia;
+  }
+
+  void warn_about(const SwingRun& run) {
+    // A pendulum's period grows by a sixteenth of the amplitude squared; of a bifilar suspension it does so as well.
+    const double slower = run.fit.mean_square_swing / 16.0;
+    if (slower > 0.002) {
+      result_.warnings.push_back(fmt::format(
+          "{}: swings of {:.0f} deg at first make it slower by about {:.1f} %, the inertia larger by {:.1f} %",
+          run.file, run.fit.amplitude() * 180.0 / M_PI, 100.0 * slower, 200.0 * slower));
+    }
+    if (run.swing.principal_share < 0.9) {
+      result_.warnings.push_back(fmt::format("{}: only {:.0f} % of the motion is about its main axis", run.file,
+                                             100.0 * run.swing.principal_share));
+    }
+  }
+
+  Eigen::VectorXd sigma_of(const AxisInertia& i) const {
+    const bool bifilar = i.test.suspension == Suspension::kBifilar;
+    Eigen::VectorXd sigma(kInputs);
+    sigma << test_.sigma_mass, with_cradle() ? test_.sigma_mass : 0.0, bifilar ? test_.sigma_filar_distance : 0.0,
+        test_.sigma_length, with_cradle() ? test_.sigma_length : 0.0, bifilar ? 0.0 : test_.sigma_length,
+        i.sigma_frequency, i.sigma_cradle_frequency;
+    return sigma;
+  }
+
+  Eigen::RowVectorXd jacobian_of(const AxisInertia& i) const {
+    using Jet = ceres::Jet<double, kInputs>;
+    const Eigen::VectorXd v = values_of(test_, i.test, i.frequency, i.cradle_frequency);
+    std::array<Jet, kInputs> jets;
+    for (int k = 0; k < kInputs; ++k) jets[static_cast<std::size_t>(k)] = Jet(v(k), k);
+    return terms_of(i.test, test_.gravity, with_cradle(), jets.data()).sum().v.transpose();
+  }
+
+  void propagate(AxisInertia& i) const {
+    const Eigen::VectorXd v = values_of(test_, i.test, i.frequency, i.cradle_frequency);
+    const Terms<double> terms = terms_of(i.test, test_.gravity, with_cradle(), v.data());
+    i.value = terms.sum();
+    i.largest_term = std::max({terms.whole, terms.cradle, terms.transfer});
+    const Eigen::VectorXd sigma = sigma_of(i);
+    const Eigen::VectorXd parts = jacobian_of(i).transpose().cwiseProduct(sigma);
+    i.by_mass = parts.head<2>().norm();
+    i.by_filar_distance = std::abs(parts(2));
+    i.by_length = parts.segment<3>(3).norm();
+    i.by_frequency = parts.tail<2>().norm();
+    i.per_half_percent_of_frequency = std::abs(jacobian_of(i)(6)) * 0.005 * i.frequency;
+    estimation::UncertainInputs inputs;
+    inputs.names = {"mass",          "cradle mass", "filar distance", "length",
+                    "cradle length", "offset",      "frequency",      "cradle frequency"};
+    inputs.low = inputs.high = v;
+    inputs.correlation = Eigen::MatrixXd::Identity(kInputs, kInputs);
+    inputs.error_covariance = sigma.cwiseAbs2().asDiagonal();
+    const double g = test_.gravity;
+    const bool cradle = with_cradle();
+    const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).sum(); };
+    i.error = estimation::propagate_errors(inputs, 1, f, {.draws = test_.draws, .seed = test_.seed}).outputs[0];
+  }
+
+  void judge(AxisInertia& i) const {
+    const double relative = i.sigma() / i.value;
+    const double ratio = i.largest_term / std::abs(i.value);
+    const bool determined = i.value > 0.0 && relative <= test_.max_relative_sigma;
+    i.verdict = determined ? InertiaVerdict::kDetermined : InertiaVerdict::kNotDetermined;
+    const std::string numbers = fmt::format("I{} = {:.4g} +- {:.2g} kg m^2", i.test.axis, i.value, i.sigma());
+    if (determined) {
+      i.reason = fmt::format("{}, {:.1f} %", numbers, 100.0 * relative);
+      return;
+    }
+    i.reason = fmt::format("I{} is not determined by this test: {}", i.test.axis, numbers);
+    if (!(i.value > 0.0)) {
+      i.reason += ", which no body has";
+    } else {
+      i.reason += fmt::format(", {:.0f} % (limit {:.0f} %)", 100.0 * relative, 100.0 * test_.max_relative_sigma);
+    }
+    if (ratio > 5.0) {
+      i.reason += fmt::format(
+          "; it is the difference of numbers up to {:.0f} times larger: half a percent of frequency moves it by {:.2g} "
+          "kg m^2",
+          ratio, i.per_half_percent_of_frequency);
+    }
+  }
+
+  void covariance() {
+    const auto n = static_cast<Eigen::Index>(result_.axes.size());
+    result_.covariance = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const AxisInertia& first = result_.axes[static_cast<std::size_t>(a)];
+      const Eigen::RowVectorXd Ja = jacobian_of(first).cwiseProduct(sigma_of(first).transpose());
+      result_.covariance(a, a) = first.sigma() * first.sigma();
+      for (Eigen::Index b = 0; b < a; ++b) {
+        const AxisInertia& second = result_.axes[static_cast<std::size_t>(b)];
+        const Eigen::RowVectorXd Jb = jacobian_of(second).cwiseProduct(sigma_of(second).transpose());
+        // The two masses are the same in all tests; lines and lengths are measured for each.
+        result_.covariance(a, b) = result_.covariance(b, a) = Ja.head<2>().dot(Jb.head<2>());
+      }
+    }
+  }
+
+  /// No moment exceeds the sum of the others.
+  void check_body() {
+    if (result_.axes.size() != 3) return;
+    const Eigen::Vector3d J(result_.axes[0].value, result_.axes[1].value, result_.axes[2].value);
+    Eigen::Index largest = 0;
+    J.maxCoeff(&largest);
+    Eigen::Vector3d signs = Eigen::Vector3d::Constant(-1.0);
+    signs(largest) = 1.0;
+    const double excess = signs.dot(J);
+    const double sigma = std::sqrt(std::max(0.0, signs.dot(result_.covariance * signs)));
+    if (!(excess > 0.0)) return;
+    AxisInertia& axis = result_.axes[static_cast<std::size_t>(largest)];
+    const std::string text = fmt::format(
+        "I{} exceeds the sum of the other two by {:.2g} +- {:.2g} kg m^2, which no body of positive mass does",
+        axis.test.axis, excess, sigma);
+    if (excess > 2.0 * sigma) {
+      for (AxisInertia& i : result_.axes) {
+        i.verdict = InertiaVerdict::kNotDetermined;
+        i.reason += "; " + text;
+      }
+    } else {
+      result_.warnings.push_back(text + " (within its error)");
+    }
+  }
+
+  void summarise() {
+    estimation::Estimate& e = result_.estimate;
+    e.subject = test_.name;
+    e.method = "swing test";
+    std::vector<std::string> good, bad;
+    const double z = numerics::normal_quantile(0.975);
+    for (const AxisInertia& i : result_.axes) {
+      const bool determined = i.verdict == InertiaVerdict::kDetermined;
+      (determined ? good : bad).push_back(fmt::format("J{}", i.test.axis));
+      // error = measured - true: the interval of the true value is the other way round.
+      const bool skew = i.error.not_finite == 0;
+      e.parameters.push_back(
+          {.name = fmt::format("J{}", i.test.axis),
+           .value = i.value,
+           .sigma = i.sigma(),
+           .low95 = skew ? i.value - i.error.high : i.value - z * i.sigma(),
+           .high95 = skew ? i.value - i.error.low : i.value + z * i.sigma(),
+           .unit = "kg m^2",
+           .status = determined ? estimation::ParameterStatus::kIdentified : estimation::ParameterStatus::kRejected});
+      e.fit[fmt::format("J{}.frequency", i.test.axis)] = i.frequency;
+      e.fit[fmt::format("J{}.sigma_frequency", i.test.axis)] = i.sigma_frequency;
+      if (with_cradle()) {
+        e.fit[fmt::format("J{}.cradle_frequency", i.test.axis)] = i.cradle_frequency;
+        e.fit[fmt::format("J{}.sigma_cradle_frequency", i.test.axis)] = i.sigma_cradle_frequency;
+      }
+      if (!determined) e.warnings.push_back(i.reason);
+    }
+    e.covariance = result_.covariance;
+    std::vector<std::string> parts;
+    if (!good.empty()) parts.push_back(fmt::format("determined: {}", fmt::join(good, ", ")));
+    if (!bad.empty()) parts.push_back(fmt::format("not determined: {}", fmt::join(bad, ", ")));
+    e.verdict = fmt::format("{}", fmt::join(parts, "; "));
+    e.warnings.insert(e.warnings.end(), result_.warnings.begin(), result_.warnings.end());
+  }
+
+  const SwingTest& test_;
+  Progress& progress_;
+  SwingTestResult result_;
+};
+
+}  // namespace
+
+SwingTest SwingTest::read(const StudyTable& table) {
+  SwingTest test;
+  test.name = table.text_or("name", test.name);
+  test.mass = table.positive("mass", "kg");
+  test.cradle_mass = not_negative(table, "cradle_mass", "kg", 0.0);
+  test.gravity = table.positive_or("gravity", "m/s^2", test.gravity);
+  test.channel = table.text_or("channel", "");
+  test.max_relative_sigma = table.positive_or("max_relative_sigma", "1", test.max_relative_sigma);
+  test.settle_s = not_negative(table, "settle", "s", test.settle_s);
+  test.fade = not_negative(table, "fade", "1", test.fade);
+  if (!(test.fade < 1.0)) table.fail("fade", fmt::format("= {:g} must be below 1", test.fade));
+  const long long draws = table.integer_or("draws", static_cast<long long>(test.draws));
+  if (!(draws >= 100 && draws <= 100'000'000))
+    table.fail("draws", fmt::format("= {} must be from 100 to 100000000", draws));
+  test.draws = static_cast<std::size_t>(draws);
+  const StudyTable sigma = table.table_or_empty("sigma");
+  test.sigma_mass = not_negative(sigma, "mass", "kg", test.sigma_mass);
+  test.sigma_filar_distance = not_negative(sigma, "filar_distance", "m", test.sigma_filar_distance);
+  test.sigma_length = not_negative(sigma, "length", "m", test.sigma_length);
+  for (const char axis : {'x', 'y', 'z'}) {
+    const std::string key(1, axis);
+    if (table.has(key)) test.axes.push_back(read_axis(table.table(key), axis, test.cradle_mass > 0.0));
+  }
+  if (test.axes.empty()) table.fail("x", "is missing: the swing test has none of the tables x, y, z");
+  return test;
+}
+
+SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
+  SwingAngle swing;
+  const auto take = [&](const Channel& angle) {
+    swing.time.assign(angle.times().begin(), angle.times().end());
+    swing.angle = angle.value;
+    numerics::unwrap_angles(swing.angle);
+  };
+  if (!channel.empty()) {
+    take(recording.at(channel));
+    return swing;
+  }
+  const std::array<const char*, 4> names{"qx", "qy", "qz", "qw"};
+  if (std::any_of(names.begin(), names.end(), [&](const char* n) { return !recording.has(n); })) {
+    if (const Channel* angle = recording.find("angle")) {
+      if (!angle->unit.same_dimension(parse_unit("rad")))
+        throw InputError(recording.source, "channel angle has no unit: write angle[deg] or angle[rad] in the header");
+      take(*angle);
+      return swing;
+    }
+    throw InputError(
+        recording.source,
+        fmt::format("holds no swing: neither the quaternion qx, qy, qz, qw nor a channel `angle`; it has {}",
+                    fmt::join(recording.names(), ", ")));
+  }
+  const Channel& first = recording.at("qx");
+  std::vector<Eigen::Vector4d> q;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    Eigen::Vector4d v;
+    for (std::size_t k = 0; k < 4; ++k) v(static_cast<Eigen::Index>(k)) = recording.at(names[k]).value[i];
+    if (!v.allFinite() || !(v.norm() > 0.5)) continue;
+    swing.time.push_back(first.times()[i]);
+    q.push_back(v.normalized());
+  }
+  if (q.empty()) throw InputError(recording.source, "its quaternion holds no attitude");
+  // Mean attitude: the eigenvector of sum q q' (Markley 2007), which is indifferent to the sign of q.
+  Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+  for (const Eigen::Vector4d& v : q) A += v * v.transpose();
+  const Eigen::Vector4d m = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(A).eigenvectors().col(3);
+  const Eigen::Quaterniond mean(m(3), m(0), m(1), m(2));
+  Eigen::MatrixXd turn(static_cast<Eigen::Index>(q.size()), 3);
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const Eigen::Quaterniond d = mean.conjugate() * Eigen::Quaterniond(q[i](3), q[i](0), q[i](1), q[i](2));
+    const double s = d.w() < 0.0 ? -1.0 : 1.0;
+    const double n = d.vec().norm();
+    const double scale = n > 1e-12 ? 2.0 * std::atan2(n, std::abs(d.w())) / n : 2.0;
+    turn.row(static_cast<Eigen::Index>(i)) = s * scale * d.vec().transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(turn.transpose() * turn);
+  const Eigen::Vector3d axis = principal.eigenvectors().col(2);
+  const Eigen::VectorXd angle = turn * axis;
+  swing.angle.assign(angle.begin(), angle.end());
+  const double all = principal.eigenvalues().sum();
+  swing.principal_share = all > 0.0 ? principal.eigenvalues()(2) / all : 1.0;
+  return swing;
+}
+
+std::pair<std::size_t, std::size_t> free_swing(const SwingAngle& swing, double settle_s, double fade) {
+  const std::size_t n = swing.angle.size();
+  if (n == 0) return {0, 0};
+  const double rest = numerics::median(swing.angle);
+  const auto away = [&](std::size_t i) { return std::abs(swing.angle[i] - rest); };
+  std::size_t peak = 0;
+  for (std::size_t i = 1; i < n; ++i) {
+    if (away(i) > away(peak)) peak = i;
+  }
+  std::size_t begin = peak, end = n;
+  while (begin < n && swing.time[begin] < swing.time[peak] + settle_s) ++begin;
+  while (end > begin && !(away(end - 1) >= fade * away(peak))) --end;
+  return {begin, end};
+}
+
+const AxisInertia* SwingTestResult::find(char axis) const {
+  const auto found = std::find_if(axes.begin(), axes.end(), [&](const AxisInertia& i) { return i.test.axis == axis; });
+  return found == axes.end() ? nullptr : &*found;
+}
+
+double swing_inertia(const SwingTest& test, const SwingAxis& axis, double frequency, double cradle_frequency) {
+  const Eigen::VectorXd v = values_of(test, axis, frequency, cradle_frequency);
+  return terms_of(axis, test.gravity, test.cradle_mass > 0.0, v.data()).sum();
+}
+
+SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress) { return Analysis(test, progress).run(); }
+
+std::string inertia_toml(const SwingTest& test, const SwingTestResult& result) {
+  std::string text = fmt::format("# Inertia of {} from a swing test, to be copied into its [subject].\n", test.name);
+  for (const AxisInertia& i : result.axes) text += fmt::format("# {}\n", i.reason);
+  std::vector<std::string> values, sigmas{fmt::format("mass = {}", test.sigma_mass)};
+  for (const char axis : {'x', 'y', 'z'}) {
+    const AxisInertia* i = result.find(axis);
+    if (i == nullptr) {
+      text += fmt::format("# J{} was not measured: give it\n", axis);
+      continue;
+    }
+    values.push_back(fmt::format("J{} = {:.6g}", axis, i->value));
+    sigmas.push_back(fmt::format("J{} = {:.3g}", axis, i->sigma()));
+  }
+  text += "# Jxz was not measured: 0 is an assumption; give Jxz and its sigma where they are known\n";
+  text += fmt::format("[subject]\nmass = {}\ninertia = {{ {} }}\nsigma = {{ {} }}\n", test.mass,
+                      fmt::join(values, ", "), fmt::join(sigmas, ", "));
+  return text;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,343 @@
+#include "veridyn/aircraft/simulation/flight_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::aircraft {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kTurnAround = 2.0 * std::numbers::pi;
+constexpr double kPause = 2.0;  ///< between the surfaces of one doublet or 3-2-1-1 [s]
+
+double pulse_count(ManoeuvreKind kind) {
+  return kind == ManoeuvreKind::kPulse ? 1.0 : kind == ManoeuvreKind::kDoublet ? 2.0 : 7.0;
+}
+
+/// The shape of a doublet or 3-2-1-1 at `u` pulses after its start.
+double pulse_shape(ManoeuvreKind kind, double u) {
+  if (u < 0.0) return 0.0;
+  if (kind == ManoeuvreKind::kPulse) return u < 1.0 ? 1.0 : 0.0;
+  if (kind == ManoeuvreKind::kDoublet) return u < 1.0 ? 1.0 : u < 2.0 ? -1.0 : 0.0;
+  return u < 3.0 ? 1.0 : u < 5.0 ? -1.0 : u < 6.0 ? 1.0 : u < 7.0 ? -1.0 : 0.0;
+}
+
+/// Largest absolute value over one period, on a grid of 16 points a shortest wave.
+double peak(const Multisine& m, double duration) {
+  const int n = static_cast<int>(std::ceil(16.0 * m.frequency.back() * duration));
+  double largest = 0.0;
+  for (int i = 0; i < n; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < m.frequency.size(); ++k) {
+      sum += std::sin(kTurnAround * m.frequency[k] * duration * i / n + m.phase[k]);
+    }
+    largest = std::max(largest, std::abs(sum));
+  }
+  return largest;
+}
+
+double raw_value(const Multisine& m, double t) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < m.frequency.size(); ++k) {
+    sum += std::sin(kTurnAround * m.frequency[k] * t + m.phase[k]);
+  }
+  return sum;
+}
+
+/// Lowers the peak: first clips the signal and keeps the phases of what is left (Van den Bos 1987), with an ever higher
+/// clip; then changes one phase at a time as long as that helps, in ever smaller steps. Sine and cosine of every
+/// harmonic are tabled once, so that a trial costs one pass over the grid.
+void lower_peak(Multisine& m, double duration) {
+  const auto n = static_cast<Eigen::Index>(std::ceil(16.0 * m.frequency.back() * duration));
+  const auto harmonics = static_cast<Eigen::Index>(m.frequency.size());
+  Eigen::ArrayXXd sine(n, harmonics), cosine(n, harmonics);
+  const Eigen::ArrayXd time =
+      Eigen::ArrayXd::LinSpaced(n, 0.0, duration * static_cast<double>(n - 1) / static_cast<double>(n));
+  for (Eigen::Index k = 0; k < harmonics; ++k) {
+    const double omega = kTurnAround * m.frequency[static_cast<std::size_t>(k)];
+    sine.col(k) = (omega * time).sin();
+    cosine.col(k) = (omega * time).cos();
+  }
+  const auto signal = [&](const Eigen::ArrayXd& phase) -> Eigen::ArrayXd {
+    return (sine.matrix() * phase.cos().matrix() + cosine.matrix() * phase.sin().matrix()).array();
+  };
+  Eigen::ArrayXd phase = Eigen::Map<const Eigen::ArrayXd>(m.phase.data(), harmonics);
+  Eigen::ArrayXd sum = signal(phase);
+  Eigen::ArrayXd best_phase = phase;
+  double best = sum.abs().maxCoeff();
+  constexpr int kClippings = 300;
+  for (int i = 0; i < kClippings; ++i) {
+    const double level = (0.8 + 0.19 * i / kClippings) * sum.abs().maxCoeff();
+    const Eigen::VectorXd clipped = sum.min(level).max(-level).matrix();
+    const Eigen::VectorXd in_phase = sine.matrix().transpose() * clipped;
+    const Eigen::VectorXd quadrature = cosine.matrix().transpose() * clipped;
+    for (Eigen::Index k = 0; k < harmonics; ++k) phase(k) = std::atan2(quadrature(k), in_phase(k));
+    sum = signal(phase);
+    const double p = sum.abs().maxCoeff();
+    if (p < best) {
+      best = p;
+      best_phase = phase;
+    }
+  }
+  phase = best_phase;
+  sum = signal(phase);
+  Eigen::ArrayXd trial(n);
+  for (double reach = 0.5; reach > 0.005; reach *= 0.7) {
+    for (Eigen::Index k = 0; k < harmonics; ++k) {
+      for (const double change : {-reach, reach}) {
+        const double next = phase(k) + change;
+        trial = sum + (std::cos(next) - std::cos(phase(k))) * sine.col(k) +
+                (std::sin(next) - std::sin(phase(k))) * cosine.col(k);
+        const double p = trial.abs().maxCoeff();
+        if (p >= best) continue;
+        best = p;
+        phase(k) = next;
+        sum = trial;
+        break;
+      }
+    }
+  }
+  Eigen::Map<Eigen::ArrayXd>(m.phase.data(), harmonics) = phase;
+}
+
+/// Shifts the time origin to a zero crossing, so that the signal begins without a step.
+void start_at_zero(Multisine& m, double duration) {
+  const int n = static_cast<int>(std::ceil(16.0 * m.frequency.back() * duration));
+  for (int i = 0; i < n; ++i) {
+    double a = duration * i / n, b = duration * (i + 1) / n;
+    double va = raw_value(m, a);
+    const double vb = raw_value(m, b);
+    if (!(va <= 0.0 && vb > 0.0)) continue;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double c = 0.5 * (a + b);
+      (raw_value(m, c) <= 0.0 ? a : b) = c;
+    }
+    for (std::size_t k = 0; k < m.frequency.size(); ++k) {
+      m.phase[k] = std::remainder(m.phase[k] + kTurnAround * m.frequency[k] * a, kTurnAround);
+    }
+    return;
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(ManoeuvreKind kind) {
+  switch (kind) {
+    case ManoeuvreKind::kDoublet:
+      return "doublet";
+    case ManoeuvreKind::k3211:
+      return "3211";
+    case ManoeuvreKind::kMultisine:
+      return "multisine";
+    case ManoeuvreKind::kTurn:
+      return "turn";
+    case ManoeuvreKind::kPulse:
+      return "pulse";
+  }
+  return {};
+}
+
+double Manoeuvre::end() const {
+  if (kind == ManoeuvreKind::kMultisine || kind == ManoeuvreKind::kTurn) return start + duration;
+  const double n = static_cast<double>(surfaces.size());
+  return start + n * pulse_count(kind) * pulse + std::max(0.0, n - 1.0) * kPause;
+}
+
+std::array<double, kSurfaces> default_amplitudes(const Subject& s, const Trim& trim, const LinearModel& m) {
+  // Steady state of the fast modes under one surface: w and q for the elevator, v and r for the rudder.
+  const auto steady = [&m](int i, int j, int control) {
+    Eigen::Matrix2d A;
+    A << m.A(i, i), m.A(i, j), m.A(j, i), m.A(j, j);
+    const Eigen::Vector2d b(m.B(i, control), m.B(j, control));
+    return Eigen::Vector2d(-A.fullPivLu().solve(b));
+  };
+  const double Va = trim.condition.airspeed;
+  const double alpha_per_de = std::abs(steady(2, 4, 0)(0)) / Va;
+  const double p_per_da = std::abs(m.B(3, 1) / m.A(3, 3));
+  const double beta_per_dr = std::abs(steady(1, 5, 2)(0)) / Va;
+  const auto limited = [](double target, double gain, const Actuator& a, double trimmed) {
+    const double room = 0.5 * std::min(a.upper - trimmed, trimmed - a.lower);
+    return gain > 1e-9 ? std::clamp(target / gain, 0.0, std::max(0.0, room)) : 0.0;
+  };
+  return {limited(3.0 * kDegree, alpha_per_de, s.elevator, trim.controls.de),
+          limited(20.0 * kDegree, p_per_da, s.aileron, trim.controls.da),
+          limited(4.0 * kDegree, beta_per_dr, s.rudder, trim.controls.dr), 0.15};
+}
+
+std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kSurfaces>& amplitudes) {
+  using enum Surface;
+  using enum ManoeuvreKind;
+  const auto amplitude = [&amplitudes](Surface s) { return amplitudes[static_cast<std::size_t>(s)]; };
+  std::vector<Manoeuvre> plan;
+  const auto add = [&](ManoeuvreKind kind, double start, double length, std::vector<Surface> surfaces, double pulse,
+                       double bank) {
+    Manoeuvre m;
+    m.kind = kind;
+    m.start = start;
+    m.duration = length;
+    m.pulse = pulse;
+    m.bank = bank;
+    for (const Surface s : surfaces) {
+      if (amplitude(s) <= 0.0) continue;  // no such surface, or one without effect
+      m.surfaces.push_back(s);
+      m.amplitude.push_back(amplitude(s));
+    }
+    if ((kind == kTurn || !m.surfaces.empty()) && m.end() <= duration) plan.push_back(m);
+  };
+  for (double t = 0.0; t < duration; t += 300.0) {
+    add(kMultisine, t + 10, 30, {kElevator}, 0.5, 0);
+    add(k3211, t + 45, 0, {kElevator}, 0.5, 0);
+    add(kDoublet, t + 53, 0, {kElevator}, 1.0, 0);
+    add(kMultisine, t + 60, 30, {kAileron, kRudder}, 0.5, 0);
+    add(k3211, t + 95, 0, {kAileron, kRudder}, 0.4, 0);
+    add(kDoublet, t + 106, 0, {kAileron, kRudder}, 0.7, 0);
+    add(kDoublet, t + 114, 0, {kThrottle}, 2.0, 0);
+    add(kTurn, t + 122, 15, {}, 0.5, 25 * kDegree);
+    add(kMultisine, t + 145, 30, {kElevator}, 0.5, 0);
+    add(k3211, t + 180, 0, {kElevator}, 0.7, 0);
+    add(kDoublet, t + 189, 0, {kElevator}, 0.5, 0);
+    add(kMultisine, t + 195, 30, {kAileron, kRudder}, 0.5, 0);
+    add(k3211, t + 230, 0, {kAileron, kRudder}, 0.5, 0);
+    add(kDoublet, t + 242, 0, {kAileron, kRudder}, 0.5, 0);
+    add(kDoublet, t + 250, 0, {kThrottle}, 2.0, 0);
+    add(kTurn, t + 258, 15, {}, 0.5, -25 * kDegree);
+    add(k3211, t + 280, 0, {kElevator}, 0.6, 0);
+    add(k3211, t + 288, 0, {kAileron, kRudder}, 0.35, 0);
+  }
+  return plan;
+}
+
+std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const std::array<double, kSurfaces>& amplitudes) {
+  const std::vector<std::string> kinds = {"doublet", "3211", "multisine", "turn", "pulse"};
+  const std::vector<std::string> names(kSurfaceNames.begin(), kSurfaceNames.end());
+  std::vector<Manoeuvre> out;
+  for (const StudyTable& t : flight.tables("manoeuvre")) {
+    Manoeuvre m;
+    static_cast<void>(t.text("kind"));
+    const std::string kind = t.choice_or("kind", kinds, "doublet");
+    m.kind = static_cast<ManoeuvreKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+    m.start = t.number("start", "s");
+    if (!(m.start >= 0.0)) t.fail("start", fmt::format("= {:g} must be >= 0", m.start));
+    const bool timed = m.kind == ManoeuvreKind::kMultisine || m.kind == ManoeuvreKind::kTurn;
+    if (timed) m.duration = t.positive("duration", "s");
+    if (m.kind == ManoeuvreKind::kTurn) {
+      m.bank = t.number("bank", "rad");
+      if (!(std::abs(m.bank) <= 60 * kDegree)) t.fail("bank", "is more than 60 deg");
+      out.push_back(m);
+      continue;
+    }
+    for (const std::string& name : t.texts("surfaces")) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end()) t.fail("surfaces", fmt::format("unknown surface '{}'{}", name, suggestion(name, names)));
+      m.surfaces.push_back(static_cast<Surface>(at - names.begin()));
+    }
+    if (m.surfaces.empty()) t.fail("surfaces", "names no surface");
+    const bool throttle_only = m.surfaces == std::vector<Surface>{Surface::kThrottle};
+    if (t.has("amplitude")) {
+      m.amplitude = t.numbers("amplitude", throttle_only ? "1" : "rad");
+      if (m.amplitude.size() == 1) m.amplitude.resize(m.surfaces.size(), m.amplitude[0]);
+      if (m.amplitude.size() != m.surfaces.size()) {
+        t.fail("amplitude", fmt::format("has {} numbers, expected 1 or {}", m.amplitude.size(), m.surfaces.size()));
+      }
+    } else {
+      for (const Surface s : m.surfaces) m.amplitude.push_back(amplitudes[static_cast<std::size_t>(s)]);
+    }
+    if (m.kind == ManoeuvreKind::kMultisine) {
+      if (t.has("band")) {
+        const std::vector<double> band = t.numbers("band", "1/s");
+        if (band.size() != 2 || !(band[0] > 0.0 && band[1] > band[0])) {
+          t.fail("band", "is not [lowest, highest] in Hz with 0 < lowest < highest");
+        }
+        m.f_min = band[0];
+        m.f_max = band[1];
+      }
+      const double first = std::ceil(m.f_min * m.duration - 1e-9);
+      const double last = std::floor(m.f_max * m.duration + 1e-9);
+      if (last - first + 1.0 < static_cast<double>(m.surfaces.size())) {
+        t.fail("duration", fmt::format("of {:g} s is too short for {} orthogonal signals between {:g} and {:g} Hz",
+                                       m.duration, m.surfaces.size(), m.f_min, m.f_max));
+      }
+    } else {
+      m.pulse = t.positive_or("pulse", "s", m.pulse);
+    }
+    out.push_back(m);
+  }
+  return out;
+}
+
+double Multisine::value(double t) const { return gain * raw_value(*this, t); }
+
+std::vector<Multisine> make_multisines(std::size_t count, double duration, double f_min, double f_max) {
+  std::vector<Multisine> out(count);
+  const int first = std::max(1, static_cast<int>(std::ceil(f_min * duration - 1e-9)));
+  const int last = static_cast<int>(std::floor(f_max * duration + 1e-9));
+  for (int k = first; k <= last; ++k) {
+    out[static_cast<std::size_t>(k - first) % count].frequency.push_back(k / duration);
+  }
+  for (Multisine& m : out) {
+    VERIDYN_ASSERT(!m.frequency.empty());
+    const double n = static_cast<double>(m.frequency.size());
+    for (std::size_t k = 0; k < m.frequency.size(); ++k) {
+      const double j = static_cast<double>(k) + 1.0;
+      m.phase.push_back(std::remainder(-std::numbers::pi * j * (j - 1.0) / n, kTurnAround));
+    }
+    lower_peak(m, duration);
+    start_at_zero(m, duration);
+    m.gain = 1.0 / peak(m, duration);
+  }
+  return out;
+}
+
+Excitation::Excitation(std::vector<Manoeuvre> manoeuvres) : manoeuvres_(std::move(manoeuvres)) {
+  for (const Manoeuvre& m : manoeuvres_) {
+    sines_.push_back(m.kind == ManoeuvreKind::kMultisine
+                         ? make_multisines(m.surfaces.size(), m.duration, m.f_min, m.f_max)
+                         : std::vector<Multisine>{});
+  }
+}
+
+std::array<double, kSurfaces> Excitation::at(double t) const {
+  std::array<double, kSurfaces> out{};
+  for (std::size_t i = 0; i < manoeuvres_.size(); ++i) {
+    const Manoeuvre& m = manoeuvres_[i];
+    if (m.kind == ManoeuvreKind::kTurn || t < m.start || t >= m.end()) continue;
+    for (std::size_t k = 0; k < m.surfaces.size(); ++k) {
+      double shape = 0.0;
+      if (m.kind == ManoeuvreKind::kMultisine) {
+        shape = sines_[i][k].value(t - m.start);
+      } else {
+        const double begin = m.start + static_cast<double>(k) * (pulse_count(m.kind) * m.pulse + kPause);
+        shape = pulse_shape(m.kind, (t - begin) / m.pulse);
+      }
+      out[static_cast<std::size_t>(m.surfaces[k])] += m.amplitude[k] * shape;
+    }
+  }
+  return out;
+}
+
+std::array<bool, kSurfaces> Excitation::excited(double t) const {
+  std::array<bool, kSurfaces> out{};
+  for (const Manoeuvre& m : manoeuvres_) {
+    if (m.kind == ManoeuvreKind::kTurn || t < m.start || t >= m.end()) continue;
+    for (const Surface s : m.surfaces) out[static_cast<std::size_t>(s)] = true;
+  }
+  return out;
+}
+
+double Excitation::bank(double t) const {
+  for (const Manoeuvre& m : manoeuvres_) {
+    if (m.kind == ManoeuvreKind::kTurn && t >= m.start && t < m.end()) return m.bank;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/aircraft/model/trim.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::aircraft {
+
+enum class Surface { kElevator, kAileron, kRudder, kThrottle };
+inline constexpr std::size_t kSurfaces = 4;
+inline constexpr std::array<std::string_view, kSurfaces> kSurfaceNames = {"elevator", "aileron", "rudder", "throttle"};
+
+enum class ManoeuvreKind {
+  kDoublet,    ///< +1, -1 pulses
+  k3211,       ///< +3, -2, +1, -1 pulses
+  kMultisine,  ///< sums of sines on several surfaces at once that are orthogonal to each other (Morelli 2003)
+  kTurn,       ///< a steady turn of given bank
+  kPulse,      ///< one pulse, held: a pull into a stall
+};
+
+/// Something that the pilot does on purpose. In all but turns, the surfaces get a deflection on top of the pilot's own.
+struct Manoeuvre {
+  ManoeuvreKind kind = ManoeuvreKind::kDoublet;
+  double start = 0.0;                  ///< [s]
+  double duration = 0.0;               ///< [s]; multisines and turns
+  std::vector<Surface> surfaces = {};  ///< in doublets and 3-2-1-1 one after another, with two seconds between
+  std::vector<double> amplitude = {};  ///< largest deflection [rad] (throttle [-]), one a surface
+  double pulse = 0.5;                  ///< length of one unit of a doublet or 3-2-1-1 [s]
+  double f_min = 0.1;                  ///< multisine band [Hz]
+  double f_max = 2.0;
+  double bank = 0.0;  ///< of a turn [rad]; positive to the right
+
+  [[nodiscard]] double end() const;
+};
+
+/// Largest deflections that keep a small excitation small, from the linear model about a trim: the elevator changes
+/// alpha by about 3 deg in the steady state, the aileron rolls at 20 deg/s, the rudder yields 4 deg of sideslip; never
+/// more than half of the way to a stop. Throttle 0.15.
+[[nodiscard]] std::array<double, kSurfaces> default_amplitudes(const Subject& subject, const Trim& trim,
+                                                               const LinearModel& model);
+
+/// A plan of five minutes that excites everything twice, for identification and for validation: multisines on the
+/// elevator, then on aileron and rudder, 3-2-1-1 and doublets on each surface, a change of throttle, a turn each way
+/// and straight legs. Repeated for longer flights; what does not end before `duration` is left out.
+[[nodiscard]] std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kSurfaces>& amplitudes);
+
+/// Reads `[[flight.manoeuvre]]`:
+///
+///     kind = "multisine"                 # doublet, 3211, multisine, turn, pulse
+///     start = 20                         # [s]
+///     duration = 30                      # [s] multisine and turn
+///     surfaces = ["aileron", "rudder"]   # elevator, aileron, rudder, throttle
+///     amplitude = "4 deg"                # one, or one a surface; left out: see default_amplitudes
+///     pulse = 0.5                        # [s] doublet, 3211, pulse
+///     band = [0.1, 2.0]                  # [Hz] multisine
+///     bank = "25 deg"                    # turn
+[[nodiscard]] std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight,
+                                                     const std::array<double, kSurfaces>& amplitudes);
+
+/// One multisine: harmonics of 1/duration with phases of low peak.
+struct Multisine {
+  std::vector<double> frequency;  ///< [Hz], whole multiples of 1/duration
+  std::vector<double> phase;      ///< [rad]
+  double gain = 1.0;              ///< such that the largest value over the duration is 1
+  [[nodiscard]] double value(double t) const;
+};
+
+/// Multisines for `count` surfaces: the harmonics of 1/duration in the band are dealt out in turn, so that any two
+/// signals are orthogonal over the duration. Phases start at Schroeder's (1970) and are improved for a low peak; the
+/// signals start at a zero. Deterministic.
+[[nodiscard]] std::vector<Multisine> make_multisines(std::size_t count, double duration, double f_min, double f_max);
+
+/// The manoeuvres of a flight as functions of time.
+class Excitation {
+ public:
+  explicit Excitation(std::vector<Manoeuvre> manoeuvres);
+
+  /// What is added to each surface at `t`.
+  [[nodiscard]] std::array<double, kSurfaces> at(double t) const;
+  /// Which surfaces are excited at `t`.
+  [[nodiscard]] std::array<bool, kSurfaces> excited(double t) const;
+  /// Bank that is asked for at `t` by a turn [rad], or NaN.
+  [[nodiscard]] double bank(double t) const;
+  [[nodiscard]] const std::vector<Manoeuvre>& manoeuvres() const { return manoeuvres_; }
+
+ private:
+  std::vector<Manoeuvre> manoeuvres_;
+  std::vector<std::vector<Multisine>> sines_;
+};
+
+[[nodiscard]] std::string_view name_of(ManoeuvreKind kind);
+
+}  // namespace veridyn::aircraft

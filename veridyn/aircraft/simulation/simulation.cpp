@@ -1,0 +1,276 @@
+#include "veridyn/aircraft/simulation/simulation.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "veridyn/aircraft/simulation/autopilot.hpp"
+#include "veridyn/aircraft/sensors/servo.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/ode.hpp"
+
+namespace veridyn::aircraft {
+
+namespace {
+
+using Eigen::Vector3d;
+using State = RigidBodyState<double>;
+
+/// Field of the earth in central Europe, NED [T].
+const Vector3d kMagneticField(20e-6, 1e-6, 44e-6);
+
+void put(TruthSample& out, Truth first, const Vector3d& v) {
+  const auto i = static_cast<std::size_t>(first);
+  for (std::size_t k = 0; k < 3; ++k) out.value[i + k] = v(static_cast<Eigen::Index>(k));
+}
+
+struct Moment {
+  State state;
+  Controls<double> controls;
+  Vector3d mean_wind;
+  Vector3d gust;
+};
+
+TruthSample truth_of(const Subject& s, const MassProperties& body, const Moment& m, double gravity) {
+  TruthSample out;
+  const State& x = m.state;
+  const Eigen::Matrix3d R = R_body_from_ned(x);
+  const Air<double> air = standard_atmosphere(-x(2));
+  const Vector3d omega = x.tail<3>();
+  const Vector3d v_r = R * (x.segment<3>(3) - m.mean_wind) - m.gust;
+  const AeroLoads<double> loads = aero_loads<double>(s, v_r, omega, m.controls, air.density);
+  const State rate = rigid_body_rate<double>(x, body, loads.force, loads.moment, gravity);
+  const auto euler = numerics::euler_from_quaternion(attitude_of(x));
+  put(out, Truth::kPosNorth, x.head<3>());
+  put(out, Truth::kVelNorth, x.segment<3>(3));
+  put(out, Truth::kRoll, {euler.phi, euler.theta, euler.psi});
+  put(out, Truth::kGyroX, omega);
+  const Vector3d omega_rate = rate.tail<3>();
+  put(out, Truth::kGyroRateX, omega_rate);
+  const Vector3d accel = loads.force / s.mass;
+  put(out, Truth::kAccelX, accel);
+  const Vector3d arm(s.imu_position[0], s.imu_position[1], s.imu_position[2]);
+  put(out, Truth::kImuAccelX, accel + omega.cross(omega.cross(arm)) + omega_rate.cross(arm));
+  out[Truth::kAirspeed] = loads.air.Va;
+  out[Truth::kAlpha] = loads.air.alpha;
+  out[Truth::kBeta] = loads.air.beta;
+  out[Truth::kDynamicPressure] = loads.dynamic_pressure;
+  out[Truth::kStaticPressure] = air.pressure;
+  out[Truth::kAirTemperature] = air.temperature;
+  out[Truth::kAirDensity] = air.density;
+  put(out, Truth::kWindNorth, m.mean_wind + R.transpose() * m.gust);
+  put(out, Truth::kMeanWindNorth, m.mean_wind);
+  put(out, Truth::kGustX, m.gust);
+  out[Truth::kElevator] = m.controls.de;
+  out[Truth::kAileron] = m.controls.da;
+  out[Truth::kRudder] = m.controls.dr;
+  out[Truth::kThrottle] = m.controls.throttle;
+  out[Truth::kEngineSpeed] = m.controls.rotor_speed;
+  out[Truth::kThrust] = loads.propulsion.thrust;
+  out[Truth::kCL] = loads.coefficients.CL;
+  out[Truth::kCD] = loads.coefficients.CD;
+  out[Truth::kCY] = loads.coefficients.CY;
+  const Vector3d engine(s.propulsion.position[0], s.propulsion.position[1], s.propulsion.position[2]);
+  const Vector3d aero_moment =
+      loads.moment - engine.cross(Vector3d(loads.propulsion.thrust, 0, 0)) - Vector3d(loads.propulsion.torque, 0, 0);
+  const double qS = std::max(1e-9, loads.dynamic_pressure * s.wing_area);
+  put(out, Truth::kCl,
+      {aero_moment(0) / (qS * s.span), aero_moment(1) / (qS * s.chord), aero_moment(2) / (qS * s.span)});
+  put(out, Truth::kForceX, loads.force);
+  put(out, Truth::kMomentX, loads.moment);
+  put(out, Truth::kMagX, R * kMagneticField);
+  return out;
+}
+
+class TruthRecorder {
+ public:
+  void add(double t, const TruthSample& sample) {
+    time_.push_back(t);
+    for (std::size_t i = 0; i < kTruthCount; ++i) value_[i].push_back(sample.value[i]);
+  }
+  void give(Recording& recording) {
+    const TimeBase base = make_time_base(std::move(time_));
+    for (std::size_t i = 0; i < kTruthCount; ++i) {
+      recording.add(
+          make_channel(std::string(kTruthChannels[i].name), kTruthChannels[i].unit, base, std::move(value_[i])));
+    }
+  }
+
+ private:
+  std::vector<double> time_;
+  std::array<std::vector<double>, kTruthCount> value_;
+};
+
+void check(const SimulationOptions& o) {
+  const std::string place = fmt::format("subject '{}'", o.subject.name);
+  if (!o.subject.inertia) throw InputError(place, "has no inertia: a simulation needs it (subject.inertia)");
+  const std::vector<std::string> unknown = o.subject.model.unknown_parameters();
+  if (!unknown.empty()) {
+    throw InputError(place, fmt::format("has no values for {}: a simulation needs them", fmt::join(unknown, ", ")));
+  }
+  for (const Coefficient c : {Coefficient::kCL, Coefficient::kCD}) {
+    if (o.subject.model.find(c) == nullptr) {
+      throw InputError(place, fmt::format("has no model of {}: a simulation needs it", name_of(c)));
+    }
+  }
+}
+
+}  // namespace
+
+double default_airspeed(const Subject& s, double gravity) {
+  return std::sqrt(2.0 * s.mass * gravity / (kSeaLevelDensity * s.wing_area * 0.5));
+}
+
+std::string SimulatedFlight::message() const {
+  const auto at = [this] { return fmt::format("at {:.1f} s", end_time); };
+  switch (end) {
+    case SimulationEnd::kCompleted:
+      return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time,
+                         alpha_min * 180.0 / std::numbers::pi, alpha_max * 180.0 / std::numbers::pi);
+    case SimulationEnd::kNoTrim:
+      return trim.message();
+    case SimulationEnd::kGround:
+      return fmt::format("the aircraft hit the ground {}", at());
+    case SimulationEnd::kUpset:
+      return fmt::format("the aircraft departed from controlled flight {}", at());
+    case SimulationEnd::kNotFinite:
+      return fmt::format("the state is no longer finite {}: the step is too long for this aircraft", at());
+    case SimulationEnd::kInterrupted:
+      return fmt::format("interrupted {}", at());
+  }
+  return {};
+}
+
+SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
+  check(o);
+  Subject s = o.subject;  // its model changes where the flight says so
+  const MassProperties body(s.mass, s.inertia->matrix());
+  const double airspeed = o.airspeed > 0.0 ? o.airspeed : default_airspeed(s, o.gravity);
+  SimulatedFlight flight;
+  flight.measured.source = flight.truth.source = fmt::format("simulated flight of {}", s.name);
+  flight.measured.frame = flight.truth.frame = Frame::kFrd;
+  flight.trim = find_trim(
+      s, {.airspeed = airspeed, .density = standard_atmosphere(o.altitude).density, .bank = 0.0, .gravity = o.gravity});
+  if (!flight.trim.usable()) {
+    flight.end = SimulationEnd::kNoTrim;
+    return flight;
+  }
+  const Trim& trim = flight.trim;
+  const LinearModel linear = linearise(s, trim);
+  flight.manoeuvres = o.manoeuvres ? *o.manoeuvres : default_plan(o.duration, default_amplitudes(s, trim, linear));
+  const Excitation excitation(flight.manoeuvres);
+  Autopilot pilot(s, trim, linear, o.altitude, o.heading, o.excitation_gain);
+
+  const double h = o.step;
+  std::array<Servo, kSurfaces> servos = {Servo(s.elevator, trim.controls.de, h), Servo(s.aileron, trim.controls.da, h),
+                                         Servo(s.rudder, trim.controls.dr, h),
+                                         Servo(s.throttle, trim.controls.throttle, h)};
+  const double rotor_share = s.propulsion.kind == PropulsionKind::kPropeller && s.propulsion.time_constant > 0.0
+                                 ? -std::expm1(-h / s.propulsion.time_constant)
+                                 : 1.0;
+  DrydenGusts gusts(o.turbulence, numerics::RandomStream(o.seed, "turbulence"));
+  Wind wind(o.wind, numerics::RandomStream(o.seed, "wind"));
+  std::vector<Sensor> sensors;
+  for (std::size_t i = 0; i < kSensorKinds; ++i) sensors.emplace_back(sensor_kinds()[i], o.sensors[i], o.seed);
+
+  const auto gust_vector = [&gusts] {
+    const std::array<double, 3> g = gusts.gust();
+    return Vector3d(g[0], g[1], g[2]);
+  };
+  Moment now;
+  now.controls = trim.controls;
+  now.mean_wind = wind.at(o.altitude - o.ground);
+  now.gust = gust_vector();
+  now.state.setZero();
+  now.state(2) = -o.altitude;
+  now.state.segment<4>(6) = numerics::quaternion_from_euler(0.0, trim.theta, o.heading).coeffs();
+  now.state.segment<3>(3) =
+      R_body_from_ned(now.state).transpose() * air_velocity(airspeed, trim.alpha, trim.beta) + now.mean_wind;
+
+  TruthRecorder recorder;
+  const auto steps = static_cast<long long>(std::llround(o.duration / h));
+  const auto every = std::max(1LL, std::llround(1.0 / (o.truth_rate * h)));
+  flight.alpha_min = std::numeric_limits<double>::infinity();
+  flight.alpha_max = -flight.alpha_min;
+  progress.stage(fmt::format("simulating {:.0f} s of flight", o.duration));
+  std::size_t changed = 0;
+  for (long long k = 0; k <= steps; ++k) {
+    const double t = static_cast<double>(k) * h;
+    while (changed < o.changes.size() && t >= o.changes[changed].time - 0.5 * h) s.model = o.changes[changed++].model;
+    const TruthSample truth = truth_of(s, body, now, o.gravity);
+    if (!now.state.allFinite() || !std::isfinite(truth[Truth::kAirspeed])) {
+      flight.end = SimulationEnd::kNotFinite;
+      break;
+    }
+    for (Sensor& sensor : sensors) sensor.observe(t, truth);
+    if (k % every == 0) recorder.add(t, truth);
+    flight.end_time = t;
+    flight.alpha_min = std::min(flight.alpha_min, truth[Truth::kAlpha]);
+    flight.alpha_max = std::max(flight.alpha_max, truth[Truth::kAlpha]);
+    if (-now.state(2) <= o.ground) {
+      flight.end = SimulationEnd::kGround;
+      break;
+    }
+    if (std::abs(truth[Truth::kAlpha]) > 0.5 * std::numbers::pi || now.state.tail<3>().norm() > 50.0) {
+      flight.end = SimulationEnd::kUpset;
+      break;
+    }
+    if (k % 2000 == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(std::max(1LL, steps)))) {
+      flight.end = SimulationEnd::kInterrupted;
+      break;
+    }
+    if (k == steps) break;
+
+    const std::array<double, kSurfaces> command = pilot.command(t, h, truth, excitation);
+    for (std::size_t i = 0; i < kSurfaces; ++i) servos[i].advance(command[i]);
+    gusts.advance(h, truth[Truth::kAirspeed]);
+    wind.advance(h);
+    Moment next;
+    next.controls = {servos[0].position(), servos[1].position(), servos[2].position(), servos[3].position(), 0.0};
+    next.controls.rotor_speed =
+        now.controls.rotor_speed +
+        rotor_share * (s.propulsion.steady_rotor_speed(next.controls.throttle) - now.controls.rotor_speed);
+    next.mean_wind = wind.at(-now.state(2) - o.ground);
+    next.gust = gust_vector();
+
+    // Density changes by less than 1e-5 of itself within a step, so it is held.
+    const double rho = truth[Truth::kAirDensity];
+    const auto rate = [&](double time, const State& x) {
+      const double share = (time - t) / h;
+      const auto between = [share](double a, double b) { return a + share * (b - a); };
+      Controls<double> c;
+      c.de = between(now.controls.de, next.controls.de);
+      c.da = between(now.controls.da, next.controls.da);
+      c.dr = between(now.controls.dr, next.controls.dr);
+      c.throttle = between(now.controls.throttle, next.controls.throttle);
+      c.rotor_speed = between(now.controls.rotor_speed, next.controls.rotor_speed);
+      const Vector3d mean = now.mean_wind + share * (next.mean_wind - now.mean_wind);
+      const Vector3d gust = now.gust + share * (next.gust - now.gust);
+      return aircraft_rate<double>(s, body, x, c, mean, gust, rho, o.gravity);
+    };
+    next.state = numerics::runge_kutta_4_step(rate, t, now.state, h);
+    normalise_attitude(next.state);
+    now = next;
+  }
+  for (Sensor& sensor : sensors) sensor.give(flight.measured);
+  recorder.give(flight.truth);
+  for (const Manoeuvre& m : flight.manoeuvres) {
+    if (m.start > flight.end_time) continue;
+    std::vector<std::string_view> names;
+    for (const Surface surface : m.surfaces) names.push_back(kSurfaceNames[static_cast<std::size_t>(surface)]);
+    const std::string text = fmt::format("{} {}", name_of(m.kind), fmt::join(names, ", "));
+    flight.measured.events.push_back({m.start, "manoeuvre", text});
+    flight.truth.events.push_back({m.start, "manoeuvre", text});
+  }
+  for (std::size_t i = 0; i < changed; ++i) {
+    flight.measured.events.push_back({o.changes[i].time, "change", o.changes[i].text});
+    flight.truth.events.push_back({o.changes[i].time, "change", o.changes[i].text});
+  }
+  static_cast<void>(progress.update(1.0));
+  return flight;
+}
+
+}  // namespace veridyn::aircraft

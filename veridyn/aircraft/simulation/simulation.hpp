@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/simulation/dryden.hpp"
+#include "veridyn/aircraft/simulation/flight_plan.hpp"
+#include "veridyn/aircraft/sensors/sensors.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/simulation/wind.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/recording.hpp"
+
+namespace veridyn::aircraft {
+
+/// The aircraft changes in flight: ice, damage, a wing that stalls or recovers. From `time` on the model is `model`.
+struct ModelChange {
+  double time = 0.0;  ///< [s]
+  AeroModel model;
+  std::string text;  ///< what changed, in words: "Cm_alpha -0.7 to -0.35"
+};
+
+/// What is flown.
+struct SimulationOptions {
+  Subject subject;
+  double duration = 300.0;    ///< [s]
+  double altitude = 100.0;    ///< above sea level at the start, kept by the pilot [m]
+  double ground = 0.0;        ///< height of the ground above sea level [m]
+  double airspeed = 0.0;      ///< [m/s]; 0: where the lift coefficient is 0.5
+  double heading = 0.0;       ///< at the start [rad]
+  double step = 0.0025;       ///< of the integration [s]
+  double truth_rate = 100.0;  ///< of the truth recording [Hz]; rounded to whole steps
+  double gravity = kStandardGravity;
+  double excitation_gain = 0.3;  ///< share of its feedback that the pilot keeps on a surface while it is excited
+  WindSettings wind;
+  DrydenSettings turbulence;
+  SensorSet sensors = reference_sensors();
+  std::optional<std::vector<Manoeuvre>> manoeuvres;  ///< none: `default_plan`
+  std::vector<ModelChange> changes = {};             ///< by time
+  std::uint64_t seed = 1;
+};
+
+enum class SimulationEnd {
+  kCompleted,    ///< flown to the end
+  kNoTrim,       ///< steady level flight at the airspeed asked for does not exist
+  kGround,       ///< touched the ground
+  kUpset,        ///< angle of attack beyond 90 deg or rates beyond 50 rad/s: the model means nothing there
+  kNotFinite,    ///< the state became NaN or infinite: the step is too long for this aircraft
+  kInterrupted,  ///< the caller asked to stop
+};
+
+/// A simulated flight: what the sensors saw and what was true (see kTruthChannels).
+struct SimulatedFlight {
+  Recording measured;
+  Recording truth;
+  std::vector<Manoeuvre> manoeuvres;
+  Trim trim;
+  double end_time = 0.0;                    ///< [s]
+  double alpha_min = 0.0, alpha_max = 0.0;  ///< gusts included [rad]
+  SimulationEnd end = SimulationEnd::kCompleted;
+  [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
+  [[nodiscard]] std::string message() const;
+};
+
+/// Airspeed of level flight at CL = 0.5 and sea-level density [m/s], for aircraft that name none.
+[[nodiscard]] double default_airspeed(const Subject& subject, double gravity = kStandardGravity);
+
+/// Flies the subject: six degrees of freedom with the attitude as quaternion, fixed steps of the fourth-order
+/// Runge-Kutta method, controls and gusts varying linearly within a step. Same options, same bytes. A flight that fails
+/// keeps what was flown until then.
+/// @throws InputError when the subject lacks inertia or a parameter of its model has no value.
+[[nodiscard]] SimulatedFlight simulate(const SimulationOptions& options, Progress& progress);
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/model/aero_model.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/recursive/regression_tracker.hpp"
+
+namespace veridyn::aircraft {
+
+using estimation::TrackHistory;
+
+/// How a coefficient is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these;
+/// every one is optional. Rows come at the rate of `FlightSignals::stride`.
+struct TrackOptions : estimation::TrackerOptions {
+  std::vector<Coefficient> coefficients = {};  ///< `coefficients`; empty: all that the subject models
+  std::string estimate_file;                   ///< `estimate`: estimate.json to start from (hybrid start)
+  /// `air_data`: "filter" takes airspeed from the causal state estimate (and flow angles where there is no vane),
+  /// "sensors" from pitot and vanes.
+  std::string air_data = "filter";
+
+  /// @throws InputError naming file, line and key.
+  [[nodiscard]] static TrackOptions read(const StudyTable& table);
+};
+
+/// One aerodynamic coefficient followed row by row, watched for changes, with its history.
+class CoefficientTracker : public estimation::RegressionTracker {
+ public:
+  /// @param error_covariance W of a row [x, z], (n + 1) x (n + 1)
+  /// @param rate_Hz of rows
+  /// @param names of the parameters; empty: those of the model
+  CoefficientTracker(const CoefficientModel& model, const Eigen::MatrixXd& error_covariance,
+                     const TrackOptions& options, double rate_Hz, std::vector<std::string> names = {});
+
+  [[nodiscard]] const CoefficientModel& model() const { return model_; }
+
+ private:
+  CoefficientModel model_;
+};
+
+}  // namespace veridyn::aircraft

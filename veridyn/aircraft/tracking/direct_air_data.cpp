@@ -1,0 +1,64 @@
+#include "veridyn/aircraft/tracking/direct_air_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::aircraft {
+
+Recording direct_air_data(const Recording& recording, const ReconstructOptions& reconstruct,
+                          const SignalOptions& options) {
+  std::vector<std::string> warnings;
+  const internal::FlightStreams streams = internal::load_streams(recording, reconstruct, warnings);
+  const internal::Stream& pitot = streams.sensors[internal::kPitot];
+  if (pitot.t.empty()) {
+    throw InputError(recording.source,
+                     "has neither dynamic pressure nor airspeed; track.air_data = \"filter\" does without");
+  }
+  Recording out;
+  out.source = recording.source;
+  out.frame = recording.frame;
+  for (const char* name : {"roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down", "alpha", "beta"}) {
+    if (const Channel* channel = recording.find(name)) out.add(*channel);
+  }
+
+  // Airspeed at the pitot's stamps, filtered on an even grid of its own rate.
+  std::vector<double> airspeed(pitot.t.size()), density(pitot.t.size());
+  std::size_t cursor = 0;
+  for (std::size_t i = 0; i < pitot.t.size(); ++i) {
+    density[i] = streams.density_at(pitot.t[i], cursor);
+    airspeed[i] = streams.pitot_is_pressure ? std::sqrt(2.0 * std::max(0.0, pitot.v[i]) / density[i]) : pitot.v[i];
+  }
+  const double span = pitot.t.back() - pitot.t.front();
+  const double rate = std::round(static_cast<double>(pitot.t.size() - 1) / std::max(span, 1e-3));
+  const numerics::UniformGrid grid = numerics::UniformGrid::covering(pitot.t.front(), pitot.t.back(), 1.0 / rate);
+  numerics::ResampleOptions resample;
+  resample.gap_limit_s = std::max(0.5, 3.0 / rate);
+  std::vector<double> even = numerics::resample(pitot.t, airspeed, grid, resample);
+  numerics::LowPassDesign design;
+  design.rate_Hz = rate;
+  design.pass_Hz = std::min(options.pass_Hz > 0.0 ? options.pass_Hz : 10.0, rate / 5.0);
+  design.stop_Hz = std::min(1.5 * design.pass_Hz, 0.5 * rate);
+  const numerics::FirKernel kernel = numerics::low_pass(design);
+  even = numerics::filter(even, kernel);
+
+  std::vector<double> stamps(grid.count), sigma(grid.count), rho(grid.count);
+  cursor = 0;
+  for (std::size_t k = 0; k < grid.count; ++k) {
+    stamps[k] = grid.at(k);
+    rho[k] = streams.density_at(stamps[k], cursor);
+    // sigma of q is constant, that of Va = sqrt(2 q / rho) is sigma_q / (rho Va).
+    const double raw = streams.pitot_is_pressure ? pitot.sigma / (rho[k] * std::max(1.0, even[k])) : pitot.sigma;
+    sigma[k] = std::isfinite(even[k]) ? raw * std::sqrt(kernel.noise_gain()) : std::numeric_limits<double>::quiet_NaN();
+  }
+  const TimeBase time = make_time_base(std::move(stamps));
+  out.set(make_channel("airspeed", "m/s", time, std::move(even)));
+  out.set(make_channel("sigma_airspeed", "m/s", time, std::move(sigma)));
+  out.set(make_channel("air_density", "kg/m^3", time, std::move(rho)));
+  return out;
+}
+
+}  // namespace veridyn::aircraft

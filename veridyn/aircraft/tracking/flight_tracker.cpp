@@ -1,0 +1,198 @@
+#include "veridyn/aircraft/tracking/flight_tracker.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::aircraft {
+
+using estimation::EstimatedParameter;
+using estimation::RegressionEstimate;
+
+double filter_margin(const FlightSignals& signals) {
+  const auto width = static_cast<double>(numerics::low_pass_differentiator(signals.filter).half_width());
+  return (width + 1.0) * signals.grid.step;
+}
+
+FlightTracker::FlightTracker(Subject subject, TrackOptions options, double min_airspeed_mps,
+                             const estimation::Estimate* start)
+    : subject_(std::move(subject)),
+      options_(std::move(options)),
+      min_airspeed_(min_airspeed_mps),
+      last_(-std::numeric_limits<double>::infinity()) {
+  if (start != nullptr) start_ = *start;
+  for (const auto& model : subject_.model.coefficients) {
+    const auto& wanted = options_.coefficients;
+    if (!model) continue;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), model->coefficient) == wanted.end()) continue;
+    coefficients_.push_back({.model = *model});
+    if (model->size() > static_cast<std::size_t>(estimation::kMaxRecursiveParameters)) {
+      coefficients_.back().obstacle =
+          fmt::format("{} has {} parameters; at most {} can be followed", name_of(model->coefficient), model->size(),
+                      estimation::kMaxRecursiveParameters);
+    }
+  }
+  if (coefficients_.empty()) throw InputError(subject_.name, "its model has none of the coefficients to track");
+  learning_.resize(coefficients_.size());
+}
+
+std::vector<FlightChange> FlightTracker::feed(const FlightSignals& signals, double from, double until) {
+  std::vector<FlightChange> found;
+  if (!obstacles_known_) {
+    for (TrackedCoefficient& c : coefficients_) {
+      if (c.obstacle.empty()) c.obstacle = identification_obstacle(c.model, signals, subject_);
+    }
+    obstacles_known_ = true;
+  }
+  rate_ = 1.0 / (signals.grid.step * static_cast<double>(signals.stride));
+  // Rows lie on multiples of the stride since the clock's zero, so that pieces of a flight give the rows of the whole.
+  const auto first = static_cast<long long>(std::llround(signals.grid.begin / signals.grid.step));
+  const auto stride = static_cast<long long>(signals.stride);
+  const auto offset = static_cast<std::size_t>(((-first) % stride + stride) % stride);
+  for (std::size_t k = offset; k < signals.size(); k += signals.stride) {
+    const double t = signals.grid.at(k);
+    if (t <= last_ || t < from || t > until) continue;
+    last_ = t;
+    const double airspeed = signals[FlightSignal::kAirspeed].value[k];
+    if (!(airspeed >= min_airspeed_)) continue;
+    ++rows_;
+    for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+      if (coefficients_[i].obstacle.empty()) take(i, t, signals, k, found);
+    }
+  }
+  changes_.insert(changes_.end(), found.begin(), found.end());
+  return found;
+}
+
+void FlightTracker::take(std::size_t index, double time, const FlightSignals& signals, std::size_t k,
+                         std::vector<FlightChange>& found) {
+  TrackedCoefficient& c = coefficients_[index];
+  const FlightSample<double> sample = signals.sample(k);
+  const double rho = signals.air_density[k];
+  const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
+  const AeroVariables<double> v = aero_variables(sample, subject_, rho);
+  std::array<double, estimation::kMaxRecursiveParameters> x{};
+  const std::size_t n = c.model.size();
+  bool finite = true;
+  for (std::size_t j = 0; j < n; ++j) {
+    x[j] = c.model.terms[j].evaluate(v);
+    finite = finite && std::isfinite(x[j]);
+  }
+  const double z = select(regressed_coefficients(sample, subject_, rho, torque), c.model.coefficient);
+  if (!finite || !std::isfinite(z)) return;
+  Eigen::MatrixXd W = row_error_covariance(c.model, signals, k, subject_);
+  if (c.tracker) {
+    W(W.rows() - 1, W.cols() - 1) += c.equation_error;
+    if (const auto change = c.tracker->update(time, {x.data(), n}, z, &W))
+      found.push_back({c.model.coefficient, *change});
+    return;
+  }
+  Learning& learning = learning_[index];
+  learning.time.push_back(time);
+  learning.rows.insert(learning.rows.end(), x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
+  learning.rows.push_back(z);
+  learning.W = learning.count == 0 ? W : Eigen::MatrixXd(learning.W + W);
+  ++learning.count;
+  if (static_cast<double>(learning.count) >= kLearnSeconds * rate_) begin(index, found);
+}
+
+void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
+  TrackedCoefficient& c = coefficients_[index];
+  Learning& learning = learning_[index];
+  Eigen::MatrixXd W = learning.W / static_cast<double>(learning.count);
+  const auto n = static_cast<Eigen::Index>(c.model.size());
+  std::vector<std::string> names;
+  for (const Term& term : c.model.terms) names.push_back(regressed_parameter_name(c.model.coefficient, term, subject_));
+  Eigen::VectorXd theta(n);
+  Eigen::MatrixXd P(n, n);
+  bool complete = start_.has_value();
+  if (start_) {
+    std::vector<Eigen::Index> at;
+    for (const std::string& name : names) {
+      const EstimatedParameter* p = start_->find(name);
+      const bool usable = p != nullptr && std::isfinite(p->value) && p->sigma > 0.0 && std::isfinite(p->sigma) &&
+                          p->status != estimation::ParameterStatus::kRejected;
+      complete = complete && usable;
+      at.push_back(p != nullptr ? p - start_->parameters.data() : 0);
+    }
+    if (complete) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        theta(i) = start_->parameters[static_cast<std::size_t>(at[static_cast<std::size_t>(i)])].value;
+        for (Eigen::Index j = 0; j < n; ++j)
+          P(i, j) = start_->covariance(at[static_cast<std::size_t>(i)], at[static_cast<std::size_t>(j)]);
+      }
+    }
+  }
+  const std::string name = regressed_name(c.model.coefficient, subject_);
+  const auto fit = [&](const char* key) {
+    const auto found_fit = start_ ? start_->fit.find(name + "." + key) : decltype(start_->fit.end()){};
+    return start_ && found_fit != start_->fit.end() ? found_fit->second : 0.0;
+  };
+  if (complete) {
+    // What the batch residual showed beyond the sensors is error of the equation.
+    Eigen::VectorXd h(n + 1);
+    h << theta, -1.0;
+    const double beyond = fit("residual_sd") * fit("residual_sd") - h.dot(W * h);
+    c.equation_error = std::max(0.0, beyond);
+    W(n, n) += c.equation_error;
+  }
+  c.tracker.emplace(c.model, W, options_, rate_, names);
+  if (complete) c.tracker->start(theta, P, fit("samples"), fit("residual_sd"));
+  c.start = complete ? "batch estimate" : "no estimate";
+  const auto width = static_cast<std::size_t>(n) + 1;
+  for (std::size_t i = 0; i < learning.time.size(); ++i) {
+    const double* row = learning.rows.data() + i * width;
+    if (const auto change = c.tracker->update(learning.time[i], {row, width - 1}, row[width - 1]))
+      found.push_back({c.model.coefficient, *change});
+  }
+  learning = {};
+}
+
+estimation::Estimate FlightTracker::estimate() const {
+  estimation::Estimate out;
+  out.subject = subject_.name;
+  out.method = fmt::format("{} on line", estimation::to_string(options_.method));
+  Eigen::Index total = 0;
+  for (const TrackedCoefficient& c : coefficients_) {
+    if (c.tracker) total += static_cast<Eigen::Index>(c.model.size());
+  }
+  out.covariance = Eigen::MatrixXd::Zero(total, total);
+  Eigen::Index at = 0;
+  std::vector<std::string> followed, skipped;
+  for (const TrackedCoefficient& c : coefficients_) {
+    const std::string name = regressed_name(c.model.coefficient, subject_);
+    if (!c.tracker) {
+      skipped.push_back(name);
+      out.warnings.push_back(
+          !c.obstacle.empty() ? c.obstacle : fmt::format("{}: less than {:.0f} s in the air", name, kLearnSeconds));
+      continue;
+    }
+    followed.push_back(name);
+    const RegressionEstimate e = c.tracker->regression().estimate();
+    const auto n = static_cast<Eigen::Index>(c.model.size());
+    for (std::size_t i = 0; i < c.model.size(); ++i) {
+      const estimation::ParameterEstimate& p = e.parameters[i];
+      out.parameters.push_back({p.name, p.value, p.sigma, p.low95, p.high95,
+                                regressed_parameter_unit(c.model.coefficient, c.model.terms[i], subject_), p.status});
+    }
+    out.covariance.block(at, at, n, n) = e.covariance;
+    at += n;
+    out.fit[name + ".residual_sd"] = c.tracker->regression().residual_sd();
+    out.fit[name + ".samples"] = c.tracker->regression().effective_samples();
+    out.fit[name + ".error_scale"] = c.tracker->regression().error_scale();
+    const std::string held = c.tracker->regression().unexcited_text();
+    if (!held.empty()) out.warnings.push_back(fmt::format("{}: held, because not excited: {}", name, held));
+  }
+  out.verdict =
+      fmt::format("followed: {}", followed.empty() ? "nothing" : fmt::format("{}", fmt::join(followed, ", ")));
+  if (!skipped.empty()) out.verdict += fmt::format("; not followed: {}", fmt::join(skipped, ", "));
+  return out;
+}
+
+}  // namespace veridyn::aircraft

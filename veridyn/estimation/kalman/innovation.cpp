@@ -1,0 +1,75 @@
+#include "veridyn/estimation/kalman/innovation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::estimation {
+
+InnovationMonitor::Verdict InnovationMonitor::judge(double t, double nu, double S) noexcept {
+  ++count_;
+  const double limit = gate_.threshold * gate_.threshold * S;
+  const double square = nu * nu;
+  if (square <= limit) {  // false for NaN too
+    run_ = 0;
+    recovering_ = false;
+    count_in(nu, S);
+    return {true, 0.0};
+  }
+  if (run_ == 0) refused_since_ = t;
+  ++run_;
+  if (std::isfinite(square) &&
+      (recovering_ || (run_ >= gate_.recovery_samples && t - refused_since_ >= gate_.recovery_s))) {
+    recovering_ = true;
+    ++recovered_;
+    return {true, square / (gate_.threshold * gate_.threshold) - S};
+  }
+  ++rejected_;
+  recent_count_ = 0;
+  return {false, 0.0};
+}
+
+void InnovationMonitor::count_in(double nu, double S) noexcept {
+  const double e = nu / std::sqrt(S);
+  ++used_;
+  sum_ += e;
+  sum_squares_ += e * e;
+  constexpr double kLog2Pi = 1.8378770664093453;
+  log_likelihood_ -= 0.5 * (kLog2Pi + std::log(S) + e * e);
+  for (std::size_t lag = 0; lag < recent_count_; ++lag) products_[lag] += e * recent_[lag];
+  for (std::size_t lag = kLags - 1; lag > 0; --lag) recent_[lag] = recent_[lag - 1];
+  recent_[0] = e;
+  recent_count_ = std::min(recent_count_ + 1, kLags);
+}
+
+void InnovationMonitor::restart() noexcept {
+  recent_count_ = 0;
+  run_ = 0;
+  recovering_ = false;
+}
+
+InnovationSummary InnovationMonitor::summary() const {
+  InnovationSummary s;
+  s.count = count_;
+  s.rejected = rejected_;
+  s.recovered = recovered_;
+  s.log_likelihood = log_likelihood_;
+  if (used_ == 0) return s;
+  const double n = static_cast<double>(used_);
+  s.mean = sum_ / n;
+  s.nis = sum_squares_ / n;
+  s.nis_bound95 = 1.96 * std::sqrt(2.0 / n);
+  s.white_bound95 = 1.96 / std::sqrt(n);
+  if (used_ > kLags + 1 && sum_squares_ > 0.0) {
+    s.lag1 = products_[0] / sum_squares_;
+    for (std::size_t lag = 0; lag < kLags; ++lag) {
+      const double r = products_[lag] / sum_squares_;
+      s.ljung_box += n * (n + 2.0) * r * r / (n - static_cast<double>(lag + 1));
+    }
+    s.ljung_box_p = numerics::chi_square_upper_p(s.ljung_box, static_cast<double>(kLags));
+  }
+  return s;
+}
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "veridyn/estimation/kalman/kalman_model.hpp"
+#include "veridyn/estimation/kalman/smoother_tape.hpp"
+
+namespace veridyn::estimation {
+
+/// Fixed-interval smoother in the adjoint form of Bryson & Frazier as modified by Bierman (1973), Automatica 9:
+/// 503-509: the same estimate as Rauch, Tung & Striebel (1965), without inverting a covariance.
+///
+/// The adjoint lambda and its covariance Lambda start at zero after the last measurement and go back through
+///     an update:      Lambda <- H' H / S + (I - K H)' Lambda (I - K H),  lambda <- -H' nu / S + (I - K H)' lambda
+///     a transition:   Lambda <- F' Lambda F,                             lambda <- F' lambda
+/// and at every mark  x_s = x (-) P lambda,  P_s = P - P Lambda P.
+/// Nothing is inverted, so exactly known and not yet excited states do no harm. For a nonlinear model the Jacobians are
+/// those of the filter's estimates, as in the extended RTS smoother.
+template <SystemModel Model>
+class FixedIntervalSmoother {
+ public:
+  using Tape = SmootherTape<Model>;
+  using State = typename Tape::State;
+  using Vector = typename Tape::Vector;
+  using Covariance = typename Tape::Covariance;
+
+  /// Goes backwards through `tape`, which must be the stretch just before the one swept last, and calls
+  /// `emit(number, x_smoothed, P_smoothed)` at each mark, latest first.
+  template <class Emit>
+  void sweep(const Tape& tape, Emit&& emit) {
+    constexpr int D = Model::kDynamic, R = Model::kStates - Model::kDynamic;
+    auto F = tape.transitions_.rbegin();
+    auto update = tape.updates_.rbegin();
+    auto mark = tape.marks_.rbegin();
+    for (auto kind = tape.order_.rbegin(); kind != tape.order_.rend(); ++kind) {
+      switch (*kind) {
+        case Tape::Kind::kTransition: {
+          // Lambda F, then F' (Lambda F), by the entries of F that are not zero; below its first D rows F is the
+          // identity. Lambda is symmetric, so its columns serve as rows.
+          const Covariance first = internal::transposed(times_transition(Lambda_, *F));
+          const Covariance L = times_transition(first, *F);
+          Lambda_ = 0.5 * (L + L.transpose());
+          Vector l = F->transpose() * lambda_.template head<D>();
+          if constexpr (R > 0) l.template tail<R>() += lambda_.template tail<R>();
+          lambda_ = l;
+          ++F;
+          break;
+        }
+        case Tape::Kind::kUpdate: {
+          const Vector& H = update->H;
+          const Vector& K = update->K;
+          const Vector LK = Lambda_.lazyProduct(K);
+          const double weight = 1.0 / update->S + K.dot(LK);
+          const Vector half = (0.5 * weight) * H - LK;
+          Lambda_ += half.lazyProduct(H.transpose()) + H.lazyProduct(half.transpose());
+          lambda_ -= H * (update->nu / update->S + K.dot(lambda_));
+          ++update;
+          break;
+        }
+        case Tape::Kind::kMark: {
+          const Covariance PL = mark->P.lazyProduct(Lambda_);
+          Covariance P = mark->P;
+          P -= PL.lazyProduct(mark->P);
+          const Vector correction = -mark->P.lazyProduct(lambda_);
+          emit(mark->number, Model::template retract<double>(mark->x, correction), P);
+          ++mark;
+          break;
+        }
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] static Covariance times_transition(const Covariance& M, const typename Tape::TransitionRows& F) {
+    constexpr int D = Model::kDynamic, N = Model::kStates;
+    Covariance product;
+    for (int j = 0; j < N; ++j) {
+      if (j < D) {
+        product.col(j).setZero();
+      } else {
+        product.col(j) = M.col(j);
+      }
+      for (int k = 0; k < D; ++k) {
+        if (F(k, j) != 0.0) product.col(j) += F(k, j) * M.col(k);
+      }
+    }
+    return product;
+  }
+
+  Vector lambda_ = Vector::Zero();
+  Covariance Lambda_ = Covariance::Zero();
+};
+
+/// Smooths a long run in bounded memory: goes forward once keeping a copy of the run every `block` steps, then repeats
+/// the blocks from the last to the first with a tape. Twice the filter's time, but memory only for one block and
+/// steps / block copies.
+///
+/// `Run` is copyable; `bool advance(SmootherTape<Model>* tape)` processes the next step and returns false, having done
+/// nothing, at the end. Repeating a copy must repeat the results. `on_forward(run)` is called after each step of the
+/// forward pass and may return false to stop there (the steps done so far are still smoothed). Returns the run at the
+/// end of the forward pass.
+template <SystemModel Model, class Run, class OnForward, class Emit>
+Run smooth_in_blocks(Run run, std::size_t block, OnForward&& on_forward, Emit&& emit) {
+  std::vector<std::pair<Run, std::size_t>> starts;
+  bool going = true;
+  while (going) {
+    std::pair<Run, std::size_t> start(run, 0);
+    while (going && start.second < block) {
+      if (!run.advance(nullptr)) {
+        going = false;
+        break;
+      }
+      ++start.second;
+      going = on_forward(std::as_const(run));
+    }
+    if (start.second > 0) starts.push_back(std::move(start));
+  }
+  FixedIntervalSmoother<Model> smoother;
+  SmootherTape<Model> tape;
+  while (!starts.empty()) {
+    tape.clear();
+    auto& [again, steps] = starts.back();
+    for (std::size_t i = 0; i < steps; ++i) static_cast<void>(again.advance(&tape));
+    smoother.sweep(tape, emit);
+    starts.pop_back();
+  }
+  return run;
+}
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,436 @@
+#include "veridyn/estimation/output_error/output_error.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/estimation/output_error/output_error_problem.hpp"
+#include "veridyn/estimation/output_error/residual_spectrum.hpp"
+
+namespace veridyn::estimation {
+namespace {
+
+using Eigen::Index;
+using internal::OutputErrorProblem;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Share of a parameter's unit vector in what is not identifiable above which it has no error bar.
+constexpr double kShareWithoutErrorBar = 1e-4;
+
+/// Hands one segment's triangle to Ceres.
+class SegmentCost : public ceres::CostFunction {
+ public:
+  SegmentCost(const OutputErrorProblem& problem, std::size_t segment) : problem_(problem), segment_(segment) {
+    set_num_residuals(static_cast<int>(problem.unknowns(segment)) + 1);
+    if (problem.local_count(segment) > 0)
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.local_count(segment)));
+    if (problem.shared_count() > 0)
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.shared_count()));
+  }
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    const internal::SegmentTriangle& t = problem_.triangle(segment_);
+    if (!t.valid) return false;
+    const Index rows = problem_.unknowns(segment_) + 1, locals = problem_.local_count(segment_);
+    Eigen::Map<Eigen::VectorXd> r(residuals, rows);
+    if (jacobians == nullptr) {
+      r.setZero();
+      r(0) = std::sqrt(t.squares);
+      return true;
+    }
+    r = t.matrix.rightCols(1);
+    std::size_t block = 0;
+    for (const auto& [first, count] : {std::pair{Index{0}, locals}, std::pair{locals, problem_.shared_count()}}) {
+      if (count == 0) continue;
+      if (jacobians[block] != nullptr)
+        Eigen::Map<RowMatrix>(jacobians[block], rows, count) = t.matrix.middleCols(first, count);
+      ++block;
+    }
+    return true;
+  }
+
+ private:
+  const OutputErrorProblem& problem_;
+  std::size_t segment_;
+};
+
+/// (x - start) / sigma of unknowns with a prior; zero rows for the others.
+class PriorCost : public ceres::CostFunction {
+ public:
+  PriorCost(Eigen::VectorXd start, Eigen::VectorXd precision_root)
+      : start_(std::move(start)), root_(std::move(precision_root)) {
+    set_num_residuals(static_cast<int>(start_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
+  }
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const Index n = start_.size();
+    for (Index i = 0; i < n; ++i) residuals[i] = root_(i) > 0.0 ? root_(i) * (x[0][i] - start_(i)) : 0.0;
+    if (jacobians != nullptr && jacobians[0] != nullptr)
+      Eigen::Map<RowMatrix>(jacobians[0], n, n) = RowMatrix(root_.asDiagonal());
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd start_, root_;
+};
+
+/// All segments at once, on our own threads and in a fixed order: Ceres itself runs on one.
+class EvaluateSegments : public ceres::EvaluationCallback {
+ public:
+  explicit EvaluateSegments(OutputErrorProblem& problem) : problem_(problem) {}
+  void PrepareForEvaluation(bool evaluate_jacobians, bool) override { problem_.evaluate(evaluate_jacobians); }
+
+ private:
+  OutputErrorProblem& problem_;
+};
+
+class Watch : public ceres::IterationCallback {
+ public:
+  explicit Watch(Progress& progress) : progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return progress_.interrupted() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  Progress& progress_;
+};
+
+class Estimation {
+ public:
+  Estimation(const ParametricModel& model, const std::vector<RowMatrix>& measured, const OutputErrorOptions& options,
+             Progress& progress)
+      : options_(options), progress_(progress), problem_(model, measured, options) {}
+
+  OutputErrorEstimate run() {
+    search();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  void end(OutputErrorTermination termination, std::string message) {
+    result_.termination = termination;
+    result_.message = std::move(message);
+  }
+
+  void search() {
+    result_.values = problem_.values();
+    if (problem_.values() <= problem_.all_unknowns()) {
+      return end(OutputErrorTermination::kTooFewSamples,
+                 fmt::format("{} measured values for {} unknowns", problem_.values(), problem_.all_unknowns()));
+    }
+    problem_.evaluate(false);
+    if (!problem_.valid()) {
+      result_.diverged_segment = problem_.diverged_segment();
+      return end(OutputErrorTermination::kDivergedAtStart,
+                 fmt::format("the simulation of {} diverges at the starting values", problem_.diverged_segment()));
+    }
+    problem_.start_noise();
+    for (int relaxation = 0; relaxation < options_.max_relaxations; ++relaxation) {
+      ++result_.relaxations;
+      const Eigen::VectorXd before = problem_.shared();
+      if (!solve()) return;
+      problem_.evaluate(true);
+      const double noise_change = problem_.update_noise();
+      const double moved = problem_.largest_change_in_sigma(before);
+      if (!progress_.update(static_cast<double>(relaxation + 1) / options_.max_relaxations)) {
+        return end(OutputErrorTermination::kInterrupted, "interrupted");
+      }
+      if (relaxation > 0 && moved < options_.tolerance && noise_change < 10.0 * options_.tolerance) {
+        return end(OutputErrorTermination::kConverged, "");
+      }
+    }
+    end(OutputErrorTermination::kRelaxations, "");
+  }
+
+  /// One relaxation: parameters at fixed R.
+  bool solve() {
+    if (problem_.all_unknowns() == 0) return true;
+    EvaluateSegments evaluate(problem_);
+    ceres::Problem::Options problem_options;
+    problem_options.evaluation_callback = &evaluate;
+    ceres::Problem ceres_problem(problem_options);
+    double* shared = problem_.shared_block();
+    const auto bound = [&](double* block, const std::vector<const ModelParameter*>& unknowns) {
+      Eigen::VectorXd start(static_cast<Index>(unknowns.size())), root(start.size());
+      for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        const ModelParameter& p = *unknowns[i];
+        const auto at = static_cast<int>(i);
+        if (std::isfinite(p.low)) ceres_problem.SetParameterLowerBound(block, at, p.low);
+        if (std::isfinite(p.high)) ceres_problem.SetParameterUpperBound(block, at, p.high);
+        start(at) = p.start;
+        root(at) = 1.0 / p.prior_sigma;
+      }
+      if (root.size() > 0 && root.maxCoeff() > 0.0)
+        ceres_problem.AddResidualBlock(new PriorCost(start, root), nullptr, block);
+    };
+    auto* ordering = new ceres::ParameterBlockOrdering;
+    for (std::size_t s = 0; s < problem_.segments(); ++s) {
+      std::vector<double*> blocks;
+      if (problem_.local_count(s) > 0) blocks.push_back(problem_.local_block(s));
+      if (problem_.shared_count() > 0) blocks.push_back(shared);
+      if (blocks.empty()) continue;
+      ceres_problem.AddResidualBlock(new SegmentCost(problem_, s), nullptr, blocks);
+      if (problem_.local_count(s) > 0) {
+        ordering->AddElementToGroup(problem_.local_block(s), 0);
+        bound(problem_.local_block(s), problem_.local_unknowns(s));
+      }
+    }
+    if (problem_.shared_count() > 0) {
+      ordering->AddElementToGroup(shared, 1);
+      bound(shared, problem_.shared_unknowns());
+    }
+    ceres::Solver::Options o;
+    o.linear_solver_ordering.reset(ordering);
+    // QR keeps the digits of ill-conditioned problems; elimination of the segments' unknowns is for very many of them.
+    const bool many = problem_.all_unknowns() > 400 && problem_.shared_count() > 0;
+    o.linear_solver_type = many ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
+    o.max_num_iterations = options_.max_steps;
+    o.function_tolerance = 1e-10;
+    o.gradient_tolerance = 1e-12;
+    o.parameter_tolerance = 1e-12;
+    // Close to the solution full Gauss-Newton steps are right; damping would only slow them.
+    if (result_.relaxations > 1) o.initial_trust_region_radius = 1e12;
+    o.num_threads = 1;
+    o.logging_type = ceres::SILENT;
+    Watch watch(progress_);
+    o.callbacks.push_back(&watch);
+    ceres::Solver::Summary summary;
+    ceres::Solve(o, &ceres_problem, &summary);
+    result_.steps += summary.num_successful_steps + summary.num_unsuccessful_steps;
+    result_.diverged_steps = problem_.diverged_evaluations();
+    result_.diverged_segment = problem_.diverged_segment();
+    if (summary.termination_type == ceres::USER_FAILURE) {
+      end(OutputErrorTermination::kInterrupted, "interrupted");
+      return false;
+    }
+    if (summary.termination_type == ceres::FAILURE) {
+      end(OutputErrorTermination::kSolverFailed, fmt::format("the optimiser could not go on: {}", summary.message));
+      return false;
+    }
+    return true;
+  }
+
+  void finish() {
+    const ParametricModel& model = problem_.model();
+    const auto parameters = model.parameters();
+    const auto n = static_cast<Index>(parameters.size());
+    result_.theta = problem_.full_shared();
+    result_.covariance = result_.covariance_white = Eigen::MatrixXd::Zero(n, n);
+    result_.learned_share = Eigen::VectorXd::Ones(n);
+    result_.noise_covariance = problem_.noise();
+    result_.parameters.resize(parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      ParameterEstimate& p = result_.parameters[i];
+      p.name = parameters[i].name;
+      p.unit = parameters[i].unit;
+      p.value = result_.theta(static_cast<Index>(i));
+      p.sigma = p.sigma_white = parameters[i].fixed ? 0.0 : kInfinity;
+      p.low95 = p.value - p.sigma;
+      p.high95 = p.value + p.sigma;
+      p.status = parameters[i].fixed ? ParameterStatus::kFixed : ParameterStatus::kRejected;
+    }
+    if (!result_.usable()) return;
+    problem_.evaluate(true);
+    result_.negative_log_likelihood = problem_.negative_log_likelihood();
+    error_bars();
+    for (std::size_t s = 0; s < problem_.segments(); ++s) {
+      result_.predicted.push_back(problem_.predicted(s));
+      for (std::size_t i = 0; i < problem_.local_names(s).size(); ++i) {
+        result_.segment_parameters.push_back({s, problem_.local_names(s)[i], problem_.local_units(s)[i],
+                                              problem_.local_block(s)[static_cast<Index>(i)]});
+      }
+    }
+    result_.outputs = problem_.output_fits();
+    if (!result_.message.empty()) return;
+    const char* how = result_.termination == OutputErrorTermination::kConverged ? "converged" : "stopped";
+    result_.message = fmt::format("{} after {} relaxations and {} steps over {} segments, {} values", how,
+                                  result_.relaxations, result_.steps, problem_.segments(), result_.values);
+    if (result_.diverged_steps > 0) {
+      result_.message += fmt::format("; {} steps were refused because a simulation diverged, last that of {}",
+                                     result_.diverged_steps, result_.diverged_segment);
+    }
+    if (!result_.unidentifiable.empty()) {
+      result_.message += "; not identifiable:";
+      for (const Direction& d : result_.unidentifiable) result_.message += " " + d.text + ";";
+      result_.message.pop_back();
+    }
+  }
+
+  void error_bars() {
+    const Index n = problem_.shared_count();
+    const std::vector<Index>& free = problem_.free_shared();
+    if (n == 0) return;
+    const auto unknowns = problem_.shared_unknowns();
+    // Root of the information: the segments' triangles with their own unknowns eliminated, and the priors.
+    RowMatrix root = problem_.shared_root();
+    for (Index i = 0; i < n; ++i) {
+      const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+      if (!std::isfinite(sigma)) continue;
+      root.conservativeResize(root.rows() + 1, Eigen::NoChange);
+      root.row(root.rows() - 1) = Eigen::RowVectorXd::Unit(n, i) / sigma;
+    }
+    Eigen::VectorXd length = root.colwise().norm().transpose();
+    for (double& l : length) l = l > 0.0 ? l : 1.0;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(root * length.cwiseInverse().asDiagonal()),
+                                                Eigen::ComputeFullV | Eigen::ComputeThinU);
+    const Eigen::VectorXd& s = svd.singularValues();
+    const double largest = s.size() > 0 ? s(0) : 0.0;
+    if (!(largest > 0.0)) {
+      return end(OutputErrorTermination::kNothingToEstimate, "the outputs do not depend on any free parameter");
+    }
+    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n), share = Eigen::VectorXd::Zero(n);
+    result_.condition_number = s.size() == n && s(n - 1) > 0.0 ? largest / s(n - 1) : kInfinity;
+    std::vector<std::string> names;
+    for (const ModelParameter* p : unknowns) names.push_back(p->name);
+    for (Index j = 0; j < n; ++j) {
+      if (j < s.size() && s(j) > options_.identifiable * largest) {
+        inverse(j) = 1.0 / s(j);
+        continue;
+      }
+      share += svd.matrixV().col(j).cwiseAbs2();
+      Eigen::VectorXd combination = svd.matrixV().col(j).cwiseQuotient(length);
+      combination /= combination.norm();
+      Eigen::VectorXd all = Eigen::VectorXd::Zero(result_.theta.size());
+      for (Index i = 0; i < n; ++i) all(free[static_cast<std::size_t>(i)]) = combination(i);
+      result_.unidentifiable.push_back({all, kInfinity, describe_combination(combination, names)});
+    }
+    const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.matrixV() * inverse.asDiagonal();
+    const Eigen::MatrixXd white = back * back.transpose();
+    Eigen::MatrixXd chosen = white;
+    const double values = static_cast<double>(result_.values);
+    const double freedom = std::max(1.0, values - static_cast<double>(problem_.all_unknowns()));
+    // Residuals are smaller than the noise by the freedom that the fit took.
+    const double inflation = values / freedom;
+    const double white_inflation = problem_.estimates_noise() ? inflation : 1.0;
+    result_.degrees_of_freedom = freedom;
+    const bool coloured = options_.covariance == CovarianceKind::kColoured;
+    if (coloured) {
+      const ResidualSpectrum spectrum = residual_spectrum(problem_.whitened_residuals(), options_.max_lag);
+      Eigen::MatrixXd filling = problem_.coloured_filling(spectrum) / spectrum.kept;
+      // The prior's own error is white: its information enters as it is.
+      for (Index i = 0; i < n; ++i) {
+        const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+        if (std::isfinite(sigma)) filling(i, i) += 1.0 / (sigma * sigma);
+      }
+      chosen = white * filling * white;
+      result_.degrees_of_freedom = std::min(freedom, spectrum.degrees_of_freedom);
+      result_.lag_window = spectrum.window;
+    }
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        const Index a = free[static_cast<std::size_t>(i)], b = free[static_cast<std::size_t>(j)];
+        const bool known = share(i) <= kShareWithoutErrorBar && share(j) <= kShareWithoutErrorBar;
+        const double otherwise = i == j ? kInfinity : 0.0;
+        result_.covariance(a, b) = known ? (coloured ? inflation : white_inflation) * chosen(i, j) : otherwise;
+        result_.covariance_white(a, b) = known ? white_inflation * white(i, j) : otherwise;
+      }
+    }
+    const double quantile95 = numerics::student_t_quantile(0.975, result_.degrees_of_freedom);
+    for (Index i = 0; i < n; ++i) {
+      const Index a = free[static_cast<std::size_t>(i)];
+      ParameterEstimate& p = result_.parameters[static_cast<std::size_t>(a)];
+      p.sigma = std::sqrt(std::max(0.0, result_.covariance(a, a)));
+      p.sigma_white = std::sqrt(std::max(0.0, result_.covariance_white(a, a)));
+      p.low95 = p.value - quantile95 * p.sigma;
+      p.high95 = p.value + quantile95 * p.sigma;
+      p.unexcited_share = std::min(1.0, share(i));
+      const double l = length(i);
+      p.variance_inflation = std::max(1.0, white(i, i) * l * l);
+      const double prior = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+      if (std::isfinite(prior))
+        result_.learned_share(a) = std::clamp(1.0 - p.sigma_white * p.sigma_white / (prior * prior), 0.0, 1.0);
+      if (!std::isfinite(p.sigma)) {
+        p.status = ParameterStatus::kNotExcited;
+        result_.learned_share(a) = 0.0;
+        continue;
+      }
+      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
+      p.p_value = numerics::student_t_two_sided_p(p.t, result_.degrees_of_freedom);
+      p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+      if (result_.learned_share(a) < 0.1) p.status = ParameterStatus::kNotExcited;
+    }
+  }
+
+  const OutputErrorOptions& options_;
+  Progress& progress_;
+  OutputErrorProblem problem_;
+  OutputErrorEstimate result_;
+};
+
+}  // namespace
+
+std::string_view to_string(OutputErrorTermination termination) {
+  switch (termination) {
+    case OutputErrorTermination::kConverged:
+      return "converged";
+    case OutputErrorTermination::kRelaxations:
+      return "relaxations used up";
+    case OutputErrorTermination::kInterrupted:
+      return "interrupted";
+    case OutputErrorTermination::kDivergedAtStart:
+      return "diverged at the start";
+    case OutputErrorTermination::kTooFewSamples:
+      return "too few samples";
+    case OutputErrorTermination::kNothingToEstimate:
+      return "nothing to estimate";
+    case OutputErrorTermination::kSolverFailed:
+      return "solver failed";
+  }
+  return "";
+}
+
+const ParameterEstimate* OutputErrorEstimate::find(std::string_view name) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const ParameterEstimate& p) { return p.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+void OutputErrorOptions::validate(const ParametricModel& model) const {
+  const auto require = [](bool holds, const char* what, double value, const char* rule) {
+    if (!holds) throw InputError(fmt::format("output_error.{}", what), fmt::format("is {}; must be {}", value, rule));
+  };
+  require(significance > 0.0 && significance < 1.0, "significance", significance, "in (0, 1)");
+  require(max_relaxations >= 1, "max_relaxations", max_relaxations, ">= 1");
+  require(max_steps >= 1, "max_steps", max_steps, ">= 1");
+  require(tolerance > 0.0, "tolerance", tolerance, "> 0");
+  require(identifiable > 0.0 && identifiable < 1.0, "identifiable", identifiable, "in (0, 1)");
+  require(max_lag >= 0, "max_lag", static_cast<double>(max_lag), ">= 0");
+  require(threads >= 0, "threads", threads, ">= 0 (0: all cores)");
+  const auto p = static_cast<Index>(model.outputs().size());
+  if (noise_start.size() > 0 && (noise_start.size() != p || !(noise_start.array() > 0.0).all())) {
+    throw InputError("output_error.noise_start",
+                     fmt::format("has {} values for {} outputs; must have one each, all > 0", noise_start.size(), p));
+  }
+  if (noise == OutputNoise::kGiven && noise_start.size() == 0)
+    throw InputError("output_error.noise_start", "is empty; the given noise needs one standard deviation an output");
+  std::vector<std::string> names;
+  for (const ModelOutput& output : model.outputs()) names.push_back(output.name);
+  for (const std::string& name : output_biases) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw InputError("output_error.output_biases",
+                       fmt::format("'{}' is not an output of the model{}", name, suggestion(name, names)));
+    }
+  }
+}
+
+OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
+                                 const OutputErrorOptions& options) {
+  Progress silent;
+  return output_error(model, measured, options, silent);
+}
+
+OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
+                                 const OutputErrorOptions& options, Progress& progress) {
+  options.validate(model);
+  return Estimation(model, measured, options, progress).run();
+}
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,434 @@
+#include "veridyn/estimation/output_error/output_error_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::estimation::internal {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Standard deviation of the noise, as a share of the signal's, below which a fit counts as perfect.
+constexpr double kNoiseFloor = 1e-8;
+
+void check_parameters(std::span<const ModelParameter> parameters, const char* what) {
+  for (const ModelParameter& p : parameters) {
+    const auto fail = [&](const char* which, double value, const std::string& rule) {
+      throw InputError(fmt::format("output_error.{}: {}", what, p.name),
+                       fmt::format("{} is {}; must be {}", which, value, rule));
+    };
+    if (!std::isfinite(p.start)) fail("start", p.start, "finite");
+    if (!(p.low <= p.high)) fail("low", p.low, fmt::format("<= high = {}", p.high));
+    if (!(p.start >= p.low && p.start <= p.high)) fail("start", p.start, fmt::format("in [{}, {}]", p.low, p.high));
+    if (!(p.prior_sigma > 0.0)) fail("prior_sigma", p.prior_sigma, "> 0");
+  }
+}
+
+}  // namespace
+
+OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::vector<RowMatrix>& measured,
+                                       const OutputErrorOptions& options)
+    : model_(model), measured_(measured), options_(options) {
+  outputs_ = static_cast<Index>(model.outputs().size());
+  if (measured.size() != model.segments() || measured.empty()) {
+    throw InputError("output_error.measured", fmt::format("has {} segments; the model has {} and needs at least one",
+                                                          measured.size(), model.segments()));
+  }
+  const auto parameters = model.parameters();
+  check_parameters(parameters, "parameters");
+  all_shared_.resize(static_cast<Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    all_shared_(static_cast<Index>(i)) = parameters[i].start;
+    if (!parameters[i].fixed) free_shared_.push_back(static_cast<Index>(i));
+  }
+  shared_.resize(static_cast<Index>(free_shared_.size()));
+  for (std::size_t i = 0; i < free_shared_.size(); ++i) shared_(static_cast<Index>(i)) = all_shared_(free_shared_[i]);
+
+  const auto outputs = model.outputs();
+  for (Index j = 0; j < outputs_; ++j) {
+    const ModelOutput& output = outputs[static_cast<std::size_t>(j)];
+    const auto& wanted = options.output_biases;
+    if (std::find(wanted.begin(), wanted.end(), output.name) == wanted.end()) continue;
+    biased_.push_back(j);
+    bias_parameters_.push_back({.name = "bias of " + output.name, .unit = output.unit});
+  }
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(outputs_), squares = sum, count = sum;
+  for (std::size_t s = 0; s < measured.size(); ++s) {
+    const RowMatrix& z = measured[s];
+    if (z.rows() != model.samples(s) || z.cols() != outputs_) {
+      throw InputError(
+          fmt::format("output_error.measured: {}", model.segment_name(s)),
+          fmt::format("is {} x {}; must be {} samples x {} outputs", z.rows(), z.cols(), model.samples(s), outputs_));
+    }
+    Segment segment;
+    const auto initial = model.initial_conditions(s);
+    check_parameters(initial, "initial_conditions");
+    segment.initial.resize(static_cast<Index>(initial.size()));
+    for (std::size_t i = 0; i < initial.size(); ++i) {
+      segment.initial(static_cast<Index>(i)) = initial[i].start;
+      if (options.free_initial_conditions && !initial[i].fixed) segment.free_initial.push_back(static_cast<Index>(i));
+    }
+    segment.local = Eigen::VectorXd::Zero(static_cast<Index>(segment.free_initial.size() + biased_.size()));
+    for (std::size_t i = 0; i < segment.free_initial.size(); ++i) {
+      segment.local(static_cast<Index>(i)) = segment.initial(segment.free_initial[i]);
+      segment.active.push_back(all_shared_.size() + segment.free_initial[i]);
+    }
+    segment.active.insert(segment.active.end(), free_shared_.begin(), free_shared_.end());
+    segments_.push_back(std::move(segment));
+    for (Index k = 0; k < z.rows(); ++k) {
+      for (Index j = 0; j < outputs_; ++j) {
+        if (std::isinf(z(k, j))) {
+          throw InputError(fmt::format("output_error.measured: {}", model.segment_name(s)),
+                           fmt::format("output {} of sample {} is infinite; a missing value is NaN",
+                                       outputs[static_cast<std::size_t>(j)].name, k));
+        }
+        if (std::isnan(z(k, j))) continue;
+        ++values_;
+        sum(j) += z(k, j);
+        squares(j) += z(k, j) * z(k, j);
+        count(j) += 1.0;
+      }
+    }
+  }
+  noise_floor_ = Eigen::VectorXd::Constant(outputs_, 1e-150);
+  for (Index j = 0; j < outputs_; ++j) {
+    if (count(j) < 1.0) continue;
+    const double rms = std::sqrt(squares(j) / count(j));
+    if (rms > 0.0) noise_floor_(j) = std::max(1e-150, kNoiseFloor * rms);
+  }
+  set_noise(Eigen::MatrixXd::Identity(outputs_, outputs_));
+}
+
+Index OutputErrorProblem::all_unknowns() const {
+  Index count = shared_.size();
+  for (const Segment& s : segments_) count += s.local.size();
+  return count;
+}
+
+std::vector<const ModelParameter*> OutputErrorProblem::shared_unknowns() const {
+  std::vector<const ModelParameter*> unknowns;
+  for (const Index i : free_shared_) unknowns.push_back(&model_.parameters()[static_cast<std::size_t>(i)]);
+  return unknowns;
+}
+
+std::vector<const ModelParameter*> OutputErrorProblem::local_unknowns(std::size_t s) const {
+  std::vector<const ModelParameter*> unknowns;
+  for (const Index i : segments_[s].free_initial)
+    unknowns.push_back(&model_.initial_conditions(s)[static_cast<std::size_t>(i)]);
+  for (const ModelParameter& bias : bias_parameters_) unknowns.push_back(&bias);
+  return unknowns;
+}
+
+std::vector<std::string> OutputErrorProblem::local_names(std::size_t s) const {
+  std::vector<std::string> names;
+  for (const ModelParameter* p : local_unknowns(s)) names.push_back(p->name);
+  return names;
+}
+
+std::vector<std::string> OutputErrorProblem::local_units(std::size_t s) const {
+  std::vector<std::string> units;
+  for (const ModelParameter* p : local_unknowns(s)) units.push_back(p->unit);
+  return units;
+}
+
+Eigen::VectorXd OutputErrorProblem::full_shared() const {
+  Eigen::VectorXd all = all_shared_;
+  for (std::size_t i = 0; i < free_shared_.size(); ++i) all(free_shared_[i]) = shared_(static_cast<Index>(i));
+  return all;
+}
+
+Eigen::VectorXd OutputErrorProblem::theta_of(const Segment& segment) const {
+  Eigen::VectorXd theta(all_shared_.size() + segment.initial.size());
+  theta << full_shared(), segment.initial;
+  for (std::size_t i = 0; i < segment.free_initial.size(); ++i)
+    theta(all_shared_.size() + segment.free_initial[i]) = segment.local(static_cast<Index>(i));
+  return theta;
+}
+
+bool OutputErrorProblem::linearise(std::size_t s, bool derivatives, RowMatrix& residual, RowMatrix& predicted,
+                                   RowMatrix& rows) const {
+  const Segment& segment = segments_[s];
+  const RowMatrix& z = measured_[s];
+  ModelResponse response;
+  const std::span<const Index> active = derivatives ? std::span<const Index>(segment.active) : std::span<const Index>();
+  if (!model_.respond(s, theta_of(segment), active, response)) return false;
+  if (!response.output.allFinite() || (derivatives && !response.sensitivity.allFinite())) return false;
+  const auto initial = static_cast<Index>(segment.free_initial.size());
+  const auto biases = static_cast<Index>(biased_.size());
+  predicted = std::move(response.output);
+  for (Index b = 0; b < biases; ++b)
+    predicted.col(biased_[static_cast<std::size_t>(b)]).array() += segment.local(initial + b);
+  residual = z - predicted;
+  const Index n = derivatives ? segment.local.size() + shared_.size() : 0;
+  rows = RowMatrix::Zero(z.rows() * outputs_, n + 1);
+  for (Index k = 0; k < z.rows(); ++k) {
+    for (Index j = 0; j < outputs_; ++j) {
+      auto row = rows.row(k * outputs_ + j);
+      row(n) = residual(k, j);
+      if (!derivatives) continue;
+      row.head(initial) = -response.sensitivity.row(k * outputs_ + j).head(initial);
+      row.segment(initial + biases, shared_.size()) = -response.sensitivity.row(k * outputs_ + j).tail(shared_.size());
+      for (Index b = 0; b < biases; ++b)
+        if (biased_[static_cast<std::size_t>(b)] == j) row(initial + b) = -1.0;
+    }
+  }
+  whiten(residual, rows);
+  return true;
+}
+
+void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) const {
+  const bool diagonal = options_.noise != OutputNoise::kFull;
+  std::vector<Index> seen;
+  RowMatrix block;
+  for (Index k = 0; k < residual.rows(); ++k) {
+    seen.clear();
+    for (Index j = 0; j < outputs_; ++j) {
+      if (std::isfinite(residual(k, j)))
+        seen.push_back(j);
+      else
+        rows.row(k * outputs_ + j).setZero();
+    }
+    if (diagonal) {
+      for (const Index j : seen) rows.row(k * outputs_ + j) *= whitener_(j, j);
+      continue;
+    }
+    const auto count = static_cast<Index>(seen.size());
+    if (count == 0) continue;
+    auto all = rows.middleRows(k * outputs_, outputs_);
+    if (count == outputs_) {
+      all = (whitener_.triangularView<Eigen::Lower>() * all).eval();
+      continue;
+    }
+    // Missing values: the marginal covariance of those that are there.
+    block.resize(count, rows.cols());
+    Eigen::MatrixXd part(count, count);
+    for (Index a = 0; a < count; ++a) {
+      block.row(a) = all.row(seen[static_cast<std::size_t>(a)]);
+      for (Index b = 0; b < count; ++b)
+        part(a, b) = noise_(seen[static_cast<std::size_t>(a)], seen[static_cast<std::size_t>(b)]);
+    }
+    block = part.llt().matrixL().solve(block).eval();
+    for (Index a = 0; a < count; ++a) all.row(seen[static_cast<std::size_t>(a)]) = block.row(a);
+  }
+}
+
+void OutputErrorProblem::evaluate(bool derivatives) {
+  numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
+    Segment& segment = segments_[s];
+    RowMatrix rows;
+    SegmentTriangle& t = segment.triangle;
+    t.valid = linearise(s, derivatives, segment.residual, segment.predicted, rows);
+    if (!t.valid) return;
+    t.squares = rows.rightCols(1).squaredNorm();
+    if (!derivatives) return;
+    AugmentedQr qr(rows.cols());
+    qr.append(rows);
+    t.matrix = qr.triangle();
+  });
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    if (segments_[s].triangle.valid) continue;
+    ++diverged_evaluations_;
+    diverged_segment_ = model_.segment_name(s);
+    break;
+  }
+}
+
+bool OutputErrorProblem::valid() const {
+  return std::all_of(segments_.begin(), segments_.end(), [](const Segment& s) { return s.triangle.valid; });
+}
+
+void OutputErrorProblem::set_noise(const Eigen::MatrixXd& noise) {
+  noise_ = noise;
+  for (Index j = 0; j < outputs_; ++j)
+    noise_(j, j) = std::max(noise_(j, j), noise_floor_.size() > 0 ? noise_floor_(j) * noise_floor_(j) : 0.0);
+  if (options_.noise != OutputNoise::kFull) {
+    whitener_ = noise_.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+    return;
+  }
+  // Outputs that repeat each other would make R singular: correlations are kept off 1.
+  const Eigen::VectorXd sd = noise_.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * noise_ * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  if (eigen.eigenvalues()(0) < 1e-10) {
+    const Eigen::MatrixXd repaired =
+        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-10).asDiagonal() * eigen.eigenvectors().transpose();
+    noise_ = sd.asDiagonal() * repaired * sd.asDiagonal();
+  }
+  const Eigen::LLT<Eigen::MatrixXd> llt(noise_);
+  whitener_ = llt.matrixL().solve(Eigen::MatrixXd::Identity(outputs_, outputs_));
+}
+
+void OutputErrorProblem::start_noise() {
+  if (options_.noise_start.size() > 0) return set_noise(options_.noise_start.cwiseAbs2().asDiagonal());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(outputs_), count = sum;
+  for (const Segment& s : segments_) {
+    for (Index k = 0; k < s.residual.rows(); ++k) {
+      for (Index j = 0; j < outputs_; ++j) {
+        if (!std::isfinite(s.residual(k, j))) continue;
+        sum(j) += s.residual(k, j) * s.residual(k, j);
+        count(j) += 1.0;
+      }
+    }
+  }
+  Eigen::VectorXd variance = Eigen::VectorXd::Ones(outputs_);
+  for (Index j = 0; j < outputs_; ++j)
+    if (count(j) > 0.0 && sum(j) > 0.0) variance(j) = sum(j) / count(j);
+  set_noise(variance.asDiagonal());
+}
+
+double OutputErrorProblem::update_noise() {
+  if (!estimates_noise()) return 0.0;
+  const bool full = options_.noise == OutputNoise::kFull;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(outputs_, outputs_);
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(outputs_);
+  for (const Segment& segment : segments_) {
+    const RowMatrix& r = segment.residual;
+    for (Index k = 0; k < r.rows(); ++k) {
+      std::vector<Index> seen, missing;
+      for (Index j = 0; j < outputs_; ++j) (std::isfinite(r(k, j)) ? seen : missing).push_back(j);
+      if (!full) {
+        for (const Index j : seen) {
+          sum(j, j) += r(k, j) * r(k, j);
+          count(j) += 1.0;
+        }
+        continue;
+      }
+      if (seen.empty()) continue;
+      count.array() += 1.0;
+      // Expectation step: missing residuals replaced by their conditional mean, their conditional covariance added.
+      Eigen::VectorXd e = Eigen::VectorXd::Zero(outputs_);
+      for (const Index j : seen) e(j) = r(k, j);
+      if (!missing.empty()) {
+        const Eigen::MatrixXd gain = noise_(seen, seen).llt().solve(Eigen::MatrixXd(noise_(seen, missing))).transpose();
+        e(missing) = gain * e(seen);
+        sum(missing, missing) += noise_(missing, missing) - gain * noise_(seen, missing);
+      }
+      sum += e * e.transpose();
+    }
+  }
+  Eigen::MatrixXd updated = noise_;
+  for (Index i = 0; i < outputs_; ++i) {
+    for (Index j = 0; j < outputs_; ++j)
+      if (count(i) > 0.0 && (full || i == j)) updated(i, j) = sum(i, j) / count(i);
+  }
+  const Eigen::VectorXd before = noise_.diagonal().cwiseSqrt();
+  set_noise(updated);
+  double change = 0.0;
+  for (Index j = 0; j < outputs_; ++j) change = std::max(change, std::abs(std::sqrt(noise_(j, j)) / before(j) - 1.0));
+  return change;
+}
+
+double OutputErrorProblem::largest_change_in_sigma(const Eigen::VectorXd& before) const {
+  return shared_.size() > 0 ? (shared_root() * (shared_ - before)).norm() : 0.0;
+}
+
+RowMatrix OutputErrorProblem::shared_root() const {
+  const Index n = shared_.size();
+  Index total = 0;
+  for (const Segment& s : segments_) total += s.local.size() + n;
+  RowMatrix stacked = RowMatrix::Zero(total, n);
+  Index at = 0;
+  for (const Segment& s : segments_) {
+    const Index own = s.local.size(), size = own + n;
+    Eigen::MatrixXd shared = s.triangle.matrix.block(0, own, size, n);
+    Index rank = 0;
+    if (own > 0) {
+      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(size, own);
+      qr.setThreshold(1e-10);
+      qr.compute(s.triangle.matrix.topLeftCorner(size, own));
+      shared = (qr.householderQ().adjoint() * shared).eval();
+      rank = qr.rank();
+    }
+    stacked.middleRows(at, size - rank) = shared.bottomRows(size - rank);
+    at += size - rank;
+  }
+  return stacked.topRows(at);
+}
+
+std::vector<RowMatrix> OutputErrorProblem::whitened_residuals() const {
+  std::vector<RowMatrix> result;
+  for (const Segment& s : segments_) {
+    RowMatrix rows(s.residual.size(), 1);
+    for (Index i = 0; i < s.residual.size(); ++i) rows(i, 0) = s.residual.data()[i];
+    whiten(s.residual, rows);
+    RowMatrix white(s.residual.rows(), outputs_);
+    for (Index i = 0; i < white.size(); ++i) white.data()[i] = std::isfinite(s.residual.data()[i]) ? rows(i, 0) : kNaN;
+    result.push_back(std::move(white));
+  }
+  return result;
+}
+
+Eigen::MatrixXd OutputErrorProblem::coloured_filling(const ResidualSpectrum& spectrum) const {
+  const Index n = shared_.size();
+  std::vector<Eigen::MatrixXd> parts(segments_.size(), Eigen::MatrixXd::Zero(n, n));
+  numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
+    RowMatrix residual, predicted, rows;
+    if (!linearise(s, true, residual, predicted, rows)) return;
+    const Index own = segments_[s].local.size();
+    RowMatrix sensitivity = rows.middleCols(own, n);
+    if (own > 0) {
+      const Eigen::MatrixXd& triangle = segments_[s].triangle.matrix;
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+      solver.setThreshold(1e-10);
+      solver.compute(triangle.leftCols(own));
+      sensitivity -= rows.leftCols(own) * solver.solve(triangle.middleCols(own, n));
+    }
+    parts[s] = coloured_information(spectrum, sensitivity, outputs_);
+  });
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n, n);
+  for (const Eigen::MatrixXd& part : parts) total += part;
+  return total;
+}
+
+double OutputErrorProblem::negative_log_likelihood() const {
+  double sum = 0.0;
+  for (const Segment& segment : segments_) {
+    sum += 0.5 * segment.triangle.squares;
+    for (Index k = 0; k < segment.residual.rows(); ++k) {
+      std::vector<Index> seen;
+      for (Index j = 0; j < outputs_; ++j)
+        if (std::isfinite(segment.residual(k, j))) seen.push_back(j);
+      if (seen.empty()) continue;
+      if (options_.noise != OutputNoise::kFull) {
+        for (const Index j : seen) sum += 0.5 * std::log(noise_(j, j));
+      } else {
+        const Eigen::MatrixXd L = noise_(seen, seen).llt().matrixL();
+        sum += L.diagonal().array().log().sum();
+      }
+    }
+  }
+  return sum;
+}
+
+std::vector<OutputFit> OutputErrorProblem::output_fits() const {
+  std::vector<OutputFit> fits;
+  for (Index j = 0; j < outputs_; ++j) {
+    const ModelOutput& output = model_.outputs()[static_cast<std::size_t>(j)];
+    std::vector<double> measured, predicted;
+    double lagged = 0.0, power = 0.0;
+    for (std::size_t s = 0; s < segments_.size(); ++s) {
+      const RowMatrix& r = segments_[s].residual;
+      for (Index k = 0; k < r.rows(); ++k) {
+        measured.push_back(measured_[s](k, j));
+        predicted.push_back(segments_[s].predicted(k, j));
+        if (std::isfinite(r(k, j))) power += r(k, j) * r(k, j);
+        if (k > 0 && std::isfinite(r(k, j) * r(k - 1, j))) lagged += r(k, j) * r(k - 1, j);
+      }
+    }
+    fits.push_back({output.name, output.unit, numerics::fit_measures(measured, predicted), std::sqrt(noise_(j, j)),
+                    power > 0.0 ? lagged / power : 0.0});
+  }
+  return fits;
+}
+
+}  // namespace veridyn::estimation::internal

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/assert.hpp"
+#include "veridyn/estimation/regression/regression_data.hpp"
+
+namespace veridyn::estimation {
+
+/// An unknown of a parametric model and what is known of it before the data speak.
+struct ModelParameter {
+  std::string name;
+  std::string unit = "1";
+  double start = 0.0;  ///< where the search begins; also the mean of the prior
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  /// Standard deviation of the prior about `start`; infinity: no prior.
+  double prior_sigma = std::numeric_limits<double>::infinity();
+  bool fixed = false;  ///< stays at `start`
+};
+
+struct ModelOutput {
+  std::string name;
+  std::string unit = "1";
+};
+
+/// What a model predicts for one segment.
+struct ModelResponse {
+  RowMatrix output;  ///< samples x outputs
+  /// (samples outputs) x active parameters: row k outputs + j holds d output(k, j) / d parameter.
+  RowMatrix sensitivity;
+};
+
+/// A dynamic (or static) model as estimators see it, whatever the domain: named parameters that all segments share,
+/// initial conditions of each segment, named outputs at the samples of each segment, and their exact derivatives.
+///
+/// A segment is one stretch of recorded motion. Its inputs, its sampling and its integrator are the model's own
+/// business. theta is always [parameters; initial conditions of the segment]. Functions are const and called from
+/// several threads at once. `AutodiffModel` below makes the derivatives out of one function template.
+class ParametricModel {
+ public:
+  virtual ~ParametricModel() = default;
+
+  [[nodiscard]] virtual std::span<const ModelParameter> parameters() const = 0;
+  [[nodiscard]] virtual std::span<const ModelOutput> outputs() const = 0;
+  [[nodiscard]] virtual std::size_t segments() const = 0;
+  [[nodiscard]] virtual Eigen::Index samples(std::size_t segment) const = 0;
+  /// Unknowns of this segment only: initial states, mostly.
+  [[nodiscard]] virtual std::span<const ModelParameter> initial_conditions(std::size_t segment) const = 0;
+  /// For messages: "segment 3 (41.0 to 49.5 s)".
+  [[nodiscard]] virtual std::string segment_name(std::size_t segment) const {
+    return "segment " + std::to_string(segment + 1);
+  }
+
+  /// Outputs at `theta`, and their derivatives with respect to theta(active[0]), theta(active[1]), ...; none when
+  /// `active` is empty. False when the simulation diverges or leaves the model's range; `response` is then worthless.
+  [[nodiscard]] virtual bool respond(std::size_t segment, const Eigen::VectorXd& theta,
+                                     std::span<const Eigen::Index> active, ModelResponse& response) const = 0;
+};
+
+/// Derivatives of `Derived::simulate` by ceres::Jet, exact to rounding; `kStride` parameters per pass.
+///
+/// Derived has
+///
+///     template <typename Scalar>
+///     bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+///                   Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
+///
+/// called with double and Jet<double, kStride>; `output` comes sized samples x outputs. It returns false when it
+/// diverges.
+template <typename Derived, int kStride = 8>
+class AutodiffModel : public ParametricModel {
+ public:
+  [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
+                             ModelResponse& response) const override {
+    using Jet = ceres::Jet<double, kStride>;
+    const auto& model = static_cast<const Derived&>(*this);
+    const Eigen::Index N = samples(segment);
+    const auto p = static_cast<Eigen::Index>(outputs().size());
+    const auto n = static_cast<Eigen::Index>(active.size());
+    response.output.resize(N, p);
+    response.sensitivity.resize(N * p, n);
+    if (n == 0) return model.simulate(segment, theta, response.output) && response.output.allFinite();
+    Eigen::Matrix<Jet, Eigen::Dynamic, 1> jets(theta.size());
+    Eigen::Matrix<Jet, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> output(N, p);
+    for (Eigen::Index first = 0; first < n; first += kStride) {
+      const Eigen::Index count = std::min<Eigen::Index>(kStride, n - first);
+      for (Eigen::Index i = 0; i < theta.size(); ++i) jets(i) = Jet(theta(i));
+      for (Eigen::Index j = 0; j < count; ++j) {
+        jets(active[static_cast<std::size_t>(first + j)]).v(j) = 1.0;
+      }
+      if (!model.simulate(segment, jets, output)) return false;
+      for (Eigen::Index k = 0; k < N; ++k) {
+        for (Eigen::Index j = 0; j < p; ++j) {
+          response.output(k, j) = output(k, j).a;
+          response.sensitivity.row(k * p + j).segment(first, count) = output(k, j).v.head(count).transpose();
+        }
+      }
+    }
+    return response.output.allFinite() && response.sensitivity.allFinite();
+  }
+};
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,322 @@
+// Error bars of RecursiveRegression: computed when asked for.
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/estimation/recursive/recursive_state.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::estimation {
+namespace {
+
+constexpr double kNormal95 = 1.959963984540054;
+constexpr double kAutomaticBound = 10.0;
+
+// A S A for symmetric A and S. Plain loops: for these sizes a third of the time of general products.
+SmallMatrix sandwich(const SmallMatrix& A, const SmallMatrix& S) {
+  const Eigen::Index n = A.rows();
+  SmallMatrix half(n, n), result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    std::array<double, kMaxRecursiveColumns> column{};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double a = A(k, j);
+      const double* s = S.data() + k * n;
+      for (Eigen::Index i = 0; i < n; ++i) column[static_cast<std::size_t>(i)] += a * s[i];
+    }
+    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[static_cast<std::size_t>(i)];
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const double *a = A.data() + i * n, *b = half.data() + j * n;
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < n; ++k) sum += a[k] * b[k];
+      result(i, j) = result(j, i) = sum;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+// M^-1 = sum_j p_j p_j'/(s_j^2 - s_min^2) + sum_i p_i p_i' over exact i, with p = b_x + theta b_z the part of b that is
+// a change of theta: since (D'D - s_min^2 W) h = 0 for h of s_min, these are orthogonal in M (docs/estimation.md).
+bool RecursiveRegression::State::inverse_jacobian(const SmallVector& least, SmallMatrix& inverse) const {
+  const Eigen::Index n = count();
+  const int last = data.noisy_columns() - 1;
+  const double smallest = data.singular_value(last);
+  SmallVector b(n + 1), p(n);
+  inverse.setZero(n, n);
+  for (int j = 0; j < last + data.exact_rank(); ++j) {
+    double factor = 1.0;
+    if (j < last) {
+      const double s = data.singular_value(j);
+      if (!(s > smallest)) return false;
+      factor = 1.0 / std::sqrt((s - smallest) * (s + smallest));
+      data.basis(j, b.data());
+    } else {
+      data.exact_basis(j - last, b.data());
+    }
+    for (Eigen::Index i = 0; i < n; ++i) p(i) = factor * (b(i) + least(i) * b(n));
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (Eigen::Index i = 0; i <= k; ++i) inverse(i, k) += p(i) * p(k);
+    }
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (Eigen::Index i = 0; i < k; ++i) inverse(k, i) = inverse(i, k);
+  }
+  return true;
+}
+
+// M = X'X - s_min^2 W_xx.
+void RecursiveRegression::State::corrected_jacobian(SmallMatrix& M) const {
+  const Eigen::Index n = count();
+  SmallMatrix A;
+  data.square_root(A);
+  const double smallest = data.singular_value(data.noisy_columns() - 1);
+  const SmallMatrix X = A.leftCols(n);
+  M = X.transpose().lazyProduct(X);
+  M -= (smallest * smallest) * W.topLeftCorner(n, n);
+}
+
+// Variance of the weighted sum of scores when errors are white: s2 A2 + (second-order term), see docs/estimation.md.
+void RecursiveRegression::State::white_filling(const SmallMatrix& jacobian, const SmallVector& least_W_h, double s2,
+                                               SmallMatrix& S) const {
+  const Eigen::Index n = count();
+  if (forgets) {
+    const double kappa = squared_weights / samples;
+    S.resize(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        S(i, j) = s2 * squares(std::min(i, j), std::max(i, j)) + s2 * scale * static_cast<double>(n) * kappa * W(i, j) -
+                  squared_weights * scale * scale * least_W_h(i) * least_W_h(j);
+      }
+    }
+    return;
+  }
+  S = s2 * jacobian;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i)
+      S(i, j) += samples * (s2 * scale * W(i, j) - scale * scale * least_W_h(i) * least_W_h(j));
+  }
+}
+
+// U^-1 E (E' U^-1 M U^-1 E)^-1 E' U^-1 with E orthonormal, orthogonal to `unexcited`.
+void RecursiveRegression::State::inverse_on_excited(const SmallMatrix& jacobian, SmallMatrix& inverse) const {
+  const Eigen::Index n = count(), k = n - unexcited.cols();
+  inverse.setZero(n, n);
+  if (k == 0) return;
+  const Eigen::HouseholderQR<SmallMatrix> qr(unexcited);
+  SmallMatrix Q = SmallMatrix::Identity(n, n);
+  Q.applyOnTheLeft(qr.householderQ());
+  SmallMatrix E = Q.rightCols(k);
+  for (Eigen::Index i = 0; i < n; ++i) E.row(i) /= free_weight(i);
+  const SmallMatrix half = jacobian.lazyProduct(E);
+  SmallMatrix inner = E.transpose().lazyProduct(half);
+  SmallVector inverse_scale(k);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    if (!(inner(i, i) > 0.0)) return;
+    inverse_scale(i) = 1.0 / std::sqrt(inner(i, i));
+  }
+  for (Eigen::Index j = 0; j < k; ++j) {
+    for (Eigen::Index i = 0; i < k; ++i) inner(i, j) *= inverse_scale(i) * inverse_scale(j);
+    E.col(j) *= inverse_scale(j);
+  }
+  const Eigen::LLT<SmallMatrix> cholesky(inner);
+  if (cholesky.info() != Eigen::Success) return;
+  SmallMatrix root = E.transpose();
+  cholesky.matrixL().solveInPlace(root);
+  inverse = root.transpose().lazyProduct(root);
+}
+
+void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& result) const {
+  const auto all = static_cast<Eigen::Index>(names.size());
+  const Eigen::Index n = count();
+  result.covariance.setZero(all, all);
+  result.sigma.setZero(all);
+  result.excited_variance.setZero(all);
+  result.degrees_of_freedom = std::max(1.0, samples - static_cast<double>(n));
+  bool good = termination == EstimateTermination::kEstimated && residual_variance >= 0.0;
+  SmallMatrix inverse, jacobian, excited, bound;
+  if (good) {
+    const bool partial = unexcited.cols() > 0;
+    if (partial) {
+      corrected_jacobian(jacobian);
+      inverse_on_excited(jacobian, inverse);
+    } else {
+      good = inverse_jacobian(h, inverse);
+    }
+    if (good) {
+      // With all directions excited and nothing forgotten the leading term s2 M needs no M: M^-1 M M^-1 = M^-1.
+      SmallMatrix S;
+      double leading = 0.0;
+      if (!partial && !forgets) {
+        leading = residual_variance;
+        jacobian.setZero(n, n);
+      }
+      white_filling(jacobian, W_h, residual_variance, S);
+      if (kind == CovarianceKind::kColoured && scores.weight > 0.0) {
+        // Few blocks know little: the white filling counts as one of them.
+        const double blocks = scores.blocks();
+        const double trust = blocks / (blocks + 1.0);
+        const double freedom = result.degrees_of_freedom;
+        const double whole = squared_weights / scores.weight * (samples > freedom ? samples / freedom : 1.0);
+        S = (1.0 - trust) * S + (trust * whole) * scores.sum;
+        leading *= 1.0 - trust;
+        result.degrees_of_freedom = std::min(freedom, std::max(1.0, blocks));
+      }
+      excited = sandwich(inverse, S);
+      if (leading > 0.0) excited += leading * inverse;
+    }
+    bound.setZero(n, n);
+    if (good && partial) {
+      double largest = 1.0;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        largest =
+            std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
+      }
+      const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
+      // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.
+      SmallVector b(n + 1), gtls_h(n + 1), gtls_W_h;
+      SmallMatrix gtls;
+      bool has_gtls = data.null_columns() == 0;
+      if (has_gtls) {
+        data.basis(data.noisy_columns() - 1, b.data());
+        has_gtls = data.share_of_last(b.data()) > 1e-20;
+      }
+      if (has_gtls) {
+        gtls_h = b * (-1.0 / b(n));
+        gtls_W_h = W.lazyProduct(gtls_h);
+        SmallMatrix gtls_inverse, S;
+        has_gtls = inverse_jacobian(gtls_h, gtls_inverse);
+        if (has_gtls) {
+          white_filling(jacobian, gtls_W_h, scale * gtls_h.dot(gtls_W_h), S);
+          gtls = sandwich(gtls_inverse, S);
+        }
+      }
+      for (Eigen::Index j = 0; j < unexcited.cols(); ++j) {
+        double limit = least;
+        if (has_gtls) {
+          const SmallVector weighted = free_weight.cwiseProduct(unexcited.col(j));
+          const SmallVector product = gtls.lazyProduct(weighted);
+          const double variance = weighted.dot(product);
+          if (variance > 0.0 && std::isfinite(variance)) limit = std::max(limit, kNormal95 * std::sqrt(variance));
+        }
+        const SmallVector q = unexcited.col(j).cwiseQuotient(free_weight) * (limit / kNormal95);
+        bound += q.lazyProduct(q.transpose());
+      }
+    }
+  }
+  if (good) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Eigen::Index to = free[static_cast<std::size_t>(j)];
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index from = free[static_cast<std::size_t>(i)];
+        result.covariance(from, to) = excited(i, j) + bound(i, j);
+      }
+      good = good && std::isfinite(result.covariance(to, to));
+      result.excited_variance(to) = std::max(0.0, excited(j, j));
+      result.sigma(to) = std::sqrt(std::max(0.0, result.covariance(to, to)));
+    }
+  }
+  if (good) return;
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  result.covariance.setZero();
+  result.sigma.setZero();
+  for (const Eigen::Index i : free) {
+    result.covariance(i, i) = result.sigma(i) = kInfinite;
+    result.excited_variance(i) = kInfinite;
+  }
+}
+
+const internal::RecursiveErrorBars& RecursiveRegression::State::error_bars(CovarianceKind kind) const {
+  internal::RecursiveErrorBars& known = kind == CovarianceKind::kWhite ? white_bars : coloured_bars;
+  if (!known.fresh) {
+    compute_error_bars(kind, known);
+    known.fresh = true;
+  }
+  return known;
+}
+
+ParameterStatus RecursiveRegression::State::status(Eigen::Index parameter, double significance) const {
+  if (std::find(pinned.begin(), pinned.end(), parameter) != pinned.end()) return ParameterStatus::kFixed;
+  const internal::RecursiveErrorBars& known = error_bars(options.covariance);
+  const double sigma = known.sigma(parameter);
+  if (termination != EstimateTermination::kEstimated || !std::isfinite(sigma)) return ParameterStatus::kRejected;
+  const double critical =
+      numerics::student_t_quantile(1.0 - 0.5 * significance, std::max(1.0, known.degrees_of_freedom));
+  const bool differs = std::abs(theta(parameter)) > critical * sigma;
+  const double bound = sigma * sigma - known.excited_variance(parameter);
+  if (unexcited_share(parameter) > 0.5 || (bound > known.excited_variance(parameter) && !differs))
+    return ParameterStatus::kNotExcited;
+  return differs ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+}
+
+RegressionEstimate RecursiveRegression::State::estimate(double significance) const {
+  const internal::RecursiveErrorBars& known = error_bars(options.covariance);
+  const auto all = static_cast<Eigen::Index>(names.size());
+  RegressionEstimate result;
+  result.method = options.method;
+  result.termination = termination;
+  result.theta = theta;
+  result.covariance = known.covariance;
+  const internal::RecursiveErrorBars& white = error_bars(CovarianceKind::kWhite);
+  result.covariance_white = white.covariance;
+  result.degrees_of_freedom = known.degrees_of_freedom;
+  result.lag_window = options.covariance == CovarianceKind::kColoured ? options.block : 0;
+  result.rows = static_cast<Eigen::Index>(rows);
+  result.residual_sd = residual_variance > 0.0 ? std::sqrt(residual_variance) : 0.0;
+  result.error_scale = options.method == Method::kOls ? 0.0 : scale;
+  result.singular_values.assign(singular_values.data(), singular_values.data() + singular_values.size());
+  result.threshold = options.method == Method::kPcaGtls ? threshold : 0.0;
+  result.excited_directions = excited_directions;
+  const double quantile95 = numerics::student_t_quantile(0.975, std::max(1.0, known.degrees_of_freedom));
+  for (Eigen::Index i = 0; i < all; ++i) {
+    ParameterEstimate p;
+    p.name = names[static_cast<std::size_t>(i)];
+    p.value = theta(i);
+    p.sigma = known.sigma(i);
+    p.sigma_white = white.sigma(i);
+    p.low95 = p.value - quantile95 * p.sigma;
+    p.high95 = p.value + quantile95 * p.sigma;
+    p.status = status(i, significance);
+    if (p.status == ParameterStatus::kFixed) {
+      p.p_value = std::numeric_limits<double>::quiet_NaN();
+    } else {
+      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(std::numeric_limits<double>::infinity(), p.value);
+      p.p_value = numerics::student_t_two_sided_p(p.t, std::max(1.0, known.degrees_of_freedom));
+    }
+    p.unexcited_share = unexcited_share(i);
+    result.parameters.push_back(p);
+  }
+  for (Eigen::Index j = 0; j < unexcited_combinations.cols(); ++j) {
+    const Eigen::VectorXd combination = unexcited_combinations.col(j);
+    const double variance = combination.dot(result.covariance * combination);
+    result.unexcited.push_back(
+        {combination, kNormal95 * std::sqrt(std::max(0.0, variance)), describe_combination(combination, names)});
+  }
+  switch (termination) {
+    case EstimateTermination::kEstimated:
+      result.message = result.unexcited.empty()
+                           ? fmt::format("estimated from {} rows, {:.0f} in effect", rows, samples)
+                           : fmt::format("{} of {} directions are excited; the others are held", excited_directions,
+                                         all - static_cast<Eigen::Index>(pinned.size()));
+      break;
+    case EstimateTermination::kTooFewRows:
+      result.message = fmt::format("{} rows for {} parameters", rows, all);
+      break;
+    case EstimateTermination::kRankDeficient:
+      result.message = "exactly known regressors are linearly dependent: no unique estimate";
+      break;
+    case EstimateTermination::kNongeneric:
+      result.message = "the data do not determine the parameters: the last estimate is held";
+      break;
+  }
+  return result;
+}
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "veridyn/estimation/recursive/forgetting.hpp"
+#include "veridyn/estimation/recursive/recursive_regression.hpp"
+#include "veridyn/estimation/recursive/recursive_total_least_squares.hpp"
+
+namespace veridyn::estimation {
+
+namespace internal {
+
+/// What an update leaves for those who ask for error bars. Of all parameters.
+struct RecursiveErrorBars {
+  SmallMatrix covariance;
+  SmallVector sigma;
+  SmallVector excited_variance;  ///< part of sigma^2 that does not come from the bound
+  double degrees_of_freedom = 0.0;
+  bool fresh = false;
+};
+
+/// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k
+/// g_k. Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so colour shorter
+/// than a block is in S in full.
+struct ScoreBlocks {
+  Eigen::Index length = 1;
+  Eigen::Index filled = 0;
+  SmallVector open;             ///< G of the block that is being filled
+  double open_weight = 0.0;     ///< sum of w_k^2 in it
+  SmallMatrix sum;              ///< S
+  double weight = 0.0;          ///< sum over blocks of W_b = sum w_k^2
+  double weight_squared = 0.0;  ///< sum over blocks of W_b^2
+
+  void reset(Eigen::Index parameters, Eigen::Index block);
+  void add(const SmallVector& score, double lambda);
+  void forget(double lambda);
+  [[nodiscard]] double blocks() const { return weight_squared > 0.0 ? weight * weight / weight_squared : 0.0; }
+};
+
+}  // namespace internal
+
+/// Parameters are split in free and pinned ones; the regression runs on the free ones, z less the pinned part.
+struct RecursiveRegression::State {
+  State(std::vector<std::string> parameter_names, RecursiveOptions recursive_options);
+
+  void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows_behind, double residual_sd);
+  RecursiveUpdate update(std::span<const double> x, double z);
+  void solve();
+  bool solve_least();
+  bool solve_excited(int excited);
+  const internal::RecursiveErrorBars& error_bars(CovarianceKind kind) const;
+  void compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& bars) const;
+  bool inverse_jacobian(const SmallVector& h, SmallMatrix& inverse) const;
+  void inverse_on_excited(const SmallMatrix& jacobian, SmallMatrix& inverse) const;
+  void white_filling(const SmallMatrix& jacobian, const SmallVector& W_h, double s2, SmallMatrix& S) const;
+  void corrected_jacobian(SmallMatrix& M) const;
+  ParameterStatus status(Eigen::Index parameter, double significance) const;
+  RegressionEstimate estimate(double significance) const;
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(free.size()); }
+
+  std::vector<std::string> names;
+  RecursiveOptions options;
+  std::vector<Eigen::Index> free;    // indices of parameters that are not pinned
+  std::vector<Eigen::Index> pinned;  // and of those that are
+  SmallVector prior;                 // of all parameters
+  SmallVector free_weight;           // U
+  SmallMatrix W;                     // of the free regressors and z
+  bool forgets = false;
+
+  RecursiveTotalLeastSquares data;
+  VariableForgetting variable;
+  internal::ScoreBlocks scores;
+  SmallMatrix squares;  // A2: sum of w_k^2 x x', free parameters
+
+  std::uint64_t rows = 0;
+  std::uint64_t refused = 0;
+  double prior_rows = 0.0;       // what a hybrid start counts for
+  double samples = 0.0;          // N = sum w_k
+  double squared_weights = 0.0;  // sum w_k^2
+
+  EstimateTermination termination = EstimateTermination::kTooFewRows;
+  SmallVector theta;
+  SmallVector free_theta;
+  SmallVector h;    // [free theta; -1]
+  SmallVector W_h;  // W h
+  double h_W_h = 1.0;
+  double scale = 0.0;               // c = s_min^2/(N - n)
+  double residual_variance = -1.0;  // of z - x theta; negative while unknown
+  double threshold = 0.0;
+  int excited_noisy = 0;
+  Eigen::Index excited_directions = 0;
+  SmallVector singular_values;
+  SmallMatrix unexcited;               // orthonormal in U coordinates, free parameters
+  SmallMatrix unexcited_combinations;  // unit columns, all parameters
+  SmallVector unexcited_share;         // all parameters
+
+  mutable internal::RecursiveErrorBars white_bars;
+  mutable internal::RecursiveErrorBars coloured_bars;
+};
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/recursive/change_detection.hpp"
+#include "veridyn/estimation/recursive/recursive_regression.hpp"
+
+namespace veridyn::estimation {
+
+/// How a regression is followed on line. Keys of the study table `[track]`; every one is optional.
+struct TrackerOptions {
+  /// `method`: "PCA-GTLS" holds what is not excited; "GTLS"; "OLS".
+  Method method = Method::kPcaGtls;
+  /// `memory`: time after which a sample counts 5 % [s]; or `lambda`: weight of squares per row. 0: lambda is given.
+  double memory_s = 100.0;
+  /// `forgetting = "variable"` or "constant"; `lambda`, `lambda_min`, `K_a`, `K_b`, `gamma`, `row_weight`.
+  /// The noise is averaged over 500 n rows, so that a trigger lasts until the estimate has followed, and at least 33
+  /// rows are remembered: fewer fit noise while no linear model holds, as in a stall.
+  ForgettingOptions forgetting{.variable = true, .lambda_min = 0.97, .K_b = 500.0};
+  double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
+  bool detect_changes = true;    ///< `detect_changes`
+  /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
+  /// `detection_settling`: see ChangeDetectionOptions.
+  ChangeDetectionOptions detection = {};
+  /// Innovations are watched over the noise that W gives a row, whatever the residual and the estimate's error bar are
+  /// at the moment: where the noise is small against the signal these grow with a change at once and would hide it. Not
+  /// a key; domains choose.
+  bool watch_against_W = false;
+  double watch_after_s = 0.0;  ///< rows before this are not watched: the estimate finds itself. Not a key
+  double history_Hz = 5.0;     ///< `history_rate`: of what is kept for the report
+
+  /// Reads the keys above; a key that is not there keeps what `*this` says.
+  /// @throws InputError naming file, line and key.
+  void read_keys(const StudyTable& table);
+  /// The forgetting factor at a rate of rows.
+  [[nodiscard]] ForgettingOptions forgetting_at(double rate_Hz) const;
+};
+
+/// What became of a regression over time, thinned to `TrackerOptions::history_Hz`.
+struct TrackHistory {
+  std::vector<double> time;                          ///< [s]
+  std::vector<std::vector<double>> value, sigma;     ///< a series per parameter; sigma infinite before it is usable
+  std::vector<std::vector<double>> unexcited_share;  ///< a series per parameter, 0..1
+  std::vector<std::vector<double>> singular_value;   ///< a series per direction, descending
+  std::vector<double> threshold;
+  std::vector<int> excited;        ///< directions above the threshold, exact ones included
+  std::vector<double> lambda;      ///< least since the sample before
+  std::vector<double> suspicion;   ///< of the change detector: 1 is an alarm
+  std::vector<double> innovation;  ///< over its standard deviation, rms since the sample before
+};
+
+/// One linear regression z = x theta followed row by row, watched for changes, with its history.
+class RegressionTracker {
+ public:
+  /// @param names of the parameters, 1 to 8
+  /// @param error_covariance W of a row [x, z], (n + 1) x (n + 1)
+  /// @param rate_Hz of rows
+  RegressionTracker(std::vector<std::string> names, const Eigen::MatrixXd& error_covariance,
+                    const TrackerOptions& options, double rate_Hz);
+
+  /// Hybrid start; see RecursiveRegression::start.
+  void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);
+
+  /// Forgets the rows so far: theta stays, with standard deviations `sigma` (as a hybrid start). History, changes and
+  /// the detector go on. For a change that is known to have happened.
+  void restart(const Eigen::VectorXd& sigma);
+
+  /// Takes a row [x, z] of time `t` [s]. Beyond the history nothing is allocated.
+  /// @param row_W error covariance of this row where it is known: errors that grow with the signal (a coefficient has
+  /// those of the dynamic pressure) are then not taken for a change. Null: W.
+  /// @return the change that the row reveals
+  std::optional<Change> update(double t, std::span<const double> x, double z, const Eigen::MatrixXd* row_W = nullptr);
+
+  [[nodiscard]] const std::vector<std::string>& names() const { return regression_.names(); }
+  [[nodiscard]] const RecursiveRegression& regression() const { return regression_; }
+  [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
+  [[nodiscard]] const TrackHistory& history() const { return history_; }
+  [[nodiscard]] const std::vector<Change>& changes() const { return changes_; }
+  [[nodiscard]] double rate_Hz() const { return rate_Hz_; }
+
+ private:
+  void remember(double t);
+  [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
+  [[nodiscard]] double noise_ratio(const Eigen::MatrixXd& row_W) const;
+  [[nodiscard]] double against_W(double innovation, const Eigen::MatrixXd* row_W) const;
+
+  TrackerOptions options_;
+  double rate_Hz_;
+  SmallMatrix W_;
+  RecursiveRegression regression_;
+  ChangeDetector detector_;
+  std::vector<Change> changes_;
+  TrackHistory history_;
+  double next_s_ = 0.0;
+  bool first_ = true;
+  bool watching_ = false;  ///< every direction was excited once
+  double least_lambda_ = 1.0;
+  double innovation_power_ = 0.0;
+  std::uint64_t innovations_ = 0;
+};
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,36 @@
+#include "veridyn/estimation/regression/ordinary_least_squares.hpp"
+
+#include <Eigen/SVD>
+#include <limits>
+
+#include "veridyn/core/assert.hpp"
+
+namespace veridyn::estimation {
+
+OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle) {
+  VERIDYN_ASSERT(triangle.rows() == triangle.cols() && triangle.cols() >= 2);
+  const Eigen::Index n = triangle.cols() - 1;
+  OrdinaryLeastSquares result;
+  Eigen::VectorXd length = triangle.leftCols(n).colwise().norm();
+  for (double& l : length) l = l > 0.0 ? l : 1.0;
+  const Eigen::MatrixXd unit = triangle.topLeftCorner(n, n) * length.cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(unit, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  result.singular_values = svd.singularValues();
+  const double largest = result.singular_values(0), smallest = result.singular_values(n - 1);
+  result.condition_number = smallest > 0.0 ? largest / smallest : std::numeric_limits<double>::infinity();
+  result.full_rank = smallest > 1e-13 * largest;
+  const Eigen::VectorXd inverse =
+      result.singular_values.unaryExpr([&](double s) { return s > 1e-13 * largest ? 1.0 / s : 0.0; });
+  const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.matrixV() * inverse.asDiagonal();
+  result.theta = back * (svd.matrixU().transpose() * triangle.col(n).head(n));
+  result.inverse_normal = back * back.transpose();
+  // With full rank this is the last diagonal element; otherwise part of z stands beside rows of R_x that are zero.
+  result.residual_sum_of_squares = (triangle.col(n) - triangle.leftCols(n) * result.theta).squaredNorm();
+  if (result.full_rank) {
+    result.theta = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(triangle.col(n).head(n));
+    result.residual_sum_of_squares = triangle(n, n) * triangle(n, n);
+  }
+  return result;
+}
+
+}  // namespace veridyn::estimation

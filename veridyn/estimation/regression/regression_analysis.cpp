@@ -1,0 +1,345 @@
+#include "veridyn/estimation/regression/regression_analysis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/estimation/regression/equation_error.hpp"
+#include "veridyn/estimation/regression/pca_total_least_squares.hpp"
+#include "veridyn/estimation/regression/total_least_squares.hpp"
+
+namespace veridyn::estimation::internal {
+namespace {
+
+constexpr double kNormal95 = 1.959963984540054;
+constexpr double kAutomaticBound = 10.0;
+
+// Pinned parameters moved to the regressand: [X, z] P = [X_free, z - X_pinned theta_0].
+struct Pinning {
+  std::vector<Eigen::Index> free;
+  Eigen::MatrixXd P;
+};
+
+Pinning pin_parameters(const Eigen::VectorXd& prior, const Eigen::VectorXd& weight) {
+  const Eigen::Index n = prior.size();
+  Pinning pinning;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (std::isfinite(weight(i))) pinning.free.push_back(i);
+  }
+  const auto count = static_cast<Eigen::Index>(pinning.free.size());
+  pinning.P = Eigen::MatrixXd::Zero(n + 1, count + 1);
+  for (Eigen::Index j = 0; j < count; ++j) pinning.P(pinning.free[static_cast<std::size_t>(j)], j) = 1.0;
+  pinning.P(n, count) = 1.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!std::isfinite(weight(i))) pinning.P(i, count) = -prior(i);
+  }
+  return pinning;
+}
+
+std::string list_of(const std::vector<Direction>& directions) {
+  std::string text;
+  for (const Direction& d : directions) text += (text.empty() ? "" : "; ") + d.text;
+  return text;
+}
+
+}  // namespace
+
+RegressionAnalysis::RegressionAnalysis(const RegressionData& data, const RegressionOptions& options)
+    : data_(data), options_(options) {
+  data.validate();
+  options.validate(data.parameters());
+  if (data.row_scale.size() > 0) {
+    scaled_X_ = data.row_scale.cwiseInverse().asDiagonal() * data.regressors;
+    scaled_z_ = data.regressand.cwiseQuotient(data.row_scale);
+  }
+  segments_ = segment_ranges(data.rows(), data.segment);
+  triangle_ = triangle_of(data);
+  least_squares_ = ordinary_least_squares(triangle_);
+
+  if (data.has_error_covariance()) {
+    error_covariance_ = data.error_covariance;
+    if (!data.regressand_error_known) {
+      error_covariance_ = with_equation_error(triangle_, data.error_covariance, rows());
+      ratio_ = ErrorRatio::kEstimated;
+    }
+  }
+
+  const Eigen::Index n = data.parameters();
+  const Eigen::RowVectorXd mean = data.regressors.colwise().mean();
+  bool has_constant = false;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    constant_.push_back((data.regressors.col(j).array() == data.regressors(0, j)).all());
+    has_constant = has_constant || constant_.back();
+  }
+  variance_inflation_ = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (constant_[static_cast<std::size_t>(j)]) continue;
+    double spread = triangle_.col(j).squaredNorm();
+    if (has_constant && data.row_scale.size() == 0) spread -= rows() * mean(j) * mean(j);
+    variance_inflation_(j) = least_squares_.full_rank ? std::max(1.0, spread * least_squares_.inverse_normal(j, j))
+                                                      : std::numeric_limits<double>::infinity();
+  }
+}
+
+Eigen::MatrixXd RegressionAnalysis::error_covariance(Method method) const {
+  const Eigen::Index size = data_.parameters() + 1;
+  if (method != Method::kTls && data_.has_error_covariance()) return error_covariance_;
+  Eigen::VectorXd noisy = Eigen::VectorXd::Zero(size);
+  for (Eigen::Index j = 0; j + 1 < size; ++j) {
+    const bool has_error =
+        data_.has_error_covariance() ? data_.error_covariance(j, j) > 0.0 : !constant_[static_cast<std::size_t>(j)];
+    if (method == Method::kTls && has_error) noisy(j) = 1.0;
+  }
+  noisy(size - 1) = 1.0;
+  return noisy.asDiagonal();
+}
+
+RegressionEstimate RegressionAnalysis::run(Method method) const {
+  RegressionEstimate result;
+  result.method = method;
+  result.rows = X().rows();
+  result.condition_number = least_squares_.condition_number;
+  switch (method) {
+    case Method::kOls:
+      run_ols(result);
+      break;
+    case Method::kTls:
+    case Method::kGtls:
+      run_tls(result);
+      break;
+    case Method::kPcaGtls:
+      run_pca(result);
+      break;
+  }
+  finish(result);
+  return result;
+}
+
+void RegressionAnalysis::run_ols(RegressionEstimate& result) const {
+  const OrdinaryLeastSquares& ols = least_squares_;
+  const Eigen::Index n = data_.parameters();
+  const double freedom = rows() - static_cast<double>(n);
+  result.theta = ols.theta;
+  result.singular_values.assign(ols.singular_values.data(), ols.singular_values.data() + n);
+  result.excited_directions = n;
+  result.degrees_of_freedom = freedom;
+  if (!ols.full_rank) {
+    result.termination = EstimateTermination::kRankDeficient;
+    result.message = fmt::format("regressors are linearly dependent (condition number {:.2g}): no unique estimate",
+                                 ols.condition_number);
+    return;
+  }
+  const double variance = ols.residual_sum_of_squares / freedom;
+  if (data_.has_error_covariance() && data_.error_scale_known) {
+    const Eigen::Index last = n;
+    result.error_scale = variance / data_.error_covariance(last, last);
+  }
+  result.covariance_white = variance * ols.inverse_normal;
+  result.covariance = result.covariance_white;
+  if (options_.covariance == CovarianceKind::kColoured) {
+    const Eigen::VectorXd r = residual(ols.theta);
+    const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
+    const LongRunCovariance filling = coloured_normal_matrix(X(), r, segments_, window);
+    result.covariance = rows() / freedom * (ols.inverse_normal * filling.matrix * ols.inverse_normal);
+    result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
+    result.lag_window = window;
+  }
+  result.termination = EstimateTermination::kEstimated;
+  result.message =
+      fmt::format("estimated from {} rows, all error taken to be in {}", result.rows, data_.regressand_name);
+}
+
+void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
+  const Eigen::Index n = data_.parameters();
+  const double freedom = rows() - static_cast<double>(n);
+  const Eigen::MatrixXd W = error_covariance(result.method);
+  const ErrorRatio ratio = result.method == Method::kTls ? ErrorRatio::kKnown : ratio_;
+  const TotalLeastSquares tls = total_least_squares(triangle_, W, rows(), ratio);
+  result.theta = tls.theta;
+  result.singular_values.assign(tls.singular_values.data(), tls.singular_values.data() + tls.singular_values.size());
+  result.error_scale = tls.error_scale;
+  result.excited_directions = n;
+  result.degrees_of_freedom = freedom;
+  if (!tls.full_rank) {
+    result.termination = EstimateTermination::kRankDeficient;
+    result.message = "exactly known regressors are linearly dependent: no unique estimate";
+    return;
+  }
+  if (!tls.solved) {
+    result.termination = EstimateTermination::kNongeneric;
+    result.message = fmt::format(
+        "a combination of the regressors is as small as its assumed errors ({:.0f} % noise): no {} solution",
+        100.0 * std::min(1.0, tls.noise_share), to_string(result.method));
+    return;
+  }
+  result.covariance_white = tls.covariance_white;
+  result.covariance = tls.covariance_white;
+  if (options_.covariance == CovarianceKind::kColoured) {
+    RowMatrix scores;
+    Eigen::VectorXd r;
+    errors_in_variables_scores(X(), z(), W, tls.theta, ratio, scores, r);
+    const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
+    const LongRunCovariance filling = long_run_covariance(scores, segments_, window);
+    result.covariance = rows() / freedom * (tls.inverse_jacobian * filling.matrix * tls.inverse_jacobian);
+    result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
+    result.lag_window = window;
+  }
+  result.termination = EstimateTermination::kEstimated;
+  result.message =
+      fmt::format("estimated from {} rows; noise is at most {:.2g} % of the power of any combination of regressors",
+                  result.rows, 100.0 * tls.noise_share);
+}
+
+void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
+  const Eigen::Index n = data_.parameters();
+  const double freedom = rows() - static_cast<double>(n);
+  const Eigen::MatrixXd W = error_covariance(result.method);
+  const Eigen::VectorXd prior = options_.prior.size() > 0 ? options_.prior : Eigen::VectorXd::Zero(n).eval();
+  const Eigen::VectorXd weight =
+      options_.prior_weight.size() > 0 ? options_.prior_weight : Eigen::VectorXd::Ones(n).eval();
+  const Pinning pinning = pin_parameters(prior, weight);
+  const auto free_count = static_cast<Eigen::Index>(pinning.free.size());
+  Eigen::VectorXd free_prior(free_count), free_weight(free_count);
+  for (Eigen::Index j = 0; j < free_count; ++j) {
+    free_prior(j) = prior(pinning.free[static_cast<std::size_t>(j)]);
+    free_weight(j) = weight(pinning.free[static_cast<std::size_t>(j)]);
+  }
+  const bool pinned = free_count < n;
+  const Eigen::MatrixXd R = pinned ? retriangulate(triangle_ * pinning.P) : triangle_;
+  const Eigen::MatrixXd W_free = pinned ? Eigen::MatrixXd(pinning.P.transpose() * W * pinning.P) : W;
+  const bool scale_known = data_.has_error_covariance() && data_.error_scale_known;
+  const PcaTotalLeastSquares pca =
+      pca_total_least_squares(R, W_free, rows(), options_.signal_to_noise, scale_known, free_prior, free_weight);
+  const Eigen::MatrixXd lift = pinning.P.topLeftCorner(n, free_count);
+
+  result.theta = lift * pca.theta;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!std::isfinite(weight(i))) result.theta(i) = prior(i);
+  }
+  result.singular_values.assign(pca.singular_values.data(), pca.singular_values.data() + pca.singular_values.size());
+  result.threshold = pca.threshold;
+  result.error_scale = pca.error_scale;
+  result.excited_directions = pca.excited_directions;
+  result.degrees_of_freedom = freedom;
+  if (!pca.solved) {
+    result.termination = EstimateTermination::kNongeneric;
+    result.message = "no combination of the excited directions explains the regressand: no PCA-GTLS solution";
+    return;
+  }
+
+  // Scores of the free parameters; pinned ones moved to the regressand.
+  const Eigen::MatrixXd& inverse = pca.inverse_on_excited;
+  Eigen::MatrixXd excited_white =
+      inverse * white_score_covariance(pca.jacobian, W_free, pca.theta, pca.error_scale, rows(), ratio_) * inverse;
+  Eigen::MatrixXd excited = excited_white;
+  if (options_.covariance == CovarianceKind::kColoured) {
+    RowMatrix scores;
+    Eigen::VectorXd r;
+    if (pinned) {
+      const RowMatrix X_free = X() * lift;
+      const Eigen::VectorXd z_free = z() + X() * pinning.P.col(free_count).head(n);
+      errors_in_variables_scores(X_free, z_free, W_free, pca.theta, ratio_, scores, r);
+    } else {
+      errors_in_variables_scores(X(), z(), W_free, pca.theta, ratio_, scores, r);
+    }
+    const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
+    const LongRunCovariance filling = long_run_covariance(scores, segments_, window);
+    excited = rows() / freedom * (inverse * filling.matrix * inverse);
+    result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
+    result.lag_window = window;
+  }
+
+  // The bound on what is not excited.
+  Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(free_count, free_count);
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(free_count);
+  if (pca.unexcited.cols() > 0) {
+    const Eigen::VectorXd offset = free_weight.cwiseProduct(pca.theta - free_prior);
+    const double automatic = kAutomaticBound * std::max(1.0, offset.cwiseAbs().maxCoeff());
+    const TotalLeastSquares full = total_least_squares(R, W_free, rows());
+    for (Eigen::Index j = 0; j < pca.unexcited.cols(); ++j) {
+      const Eigen::VectorXd direction = pca.unexcited.col(j);
+      double limit = options_.unexcited_bound > 0.0 ? options_.unexcited_bound : automatic;
+      if (full.solved) {
+        const Eigen::VectorXd weighted = free_weight.cwiseProduct(direction);
+        limit = std::max(limit, kNormal95 * std::sqrt(std::max(0.0, weighted.dot(full.covariance_white * weighted))));
+      }
+      const Eigen::VectorXd q = direction.cwiseQuotient(free_weight);
+      bound += (limit / kNormal95) * (limit / kNormal95) * q * q.transpose();
+      share += direction.cwiseAbs2();
+      Eigen::VectorXd combination = lift * q;
+      combination /= combination.norm();
+      result.unexcited.push_back({combination, limit, describe_combination(combination, data_.parameter_names)});
+    }
+  }
+  result.covariance_white = lift * (excited_white + bound) * lift.transpose();
+  result.covariance = lift * (excited + bound) * lift.transpose();
+  result.termination = EstimateTermination::kEstimated;
+  result.message = result.unexcited.empty()
+                       ? fmt::format("all {} directions are excited", n)
+                       : fmt::format("{} of {} directions are excited; not excited: {}", pca.excited_directions,
+                                     free_count, list_of(result.unexcited));
+  // Kept here because `finish` cannot tell the bound from the excited part.
+  const double critical = numerics::student_t_quantile(1.0 - 0.5 * options_.significance, result.degrees_of_freedom);
+  result.parameters.resize(static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!std::isfinite(weight(i))) result.parameters[static_cast<std::size_t>(i)].status = ParameterStatus::kFixed;
+  }
+  for (Eigen::Index j = 0; j < free_count; ++j) {
+    ParameterEstimate& p = result.parameters[static_cast<std::size_t>(pinning.free[static_cast<std::size_t>(j)])];
+    p.unexcited_share = std::min(1.0, share(j));
+    const double sigma = std::sqrt(std::max(0.0, excited(j, j) + bound(j, j)));
+    const bool bound_dominates = bound(j, j) > excited(j, j) && !(std::abs(pca.theta(j)) > critical * sigma);
+    p.status = p.unexcited_share > 0.5 || bound_dominates ? ParameterStatus::kNotExcited : ParameterStatus::kIdentified;
+  }
+}
+
+void RegressionAnalysis::finish(RegressionEstimate& result) const {
+  const Eigen::Index n = data_.parameters();
+  result.parameters.resize(static_cast<std::size_t>(n));
+  const Eigen::VectorXd r = data_.regressand - data_.regressors * result.theta;
+  const double spread = (data_.regressand.array() - data_.regressand.mean()).square().sum();
+  result.residual_sd = std::sqrt(r.squaredNorm() / std::max(1.0, rows() - static_cast<double>(n)));
+  result.r_squared = spread > 0.0 ? 1.0 - r.squaredNorm() / spread : 0.0;
+  const Eigen::VectorXd scaled = data_.row_scale.size() > 0 ? Eigen::VectorXd(r.cwiseQuotient(data_.row_scale)) : r;
+  const std::span<const double> view(scaled.data(), static_cast<std::size_t>(scaled.size()));
+  result.whiteness = numerics::whiteness_test(view, 0, data_.segment);
+  result.normal_plot = numerics::normal_probability_plot(view, options_.normal_plot_points);
+  const bool usable = result.usable();
+  const double freedom = std::max(1.0, result.degrees_of_freedom);
+  const double quantile95 = numerics::student_t_quantile(0.975, freedom);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    ParameterEstimate& p = result.parameters[static_cast<std::size_t>(i)];
+    p.name = data_.parameter_names[static_cast<std::size_t>(i)];
+    if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[static_cast<std::size_t>(i)];
+    p.value = result.theta(i);
+    p.variance_inflation = variance_inflation_(i);
+    if (!usable) {
+      p.sigma = p.sigma_white = std::numeric_limits<double>::infinity();
+      p.low95 = -p.sigma;
+      p.high95 = p.sigma;
+      p.status = ParameterStatus::kRejected;
+      continue;
+    }
+    p.sigma = std::sqrt(std::max(0.0, result.covariance(i, i)));
+    p.sigma_white = std::sqrt(std::max(0.0, result.covariance_white(i, i)));
+    p.low95 = p.value - quantile95 * p.sigma;
+    p.high95 = p.value + quantile95 * p.sigma;
+    if (p.status == ParameterStatus::kFixed) {
+      p.p_value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(std::numeric_limits<double>::infinity(), p.value);
+    p.p_value = numerics::student_t_two_sided_p(p.t, freedom);
+    if (p.status != ParameterStatus::kNotExcited) {
+      p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+    }
+  }
+  if (!usable) {
+    result.covariance = result.covariance_white =
+        Eigen::MatrixXd::Constant(n, n, std::numeric_limits<double>::infinity());
+  }
+}
+
+}  // namespace veridyn::estimation::internal

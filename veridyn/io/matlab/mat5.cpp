@@ -1,0 +1,325 @@
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include "veridyn/io/matlab/mat_value.hpp"
+
+namespace veridyn::io {
+namespace {
+
+constexpr std::size_t kFileHeader = 128;
+constexpr std::size_t kLargestVariable = std::size_t{1} << 31U;
+constexpr int kDeepestNesting = 16;
+
+enum Stored : std::uint32_t {
+  kInt8 = 1,
+  kUint8 = 2,
+  kInt16 = 3,
+  kUint16 = 4,
+  kInt32 = 5,
+  kUint32 = 6,
+  kSingle = 7,
+  kDouble = 9,
+  kInt64 = 12,
+  kUint64 = 13,
+  kMatrix = 14,
+  kCompressed = 15,
+  kUtf8 = 16,
+  kUtf16 = 17,
+  kUtf32 = 18,
+};
+
+enum Class : std::uint32_t { kCellClass = 1, kStructClass = 2, kCharClass = 4, kDoubleClass = 6, kUint64Class = 15 };
+
+struct Element {
+  std::uint32_t type = 0;
+  std::string_view data;
+};
+
+template <typename T>
+T load(const char* from, bool swap) {
+  unsigned char raw[sizeof(T)];
+  std::memcpy(raw, from, sizeof(T));
+  if (swap) std::reverse(raw, raw + sizeof(T));
+  T value;
+  std::memcpy(&value, raw, sizeof(T));
+  return value;
+}
+
+std::size_t width_of(std::uint32_t type) {
+  switch (type) {
+    case kInt8:
+    case kUint8:
+    case kUtf8:
+      return 1;
+    case kInt16:
+    case kUint16:
+    case kUtf16:
+      return 2;
+    case kInt32:
+    case kUint32:
+    case kSingle:
+    case kUtf32:
+      return 4;
+    case kDouble:
+    case kInt64:
+    case kUint64:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+double number_at(const char* from, std::uint32_t type, bool swap) {
+  switch (type) {
+    case kInt8:
+      return static_cast<double>(load<std::int8_t>(from, swap));
+    case kUint8:
+    case kUtf8:
+      return static_cast<double>(load<std::uint8_t>(from, swap));
+    case kInt16:
+      return static_cast<double>(load<std::int16_t>(from, swap));
+    case kUint16:
+    case kUtf16:
+      return static_cast<double>(load<std::uint16_t>(from, swap));
+    case kInt32:
+      return static_cast<double>(load<std::int32_t>(from, swap));
+    case kUint32:
+    case kUtf32:
+      return static_cast<double>(load<std::uint32_t>(from, swap));
+    case kSingle:
+      return static_cast<double>(load<float>(from, swap));
+    case kInt64:
+      return static_cast<double>(load<std::int64_t>(from, swap));
+    case kUint64:
+      return static_cast<double>(load<std::uint64_t>(from, swap));
+    default:
+      return load<double>(from, swap);
+  }
+}
+
+/// Elements one after the other; each is a tag and data padded to eight bytes.
+class Elements {
+ public:
+  Elements(std::string_view bytes, bool swap) : rest_(bytes), swap_(swap) {}
+
+  [[nodiscard]] bool empty() const { return rest_.empty(); }
+  [[nodiscard]] std::size_t left() const { return rest_.size(); }
+
+  std::optional<Element> next(bool padded = true) {
+    if (rest_.size() < 8) return std::nullopt;
+    const auto word = load<std::uint32_t>(rest_.data(), swap_);
+    if ((word >> 16U) != 0) {  // up to four bytes lie inside of the tag
+      const std::size_t size = word >> 16U;
+      if (size > 4) return std::nullopt;
+      const Element element{word & 0xffffU, rest_.substr(4, size)};
+      rest_.remove_prefix(8);
+      return element;
+    }
+    const std::size_t size = load<std::uint32_t>(rest_.data() + 4, swap_);
+    if (size > rest_.size() - 8) return std::nullopt;
+    const Element element{word, rest_.substr(8, size)};
+    // The last element of a compressed variable may lack its padding.
+    const std::size_t step = word != kCompressed && padded ? (size + 7) / 8 * 8 : size;
+    rest_.remove_prefix(std::min(rest_.size(), 8 + step));
+    return element;
+  }
+
+ private:
+  std::string_view rest_;
+  bool swap_;
+};
+
+std::optional<std::string> inflate_all(std::string_view packed) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return std::nullopt;
+  std::string result;
+  result.resize(std::max<std::size_t>(4096, packed.size() * 4));
+  // zlib counts in 32 bits, and so do the sizes of the format.
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  std::size_t filled = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    if (filled == result.size()) {
+      if (result.size() >= kLargestVariable) break;
+      result.resize(std::min(kLargestVariable, result.size() * 2));
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(result.data() + filled);
+    stream.avail_out = static_cast<uInt>(std::min<std::size_t>(result.size() - filled, 1U << 30U));
+    const uInt room = stream.avail_out;
+    state = inflate(&stream, Z_NO_FLUSH);
+    filled += room - stream.avail_out;
+    if (state == Z_BUF_ERROR && stream.avail_in == 0) break;
+  }
+  inflateEnd(&stream);
+  if (state != Z_STREAM_END) return std::nullopt;
+  result.resize(filled);
+  return result;
+}
+
+class Parser {
+ public:
+  Parser(bool swap) : swap_(swap) {}
+
+  std::optional<MatValue> matrix(std::string_view bytes, int depth) const {
+    MatValue value;
+    if (bytes.empty()) return value;  // an empty cell
+    if (depth > kDeepestNesting) return std::nullopt;
+    Elements elements(bytes, swap_);
+    const auto flags = elements.next();
+    if (!flags || flags->type != kUint32 || flags->data.size() < 8) return std::nullopt;
+    const std::uint32_t kind = load<std::uint32_t>(flags->data.data(), swap_) & 0xffU;
+    if (kind == 17) return value;  // opaque objects have no extents
+    const auto extents = elements.next();
+    if (!extents || extents->type != kInt32 || extents->data.size() < 8) return std::nullopt;
+    std::size_t count = 1;
+    for (std::size_t i = 0; i + 4 <= extents->data.size(); i += 4) {
+      const auto extent = load<std::int32_t>(extents->data.data() + i, swap_);
+      if (extent < 0) return std::nullopt;
+      value.extents.push_back(static_cast<std::size_t>(extent));
+      count *= static_cast<std::size_t>(extent);
+      if (count > kLargestVariable) return std::nullopt;
+    }
+    const auto name = elements.next();
+    if (!name || name->type != kInt8) return std::nullopt;
+    value.name = internal::printable(name->data);
+    switch (kind) {
+      case kCellClass:
+        return cells(std::move(value), elements, count, depth);
+      case kStructClass:
+        return fields(std::move(value), elements, count, depth);
+      case kCharClass:
+        return text(std::move(value), elements);
+      default:
+        // Sparse matrices, objects and functions are known to be there, but not read.
+        return kind >= kDoubleClass && kind <= kUint64Class ? numbers(std::move(value), elements, count) : value;
+    }
+  }
+
+ private:
+  std::optional<MatValue> numbers(MatValue value, Elements& elements, std::size_t count) const {
+    value.kind = MatValue::Kind::kNumbers;
+    if (count == 0) return value;
+    const auto data = elements.next();
+    const std::size_t width = data ? width_of(data->type) : 0;
+    if (width == 0 || data->data.size() / width < count) return std::nullopt;
+    value.numbers.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      value.numbers[i] = number_at(data->data.data() + i * width, data->type, swap_);
+    }
+    return value;
+  }
+
+  std::optional<MatValue> text(MatValue value, Elements& elements) const {
+    value.kind = MatValue::Kind::kText;
+    const auto data = elements.next();
+    if (!data) return value;
+    const std::size_t width = width_of(data->type);
+    if (width == 0) return std::nullopt;
+    std::string characters;
+    for (std::size_t i = 0; i + width <= data->data.size(); i += width) {
+      const double code = number_at(data->data.data() + i, data->type, swap_);
+      characters += code >= 0.0 && code < 127.0 ? static_cast<char>(code) : '?';
+    }
+    value.text = internal::printable(characters);
+    return value;
+  }
+
+  std::optional<MatValue> cells(MatValue value, Elements& elements, std::size_t count, int depth) const {
+    value.kind = MatValue::Kind::kCell;
+    if (count > elements.left() / 8) return std::nullopt;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto element = elements.next();
+      if (!element || element->type != kMatrix) return std::nullopt;
+      auto item = matrix(element->data, depth + 1);
+      if (!item) return std::nullopt;
+      value.items.push_back(std::move(*item));
+    }
+    return value;
+  }
+
+  std::optional<MatValue> fields(MatValue value, Elements& elements, std::size_t count, int depth) const {
+    value.kind = MatValue::Kind::kStruct;
+    const auto length = elements.next();
+    if (!length || length->type != kInt32 || length->data.size() < 4) return std::nullopt;
+    const auto width = load<std::int32_t>(length->data.data(), swap_);
+    const auto names = elements.next();
+    if (!names || names->type != kInt8 || width <= 0 || width > 4096) return std::nullopt;
+    const auto size = static_cast<std::size_t>(width);
+    const std::size_t field_count = names->data.size() / size;
+    if (field_count > 0 && count > elements.left() / 8 / field_count) return std::nullopt;
+    if (field_count == 0) return value;
+    for (std::size_t i = 0; i < count * field_count; ++i) {
+      const auto element = elements.next();
+      if (!element || element->type != kMatrix) return std::nullopt;
+      auto item = matrix(element->data, depth + 1);
+      if (!item) return std::nullopt;
+      const std::string_view name = names->data.substr(i % field_count * size, size);
+      item->name = internal::printable(name.substr(0, name.find('\0')));
+      value.items.push_back(std::move(*item));
+    }
+    return value;
+  }
+
+  bool swap_;
+};
+
+}  // namespace
+
+std::size_t MatValue::count() const {
+  std::size_t product = extents.empty() ? 0 : 1;
+  for (const std::size_t extent : extents) product *= extent;
+  return product;
+}
+
+const MatValue* MatValue::find(std::string_view field) const {
+  for (const MatValue& item : items) {
+    if (item.name == field) return &item;
+  }
+  return nullptr;
+}
+
+void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& take, LogDamage& damage) {
+  if (bytes.size() < kFileHeader) {
+    damage.bytes_lost += bytes.size();
+    damage.notes.emplace_back("the file ends inside its header");
+    return;
+  }
+  // "MI" as written by a machine of the other byte order reads "IM".
+  const bool swap = bytes[126] == 'M';
+  const Parser parser(swap);
+  Elements elements(bytes.substr(kFileHeader), swap);
+  while (!elements.empty()) {
+    const std::size_t left = elements.left();
+    const auto element = elements.next();
+    if (!element) {
+      damage.bytes_lost += left;
+      ++damage.records_lost;
+      damage.notes.emplace_back("the file ends in the middle of a variable");
+      return;
+    }
+    std::optional<MatValue> value;
+    if (element->type == kCompressed) {
+      if (const auto plain = inflate_all(element->data)) {
+        Elements inner(*plain, swap);
+        const auto matrix = inner.next();
+        if (matrix && matrix->type == kMatrix) value = parser.matrix(matrix->data, 0);
+      }
+    } else if (element->type == kMatrix) {
+      value = parser.matrix(element->data, 0);
+    }
+    if (value) {
+      if (!value->name.empty()) take(std::move(*value));
+    } else {
+      damage.bytes_lost += element->data.size();
+      ++damage.records_lost;
+    }
+  }
+}
+
+}  // namespace veridyn::io

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/io/log/log.hpp"
+
+namespace veridyn::io {
+
+/// A variable of a MAT file, or a part of one.
+struct MatValue {
+  enum class Kind { kNumbers, kText, kCell, kStruct, kOther };
+  std::string name;  ///< of the variable or struct field; empty in cells
+  Kind kind = Kind::kOther;
+  std::vector<std::size_t> extents;  ///< column-major
+  std::vector<double> numbers;
+  std::string text;
+  std::vector<MatValue> items;  ///< cells, or fields (of all elements, one element after the other)
+
+  [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] const MatValue* find(std::string_view field) const;
+};
+
+/// Takes the variables of a level 5 file (MATLAB 5 to 7.2, `-v6`, `-v7`) one after the other.
+///
+/// Format: MathWorks, "MAT-File Format", chapter 1. Every length is checked against what is left of the file before it
+/// is believed; compressed variables may expand to 2 GiB, the limit of the format. A variable that does not hold
+/// together is counted in the damage and left out.
+void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& take, LogDamage& damage);
+
+/// As `read_mat5`, for files of MATLAB 7.3, which are HDF5, through the libraries matio and HDF5: what they do with a
+/// file that was damaged on purpose is up to them.
+/// @throws InputError when matio cannot open the file.
+void read_mat73(const std::string& path, const std::function<void(MatValue&&)>& take, LogDamage& damage);
+
+}  // namespace veridyn::io

@@ -1,0 +1,163 @@
+#include "veridyn/io/results/estimate_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+
+namespace veridyn::io {
+namespace {
+
+using estimation::Estimate;
+using estimation::EstimatedParameter;
+using estimation::ParameterStatus;
+using nlohmann::ordered_json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+
+double read_number(const ordered_json& value, const std::string& place) {
+  if (value.is_null()) return kNaN;
+  if (!value.is_number()) throw InputError(place, "is not a number");
+  return value.get<double>();
+}
+
+const ordered_json& require(const ordered_json& object, const char* key, const std::string& place) {
+  if (!object.is_object() || !object.contains(key)) throw InputError(place, fmt::format("'{}' is missing", key));
+  return object[key];
+}
+
+std::string read_text(const ordered_json& object, const char* key, const std::string& place) {
+  const ordered_json& value = require(object, key, place);
+  if (!value.is_string()) throw InputError(fmt::format("{}: {}", place, key), "is not a text");
+  return value.get<std::string>();
+}
+
+ParameterStatus read_status(const std::string& text, const std::string& place) {
+  for (const ParameterStatus status :
+       {ParameterStatus::kIdentified, ParameterStatus::kInsignificant, ParameterStatus::kNotExcited,
+        ParameterStatus::kRejected, ParameterStatus::kFixed}) {
+    if (estimation::to_string(status) == text) return status;
+  }
+  throw InputError(
+      place, fmt::format("status '{}' is not one of identified, insignificant, not_excited, rejected, fixed", text));
+}
+
+}  // namespace
+
+std::string to_json(const Estimate& estimate) {
+  ordered_json root;
+  root["subject"] = estimate.subject;
+  root["method"] = estimate.method;
+  root["parameters"] = ordered_json::array();
+  for (const EstimatedParameter& p : estimate.parameters) {
+    root["parameters"].push_back({{"name", p.name},
+                                  {"value", number(p.value)},
+                                  {"sigma", number(p.sigma)},
+                                  {"low95", number(p.low95)},
+                                  {"high95", number(p.high95)},
+                                  {"unit", p.unit},
+                                  {"status", std::string(estimation::to_string(p.status))}});
+  }
+  if (!estimate.other_methods.empty()) {
+    root["other_methods"] = ordered_json::array();
+    for (const estimation::MethodEstimate& p : estimate.other_methods) {
+      root["other_methods"].push_back({{"name", p.parameter},
+                                       {"method", p.method},
+                                       {"value", number(p.value)},
+                                       {"sigma", number(p.sigma)},
+                                       {"low95", number(p.low95)},
+                                       {"high95", number(p.high95)},
+                                       {"unit", p.unit},
+                                       {"status", std::string(estimation::to_string(p.status))}});
+    }
+  }
+  root["covariance"] = ordered_json::array();
+  for (Eigen::Index i = 0; i < estimate.covariance.rows(); ++i) {
+    ordered_json row = ordered_json::array();
+    for (Eigen::Index j = 0; j < estimate.covariance.cols(); ++j) row.push_back(number(estimate.covariance(i, j)));
+    root["covariance"].push_back(std::move(row));
+  }
+  root["fit"] = ordered_json::object();
+  for (const auto& [name, value] : estimate.fit) root["fit"][name] = number(value);
+  root["validation"] = ordered_json::object();
+  for (const auto& [name, v] : estimate.validation) {
+    root["validation"][name] = {{"mae", number(v.mae)},
+                                {"rmse", number(v.rmse)},
+                                {"r2", number(v.r2)},
+                                {"theil", number(v.theil)},
+                                {"unit", v.unit}};
+  }
+  root["verdict"] = estimate.verdict;
+  root["warnings"] = estimate.warnings;
+  return root.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+Estimate read_estimate(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  ordered_json root;
+  try {
+    root = ordered_json::parse(read_file(path));
+  } catch (const nlohmann::json::parse_error& error) {
+    throw InputError(name, fmt::format("not JSON at byte {}", error.byte));
+  }
+  Estimate estimate;
+  estimate.subject = read_text(root, "subject", name);
+  estimate.method = read_text(root, "method", name);
+  const ordered_json& parameters = require(root, "parameters", name);
+  if (!parameters.is_array()) throw InputError(name, "'parameters' is not an array");
+  for (const ordered_json& p : parameters) {
+    const std::string place = fmt::format("{}: parameters[{}]", name, estimate.parameters.size());
+    estimate.parameters.push_back({.name = read_text(p, "name", place),
+                                   .value = read_number(require(p, "value", place), place + ".value"),
+                                   .sigma = read_number(require(p, "sigma", place), place + ".sigma"),
+                                   .low95 = read_number(require(p, "low95", place), place + ".low95"),
+                                   .high95 = read_number(require(p, "high95", place), place + ".high95"),
+                                   .unit = read_text(p, "unit", place),
+                                   .status = read_status(read_text(p, "status", place), place)});
+  }
+  const auto n = static_cast<Eigen::Index>(estimate.parameters.size());
+  estimate.covariance = Eigen::MatrixXd::Zero(n, n);
+  const ordered_json& covariance = require(root, "covariance", name);
+  if (!covariance.is_array() || covariance.size() != estimate.parameters.size()) {
+    throw InputError(name, fmt::format("'covariance' is not a {} by {} matrix", n, n));
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ordered_json& row = covariance[static_cast<std::size_t>(i)];
+    if (!row.is_array() || row.size() != estimate.parameters.size()) {
+      throw InputError(name, fmt::format("'covariance' row {} has not {} numbers", i + 1, n));
+    }
+    for (Eigen::Index j = 0; j < n; ++j) {
+      estimate.covariance(i, j) =
+          read_number(row[static_cast<std::size_t>(j)], fmt::format("{}: covariance[{}][{}]", name, i, j));
+    }
+  }
+  if (root.contains("fit") && root["fit"].is_object()) {
+    for (const auto& [key, value] : root["fit"].items())
+      estimate.fit[key] = read_number(value, fmt::format("{}: fit.{}", name, key));
+  }
+  if (root.contains("validation") && root["validation"].is_object()) {
+    for (const auto& [key, value] : root["validation"].items()) {
+      const std::string place = fmt::format("{}: validation.{}", name, key);
+      estimate.validation[key] = {.mae = read_number(require(value, "mae", place), place),
+                                  .rmse = read_number(require(value, "rmse", place), place),
+                                  .r2 = read_number(require(value, "r2", place), place),
+                                  .theil = read_number(require(value, "theil", place), place),
+                                  .unit = read_text(value, "unit", place)};
+    }
+  }
+  estimate.verdict = read_text(root, "verdict", name);
+  if (root.contains("warnings") && root["warnings"].is_array()) {
+    for (const ordered_json& warning : root["warnings"]) {
+      if (warning.is_string()) estimate.warnings.push_back(warning.get<std::string>());
+    }
+  }
+  return estimate;
+}
+
+}  // namespace veridyn::io

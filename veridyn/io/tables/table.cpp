@@ -1,0 +1,106 @@
+#include "veridyn/io/tables/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::io {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+  return text;
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> Table::names() const {
+  std::vector<std::string> all;
+  for (const TableColumn& c : columns) all.push_back(c.name);
+  return all;
+}
+
+const TableColumn& Table::at(std::string_view name) const {
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const TableColumn& c) { return c.name == name; });
+  if (found == columns.end())
+    throw InputError(source, fmt::format("has no column '{}'{}", name, suggestion(name, names(), columns.size())));
+  return *found;
+}
+
+Table parse_table(std::string_view text, std::string source) {
+  Table table;
+  table.source = std::move(source);
+  std::vector<Unit> recorded;
+  std::size_t number = 0;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+    ++number;
+    if (line.empty() || line.front() == '#') continue;
+    const std::string place = fmt::format("{}:{}", table.source, number);
+    const std::vector<std::string_view> cells = cells_of(line);
+    if (table.columns.empty()) {
+      for (const std::string_view cell : cells) {
+        const std::size_t open = cell.find('[');
+        std::string name(trimmed(cell.substr(0, open)));
+        Unit unit;
+        if (open != std::string_view::npos) {
+          try {
+            unit = parse_unit(trimmed(cell.substr(open + 1, cell.find(']') - open - 1)));
+          } catch (const InputError& error) {
+            throw InputError(place, fmt::format("column '{}': {}", name, error.what()));
+          }
+        } else if (name.ends_with("_deg")) {
+          unit = parse_unit("deg");
+        }
+        if (name.empty()) throw InputError(place, "a column of the header has no name");
+        const auto known = table.names();
+        if (std::find(known.begin(), known.end(), name) != known.end())
+          throw InputError(place, fmt::format("column '{}' appears twice", name));
+        recorded.push_back(unit);
+        table.columns.push_back({std::move(name), unit.si(), {}});
+      }
+      continue;
+    }
+    if (cells.size() != table.columns.size())
+      throw InputError(place, fmt::format("has {} cells, the header {}", cells.size(), table.columns.size()));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      double value = std::numeric_limits<double>::quiet_NaN();
+      if (!cells[i].empty()) {
+        const char* last = cells[i].data() + cells[i].size();
+        const auto [stop, error] = std::from_chars(cells[i].data(), last, value);
+        if (error != std::errc() || stop != last)
+          throw InputError(place, fmt::format("column '{}': '{}' is no number", table.columns[i].name, cells[i]));
+      }
+      table.columns[i].value.push_back(recorded[i].to_si(value));
+    }
+  }
+  if (table.rows() == 0) throw InputError(table.source, "holds no rows of numbers under a header");
+  return table;
+}
+
+Table read_table(const std::filesystem::path& path) { return parse_table(read_file(path), path.string()); }
+
+}  // namespace veridyn::io

@@ -1,0 +1,294 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "veridyn/muscle/model/model.hpp"
+#include "veridyn/muscle/dynamics/spatial.hpp"
+
+namespace veridyn::muscle {
+
+/// Where a link stands: x_G = rotation x_L + position.
+template <typename Scalar>
+struct Pose {
+  Matrix3<Scalar> rotation = Matrix3<Scalar>::Identity();
+  Vector3<Scalar> position = Vector3<Scalar>::Zero();
+
+  /// Ground position of a point fixed in the link.
+  [[nodiscard]] Vector3<Scalar> operator*(const Eigen::Vector3d& point) const {
+    return rotation * point.template cast<Scalar>() + position;
+  }
+};
+
+/// One moving axis of a joint, compiled. A rotation turns the frame `before` (which has its z along the axis) about z,
+/// so that it mixes two columns of a matrix only.
+struct JointAxis {
+  int coordinate = 0;
+  bool rotational = true;
+  bool linear = true;  ///< amount = slope q + intercept; else `function`
+  double slope = 1.0;
+  double intercept = 0.0;
+  numerics::PiecewisePolynomial function;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();       ///< of a translation, in the parent link
+  Eigen::Matrix3d before = Eigen::Matrix3d::Identity();  ///< of a rotation, in the frame after the rotation before it
+};
+
+/// Bodies that are welded together and move as one; link 0 is the ground with all that is welded to it.
+struct Link {
+  int parent = -1;                                   ///< always a smaller number than the link's own; -1 for the ground
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the joint at zero translation, in the parent link [m]
+  std::vector<JointAxis> axes;                       ///< translations, then rotations
+  std::vector<int> coordinates;                      ///< of its joint
+  /// Coordinates between the ground and this link, the ground's side first, its own joint's included.
+  std::vector<int> ancestors;
+  bool simple = false;                                    ///< one axis with a linear function: the usual pin or slider
+  double mass = 0.0;                                      ///< of all its bodies [kg]
+  Eigen::Vector3d mass_center = Eigen::Vector3d::Zero();  ///< in the link frame [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();      ///< about the mass centre, link axes [kg m^2]
+};
+
+/// A model's bodies and joints, compiled for computation: a tree of links in topological order.
+///
+/// Immutable and without reference to the model; used by many threads at once. Coordinates keep the numbers they have
+/// in the model, and each belongs to one joint.
+class Mechanism {
+ public:
+  /// @throws InputError naming the elements when joints make a circle, two joints move one body, a body hangs on no
+  /// joint, or a joint uses the coordinate of another.
+  explicit Mechanism(const Model& model);
+
+  struct BodyPlace {
+    int link = 0;
+    Placement in_link;
+  };
+
+  [[nodiscard]] int links() const { return static_cast<int>(links_.size()); }
+  [[nodiscard]] int coordinates() const { return static_cast<int>(coordinate_link_.size()); }
+  [[nodiscard]] const Link& link(int index) const { return links_[static_cast<std::size_t>(index)]; }
+  /// The link that carries a body of the model, and the body's frame in it.
+  [[nodiscard]] const BodyPlace& body(int index) const { return bodies_[static_cast<std::size_t>(index)]; }
+  /// The link whose joint a coordinate belongs to: it and the links beyond it move.
+  [[nodiscard]] int link_of_coordinate(int coordinate) const {
+    return coordinate_link_[static_cast<std::size_t>(coordinate)];
+  }
+  /// Coordinates that move this link, the ground's side first.
+  [[nodiscard]] std::span<const int> ancestors(int link_index) const { return link(link_index).ancestors; }
+  [[nodiscard]] bool moves(int coordinate, int link_index) const;
+  /// Coordinates that move what this coordinate moves, ground's side first; this one is the last. Every shorter
+  /// beginning of it is the same list of the coordinate it ends with.
+  [[nodiscard]] std::span<const int> chain(int coordinate) const {
+    const auto c = static_cast<std::size_t>(coordinate);
+    return {links_[static_cast<std::size_t>(coordinate_link_[c])].ancestors.data(), chain_length_[c]};
+  }
+  /// Where the row of this coordinate begins when rows as long as their chains are stored one after another; the total
+  /// for `coordinates()`.
+  [[nodiscard]] std::size_t row(int coordinate) const { return row_[static_cast<std::size_t>(coordinate)]; }
+  [[nodiscard]] const std::string& coordinate_name(int coordinate) const {
+    return coordinate_names_[static_cast<std::size_t>(coordinate)];
+  }
+  [[nodiscard]] const Eigen::Vector3d& gravity() const { return gravity_; }
+  /// All coordinates, ground's side first.
+  [[nodiscard]] std::span<const int> topological_coordinates() const { return topological_; }
+
+ private:
+  std::vector<Link> links_;
+  std::vector<BodyPlace> bodies_;
+  std::vector<int> coordinate_link_;
+  std::vector<std::string> coordinate_names_;
+  std::vector<int> topological_;
+  std::vector<std::size_t> chain_length_;
+  std::vector<std::size_t> row_;
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
+};
+
+/// Positions and velocities of a mechanism's links: a workspace, made once and filled by the functions below.
+template <typename Scalar>
+struct Kinematics {
+  explicit Kinematics(const Mechanism& mechanism);
+
+  /// By link, in ground. [0] is the identity.
+  std::vector<Pose<Scalar>> pose;
+  /// By coordinate: motion of its link (and of all beyond) per unit of the coordinate's speed. A point P (ground
+  /// position) of such a link moves with columns[k].angular x P + columns[k].linear.
+  std::vector<SpatialVector<Scalar>> columns;
+
+  /// By link, after `update_velocities`.
+  std::vector<SpatialVector<Scalar>> velocity;
+  /// By link: the part of its acceleration relative to the parent's that is there without coordinate accelerations,
+  /// sum_k d(columns[k])/dt qdot_k. Spatial, so it does not hold the centripetal term of a point; see
+  /// `point_acceleration`.
+  std::vector<SpatialVector<Scalar>> velocity_bias;
+
+  /// One moving axis of a joint that is not simple: its unit motion, and its function's derivatives.
+  struct AxisMotion {
+    SpatialVector<Scalar> unit;
+    Scalar slope{};
+    Scalar curvature{};
+  };
+  std::vector<AxisMotion> axis_motion;  ///< of all such joints, link after link
+};
+
+/// Fills `pose` and `columns` for coordinates q (one per coordinate of the mechanism, rad or m). Does not allocate.
+template <typename Scalar>
+void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Scalar>& kinematics);
+
+/// Fills `velocity` and `velocity_bias` for the speeds qdot, after `update_positions`. Does not allocate.
+template <typename Scalar>
+void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematics<Scalar>& kinematics);
+
+/// Ground position and orientation of a body of the model.
+template <typename Scalar>
+[[nodiscard]] Pose<Scalar> body_pose(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int body) {
+  const Mechanism::BodyPlace& place = mechanism.body(body);
+  const Pose<Scalar>& link = kinematics.pose[static_cast<std::size_t>(place.link)];
+  return {link.rotation * place.in_link.rotation.cast<Scalar>(), link * place.in_link.translation};
+}
+
+// Details ------------------------------------------------------------------------------------------------------------
+
+template <typename Scalar>
+Kinematics<Scalar>::Kinematics(const Mechanism& mechanism)
+    : pose(static_cast<std::size_t>(mechanism.links())),
+      columns(static_cast<std::size_t>(mechanism.coordinates())),
+      velocity(pose.size()),
+      velocity_bias(pose.size()) {
+  std::size_t n = 0;
+  for (int i = 1; i < mechanism.links(); ++i) {
+    if (!mechanism.link(i).simple) n += mechanism.link(i).axes.size();
+  }
+  axis_motion.resize(n);
+}
+
+namespace internal {
+
+/// Products with constants: half the work for Jets.
+template <typename Scalar>
+Vector3<Scalar> rotate(const Matrix3<Scalar>& R, const Eigen::Vector3d& v) {
+  return R.col(0) * v.x() + R.col(1) * v.y() + R.col(2) * v.z();
+}
+template <typename Scalar>
+Matrix3<Scalar> rotate(const Matrix3<Scalar>& R, const Eigen::Matrix3d& A) {
+  Matrix3<Scalar> product;
+  for (int i = 0; i < 3; ++i) product.col(i) = R.col(0) * A(0, i) + R.col(1) * A(1, i) + R.col(2) * A(2, i);
+  return product;
+}
+
+/// frame Rz(angle)
+template <typename Scalar>
+void turn_about_z(const Matrix3<Scalar>& frame, const Scalar& angle, Matrix3<Scalar>& turned) {
+  using std::cos;
+  using std::sin;
+  const Scalar s = sin(angle), c = cos(angle);
+  for (int i = 0; i < 3; ++i) {
+    turned(i, 0) = c * frame(i, 0) + s * frame(i, 1);
+    turned(i, 1) = c * frame(i, 1) - s * frame(i, 0);
+    turned(i, 2) = frame(i, 2);
+  }
+}
+
+}  // namespace internal
+
+template <typename Scalar>
+void update_positions(const Mechanism& mechanism, const Scalar* q, Kinematics<Scalar>& k) {
+  auto* motion = k.axis_motion.data();
+  for (int i = 1; i < mechanism.links(); ++i) {
+    const Link& link = mechanism.link(i);
+    const Pose<Scalar>& parent = k.pose[static_cast<std::size_t>(link.parent)];
+    Pose<Scalar>& pose = k.pose[static_cast<std::size_t>(i)];
+    const bool grounded = link.parent == 0;  // nothing to turn
+    if (grounded) {
+      pose.position = link.origin.cast<Scalar>();
+    } else {
+      pose.position = parent.position + internal::rotate(parent.rotation, link.origin);
+    }
+    if (link.simple) {
+      const JointAxis& axis = link.axes[0];
+      SpatialVector<Scalar>& column = k.columns[static_cast<std::size_t>(axis.coordinate)];
+      const Scalar amount = axis.slope * q[axis.coordinate] + axis.intercept;
+      if (axis.rotational) {
+        if (grounded) {
+          internal::turn_about_z(Matrix3<Scalar>(axis.before.cast<Scalar>()), amount, pose.rotation);
+        } else {
+          internal::turn_about_z(internal::rotate(parent.rotation, axis.before), amount, pose.rotation);
+        }
+        column.angular = axis.slope * pose.rotation.col(2);
+        column.linear = pose.position.cross(column.angular);
+      } else {
+        pose.rotation = parent.rotation;
+        column.linear = internal::rotate(parent.rotation, axis.axis);
+        pose.position += amount * column.linear;
+        column.linear *= Scalar(axis.slope);
+      }
+      continue;
+    }
+    auto* const first = motion;
+    pose.rotation = parent.rotation;
+    for (const JointAxis& axis : link.axes) {
+      numerics::FunctionValue<Scalar> f;
+      const Scalar& x = q[axis.coordinate];
+      if (axis.linear) {
+        f = {axis.slope * x + axis.intercept, Scalar(axis.slope), Scalar(0.0)};
+      } else {
+        f = axis.function.evaluate(x);
+      }
+      motion->slope = f.slope;
+      motion->curvature = f.curvature;
+      if (axis.rotational) {
+        // Translations come first, so that the position is final here.
+        internal::turn_about_z(internal::rotate(pose.rotation, axis.before), f.value, pose.rotation);
+        motion->unit.angular = pose.rotation.col(2);
+        motion->unit.linear = pose.position.cross(motion->unit.angular);
+      } else {
+        motion->unit.linear = internal::rotate(pose.rotation, axis.axis);
+        pose.position += f.value * motion->unit.linear;
+      }
+      ++motion;
+    }
+    for (const int c : link.coordinates) k.columns[static_cast<std::size_t>(c)] = {};
+    const auto* m = first;
+    for (const JointAxis& axis : link.axes) {
+      k.columns[static_cast<std::size_t>(axis.coordinate)].add_scaled(m->slope, m->unit);
+      ++m;
+    }
+  }
+}
+
+template <typename Scalar>
+void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematics<Scalar>& k) {
+  const auto* motion = k.axis_motion.data();
+  for (int i = 1; i < mechanism.links(); ++i) {
+    const Link& link = mechanism.link(i);
+    const SpatialVector<Scalar>& parent = k.velocity[static_cast<std::size_t>(link.parent)];
+    SpatialVector<Scalar>& V = k.velocity[static_cast<std::size_t>(i)];
+    SpatialVector<Scalar>& bias = k.velocity_bias[static_cast<std::size_t>(i)];
+    if (link.simple) {
+      const int c = link.axes[0].coordinate;
+      const SpatialVector<Scalar>& column = k.columns[static_cast<std::size_t>(c)];
+      const SpatialVector<Scalar> relative{column.angular * qdot[c], column.linear * qdot[c]};
+      if (link.parent == 0) {
+        V = relative;
+        continue;
+      }
+      bias = cross_motion(parent, relative);
+      V.angular = parent.angular + relative.angular;
+      V.linear = parent.linear + relative.linear;
+      continue;
+    }
+    // Each axis is carried by the motion of those before it: d(unit)/dt = V_before x unit.
+    V = parent;
+    bias = {};
+    for (const JointAxis& axis : link.axes) {
+      const Scalar& speed = qdot[axis.coordinate];
+      const Scalar rate = motion->slope * speed;
+      bias.add_scaled(rate, cross_motion(V, motion->unit));
+      bias.add_scaled(motion->curvature * speed * speed, motion->unit);
+      V.add_scaled(rate, motion->unit);
+      ++motion;
+    }
+  }
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,72 @@
+#include "veridyn/muscle/model/model.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+template <typename List, typename Name>
+int index_of(const List& list, std::string_view wanted, const Name& name) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (name(list[i]) == wanted) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Eigen::Matrix3d point_mass_inertia(double mass, const Eigen::Vector3d& r) {
+  return mass * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+}
+
+}  // namespace
+
+Eigen::Matrix3d body_fixed_xyz(const Eigen::Vector3d& angles) {
+  return (Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()))
+      .toRotationMatrix();
+}
+
+int Model::body(std::string_view wanted) const {
+  return index_of(bodies, wanted, [](const Body& b) -> const std::string& { return b.name; });
+}
+
+int Model::coordinate(std::string_view wanted) const {
+  return index_of(coordinates, wanted, [](const Coordinate& c) -> const std::string& { return c.name; });
+}
+
+int Model::muscle(std::string_view wanted) const {
+  return index_of(muscles, wanted, [](const Muscle& m) -> const std::string& { return m.name(); });
+}
+
+Eigen::VectorXd Model::default_pose() const {
+  Eigen::VectorXd q(static_cast<Eigen::Index>(coordinates.size()));
+  for (std::size_t i = 0; i < coordinates.size(); ++i) q(static_cast<Eigen::Index>(i)) = coordinates[i].default_value;
+  for (const CoordinateCoupler& c : couplers) q(c.dependent) = c.function.evaluate(q(c.independent)).value;
+  return q;
+}
+
+void add_load(Model& model, std::string_view body_name, double mass, const Eigen::Vector3d& location) {
+  const int index = model.body(body_name);
+  if (index < 0) {
+    std::vector<std::string> names;
+    for (const Body& b : model.bodies) names.push_back(b.name);
+    throw InputError("load",
+                     fmt::format("model '{}' has no body '{}'{}", model.name, body_name, suggestion(body_name, names)));
+  }
+  if (!(mass >= 0.0)) throw InputError("load", fmt::format("mass = {} kg on '{}' must be >= 0", mass, body_name));
+  Body& body = model.bodies[static_cast<std::size_t>(index)];
+  const double total = body.mass + mass;
+  if (total <= 0.0) return;
+  const Eigen::Vector3d center = (body.mass * body.mass_center + mass * location) / total;
+  body.inertia +=
+      point_mass_inertia(body.mass, body.mass_center - center) + point_mass_inertia(mass, location - center);
+  body.mass = total;
+  body.mass_center = center;
+}
+
+}  // namespace veridyn::muscle

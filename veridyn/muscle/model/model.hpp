@@ -1,0 +1,206 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/muscle/model/muscle_parameters.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
+
+/// A musculoskeletal model as its file describes it: plain data with all names resolved to indices and all offset
+/// frames folded into the bodies that carry them. `osim_reader.hpp` makes one, `mechanism.hpp`, `muscle_path.hpp` and
+/// `musculotendon.hpp` compute with it.
+///
+/// SI units, radians. Body 0 is the ground. Lists keep the order of the file.
+namespace veridyn::muscle {
+
+/// Where frame C stands in frame P: x_P = rotation x_C + translation.
+struct Placement {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] Placement operator*(const Placement& inner) const {
+    return {rotation * inner.rotation, rotation * inner.translation + translation};
+  }
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + translation; }
+  [[nodiscard]] Placement inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+};
+
+/// Body-fixed x-y-z rotation sequence, R = Rx(a) Ry(b) Rz(c): OpenSim's `orientation` and `xyz_body_rotation`.
+[[nodiscard]] Eigen::Matrix3d body_fixed_xyz(const Eigen::Vector3d& angles);
+
+struct Body {
+  std::string name;
+  double mass = 0.0;                                      ///< [kg]
+  Eigen::Vector3d mass_center = Eigen::Vector3d::Zero();  ///< in the body frame [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();      ///< about the mass centre, body axes [kg m^2]
+};
+
+enum class CoordinateMotion { kRotational, kTranslational, kCoupled };
+
+struct Coordinate {
+  std::string name;
+  CoordinateMotion motion = CoordinateMotion::kRotational;
+  int joint = 0;
+  double default_value = 0.0;  ///< [rad] or [m]
+  double default_speed = 0.0;  ///< [1/s]
+  double low = 0.0;
+  double high = 0.0;
+  bool clamped = false;
+  bool locked = false;
+  std::string unit() const { return motion == CoordinateMotion::kTranslational ? "m" : "rad"; }
+};
+
+/// One of the six motions of a joint: by function(coordinate) about or along `axis`.
+struct TransformAxis {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< of unit length
+  int coordinate = -1;                              ///< index of a coordinate of the model; -1: a constant
+  numerics::PiecewisePolynomial function;
+};
+
+/// Child frame in the parent frame: rotation R(axis 0) R(axis 1) R(axis 2), body-fixed in this order, and translation
+/// sum_i function_i axis_i along the three translation axes, taken in the parent frame. Every type of joint is one.
+///
+/// Free and ball joints are given the angles and the rates of a body-fixed x-y-z sequence; OpenSim's speeds of such
+/// joints are angular velocities, so that their generalised forces differ from ours by that map.
+struct Joint {
+  std::string name;
+  std::string type;        ///< as in the file: "CustomJoint", "PinJoint", ...
+  int parent = 0;          ///< body
+  int child = 0;           ///< body
+  Placement parent_frame;  ///< the joint's frame in the parent body
+  Placement child_frame;   ///< the joint's frame in the child body
+  std::vector<int> coordinates;
+  std::array<TransformAxis, 3> rotation;
+  std::array<TransformAxis, 3> translation;
+};
+
+/// value(dependent) = function(value(independent)) (CoordinateCouplerConstraint).
+struct CoordinateCoupler {
+  std::string name;
+  int independent = 0;
+  int dependent = 0;
+  numerics::PiecewisePolynomial function;
+};
+
+enum class PathPointKind {
+  kFixed,
+  kConditional,  ///< part of the path only while low <= coordinate <= high
+  kMoving,       ///< location = functions of coordinates
+};
+
+struct PathPoint {
+  std::string name;
+  PathPointKind kind = PathPointKind::kFixed;
+  int body = 0;
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body frame [m]
+  int coordinate = -1;                                 ///< conditional
+  double low = 0.0, high = 0.0;
+  std::array<int, 3> moving_coordinate{-1, -1, -1};  ///< moving: x, y, z; -1: a constant
+  std::array<numerics::PiecewisePolynomial, 3> moving_location;
+};
+
+enum class WrapShape { kSphere, kCylinder, kEllipsoid, kTorus };
+
+/// Half space, in the wrap object's frame, to which wrapping is confined: sign * x[axis] > 0; sign 0: everywhere.
+struct WrapQuadrant {
+  int axis = 0;
+  int sign = 0;
+};
+
+struct WrapObject {
+  std::string name;
+  WrapShape shape = WrapShape::kSphere;
+  int body = 0;
+  Placement placement;  ///< the object's frame in the body
+  bool active = true;
+  WrapQuadrant quadrant;
+  /// Sphere: radius. Cylinder: radius, length (its axis is z). Ellipsoid: the three radii. Torus: inner and outer
+  /// radius (its axis is z). [m]
+  Eigen::Vector3d dimensions = Eigen::Vector3d::Zero();
+};
+
+/// OpenSim's ways of choosing an ellipsoid's wrapping plane.
+enum class EllipsoidMethod { kHybrid, kMidpoint, kAxial };
+
+struct PathWrap {
+  int object = 0;       ///< in Model::wrap_objects
+  int first_point = 0;  ///< of the path, 0-based, inclusive: wrapping is looked for between these points only
+  int last_point = -1;  ///< inclusive; -1: the path's last
+  EllipsoidMethod method = EllipsoidMethod::kHybrid;
+};
+
+struct Muscle {
+  MuscleParameters parameters;
+  std::vector<PathPoint> points;
+  std::vector<PathWrap> wraps;
+  bool enabled = true;  ///< appliesForce
+  [[nodiscard]] const std::string& name() const { return parameters.name; }
+};
+
+/// Generalised force optimal_force * control on a coordinate (CoordinateActuator).
+struct CoordinateActuator {
+  std::string name;
+  int coordinate = 0;
+  double optimal_force = 1.0;  ///< [N] or [N m]
+  double min_control = -1.0e300;
+  double max_control = 1.0e300;
+};
+
+/// Spring and damper that keep a coordinate in its range (CoordinateLimitForce); SI per radian or metre.
+struct CoordinateLimitForce {
+  std::string name;
+  int coordinate = 0;
+  double upper_stiffness = 1.0, upper_limit = 0.0;
+  double lower_stiffness = 1.0, lower_limit = 0.0;
+  double damping = 0.001;
+  double transition = 0.1;
+};
+
+struct Marker {
+  std::string name;
+  int body = 0;
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();
+};
+
+/// An element of the file that this program does not compute with. It is kept when the model is written back.
+struct UnsupportedElement {
+  std::string element;  ///< "HuntCrossleyForce"
+  std::string name;     ///< "contact_r"
+  /// True when it would change the motion (a force, a constraint); a simulation then has to be told to go on without.
+  bool changes_motion = false;
+};
+
+struct Model {
+  std::string name;
+  std::string credits;
+  int version = 0;                              ///< of the document, 40000 for OpenSim 4.0
+  Eigen::Vector3d gravity{0.0, -9.80665, 0.0};  ///< in ground [m/s^2]
+  std::vector<Body> bodies;                     ///< [0] is the ground
+  std::vector<Joint> joints;
+  std::vector<Coordinate> coordinates;
+  std::vector<CoordinateCoupler> couplers;
+  std::vector<WrapObject> wrap_objects;
+  std::vector<Muscle> muscles;
+  std::vector<CoordinateActuator> actuators;
+  std::vector<CoordinateLimitForce> limit_forces;
+  std::vector<Marker> markers;
+  std::vector<UnsupportedElement> unsupported;
+  std::vector<std::string> warnings;
+
+  /// Index of a name, or -1.
+  [[nodiscard]] int body(std::string_view name) const;
+  [[nodiscard]] int coordinate(std::string_view name) const;
+  [[nodiscard]] int muscle(std::string_view name) const;
+  /// Coordinate values and speeds as the file sets them, coupled ones by their couplers.
+  [[nodiscard]] Eigen::VectorXd default_pose() const;
+};
+
+/// A load held by a body: `mass` [kg], a point at `location` [m] of the body's frame, added to its mass, mass centre
+/// and inertia. @throws InputError naming the body when there is none of that name or the mass is negative.
+void add_load(Model& model, std::string_view body, double mass, const Eigen::Vector3d& location);
+
+}  // namespace veridyn::muscle

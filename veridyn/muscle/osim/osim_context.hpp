@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/muscle/model/model.hpp"
+#include "veridyn/muscle/osim/osim_element.hpp"
+
+/// What the parts of the reader share. Not for others.
+namespace veridyn::muscle::osim {
+
+/// A frame of the file: a body and where the frame stands in it.
+struct FrameReference {
+  int body = 0;
+  Placement placement;
+};
+
+struct Context {
+  const Document& document;
+  Model model;
+  /// Every PhysicalOffsetFrame of the file.
+  std::vector<Element> offset_frames;
+
+  /// Index of a body by name or component path. @throws InputError naming the nearest body.
+  [[nodiscard]] int body(const Element& user, const char* property, std::string_view reference) const;
+  [[nodiscard]] int coordinate(const Element& user, const char* property, std::string_view reference) const;
+  /// The frame that `reference` means to `user`: ground, a body, or an offset frame, its own first.
+  [[nodiscard]] FrameReference frame(const Element& user, const char* property, std::string_view reference) const;
+  void warn(const Element& element, std::string_view what);
+  void unsupported(const Element& element, bool changes_motion);
+};
+
+/// What a socket is connected to: `socket_NAME`, `socket_NAME_connectee_name` or a Connector element.
+[[nodiscard]] std::string socket(const Element& user, const char* name);
+
+void read_bodies(Context& context);
+void read_wrap_objects(Context& context);
+void read_joints(Context& context);
+void read_constraints(Context& context);
+void read_forces(Context& context);
+void read_markers(Context& context);
+
+/// Everything but the curves and the path of a Muscle element.
+[[nodiscard]] bool is_muscle(std::string_view type);
+void read_muscle(Context& context, const Element& element);
+
+}  // namespace veridyn::muscle::osim

@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <cstring>
+#include <map>
+#include <numbers>
+
+#include "veridyn/muscle/osim/osim_context.hpp"
+#include "veridyn/muscle/osim/osim_function.hpp"
+
+/// Joints of an .osim file, every type expressed by six transform axes.
+namespace veridyn::muscle::osim {
+namespace {
+
+/// Which of rotation x, y, z and translation x, y, z a joint's coordinates drive, in the order of its coordinates.
+const std::map<std::string, std::vector<int>, std::less<>> kPlainJoints{
+    {"WeldJoint", {}},          {"PinJoint", {2}},
+    {"SliderJoint", {3}},       {"UniversalJoint", {0, 1}},
+    {"BallJoint", {0, 1, 2}},   {"GimbalJoint", {0, 1, 2}},
+    {"PlanarJoint", {2, 3, 4}}, {"FreeJoint", {0, 1, 2, 3, 4, 5}}};
+
+TransformAxis& axis_of(Joint& joint, std::size_t index) {
+  return index < 3 ? joint.rotation[index] : joint.translation[index - 3];
+}
+
+/// Coordinates of a joint: `<coordinates>` (4.x) or `<CoordinateSet>` (before).
+void read_coordinates(Context& context, const Element& element, Joint& joint, std::size_t wanted) {
+  std::vector<Element> found = element.objects("coordinates");
+  if (found.empty()) found = element.objects("CoordinateSet");
+  std::erase_if(found, [](const Element& e) { return e.type() != "Coordinate"; });
+  const int index = static_cast<int>(context.model.joints.size());
+  for (const Element& c : found) {
+    Coordinate coordinate;
+    coordinate.name = c.name();
+    if (coordinate.name.empty()) c.fail("name", "a coordinate needs a name");
+    if (context.model.coordinate(coordinate.name) >= 0) c.fail("name", "a second coordinate of this name");
+    coordinate.joint = index;
+    coordinate.default_value = c.number_or("default_value", 0.0);
+    coordinate.default_speed = c.number_or("default_speed_value", 0.0);
+    coordinate.clamped = c.flag_or("clamped", false);
+    coordinate.locked = c.flag_or("locked", false);
+    const std::vector<double> range = c.numbers("range");
+    coordinate.low = -1e6;
+    coordinate.high = 1e6;
+    if (!range.empty()) {
+      if (range.size() != 2) c.fail("range", fmt::format("{} numbers where two are wanted", range.size()));
+      if (range[0] > range[1]) c.fail("range", fmt::format("begins at {} above its end {}", range[0], range[1]));
+      coordinate.low = range[0];
+      coordinate.high = range[1];
+    }
+    // Two numbers of a file may differ in their last printed digit.
+    const double slack = 1e-6 * (1.0 + coordinate.high - coordinate.low);
+    if (coordinate.default_value < coordinate.low - slack || coordinate.default_value > coordinate.high + slack) {
+      context.warn(c, fmt::format("default_value {} is outside the range {} .. {}", coordinate.default_value,
+                                  coordinate.low, coordinate.high));
+    }
+    if (const Element prescribed = find_function(c, "prescribed_function");
+        prescribed && c.flag_or("prescribed", false)) {
+      context.warn(c, "its prescribed_function is not used; prescribe the motion in the study");
+    }
+    joint.coordinates.push_back(static_cast<int>(context.model.coordinates.size()));
+    context.model.coordinates.push_back(std::move(coordinate));
+  }
+  for (std::size_t i = found.size(); i < wanted; ++i) {  // the file left them to OpenSim's defaults
+    Coordinate coordinate;
+    coordinate.name = fmt::format("{}_coord_{}", joint.name, i);
+    if (context.model.coordinate(coordinate.name) >= 0) element.fail("coordinates", "missing");
+    coordinate.joint = index;
+    coordinate.low = -1e6;
+    coordinate.high = 1e6;
+    joint.coordinates.push_back(static_cast<int>(context.model.coordinates.size()));
+    context.model.coordinates.push_back(std::move(coordinate));
+  }
+}
+
+void read_plain_axes(Context& context, const Element& element, const std::vector<int>& axes, Joint& joint) {
+  if (joint.coordinates.size() != axes.size()) {
+    element.fail("coordinates", fmt::format("{} where a {} has {}", joint.coordinates.size(), joint.type, axes.size()));
+  }
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    TransformAxis& axis = axis_of(joint, static_cast<std::size_t>(axes[i]));
+    axis.coordinate = joint.coordinates[i];
+    axis.function = numerics::PiecewisePolynomial::linear(1.0, 0.0);
+    context.model.coordinates[static_cast<std::size_t>(axis.coordinate)].motion =
+        axes[i] < 3 ? CoordinateMotion::kRotational : CoordinateMotion::kTranslational;
+  }
+}
+
+/// A coordinate is rotational (translational) when some rotation (translation) is the coordinate itself.
+void classify(Context& context, const Joint& joint) {
+  for (const int index : joint.coordinates) {
+    CoordinateMotion motion = CoordinateMotion::kCoupled;
+    Joint copy = joint;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const TransformAxis& axis = axis_of(copy, i);
+      if (axis.coordinate != index || !axis.function.is_linear()) continue;
+      const numerics::FunctionValue<double> f = axis.function.evaluate(0.0);
+      if (f.slope != 1.0 && f.slope != -1.0) continue;
+      motion = i < 3 ? CoordinateMotion::kRotational : CoordinateMotion::kTranslational;
+      break;
+    }
+    context.model.coordinates[static_cast<std::size_t>(index)].motion = motion;
+  }
+}
+
+void read_spatial_transform(Context& context, const Element& element, Joint& joint) {
+  const Element transform = element.child("SpatialTransform");
+  if (!transform) element.fail("SpatialTransform", "missing");
+  constexpr std::array<const char*, 6> kAxes{"rotation1",    "rotation2",    "rotation3",
+                                             "translation1", "translation2", "translation3"};
+  for (const pugi::xml_node node : transform.node().children("TransformAxis")) {
+    const Element source(context.document, node);
+    std::size_t index = 6;
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (source.name() == kAxes[i]) index = i;
+    }
+    if (index == 6) source.fail("name", "is none of rotation1 to rotation3, translation1 to translation3");
+    TransformAxis& axis = axis_of(joint, index);
+    const Eigen::Vector3d direction = source.vector_or("axis", axis.axis);
+    if (!(direction.norm() > 1e-12)) source.fail("axis", "has no direction");
+    axis.axis = direction.normalized();
+    const std::vector<std::string> names = source.words(source.has("coordinates") ? "coordinates" : "coordinate");
+    if (names.size() > 1) source.fail("coordinates", "functions of several coordinates are not understood");
+    const Element function = find_function(source, "function");
+    if (function) axis.function = read_function(function);
+    if (names.empty()) {
+      // A function without a coordinate is evaluated at nothing: it has to be a constant.
+      if (function && !axis.function.is_constant()) {
+        axis.function = numerics::PiecewisePolynomial::constant(axis.function.evaluate(0.0).value);
+      }
+      continue;
+    }
+    if (!function) source.fail("function", "missing");
+    axis.coordinate = context.coordinate(source, "coordinates", names.front());
+    if (std::find(joint.coordinates.begin(), joint.coordinates.end(), axis.coordinate) == joint.coordinates.end()) {
+      source.fail("coordinates", fmt::format("'{}' is not a coordinate of joint '{}'", names.front(), joint.name));
+    }
+    if (axis.function.is_constant()) axis.coordinate = -1;
+  }
+  classify(context, joint);
+}
+
+struct JointSource {
+  Element element;
+  int child = -1;  ///< known beforehand in formats before 4.0, where a body holds its joint
+};
+
+std::vector<JointSource> joint_sources(const Context& context) {
+  const Element root(context.document, context.document.model());
+  std::vector<JointSource> sources;
+  for (const Element& element : root.objects("JointSet")) sources.push_back({element, -1});
+  for (const Element& body : root.objects("BodySet")) {
+    for (const pugi::xml_node node : body.property("Joint").children()) {
+      if (node.type() == pugi::node_element)
+        sources.push_back({{context.document, node}, context.model.body(body.name())});
+    }
+  }
+  return sources;
+}
+
+}  // namespace
+
+void read_joints(Context& context) {
+  for (const JointSource& source : joint_sources(context)) {
+    const Element& element = source.element;
+    const int child = source.child;
+    Joint joint;
+    joint.name = element.name();
+    joint.type = element.type();
+    for (int i = 0; i < 3; ++i) {
+      joint.rotation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
+      joint.translation[static_cast<std::size_t>(i)].axis = Eigen::Vector3d::Unit(i);
+    }
+    const auto plain = kPlainJoints.find(joint.type);
+    if (plain == kPlainJoints.end() && joint.type != "CustomJoint") {
+      element.fail(joint.type, "joints of this type are not understood");
+    }
+    if (element.flag_or("reverse", false)) element.fail("reverse", "reversed joints are not understood");
+    if (child < 0) {
+      const FrameReference parent_frame =
+          context.frame(element, "socket_parent_frame", socket(element, "parent_frame"));
+      const FrameReference child_frame = context.frame(element, "socket_child_frame", socket(element, "child_frame"));
+      joint.parent = parent_frame.body;
+      joint.parent_frame = parent_frame.placement;
+      joint.child = child_frame.body;
+      joint.child_frame = child_frame.placement;
+    } else {
+      joint.parent = context.body(element, "parent_body", element.text_or("parent_body", "ground"));
+      joint.child = child;
+      const auto placement = [&](const char* location, const char* orientation) -> Placement {
+        return {body_fixed_xyz(element.vector_or(orientation, Eigen::Vector3d::Zero())),
+                element.vector_or(location, Eigen::Vector3d::Zero())};
+      };
+      joint.parent_frame = placement("location_in_parent", "orientation_in_parent");
+      joint.child_frame = placement("location", "orientation");
+    }
+    if (joint.child == 0) element.fail("child", "the ground cannot be the child of a joint");
+    if (joint.child == joint.parent) element.fail("child", "a joint cannot connect a body to itself");
+    for (const Joint& other : context.model.joints) {
+      if (other.child == joint.child) {
+        element.fail("child",
+                     fmt::format("body '{}' already hangs on joint '{}'",
+                                 context.model.bodies[static_cast<std::size_t>(joint.child)].name, other.name));
+      }
+    }
+    read_coordinates(context, element, joint, plain == kPlainJoints.end() ? 0 : plain->second.size());
+    if (plain != kPlainJoints.end()) {
+      read_plain_axes(context, element, plain->second, joint);
+    } else {
+      read_spatial_transform(context, element, joint);
+    }
+    context.model.joints.push_back(std::move(joint));
+  }
+  // Every body has to reach the ground.
+  for (std::size_t b = 1; b < context.model.bodies.size(); ++b) {
+    int at = static_cast<int>(b);
+    for (std::size_t hops = 0; at != 0; ++hops) {
+      const auto joint = std::find_if(context.model.joints.begin(), context.model.joints.end(),
+                                      [at](const Joint& j) { return j.child == at; });
+      const Element root(context.document, context.document.model());
+      const std::string& name = context.model.bodies[b].name;
+      if (joint == context.model.joints.end()) {
+        root.fail("JointSet",
+                  fmt::format("no joint holds body '{}'{}", context.model.bodies[static_cast<std::size_t>(at)].name,
+                              at == static_cast<int>(b) ? "" : fmt::format(", on which '{}' hangs", name)));
+      }
+      if (hops > context.model.bodies.size()) {
+        root.fail("JointSet", fmt::format("the joints from body '{}' towards the ground go round in a circle", name));
+      }
+      at = joint->parent;
+    }
+  }
+}
+
+}  // namespace veridyn::muscle::osim

@@ -1,0 +1,285 @@
+#include "veridyn/muscle/osim/osim_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <set>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/osim/osim_context.hpp"
+#include "veridyn/muscle/osim/osim_function.hpp"
+
+namespace veridyn::muscle {
+namespace osim {
+namespace {
+
+template <typename List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
+
+Placement read_placement(const Element& element, const char* translation, const char* orientation) {
+  return {body_fixed_xyz(element.vector_or(orientation, Eigen::Vector3d::Zero())),
+          element.vector_or(translation, Eigen::Vector3d::Zero())};
+}
+
+Eigen::Matrix3d read_inertia(const Element& body) {
+  std::vector<double> v = body.numbers("inertia");
+  if (v.empty()) {  // formats before 4.0
+    for (const char* part : {"inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"}) {
+      v.push_back(body.number_or(part, 0.0));
+    }
+  }
+  if (v.size() != 6) body.fail("inertia", fmt::format("{} numbers where xx yy zz xy xz yz are wanted", v.size()));
+  Eigen::Matrix3d inertia;
+  inertia << v[0], v[3], v[4], v[3], v[1], v[5], v[4], v[5], v[2];
+  const Eigen::Vector3d principal = inertia.selfadjointView<Eigen::Lower>().eigenvalues();
+  const double tolerance = 1e-9 * principal.cwiseAbs().maxCoeff();
+  if (principal.minCoeff() < -tolerance) body.fail("inertia", "is not positive semidefinite: no mass has it");
+  return inertia;
+}
+
+WrapQuadrant read_quadrant(const Element& wrap) {
+  const std::string text = wrap.text_or("quadrant", "all");
+  if (text == "all" || text == "All" || text == "ALL") return {};
+  std::string_view axis = text;
+  int sign = 1;
+  if (axis.starts_with('-')) sign = -1;
+  if (axis.starts_with('-') || axis.starts_with('+')) axis.remove_prefix(1);
+  if (axis == "x" || axis == "X") return {0, sign};
+  if (axis == "y" || axis == "Y") return {1, sign};
+  if (axis == "z" || axis == "Z") return {2, sign};
+  wrap.fail("quadrant", fmt::format("'{}' is none of all, x, -x, y, -y, z, -z", text));
+}
+
+void read_wraps_of(Context& context, const Element& body_element, int body) {
+  for (const Element& element : body_element.objects("WrapObjectSet")) {
+    WrapObject wrap;
+    wrap.name = element.name();
+    wrap.body = body;
+    wrap.placement = read_placement(element, "translation", "xyz_body_rotation");
+    wrap.active = element.flag_or("active", true);
+    wrap.quadrant = read_quadrant(element);
+    const std::string type = element.type();
+    if (type == "WrapSphere") {
+      wrap.shape = WrapShape::kSphere;
+      wrap.dimensions.x() = element.positive_or("radius", -1.0);
+    } else if (type == "WrapCylinder") {
+      wrap.shape = WrapShape::kCylinder;
+      wrap.dimensions << element.positive_or("radius", -1.0), element.positive_or("length", 1.0), 0.0;
+    } else if (type == "WrapEllipsoid") {
+      wrap.shape = WrapShape::kEllipsoid;
+      wrap.dimensions = element.vector_or("dimensions", Eigen::Vector3d::Constant(-1.0));
+      if (!(wrap.dimensions.minCoeff() > 0.0)) element.fail("dimensions", "all three radii must be > 0");
+    } else if (type == "WrapTorus") {
+      wrap.shape = WrapShape::kTorus;
+      wrap.dimensions << element.positive_or("inner_radius", -1.0), element.positive_or("outer_radius", -1.0), 0.0;
+    } else {
+      context.unsupported(element, true);
+      continue;
+    }
+    context.model.wrap_objects.push_back(std::move(wrap));
+  }
+}
+
+void read_gravity_and_units(Context& context, const Element& root) {
+  context.model.gravity = root.vector_or("gravity", {0.0, -9.80665, 0.0});
+  const std::string length = root.text_or("length_units", "meters");
+  if (length != "meters" && length != "m" && length != "meter") {
+    root.fail("length_units", fmt::format("'{}': only models in meters are read", length));
+  }
+  const std::string force = root.text_or("force_units", "N");
+  if (force != "N" && force != "newtons" && force != "Newtons") {
+    root.fail("force_units", fmt::format("'{}': only models in newtons (N) are read", force));
+  }
+}
+
+}  // namespace
+
+int Context::body(const Element& user, const char* property, std::string_view reference) const {
+  const int index = model.body(last_part(reference));
+  if (index < 0) {
+    user.fail(property, fmt::format("there is no body '{}'{}", reference,
+                                    suggestion(last_part(reference), names_of(model.bodies), 8)));
+  }
+  return index;
+}
+
+int Context::coordinate(const Element& user, const char* property, std::string_view reference) const {
+  const int index = model.coordinate(last_part(reference));
+  if (index < 0) {
+    user.fail(property, fmt::format("there is no coordinate '{}'{}", reference,
+                                    suggestion(last_part(reference), names_of(model.coordinates), 8)));
+  }
+  return index;
+}
+
+FrameReference Context::frame(const Element& user, const char* property, std::string_view reference) const {
+  // An offset frame may stand in another one; a chain longer than the number of frames is a circle.
+  Placement placement;
+  std::string wanted(reference);
+  pugi::xml_node owner = user.node();
+  for (std::size_t hops = 0; hops <= offset_frames.size(); ++hops) {
+    const std::string name = last_part(wanted);
+    const std::string folder =
+        wanted.size() > name.size() ? last_part(std::string_view(wanted).substr(0, wanted.size() - name.size())) : "";
+    const Element* found = nullptr;
+    for (const Element& candidate : offset_frames) {
+      if (candidate.name() != name) continue;
+      // <frames> or <components> within the object that owns the frame.
+      const pugi::xml_node holder = candidate.node().parent().parent();
+      const std::string_view holder_name = holder.attribute("name").value();
+      const bool own = holder == owner || candidate.node().parent().parent() == owner.parent().parent();
+      const bool named = !folder.empty() && folder != ".." && folder == holder_name;
+      if (named || (own && (folder.empty() || folder == ".."))) {
+        found = &candidate;
+        break;
+      }
+      if (found == nullptr && model.body(name) < 0) found = &candidate;
+    }
+    const bool is_body = model.body(name) >= 0;
+    if (is_body && (found == nullptr || folder == "bodyset")) return {model.body(name), placement};
+    if (found == nullptr) {
+      user.fail(property, fmt::format("there is no body or frame '{}'{}", reference,
+                                      suggestion(name, names_of(model.bodies), 8)));
+    }
+    placement = read_placement(*found, "translation", "orientation") * placement;
+    wanted = socket(*found, "parent");
+    owner = found->node().parent().parent();
+    if (wanted.empty()) user.fail(property, fmt::format("frame '{}' has no parent", name));
+    if (wanted == "..") wanted = owner.attribute("name").value();
+  }
+  user.fail(property, fmt::format("the frames from '{}' on go round in a circle", reference));
+}
+
+void Context::warn(const Element& element, std::string_view what) {
+  model.warnings.push_back(fmt::format("{}: {}", element.place(), what));
+}
+
+void Context::unsupported(const Element& element, bool changes_motion) {
+  model.unsupported.push_back({element.type(), element.name(), changes_motion});
+}
+
+std::string socket(const Element& user, const char* name) {
+  for (const std::string& property : {fmt::format("socket_{}", name), fmt::format("socket_{}_connectee_name", name)}) {
+    if (user.has(property.c_str())) return user.text_or(property.c_str(), "");
+  }
+  for (const pugi::xml_node connector : user.node().child("connectors").children()) {
+    if (std::strcmp(connector.attribute("name").value(), name) == 0)
+      return connector.child("connectee_name").text().get();
+  }
+  return {};
+}
+
+void read_bodies(Context& context) {
+  const Element root(context.document, context.document.model());
+  context.model.bodies.push_back({.name = "ground"});
+  for (const Element& element : root.objects("BodySet")) {
+    if (element.type() != "Body") {
+      context.unsupported(element, true);
+      continue;
+    }
+    const std::string name = element.name();
+    if (name == "ground") continue;  // formats before 4.0 list it
+    if (name.empty()) element.fail("name", "a body needs a name");
+    if (context.model.body(name) >= 0) element.fail("name", "a second body of this name");
+    Body body;
+    body.name = name;
+    body.mass = element.not_negative_or("mass", 0.0);
+    body.mass_center = element.vector_or("mass_center", Eigen::Vector3d::Zero());
+    body.inertia = read_inertia(element);
+    context.model.bodies.push_back(std::move(body));
+  }
+}
+
+void read_wrap_objects(Context& context) {
+  const Element root(context.document, context.document.model());
+  read_wraps_of(context, root.child("Ground"), 0);
+  for (const Element& element : root.objects("BodySet")) {
+    const int body = context.model.body(element.name());
+    if (body >= 0) read_wraps_of(context, element, body);
+  }
+}
+
+void read_constraints(Context& context) {
+  const Element root(context.document, context.document.model());
+  for (const Element& element : root.objects("ConstraintSet")) {
+    const bool on = element.flag_or("isEnforced", !element.flag_or("isDisabled", false));
+    if (element.type() != "CoordinateCouplerConstraint") {
+      context.unsupported(element, on);
+      continue;
+    }
+    if (!on) continue;
+    const std::vector<std::string> independent = element.words("independent_coordinate_names");
+    if (independent.size() != 1) {
+      element.fail("independent_coordinate_names",
+                   fmt::format("{} names; couplers of one coordinate are understood", independent.size()));
+    }
+    CoordinateCoupler coupler;
+    coupler.name = element.name();
+    coupler.independent = context.coordinate(element, "independent_coordinate_names", independent.front());
+    coupler.dependent =
+        context.coordinate(element, "dependent_coordinate_name", element.text_or("dependent_coordinate_name", ""));
+    if (coupler.dependent == coupler.independent)
+      element.fail("dependent_coordinate_name", "a coordinate cannot be coupled to itself");
+    const Element function = find_function(element, "coupled_coordinates_function");
+    if (!function) element.fail("coupled_coordinates_function", "missing");
+    coupler.function = read_function(function).scaled(element.number_or("scale_factor", 1.0));
+    context.model.couplers.push_back(std::move(coupler));
+  }
+}
+
+void read_markers(Context& context) {
+  const Element root(context.document, context.document.model());
+  for (const Element& element : root.objects("MarkerSet")) {
+    if (element.type() != "Marker") continue;
+    std::string frame = socket(element, "parent_frame");
+    if (frame.empty()) frame = element.text_or("body", "ground");
+    const FrameReference at = context.frame(element, "socket_parent_frame", frame);
+    context.model.markers.push_back(
+        {element.name(), at.body, at.placement * element.vector_or("location", Eigen::Vector3d::Zero())});
+  }
+}
+
+}  // namespace osim
+
+OsimFile OsimFile::parse(std::string text, std::string name) {
+  OsimFile file;
+  auto document = std::make_shared<osim::Document>(std::move(text), std::move(name));
+  osim::Context context{*document, {}, {}};
+  const osim::Element root(*document, document->model());
+  context.model.name = root.name();
+  context.model.credits = root.text_or("credits", "");
+  context.model.version = document->version();
+  for (const pugi::xpath_node found : document->model().select_nodes(".//PhysicalOffsetFrame")) {
+    context.offset_frames.emplace_back(*document, found.node());
+  }
+  osim::read_gravity_and_units(context, root);
+  osim::read_bodies(context);
+  osim::read_wrap_objects(context);
+  osim::read_joints(context);
+  osim::read_constraints(context);
+  osim::read_forces(context);
+  osim::read_markers(context);
+  for (const char* set : {"ControllerSet", "ProbeSet", "ComponentSet", "components"}) {
+    for (const osim::Element& element : root.objects(set)) context.unsupported(element, false);
+  }
+  file.model_ = std::move(context.model);
+  file.document_ = std::move(document);
+  return file;
+}
+
+OsimFile OsimFile::load(const std::filesystem::path& path) { return parse(read_file(path), path.filename().string()); }
+
+const std::string& OsimFile::text() const { return document_->text(); }
+
+Model read_osim(const std::filesystem::path& path) { return OsimFile::load(path).model(); }
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/muscle/path/wrap_result.hpp"
+
+namespace veridyn::muscle {
+
+/// A circular cylinder about z, from -half_length to half_length [m].
+struct WrapCylinder {
+  double radius = 0.0;
+  double half_length = 0.0;
+  WrapQuadrant quadrant;
+};
+
+namespace internal {
+
+/// How a segment passes a cylinder, from the ends' coordinates across its axis.
+struct CylinderPass {
+  bool meets = false;
+  bool long_way = false;  ///< it crosses the quadrant's wall
+  double cross = 0.0;
+};
+
+inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, double py, double qx, double qy) {
+  CylinderPass pass;
+  const double ux = qx - px, uy = qy - py;
+  pass.cross = px * qy - py * qx;
+  if (cylinder.quadrant.sign != 0) {
+    // Does the segment cross the wall { s x[axis] < 0, the other coordinate 0 }?
+    const bool along_x = cylinder.quadrant.axis == 0;
+    const double s = cylinder.quadrant.sign;
+    const double side_p = along_x ? py : px;
+    const double side_q = along_x ? qy : qx;
+    if ((side_p < 0.0) != (side_q < 0.0)) {
+      const double at = along_x ? px - ux * (py / uy) : py - uy * (px / ux);
+      pass.long_way = s * at < 0.0 && cylinder.quadrant.axis != 2;
+    }
+  }
+  const double u2 = ux * ux + uy * uy;
+  const double along = -(px * ux + py * uy);
+  pass.meets = along > 0.0 && along < u2 && pass.cross * pass.cross < cylinder.radius * cylinder.radius * u2;
+  return pass;
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+               WrapResult<Scalar>& result) {
+  using std::atan2;
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  result.clear();
+  const CylinderPass pass = cylinder_pass(cylinder, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
+  const bool long_way = pass.long_way;
+  const double cross = pass.cross;
+  result.meets = pass.meets;
+  if (!long_way && !result.meets) return;
+
+  const Scalar p2 = p.x() * p.x() + p.y() * p.y();
+  const Scalar q2 = q.x() * q.x() + q.y() * q.y();
+  const double gap = (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap);
+  Scalar radius2(cylinder.radius * cylinder.radius);
+  const Scalar& nearer2 = p2 < q2 ? p2 : q2;
+  const bool inside = value_of(nearer2) * gap < value_of(radius2);
+  if (inside) radius2 = nearer2 * Scalar(gap);
+  const Scalar radius = inside ? Scalar(sqrt(radius2)) : Scalar(cylinder.radius);
+  if (inside) {
+    result.depth = 1.0 - value_of(radius) / cylinder.radius;
+    if (result.depth >= kInsideFade) {
+      result.status = WrapStatus::kInside;
+      return;
+    }
+  }
+  const double turn = (cross > 0.0) != long_way ? 1.0 : -1.0;
+  const Scalar d1 = sqrt(p2 - radius2);
+  const Scalar d2 = sqrt(q2 - radius2);
+  const Scalar ip = Scalar(1.0) / p2;
+  const Scalar iq = Scalar(1.0) / q2;
+  const Scalar ap = radius2 * ip, bp = radius * d1 * ip * Scalar(turn);
+  const Scalar aq = radius2 * iq, bq = radius * d2 * iq * Scalar(turn);
+  result.r1 = Vector3(p.x() * ap - p.y() * bp, p.y() * ap + p.x() * bp, Scalar(0.0));
+  result.r2 = Vector3(q.x() * aq + q.y() * bq, q.y() * aq - q.x() * bq, Scalar(0.0));
+  Scalar angle = atan2((result.r1.x() * result.r2.y() - result.r1.y() * result.r2.x()) * Scalar(turn),
+                       result.r1.x() * result.r2.x() + result.r1.y() * result.r2.y());
+  if (long_way && angle < Scalar(0.0)) angle += Scalar(6.283185307179586);
+  const Scalar arc = radius * angle;
+  const Scalar planar = d1 + arc + d2;
+  const Scalar dz = q.z() - p.z();
+  result.length = sqrt(planar * planar + dz * dz);
+  const Scalar per_length = Scalar(1.0) / result.length;
+  const Scalar slope = dz / planar;
+  result.r1.z() = p.z() + slope * d1;
+  result.r2.z() = q.z() - slope * d2;
+  const double overrun =
+      std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) - cylinder.half_length;
+  if (overrun >= kEndFade * cylinder.radius) return;
+  result.status = WrapStatus::kWrapped;
+  const Scalar flat = planar * per_length;
+  const Scalar steep = dz * per_length;
+  result.surface_length = arc / flat;
+  const Scalar s1 = flat / d1, s2 = flat / d2;
+  result.direction1 = Vector3((result.r1.x() - p.x()) * s1, (result.r1.y() - p.y()) * s1, steep);
+  result.direction2 = Vector3((q.x() - result.r2.x()) * s2, (q.y() - result.r2.y()) * s2, steep);
+  result.gradient_p = -result.direction1;
+  result.gradient_q = result.direction2;
+  const Scalar zero(0.0);
+  Vector3 end_slope(zero, zero, zero);  // d radius / d end that lies inside
+  if (inside) {
+    const bool end_is_p = p2 < q2;
+    const Vector3& end = end_is_p ? p : q;
+    end_slope = Vector3(end.x(), end.y(), zero) * (Scalar(gap) / radius);
+    // dL/dradius = angle planar/L.
+    (end_is_p ? result.gradient_p : result.gradient_q) += end_slope * (angle * flat);
+    const Scalar distance = sqrt(nearer2);
+    fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
+                        Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
+  }
+  if (overrun > kEndStart * cylinder.radius) {
+    // Slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut string's
+    // length changes by minus its direction at P, by its direction at Q.
+    const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
+    const Scalar& height = first ? result.r1.z() : result.r2.z();
+    const Vector3 in(result.direction1.x() / flat, result.direction1.y() / flat, zero);
+    const Vector3 out(result.direction2.x() / flat, result.direction2.y() / flat, zero);
+    const Scalar d = first ? d1 : d2;
+    const Scalar part = d / planar;
+    const Vector3 own = (first ? Vector3(p.x(), p.y(), zero) : Vector3(q.x(), q.y(), zero)) / d;
+    // d part = (d d - part d planar) / planar
+    Vector3 part_p = in * part, part_q = out * (-part);
+    (first ? part_p : part_q) += own;
+    if (inside) (p2 < q2 ? part_p : part_q) -= end_slope * (radius / d + part * angle);
+    const Scalar sign = first ? slope : Scalar(-slope);
+    Vector3 height_p = part_p * sign, height_q = part_q * sign;
+    height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
+    height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
+    const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
+    if (!inside) begin_weight(result);
+    const double band = (kEndFade - kEndStart) * cylinder.radius;
+    const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
+    const Scalar change = fade_slope(x) * Scalar(up / band);
+    times<Scalar>(result, fade(x), height_p * change, height_q * change);
+  }
+}
+
+}  // namespace internal
+
+/// Shortest path over the cylinder: unrolled, straight part, helix and straight part are one straight line of length
+/// sqrt(l^2 + dz^2), l the planar length of two tangents and an arc. Closed form, one arctangent.
+///
+/// Without a quadrant the path goes round the shorter way, where the segment meets the cylinder. A quadrant is read as
+/// a wall from the axis to infinity on the inactive side: the path never crosses it, so it may go round the longer way
+/// even where the segment does not meet the cylinder. That is OpenSim's choice except where both ends lie on the
+/// inactive side and the segment misses the cylinder, which OpenSim wraps and a string would not. There is no wrap
+/// where both tangent points lie beyond the cylinder's ends (plus the fade, `wrap_result.hpp`).
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(cylinder, p, q, result);
+  return result;
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,456 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "veridyn/muscle/path/geodesic_spheroid.hpp"
+#include "veridyn/muscle/path/wrap_result.hpp"
+
+/// Wrapping over an ellipsoid along its geodesic.
+///
+/// A geodesic x(s) of x'Ax = 1, A = diag(1/a_i^2), has x'' = -(t'At / |Ax|^2) Ax, and Joachimsthal's invariant
+/// C = (t'At) |Ax|^2 makes that x'' = -C |Ax|^-4 Ax: no velocity on the right, so Nystroem's formulas apply. The
+/// deviation J of neighbouring geodesics obeys J'' = -K J with K = |Ax|^-4 / (a b c)^2: the same factor, a fourth
+/// component of the same system. J = |P r1|, J' = 1 where the path reaches the surface (the cone of tangents from P is
+/// rolled onto it), and J + |r2 Q| J' is how far the end at Q moves per radian of the start: the slope of Newton's
+/// method for the one unknown, the direction in which the path leaves P. J stays positive on a shortest path.
+namespace veridyn::muscle::internal {
+
+/// One shot: the geodesic that starts where angle `alpha` on the circle of tangent points from P says, as far as the
+/// parameter `s`: its length, on a spheroid the arc of its auxiliary sphere.
+template <typename Scalar>
+struct GeodesicShot {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  Vector3 r1, r2, t1, t2;
+  Scalar length1;
+  Scalar surface;  ///< length from r1 to r2
+  Scalar speed;    ///< d surface / ds
+  Scalar jacobi, jacobi_slope;
+  Vector3 r1_slope;    ///< dr1 / dalpha
+  Scalar angle_slope;  ///< d(angle at P) / dalpha
+  Scalar visibility;   ///< Q'A r2 - 1: zero where Q lies in the tangent plane of r2
+  Vector3 sideways;    ///< unit, in the tangent plane of r2, across the geodesic
+  Vector3 normal2;     ///< A r2
+};
+
+/// Frame of the circle of tangent points from P, in coordinates x / a where the ellipsoid is the unit sphere.
+template <typename Scalar>
+struct TangentCircle {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  Vector3 center, e1, e2;  ///< e1, e2 of the circle's radius
+};
+
+template <typename Scalar>
+TangentCircle<Scalar> tangent_circle(const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& toward) {
+  using std::sqrt;
+  TangentCircle<Scalar> circle;
+  const Scalar p2 = p.squaredNorm();
+  circle.center = p / p2;
+  const Scalar radius = sqrt(Scalar(1.0) - Scalar(1.0) / p2);
+  const Eigen::Matrix<Scalar, 3, 1> across = toward - p * (p.dot(toward) / p2);
+  circle.e1 = across * (radius / sqrt(across.squaredNorm()));
+  circle.e2 = p.cross(circle.e1) / sqrt(p2);
+  return circle;
+}
+
+/// Nystroem's method of order five with four evaluations (Hairer, Norsett, Wanner, Solving ODEs I, table II.14.2) for
+/// the geodesic and its Jacobi field.
+template <typename Scalar>
+void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::Matrix<Scalar, 3, 1>& inverse_square,
+                        const Scalar& s, int steps, Eigen::Matrix<Scalar, 4, 1>& y, Eigen::Matrix<Scalar, 4, 1>& v) {
+  // With V = h v and K = h^2 f no step size is left in the formulas. Four scalars, not a matrix: nothing is shuffled.
+  const Scalar h = s / Scalar(static_cast<double>(steps));
+  const Scalar hh = -h * h;
+  const Scalar l0 = lambda[0] * hh, l1 = lambda[1] * hh, l2 = lambda[2] * hh, l3 = lambda[3] * hh;
+  const Scalar i0 = inverse_square[0], i1 = inverse_square[1], i2 = inverse_square[2];
+  const auto f = [&](const Scalar* at, Scalar* k) {
+    const Scalar n0 = at[0] * i0, n1 = at[1] * i1, n2 = at[2] * i2;
+    const Scalar n = n0 * n0 + n1 * n1 + n2 * n2;
+    const Scalar w = Scalar(1.0) / (n * n);
+    k[0] = l0 * at[0] * w;
+    k[1] = l1 * at[1] * w;
+    k[2] = l2 * at[2] * w;
+    k[3] = l3 * at[3] * w;
+  };
+  Scalar x[4], u[4], at[4], k1[4], k2[4], k3[4], k4[4];
+  for (int c = 0; c < 4; ++c) {
+    x[c] = y[c];
+    u[c] = v[c] * h;
+  }
+  for (int i = 0; i < steps; ++i) {
+    f(x, k1);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * 0.2 + k1[c] * (1.0 / 50.0));
+    f(at, k2);
+    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * (2.0 / 3.0) - k1[c] * (1.0 / 27.0)) + k2[c] * (7.0 / 27.0);
+    f(at, k3);
+    for (int c = 0; c < 4; ++c)
+      at[c] = x[c] + (u[c] + k1[c] * (21.0 / 70.0) - k2[c] * (4.0 / 70.0)) + k3[c] * (18.0 / 70.0);
+    f(at, k4);
+    for (int c = 0; c < 4; ++c) {
+      x[c] += u[c] + (k1[c] * (14.0 / 336.0) + k2[c] * (100.0 / 336.0) + k3[c] * (54.0 / 336.0));
+      u[c] += k1[c] * (14.0 / 336.0) + k2[c] * (125.0 / 336.0) + k3[c] * (162.0 / 336.0) + k4[c] * (35.0 / 336.0);
+    }
+  }
+  const Scalar per_h = Scalar(1.0) / h;
+  for (int c = 0; c < 4; ++c) {
+    y[c] = x[c];
+    v[c] = u[c] * per_h;
+  }
+}
+
+template <typename Scalar>
+GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                           const Eigen::Matrix<Scalar, 3, 1>& q, const TangentCircle<Scalar>& circle,
+                           const Scalar& cos_alpha, const Scalar& sin_alpha, const Scalar& s, int steps) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  GeodesicShot<Scalar> shot;
+  const Vector3 as = a.cast<Scalar>();
+  const Vector3 inverse_square = a.cwiseProduct(a).cwiseInverse().cast<Scalar>();
+  shot.r1 = (circle.center + circle.e1 * cos_alpha + circle.e2 * sin_alpha).cwiseProduct(as);
+  shot.r1_slope = (circle.e2 * cos_alpha - circle.e1 * sin_alpha).cwiseProduct(as);
+  const Vector3 to_r1 = shot.r1 - p;
+  shot.length1 = sqrt(to_r1.squaredNorm());
+  shot.t1 = to_r1 / shot.length1;
+  const Vector3 n1 = shot.r1.cwiseProduct(inverse_square);
+  const Scalar n1_square = n1.squaredNorm();
+  const Vector3 b1 = n1.cross(shot.t1) / sqrt(n1_square);
+  shot.angle_slope = shot.r1_slope.dot(b1) / shot.length1;
+  if (spheroid.axis >= 0) {
+    const SpheroidArrival<Scalar> end = spheroid_geodesic<Scalar>(spheroid, a, shot.r1, shot.t1, shot.length1, s);
+    shot.r2 = end.position;
+    shot.t2 = end.direction;
+    shot.jacobi = end.jacobi;
+    shot.jacobi_slope = end.jacobi_slope;
+    shot.surface = end.length;
+    shot.speed = end.speed;
+  } else {
+    const Scalar invariant = n1_square * shot.t1.dot(shot.t1.cwiseProduct(inverse_square));
+    const double abc = a.x() * a.y() * a.z();
+    Eigen::Matrix<Scalar, 4, 1> lambda;
+    lambda << invariant * inverse_square.x(), invariant * inverse_square.y(), invariant * inverse_square.z(),
+        Scalar(1.0 / (abc * abc));
+    Eigen::Matrix<Scalar, 4, 1> y, v;
+    y << shot.r1.x(), shot.r1.y(), shot.r1.z(), shot.length1;
+    v << shot.t1.x(), shot.t1.y(), shot.t1.z(), Scalar(1.0);
+    integrate_geodesic<Scalar>(lambda, inverse_square, s, steps, y, v);
+    shot.r2 = y.template head<3>();
+    shot.t2 = v.template head<3>();
+    shot.jacobi = y[3];
+    shot.jacobi_slope = v[3];
+    shot.surface = s;
+    shot.speed = Scalar(1.0);
+  }
+  shot.normal2 = shot.r2.cwiseProduct(inverse_square);
+  shot.visibility = shot.normal2.dot(q) - Scalar(1.0);
+  shot.sideways = shot.normal2.cross(shot.t2) / sqrt(shot.normal2.squaredNorm());
+  return shot;
+}
+
+}  // namespace veridyn::muscle::internal
+
+namespace veridyn::muscle {
+
+/// An ellipsoid x^2/a^2 + y^2/b^2 + z^2/c^2 = 1 about the origin.
+struct WrapEllipsoid {
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();
+  WrapQuadrant quadrant;
+  /// +1, -1: of several shortest geodesics the one on this side of the quadrant's plane if there is one; 0: the
+  /// shortest of all.
+  int side = 0;
+};
+
+namespace internal {
+
+/// Shape of a solution in double: what a last step in any scalar starts from.
+struct GeodesicSolution {
+  bool converged = false;
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();  ///< in x / a: direction of alpha = 0
+  double alpha = 0.0;
+  double s = 0.0;
+  double length = 0.0;
+  double jacobi = 0.0;  ///< at Q: positive on a shortest path
+  int steps = 4;
+  int iterations = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+};
+
+/// Solutions of one object for ends that stand still soon: the next one starts from the last.
+struct GeodesicMemory {
+  GeodesicSolution nearby;
+  bool no_other = false;  ///< there is none on the quadrant's other side
+
+  void clear() {
+    nearby.converged = false;
+    no_other = false;
+  }
+};
+
+/// Correction of (angle at P, s) that a shot asks for, and |r2 Q|.
+template <typename Scalar>
+struct ShotCorrection {
+  Scalar angle, s, length2, jacobi;
+  bool reached = true;  ///< false: Q is never in the tangent plane; `s` leads to where it is nearest to that
+};
+
+template <typename Scalar>
+ShotCorrection<Scalar> correction(const GeodesicShot<Scalar>& shot, const Eigen::Vector3d& inverse_square,
+                                  const Eigen::Matrix<Scalar, 3, 1>& q) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  ShotCorrection<Scalar> c;
+  const Vector3 to_q = q - shot.r2;
+  const Scalar miss = to_q.dot(shot.sideways);
+  c.length2 = to_q.dot(shot.t2);
+  c.jacobi = shot.jacobi + c.length2 * shot.jacobi_slope;
+  c.angle = miss / c.jacobi;
+  // Along the geodesic, Q'A r2 - 1 vanishes to second order in s where Q is near the surface: solve the quadratic.
+  const Vector3 inverse = inverse_square.cast<Scalar>();
+  const Vector3 aq = q.cwiseProduct(inverse);
+  const Scalar value = shot.visibility + shot.jacobi * c.angle * shot.sideways.dot(aq);
+  const Scalar slope = shot.t2.dot(aq);
+  const Scalar bend = -shot.t2.dot(shot.t2.cwiseProduct(inverse)) / shot.normal2.squaredNorm() * shot.normal2.dot(aq);
+  const Scalar discriminant = slope * slope - Scalar(2.0) * bend * value;
+  if (value_of(bend) >= 0.0) {
+    c.s = -value / slope;
+  } else if (value_of(discriminant) > 0.0) {
+    c.s = (sqrt(discriminant) - slope) / bend;
+  } else {
+    c.s = -slope / bend;
+    c.reached = false;
+  }
+  return c;
+}
+
+/// What a warm start of the next, similar solution needs, and the last shot of this one.
+struct SolvedGeodesic : GeodesicSolution {
+  GeodesicShot<double> shot;
+  ShotCorrection<double> last;
+};
+
+inline constexpr double kFineStep = 0.15;  ///< of the integration [smallest radius]
+inline constexpr double kCoarseStep = 0.35;
+
+/// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
+/// correction is left to the caller; what remains after it is its square.
+inline void newton(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                   const Eigen::Vector3d& q, const TangentCircle<double>& circle, double tolerance,
+                   SolvedGeodesic& solution) {
+  const double size = a.maxCoeff();
+  const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
+  const double radius = a.minCoeff();
+  double alpha = solution.alpha;
+  double s = solution.s;
+  // Quadrature has no coarse steps that would be cheaper.
+  bool is_fine = solution.converged || spheroid.axis >= 0;
+  solution.converged = false;
+  for (int i = 0; i < 30; ++i) {
+    solution.steps = std::clamp(1 + static_cast<int>(s / (radius * (is_fine ? kFineStep : kCoarseStep))), 1, 100);
+    solution.shot = shoot<double>(a, spheroid, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
+    solution.last = correction<double>(solution.shot, inverse_square, q);
+    const ShotCorrection<double>& c = solution.last;
+    solution.iterations = i + 1;
+    if (!std::isfinite(c.angle) || !std::isfinite(c.s)) return;
+    // Where J < 0 the length has a maximum: the other direction leads to a shortest path.
+    const double towards_less = c.jacobi > 0.0 ? c.angle : -c.angle;
+    const double d_alpha = std::clamp(towards_less / solution.shot.angle_slope, -0.5, 0.5);
+    const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
+    solution.alpha = alpha;
+    solution.s = s;
+    solution.length = solution.shot.length1 + solution.shot.surface + c.length2;
+    solution.jacobi = c.jacobi;
+    const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
+    // The last correction leaves about step^2 size of the tangent points, of the directions that over the straight
+    // part.
+    const double straight = std::min(solution.shot.length1, c.length2) / size;
+    if (is_fine && step < 0.5 * tolerance && step * step < tolerance * tolerance * straight && c.reached) {
+      solution.middle = solution.shot.r1 + solution.shot.r2;
+      solution.converged = c.jacobi > 0.0;
+      return;
+    }
+    if (step < 5e-3) is_fine = true;
+    alpha += d_alpha;
+    s = std::max(1e-12 * size, s + d_s / solution.shot.speed);
+  }
+}
+
+/// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                                     const Eigen::Vector3d& q, const Eigen::Vector3d& toward, double tolerance) {
+  SolvedGeodesic solution;
+  const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
+  const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
+  const TangentCircle<double> far_circle = tangent_circle<double>(qs, toward);
+  const Eigen::Vector3d y1 = circle.center + circle.e1;
+  const Eigen::Vector3d y2 = far_circle.center + far_circle.e1;
+  Eigen::Vector3d y_slope = y1 - ps;
+  y_slope = (y_slope - y1 * y_slope.dot(y1)).normalized();
+  const double arc = std::max(0.0, std::atan2(y2.dot(y_slope), y2.dot(y1)));
+  if (spheroid.axis >= 0) {
+    solution.s = arc;
+  } else {
+    // Length of the ellipse between them by Simpson's rule.
+    const double half_sine = std::sin(0.5 * arc), half_cosine = std::cos(0.5 * arc);
+    const Eigen::Vector3d mid = (y_slope * half_cosine - y1 * half_sine).cwiseProduct(a);
+    const double sine = 2.0 * half_sine * half_cosine, cosine = 1.0 - 2.0 * half_sine * half_sine;
+    const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
+    solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
+  }
+  solution.toward = toward;
+  newton(a, spheroid, p, q, circle, tolerance, solution);
+  return solution;
+}
+
+/// From a converged solution for nearby ends, on the same side.
+inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                                     const Eigen::Vector3d& q, const GeodesicSolution& nearby, double tolerance) {
+  SolvedGeodesic solution;
+  static_cast<GeodesicSolution&>(solution) = nearby;
+  const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
+  newton(a, spheroid, p, q, circle, tolerance, solution);
+  return solution;
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+               const Eigen::Matrix<Scalar, 3, 1>& q, GeodesicMemory* memory, WrapResult<Scalar>& result) {
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  result.clear();
+  const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
+  Eigen::Vector3d ps = pv.cwiseQuotient(ellipsoid.radii), qs = qv.cwiseQuotient(ellipsoid.radii);
+  const Eigen::Vector3d u = qs - ps;
+  const double u2 = u.squaredNorm();
+  const double along = -ps.dot(u);
+  if (!(along > 0.0 && along < u2)) return;
+  Eigen::Vector3d near = ps + u * (along / u2);
+  double near2 = near.squaredNorm();
+  if (!(near2 < 1.0)) return;
+
+  // An end inside shrinks the ellipsoid until it lies just outside.
+  const double nearest2 = std::min(ps.squaredNorm(), qs.squaredNorm());
+  const bool inside = nearest2 * (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap) < 1.0;
+  const bool p_inside = ps.squaredNorm() <= qs.squaredNorm();
+  double scale = 1.0;
+  if (inside) {
+    scale = std::sqrt(nearest2) * (1.0 - kSurfaceGap);
+    result.depth = 1.0 - scale;
+    if (result.depth >= kInsideFade) {
+      result.status = WrapStatus::kInside;
+      return;
+    }
+    if (!(near2 < scale * scale)) return;
+  }
+  const Eigen::Vector3d a = ellipsoid.radii * scale;
+  const Spheroid spheroid = internal::spheroid(a);
+  if (near2 < 1e-24) {
+    near = Eigen::Vector3d::Unit(ellipsoid.quadrant.sign != 0 ? ellipsoid.quadrant.axis : 0);
+    if (ellipsoid.quadrant.sign < 0) near = -near;
+    if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
+  }
+  // Derivatives are taken at the last shot: it has to be closer to the solution for them.
+  constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-3 : 1e-7;
+  SolvedGeodesic solution;
+  const bool warm = memory != nullptr && memory->nearby.converged;
+  if (warm) solution = solve_geodesic(a, spheroid, pv, qv, memory->nearby, tolerance);
+  if (!solution.converged) solution = solve_geodesic(a, spheroid, pv, qv, near, tolerance);
+  // Where the segment passes near the centre either side may be the shorter.
+  const auto inactive = [&](const Eigen::Vector3d& x) {
+    const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
+    return x[ellipsoid.quadrant.axis] * sign < 0.0;
+  };
+  // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
+  if (!solution.converged ||
+      (!warm && (near2 < 0.01 || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0))) {
+    const auto good = [&](const SolvedGeodesic& s) {
+      return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
+    };
+    const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
+    bool have = good(solution);
+    for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
+                                          Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
+      const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, toward, tolerance);
+      if (!good(other) && !(other.converged && !solution.converged)) continue;
+      if (have && !(other.length < solution.length)) continue;
+      solution = other;
+      have = good(other);
+    }
+  }
+  if (!solution.converged) {
+    result.status = WrapStatus::kFailed;
+    return;
+  }
+  const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
+  const auto last_step = [&](const SolvedGeodesic& from) {
+    if constexpr (std::is_same_v<Scalar, double>) {
+      const GeodesicShot<double>& shot = from.shot;
+      const double d_alpha = from.last.angle / shot.angle_slope;
+      result.r1 = shot.r1 + shot.r1_slope * d_alpha;
+      result.r2 = shot.r2 + shot.sideways * (shot.jacobi * from.last.angle) + shot.t2 * from.last.s;
+      result.surface_length = shot.surface + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+      return;
+    }
+    const TangentCircle<Scalar> circle = tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
+    const GeodesicShot<Scalar> shot = shoot<Scalar>(a, spheroid, p, q, circle, Scalar(std::cos(from.alpha)),
+                                                    Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
+    const auto c = correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
+    const Scalar d_alpha = c.angle / shot.angle_slope;
+    result.r1 = shot.r1 + shot.r1_slope * d_alpha;
+    result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
+    result.surface_length = shot.surface + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
+  };
+  last_step(solution);
+  if (memory != nullptr) memory->nearby = solution;
+  result.spread = solution.jacobi / solution.length;
+  if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
+      inactive(values_of(result.r2)) && inactive(solution.middle) && !(warm && memory->no_other)) {
+    const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
+    const bool found = other.converged && !inactive(other.middle);
+    if (found) last_step(other);
+    if (memory != nullptr) memory->no_other = !found;
+  }
+  const Vector3 in = result.r1 - p;
+  const Vector3 out = q - result.r2;
+  const Scalar length1 = sqrt(in.squaredNorm());
+  const Scalar length2 = sqrt(out.squaredNorm());
+  result.status = WrapStatus::kWrapped;
+  result.direction1 = in / length1;
+  result.direction2 = out / length2;
+  result.length = length1 + result.surface_length + length2;
+  result.gradient_p = -result.direction1;
+  result.gradient_q = result.direction2;
+  if (inside) {
+    // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
+    const Scalar growth =
+        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - kSurfaceGap) / scale);
+    const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
+    const Vector3& end = p_inside ? p : q;
+    const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
+    (p_inside ? result.gradient_p : result.gradient_q) += slope;
+    const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
+    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
+  }
+}
+
+}  // namespace internal
+
+/// Geodesic wrap. Wraps where the segment meets the ellipsoid, along the shortest geodesic; with a quadrant, along the
+/// one on the other side where that is a shortest path too and this one lies on the inactive side as a whole.
+///
+/// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
+/// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface. Lengths over a
+/// spheroid (quadrature, `geodesic_spheroid.hpp`) to about 3e-9 m at anatomical sizes, over three unequal radii
+/// (integration in steps) to 1e-8 m. `memory`: the solution is left there, and one that is
+/// there already starts the search.
+template <typename Scalar>
+[[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                                      const Eigen::Matrix<Scalar, 3, 1>& q,
+                                      internal::GeodesicMemory* memory = nullptr) {
+  WrapResult<Scalar> result;
+  internal::wrap_onto(ellipsoid, p, q, memory, result);
+  return result;
+}
+
+}  // namespace veridyn::muscle

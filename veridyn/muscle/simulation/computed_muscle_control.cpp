@@ -1,0 +1,329 @@
+#include "veridyn/muscle/simulation/computed_muscle_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/muscle/simulation/muscle_window.hpp"
+#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/numerics/separable_qp.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+/// The wished motion of the free coordinates.
+class Wish {
+ public:
+  Wish(const MusculoskeletalSystem& system, const Motion& motion) : free_(system.reduction().free()) {
+    for (const int c : free_) {
+      const auto& spline = motion.coordinate[static_cast<std::size_t>(c)];
+      if (!spline) {
+        throw InputError(system.model().name,
+                         fmt::format("coordinate '{}' is free but not in the motion to follow; lock it or give it",
+                                     system.model().coordinates[static_cast<std::size_t>(c)].name));
+      }
+      splines_.push_back(&*spline);
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return splines_.size(); }
+  [[nodiscard]] numerics::SplineValue at(std::size_t free, double time) const { return splines_[free]->evaluate(time); }
+
+ private:
+  std::span<const int> free_;
+  std::vector<const numerics::InterpolatingSpline*> splines_;
+};
+
+class Controller {
+ public:
+  Controller(const MusculoskeletalSystem& system, const Motion& motion, const ControlOptions& options)
+      : system_(system),
+        wish_(system, motion),
+        options_(options),
+        evaluator_(system),
+        ahead_(system),
+        window_(system),
+        stepper_(system.layout().size),
+        qp_(static_cast<Eigen::Index>(wish_.size()), static_cast<Eigen::Index>(system.muscles().size() + wish_.size())),
+        muscles_(system.muscles().size()),
+        low_(muscles_, options.min_control),
+        high_(muscles_, options.max_control),
+        excitation_(muscles_),
+        force_low_(muscles_),
+        force_high_(muscles_),
+        force_(muscles_),
+        optimal_(muscles_),
+        activation_(muscles_),
+        fiber_(muscles_),
+        demand_(wish_.size()),
+        planned_speed_(wish_.size()),
+        z_(wish_.size()),
+        zdot_(wish_.size()),
+        zddot_(wish_.size()),
+        moment_(system.coordinates()),
+        qddot_(system.coordinates()),
+        reserve_(system.coordinates()) {
+    for (auto& node : nodes_) node.resize(muscles_);
+    // Reserves that are not wanted are so dear that they only say what is missing.
+    constexpr double kDear = 1e-3;
+    reserve_optimal_ = options.reserve_force > 0.0 ? options.reserve_force : kDear;
+    for (std::size_t m = 0; m < muscles_; ++m) {
+      low_[m] = std::max(options.min_control, system.muscles().settings(m).min_control);
+      high_[m] = std::min(options.max_control, system.muscles().settings(m).max_control);
+    }
+  }
+
+  ControlResult run(const StartState& pose, Progress& progress);
+
+ private:
+  /// Moments that the accelerations zddot_ need at the state (z_, zdot_), less those of limits; moment arms.
+  void require() {
+    ahead_.set_motion(z_.data(), zdot_.data());
+    const ExpandedState<double>& s = ahead_.dynamics().state();
+    const CoordinateReduction& reduction = system_.reduction();
+    for (std::size_t c = 0; c < qddot_.size(); ++c) {
+      const int root = reduction.free_root(static_cast<int>(c));
+      qddot_[c] = s.bias(static_cast<Eigen::Index>(c)) +
+                  (root >= 0 ? s.slope(static_cast<Eigen::Index>(c)) * zddot_[static_cast<std::size_t>(root)] : 0.0);
+    }
+    ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
+    std::fill(reserve_.begin(), reserve_.end(), 0.0);
+    add_limit_forces<double>(system_.model().limit_forces, ahead_.q(), ahead_.qdot(), reserve_.data());
+    qp_.b.setZero();
+    qp_.A.setZero();
+    for (std::size_t c = 0; c < moment_.size(); ++c) {
+      const int root = reduction.free_root(static_cast<int>(c));
+      if (root >= 0) qp_.b(root) += s.slope(static_cast<Eigen::Index>(c)) * (moment_[c] - reserve_[c]);
+    }
+    const auto pairs = system_.pairs();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const int root = reduction.free_root(pairs[i].coordinate);
+      if (root >= 0) qp_.A(root, pairs[i].muscle) -= s.slope(pairs[i].coordinate) * ahead_.path_gradient()[i];
+    }
+  }
+
+  /// min sum (F/F_opt)^2 + sum (reserve/optimal)^2 with the forces between force_low_ and force_high_. Reserves act on
+  /// the free coordinates. Writes force_ and reserve_.
+  void share() {
+    for (std::size_t m = 0; m < muscles_; ++m) {
+      const auto i = static_cast<Eigen::Index>(m);
+      const RigidTendonForces rigid =
+          system_.muscles().rigid_forces(m, 1.0, ahead_.path_length()[m], ahead_.path_speed()[m]);
+      const double least = 0.01 * system_.muscles().max_isometric_force(m);
+      optimal_[m] = std::max(rigid.active, least);
+      qp_.weight(i) = 2.0 / (optimal_[m] * optimal_[m]);
+      qp_.low(i) = std::min(force_low_[m], force_high_[m]);
+      qp_.high(i) = std::max(force_low_[m], force_high_[m]);
+    }
+    for (std::size_t f = 0; f < wish_.size(); ++f) {
+      const auto i = static_cast<Eigen::Index>(muscles_ + f);
+      qp_.weight(i) = 2.0 / (reserve_optimal_ * reserve_optimal_);
+      qp_.A(static_cast<Eigen::Index>(f), i) = 1.0;
+    }
+    static_cast<void>(qp_.solve());
+    for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(static_cast<Eigen::Index>(m));
+    std::fill(reserve_.begin(), reserve_.end(), 0.0);
+    for (std::size_t f = 0; f < wish_.size(); ++f) {
+      reserve_[static_cast<std::size_t>(system_.reduction().free()[f])] =
+          qp_.x()(static_cast<Eigen::Index>(muscles_ + f));
+    }
+  }
+
+  void start_muscles(double* x);
+  [[nodiscard]] bool plan(double t, double end, const double* x);
+
+  const MusculoskeletalSystem& system_;
+  Wish wish_;
+  const ControlOptions& options_;
+  SystemEvaluator<double> evaluator_, ahead_;
+  MuscleWindow window_;
+  numerics::DormandPrince<double> stepper_;
+  numerics::SeparableQp qp_;
+  std::size_t muscles_;
+  double reserve_optimal_ = 1.0;
+  std::vector<double> low_, high_, excitation_, force_low_, force_high_, force_, optimal_, activation_, fiber_;
+  std::vector<double> demand_, planned_speed_;  ///< accelerations of the last window's end, speeds it should have left
+  std::vector<double> z_, zdot_, zddot_, moment_, qddot_, reserve_;
+  std::array<std::vector<double>, MuscleWindow::kNodes> nodes_;
+};
+
+/// Muscles in equilibrium at the wished start, at activations that share the wished moments.
+void Controller::start_muscles(double* x) {
+  for (std::size_t f = 0; f < wish_.size(); ++f) {
+    const numerics::SplineValue w = wish_.at(f, options_.begin);
+    z_[f] = w.value;
+    zdot_[f] = w.first;
+    zddot_[f] = w.second;
+    x[f] = w.value;
+    x[wish_.size() + f] = w.first;
+    demand_[f] = w.second;
+    planned_speed_[f] = w.first;
+  }
+  require();
+  const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
+    std::vector<double> fibers(muscles_);
+    system_.muscles().equilibrium(activation, ahead_.path_length(), fibers);
+    system_.muscles().tendon_forces({activation, activation, fibers, ahead_.path_length(), ahead_.path_speed()}, force);
+  };
+  force_at(low_, force_low_);
+  force_at(high_, force_high_);
+  share();
+  // Bisection: done once, so that it may be plain.
+  std::vector<double> a = low_, b = high_, middle(muscles_), reached(muscles_);
+  for (int i = 0; i < 40; ++i) {
+    for (std::size_t m = 0; m < muscles_; ++m) middle[m] = 0.5 * (a[m] + b[m]);
+    force_at(middle, reached);
+    for (std::size_t m = 0; m < muscles_; ++m) (reached[m] < force_[m] ? a[m] : b[m]) = middle[m];
+  }
+  for (std::size_t m = 0; m < muscles_; ++m) middle[m] = force_high_[m] - force_low_[m] < 1.0 ? low_[m] : middle[m];
+  evaluator_.set_motion(x, x + wish_.size());
+  evaluator_.start_muscles(middle.data(), x);
+  excitation_ = middle;
+}
+
+/// Excitations and reserves of the window from t to `end`.
+bool Controller::plan(double t, double end, const double* x) {
+  const std::size_t n = wish_.size();
+  const double* speed = x + n;
+  // Path lengths along the wished motion, shifted by the present error and its rate.
+  for (std::size_t k = 0; k < MuscleWindow::kNodes; ++k) {
+    const double s = static_cast<double>(k) / static_cast<double>(MuscleWindow::kNodes - 1) * (end - t);
+    for (std::size_t f = 0; f < n; ++f) {
+      const numerics::SplineValue now = wish_.at(f, t), then = wish_.at(f, t + s);
+      z_[f] = then.value + (x[f] - now.value) + s * (speed[f] - now.first);
+      zdot_[f] = then.first + (speed[f] - now.first);
+      // What the last window fell short of in speed is made up in this one.
+      const double shortfall = (planned_speed_[f] - speed[f]) / (end - t);
+      zddot_[f] = then.second + options_.kv * (now.first - speed[f]) + options_.kp * (now.value - x[f]) + shortfall;
+    }
+    if (k + 1 < MuscleWindow::kNodes) {
+      ahead_.set_motion(z_.data(), zdot_.data());
+    } else {
+      require();  // the last node: the window's end
+    }
+    std::copy(ahead_.path_length().begin(), ahead_.path_length().end(), nodes_[k].begin());
+  }
+  for (std::size_t f = 0; f < n; ++f) {
+    planned_speed_[f] = speed[f] + 0.5 * (end - t) * (demand_[f] + zddot_[f]);
+    demand_[f] = zddot_[f];
+  }
+  const StateLayout& layout = system_.layout();
+  for (std::size_t m = 0; m < muscles_; ++m) {
+    activation_[m] = layout.activation[m] >= 0 ? x[layout.activation[m]] : excitation_[m];
+    fiber_[m] = layout.fiber_length[m] >= 0 ? x[layout.fiber_length[m]] : 0.0;
+  }
+  window_.set_paths(end - t, nodes_);
+  window_.set_states(activation_, fiber_);
+  if (!window_.end_forces(low_, options_.accuracy, force_low_) ||
+      !window_.end_forces(high_, options_.accuracy, force_high_))
+    return false;
+  share();
+  return window_.find_excitations(low_, high_, force_low_, force_high_, force_, options_.accuracy, excitation_);
+}
+
+ControlResult Controller::run(const StartState& pose, Progress& progress) {
+  ControlResult result;
+  result.start = pose;
+  evaluator_.hold(pose.q.data());
+  ahead_.hold(pose.q.data());
+  const StateLayout& layout = system_.layout();
+  std::vector<double> x(layout.size);
+  start_muscles(x.data());
+  for (std::size_t f = 0; f < wish_.size(); ++f) {
+    const int c = system_.reduction().free()[f];
+    result.start.q(c) = x[f];
+    result.start.qdot(c) = x[wish_.size() + f];
+  }
+  result.start.activation = Eigen::Map<const Eigen::VectorXd>(excitation_.data(), static_cast<Eigen::Index>(muscles_));
+
+  const auto windows = static_cast<std::size_t>(std::ceil((options_.end - options_.begin) / options_.window - 1e-9));
+  std::vector<double> times, excitations, reserves;
+  const numerics::StepControl control{.tolerance = options_.accuracy,
+                                      .smallest_step = 1e-12 * (options_.end - options_.begin)};
+  double t = options_.begin;
+  for (std::size_t w = 0; w < windows; ++w) {
+    const double end = std::min(options_.end, options_.begin + static_cast<double>(w + 1) * options_.window);
+    if (!plan(t, end, x.data())) {
+      result.trajectory.end = SimulationEnd::kStepSize;
+      result.trajectory.trouble = "the muscles alone could not be integrated over a window";
+      break;
+    }
+    if (std::any_of(reserve_.begin(), reserve_.end(),
+                    [&](double r) { return std::abs(r) > std::max(options_.reserve_force, 0.1); })) {
+      result.overloaded.push_back(t);
+    }
+    times.push_back(t);
+    excitations.insert(excitations.end(), excitation_.begin(), excitation_.end());
+    reserves.insert(reserves.end(), reserve_.begin(), reserve_.end());
+    const auto derivative = [&](double, const double* state, double* rate) {
+      return evaluator_.derivative(state, {excitation_, reserve_}, rate);
+    };
+    stepper_.restart(true);
+    if (stepper_.advance(derivative, t, x.data(), end, system_.scales(), control,
+                         [](double, double) { return true; }) != numerics::IntegrationEnd::kReached) {
+      break;
+    }
+    if (!progress.update(static_cast<double>(w + 1) / static_cast<double>(windows))) {
+      result.trajectory.end = SimulationEnd::kInterrupted;
+      result.trajectory.end_time = t;
+      return result;
+    }
+  }
+  result.drive.excitation = ControlSignals(times, std::move(excitations), muscles_, Interpolation::kHold);
+  result.drive.reserve =
+      ControlSignals(std::move(times), std::move(reserves), system_.coordinates(), Interpolation::kHold);
+  return result;
+}
+
+void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
+  const auto require = [&](bool holds, const char* what) {
+    if (!holds) throw InputError(system.model().name, fmt::format("computed muscle control: {}", what));
+  };
+  require(o.end > o.begin, "the end must come after the beginning");
+  require(o.window > 0.0 && o.window <= o.end - o.begin, "the window must be > 0 and within the motion");
+  require(o.kp >= 0.0 && o.kv >= 0.0, "gains must not be negative");
+  require(o.min_control >= 0.0 && o.min_control < o.max_control && o.max_control <= 1.0,
+          "0 <= min_control < max_control <= 1 is wanted");
+  require(o.reserve_force >= 0.0, "the reserve's optimal force must not be negative");
+  require(system.muscles().size() > 0, "the model has no muscles");
+}
+
+}  // namespace
+
+double ControlResult::tracking_error(int coordinate) const {
+  return (trajectory.q.col(coordinate) - wished.col(coordinate)).cwiseAbs().maxCoeff();
+}
+
+ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const Motion& motion,
+                                      const ControlOptions& options, Progress& progress) {
+  check(system, options);
+  StartState pose = default_start(system.model());
+  for (const int c : system.reduction().driven()) {
+    const auto& spline = motion.coordinate[static_cast<std::size_t>(c)];
+    if (spline) pose.q(c) = spline->evaluate(options.begin).value;
+  }
+  ControlResult result = Controller(system, motion, options).run(pose, progress);
+  if (result.trajectory.end == SimulationEnd::kInterrupted) return result;
+  // The result is the replay of what was found: what a forward simulation of the same drive gives.
+  Progress quiet;
+  const ForwardOptions forward{
+      .begin = options.begin, .end = options.end, .rate_Hz = options.rate_Hz, .accuracy = options.accuracy};
+  const SimulationEnd end = result.trajectory.end;
+  const std::string trouble = result.trajectory.trouble;
+  result.trajectory = simulate_forward(system, result.start, result.drive, forward, quiet);
+  if (end != SimulationEnd::kCompleted) {
+    result.trajectory.end = end;
+    result.trajectory.trouble = trouble;
+  }
+  result.wished = result.trajectory.q;
+  for (const int c : system.reduction().free()) {
+    for (std::size_t i = 0; i < result.trajectory.time.size(); ++i) {
+      result.wished(static_cast<Eigen::Index>(i), c) =
+          motion.coordinate[static_cast<std::size_t>(c)]->evaluate(result.trajectory.time[i]).value;
+    }
+  }
+  return result;
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/regression/regression_data.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+#include "veridyn/muscle/model/signals.hpp"
+
+namespace veridyn::muscle {
+
+/// Where a simulation starts.
+struct StartState {
+  Eigen::VectorXd q;           ///< all coordinates [rad or m]
+  Eigen::VectorXd qdot;        ///< all coordinates [1/s]
+  Eigen::VectorXd activation;  ///< by muscle; empty: the excitation at the start
+  /// By muscle [m]; empty: each in equilibrium with its tendon.
+  Eigen::VectorXd fiber_length;
+};
+
+/// The model's default pose and speeds.
+[[nodiscard]] StartState default_start(const Model& model);
+
+struct ForwardOptions {
+  double begin = 0.0;
+  double end = 1.0;
+  double rate_Hz = 200.0;  ///< of the rows of the result; 0: a row at each step of the integrator
+  /// Largest error of a step in units of `MusculoskeletalSystem::scales`; OpenSim's tools take 1e-5 for their own norm.
+  double accuracy = 1e-5;
+  long max_steps = 1000000;
+};
+
+enum class SimulationEnd {
+  kCompleted,
+  kDiverged,     ///< a state became infinite, or a coordinate went beyond 1e4 rad or m
+  kStepSize,     ///< no step is small enough: a muscle or a joint at a limit of its model
+  kStepLimit,    ///< `max_steps` used up
+  kInterrupted,  ///< the caller asked to stop
+};
+
+/// A muscle that reached a limit of its model, or left it.
+struct MuscleEvent {
+  double time = 0.0;
+  int muscle = 0;
+  enum class Kind { kTendonSlack, kTendonTaut, kFiberShortest, kFiberFree } kind = Kind::kTendonSlack;
+};
+[[nodiscard]] std::string event_text(MuscleEvent::Kind kind);
+
+/// A motion with its muscles, a row a sample. Matrices are samples x coordinates or samples x muscles.
+struct MuscleTrajectory {
+  std::vector<double> time;  ///< [s]
+  estimation::RowMatrix q, qdot;
+  estimation::RowMatrix excitation, activation;
+  estimation::RowMatrix fiber_length;  ///< [m]; of a rigid tendon what the path leaves
+  estimation::RowMatrix tendon_force;  ///< [N]
+  estimation::RowMatrix path_length;   ///< [m]
+  estimation::RowMatrix reserve;       ///< extra generalised forces, samples x coordinates [N m or N]
+  std::vector<MuscleEvent> events;
+  SimulationEnd end = SimulationEnd::kCompleted;
+  double end_time = 0.0;
+  long steps = 0;
+  long evaluations = 0;
+  std::string trouble;  ///< which state, when it did not complete
+  Eigen::VectorXd final_state;
+
+  [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
+  [[nodiscard]] std::string message() const;
+};
+
+/// What drives a simulation.
+struct Drive {
+  ControlSignals excitation;  ///< by muscle
+  /// Generalised forces by coordinate, such as the reserves of computed muscle control; none when empty.
+  ControlSignals reserve;
+};
+
+/// Integrates the system from `start`, with the error-controlled Dormand-Prince method. Instants at which held signals
+/// jump are ends of steps. Slack tendons and shortest fibres are located on the way as events. Never throws on a
+/// diverging simulation and always ends: the result says how.
+/// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.
+[[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
+                                                const Drive& drive, const ForwardOptions& options, Progress& progress);
+
+}  // namespace veridyn::muscle

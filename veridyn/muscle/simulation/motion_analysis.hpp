@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/regression/regression_data.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+#include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/static_optimization.hpp"
+
+namespace veridyn::muscle {
+
+/// A prescribed motion, frame by frame: matrices are frames x coordinates or frames x muscles.
+struct MotionAnalysis {
+  std::vector<double> time;                       ///< [s]
+  estimation::RowMatrix q, qdot, qddot;           ///< coordinates without a wish rest; coupled ones follow
+  estimation::RowMatrix moment;                   ///< generalised forces that the motion needs [N m or N]
+  estimation::RowMatrix path_length, path_speed;  ///< [m], [m/s]
+  // Of static optimisation; empty otherwise.
+  estimation::RowMatrix activation;
+  estimation::RowMatrix force;          ///< of each muscle, as the formulation counts it [N]
+  estimation::RowMatrix reserve;        ///< generalised force of the reserves [N m or N]
+  std::vector<std::size_t> infeasible;  ///< frames whose moments could not be made
+  bool interrupted = false;
+};
+
+/// Instants from `begin` to `end`, `rate_Hz` apart.
+[[nodiscard]] std::vector<double> frame_times(double begin, double end, double rate_Hz);
+
+/// Inverse dynamics of a motion: M qddot + h as in `inverse_dynamics`, for every coordinate. `rest` gives coordinates
+/// that are not in the motion.
+[[nodiscard]] MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion,
+                                            const Eigen::VectorXd& rest, const std::vector<double>& time);
+
+/// And who makes these moments: static optimisation of every frame over the free coordinates (coupled coordinates hand
+/// their moments to the ones they follow; locked ones need none). Limit forces of the model are taken off first.
+[[nodiscard]] MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion,
+                                             const Eigen::VectorXd& rest, const std::vector<double>& time,
+                                             const StaticOptimizationOptions& options, Progress& progress);
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,119 @@
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+
+#include <fmt/format.h>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+int find_coordinate(const Model& model, const std::string& name) {
+  const int index = model.coordinate(name);
+  if (index >= 0) return index;
+  std::vector<std::string> names;
+  for (const Coordinate& c : model.coordinates) names.push_back(c.name);
+  throw InputError(model.name, fmt::format("there is no coordinate '{}'{}", name, suggestion(name, names)));
+}
+
+/// The model as it moves: coordinates locked and unlocked as asked, muscles that are off left out.
+Model prepare(Model model, const SystemOptions& options, std::vector<std::string>& notes) {
+  for (const std::string& name : options.locked)
+    model.coordinates[static_cast<std::size_t>(find_coordinate(model, name))].locked = true;
+  for (const std::string& name : options.unlocked)
+    model.coordinates[static_cast<std::size_t>(find_coordinate(model, name))].locked = false;
+  std::vector<std::string> left_out;
+  for (const UnsupportedElement& u : model.unsupported) {
+    if (u.changes_motion) left_out.push_back(fmt::format("{} '{}'", u.element, u.name));
+  }
+  if (!left_out.empty() && !options.without_unsupported) {
+    throw InputError(
+        model.name,
+        fmt::format("{} would change the motion and {} not understood; without_unsupported = true goes on without",
+                    fmt::join(left_out, ", "), left_out.size() == 1 ? "is" : "are"));
+  }
+  if (!left_out.empty()) notes.push_back(fmt::format("left out, not understood: {}", fmt::join(left_out, ", ")));
+  for (const Muscle& muscle : model.muscles) {
+    if (!muscle.enabled) notes.push_back(fmt::format("muscle '{}' is switched off in the file", muscle.name()));
+  }
+  std::erase_if(model.muscles, [](const Muscle& muscle) { return !muscle.enabled; });
+  return model;
+}
+
+void check_default_pose(const Model& model, const Mechanism& mechanism, const MusclePaths& paths) {
+  Kinematics<double> kinematics(mechanism);
+  const Eigen::VectorXd q = model.default_pose();
+  update_positions(mechanism, q.data(), kinematics);
+  const std::vector<std::string> inside = paths.points_inside(kinematics, q.data());
+  if (!inside.empty()) throw InputError(model.name, fmt::format("at the default pose {}", inside.front()));
+}
+
+std::string fit_note(const Model& model, const FittedPaths& fit) {
+  std::size_t length = 0, arm = 0, fitted = 0;
+  std::vector<std::string> misfits;
+  for (std::size_t m = 0; m < fit.errors().size(); ++m) {
+    const PathFitError& e = fit.errors()[m];
+    if (!e.fitted) {
+      if (e.length > 0.0) misfits.push_back(fmt::format("'{}'", model.muscles[m].name()));
+      continue;
+    }
+    if (fitted++ == 0) length = arm = m;
+    if (e.length > fit.errors()[length].length) length = m;
+    if (e.moment_arm > fit.errors()[arm].moment_arm) arm = m;
+  }
+  if (fit.errors().empty()) return "fitted paths: the model has no muscles";
+  std::string note = fmt::format("fitted paths: {} of {} muscles, the others exact", fitted, fit.errors().size());
+  if (!misfits.empty()) note += fmt::format(" ({} because no polynomial is good enough)", fmt::join(misfits, ", "));
+  if (fitted > 0)
+    note += fmt::format("; largest error of a length {:.1e} m ('{}'), of a moment arm {:.1e} m ('{}')",
+                        fit.errors()[length].length, model.muscles[length].name(), fit.errors()[arm].moment_arm,
+                        model.muscles[arm].name());
+  return note;
+}
+
+}  // namespace
+
+MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& options)
+    : model_(prepare(std::move(model), options, notes_)),
+      mechanism_(model_),
+      reduction_(model_),
+      paths_(model_, mechanism_, options.paths == PathSource::kAsOpenSim ? WrapMode::kAsOpenSim : WrapMode::kTaut),
+      source_(options.paths),
+      muscles_(muscle_parameters(model_)) {
+  check_default_pose(model_, mechanism_, paths_);
+  if (source_ == PathSource::kFitted) {
+    PathFitOptions fit_options;
+    fit_options.mixed = true;
+    fit_.emplace(model_, mechanism_, paths_, fit_options);
+    notes_.push_back(fit_note(model_, *fit_));
+  }
+  layout_.free = reduction_.free().size();
+  scales_.assign(layout_.free, 0.1);
+  scales_.insert(scales_.end(), layout_.free, 1.0);
+  layout_.size = scales_.size();
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
+    layout_.activation.push_back(muscles_.has_activation_state(m) ? static_cast<int>(layout_.size++) : -1);
+    if (layout_.activation.back() >= 0) scales_.push_back(0.1);
+  }
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
+    layout_.fiber_length.push_back(muscles_.has_fiber_state(m) ? static_cast<int>(layout_.size++) : -1);
+    if (layout_.fiber_length.back() >= 0)
+      scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
+  }
+}
+
+std::string MusculoskeletalSystem::state_name(std::size_t index) const {
+  if (index < 2 * layout_.free) {
+    const auto c = static_cast<std::size_t>(reduction_.free()[index % layout_.free]);
+    return fmt::format("{} of coordinate '{}'", index < layout_.free ? "value" : "speed", model_.coordinates[c].name);
+  }
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
+    if (layout_.activation[m] == static_cast<int>(index))
+      return fmt::format("activation of muscle '{}'", model_.muscles[m].name());
+    if (layout_.fiber_length[m] == static_cast<int>(index))
+      return fmt::format("fibre length of muscle '{}'", model_.muscles[m].name());
+  }
+  return fmt::format("state {}", index);
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,152 @@
+#include "veridyn/numerics/piecewise_polynomial.hpp"
+
+#include <cstddef>
+
+#include "veridyn/core/assert.hpp"
+
+namespace veridyn::numerics {
+namespace {
+
+/// Second derivatives at the knots from a tridiagonal system whose first and last rows are given (Thomas).
+std::vector<double> solve_tridiagonal(std::vector<double> diagonal, const std::vector<double>& off,
+                                      std::vector<double> right) {
+  const std::size_t n = diagonal.size();
+  for (std::size_t i = 1; i < n; ++i) {
+    const double factor = off[i - 1] / diagonal[i - 1];
+    diagonal[i] -= factor * off[i - 1];
+    right[i] -= factor * right[i - 1];
+  }
+  right[n - 1] /= diagonal[n - 1];
+  for (std::size_t i = n - 1; i-- > 0;) right[i] = (right[i] - off[i] * right[i + 1]) / diagonal[i];
+  return right;
+}
+
+struct CubicPieces {
+  std::vector<double> breaks;
+  std::vector<double> origin;
+  std::vector<double> coefficient;
+};
+
+/// Pieces from sigma = (second derivative)/6 at the knots, with straight ends.
+CubicPieces cubic_pieces(std::span<const double> x, std::span<const double> y, const std::vector<double>& sigma) {
+  const std::size_t n = x.size();
+  CubicPieces p;
+  p.breaks.assign(x.begin(), x.end());
+  const auto slope_at_begin = [&](std::size_t i) {
+    const double h = x[i + 1] - x[i];
+    return (y[i + 1] - y[i]) / h - h * (sigma[i + 1] + 2.0 * sigma[i]);
+  };
+  const double h_last = x[n - 1] - x[n - 2];
+  const double end_slope = (y[n - 1] - y[n - 2]) / h_last + h_last * (sigma[n - 2] + 2.0 * sigma[n - 1]);
+  const auto add = [&](double origin, double c0, double c1, double c2, double c3) {
+    p.origin.push_back(origin);
+    p.coefficient.insert(p.coefficient.end(), {c0, c1, c2, c3});
+  };
+  add(x[0], y[0], slope_at_begin(0), 0.0, 0.0);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    add(x[i], y[i], slope_at_begin(i), 3.0 * sigma[i], (sigma[i + 1] - sigma[i]) / (x[i + 1] - x[i]));
+  }
+  add(x[n - 1], y[n - 1], end_slope, 0.0, 0.0);
+  return p;
+}
+
+}  // namespace
+
+PiecewisePolynomial PiecewisePolynomial::constant(double value) {
+  PiecewisePolynomial f;
+  f.coefficient_ = {value};
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::linear(double slope, double intercept) {
+  PiecewisePolynomial f;
+  f.degree_ = 1;
+  f.coefficient_ = {intercept, slope};
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::polynomial(std::span<const double> ascending) {
+  VERIDYN_ASSERT(!ascending.empty());
+  PiecewisePolynomial f;
+  f.degree_ = ascending.size() - 1;
+  f.coefficient_.assign(ascending.begin(), ascending.end());
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::piecewise_linear(std::span<const double> x, std::span<const double> y) {
+  VERIDYN_ASSERT(x.size() >= 2 && x.size() == y.size());
+  PiecewisePolynomial f;
+  f.degree_ = 1;
+  f.origin_.clear();
+  f.coefficient_.clear();
+  f.breaks_.assign(x.begin() + 1, x.end() - 1);
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    f.origin_.push_back(x[i]);
+    f.coefficient_.insert(f.coefficient_.end(), {y[i], (y[i + 1] - y[i]) / (x[i + 1] - x[i])});
+  }
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::simm_spline(std::span<const double> x, std::span<const double> y) {
+  VERIDYN_ASSERT(x.size() >= 2 && x.size() == y.size());
+  const std::size_t n = x.size();
+  if (n == 2) return piecewise_linear(x, y);
+  std::vector<double> diagonal(n), off(n - 1), right(n, 0.0);
+  std::vector<double> secant(n - 1);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    off[i] = x[i + 1] - x[i];
+    secant[i] = (y[i + 1] - y[i]) / off[i];
+  }
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    diagonal[i] = 2.0 * (off[i - 1] + off[i]);
+    right[i] = secant[i] - secant[i - 1];
+  }
+  diagonal[0] = -off[0];
+  diagonal[n - 1] = -off[n - 2];
+  if (n > 3) {
+    const auto divided = [&](std::size_t i) {  // second divided difference about knot i
+      return (secant[i] - secant[i - 1]) / (x[i + 1] - x[i - 1]);
+    };
+    right[0] = (divided(2) - divided(1)) * off[0] * off[0] / (x[3] - x[0]);
+    right[n - 1] = -(divided(n - 2) - divided(n - 3)) * off[n - 2] * off[n - 2] / (x[n - 1] - x[n - 4]);
+  }
+  CubicPieces p = cubic_pieces(x, y, solve_tridiagonal(std::move(diagonal), off, std::move(right)));
+  PiecewisePolynomial f;
+  f.degree_ = 3;
+  f.breaks_ = std::move(p.breaks);
+  f.origin_ = std::move(p.origin);
+  f.coefficient_ = std::move(p.coefficient);
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::natural_spline(std::span<const double> x, std::span<const double> y) {
+  VERIDYN_ASSERT(x.size() >= 2 && x.size() == y.size());
+  const std::size_t n = x.size();
+  if (n == 2) return piecewise_linear(x, y);
+  std::vector<double> diagonal(n - 2), off(n > 3 ? n - 3 : 0), right(n - 2);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = x[i] - x[i - 1];
+    const double after = x[i + 1] - x[i];
+    diagonal[i - 1] = 2.0 * (before + after);
+    right[i - 1] = (y[i + 1] - y[i]) / after - (y[i] - y[i - 1]) / before;
+    if (i + 2 < n) off[i - 1] = after;
+  }
+  std::vector<double> sigma(n, 0.0);
+  const std::vector<double> inner = solve_tridiagonal(std::move(diagonal), off, std::move(right));
+  std::copy(inner.begin(), inner.end(), sigma.begin() + 1);
+  CubicPieces p = cubic_pieces(x, y, sigma);
+  PiecewisePolynomial f;
+  f.degree_ = 3;
+  f.breaks_ = std::move(p.breaks);
+  f.origin_ = std::move(p.origin);
+  f.coefficient_ = std::move(p.coefficient);
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::scaled(double factor) const {
+  PiecewisePolynomial f = *this;
+  for (double& c : f.coefficient_) c *= factor;
+  return f;
+}
+
+}  // namespace veridyn::numerics

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::recording {
+
+/// A channel name that a domain understands without being told, and its SI unit.
+struct StandardChannel {
+  std::string name;
+  std::string unit;
+};
+
+/// Where one standard channel came from, for the report.
+struct ChannelOrigin {
+  std::string channel;  ///< standard name, "airspeed"
+  std::string source;   ///< "ARSP.Airspeed", "GPS.Spd, GPS.GCrs", "servo 2 (RCOU.C2)"
+  double rate_Hz = 0.0;
+  std::string note;  ///< what the reader should know: "indicated airspeed", "attitude of the autopilot's filter"
+};
+
+/// A recording in standard channel names (SI, one frame) and the account of how it was made.
+struct MappedRecording {
+  Recording recording;
+  std::string log_kind;  ///< "ArduPilot", "PX4", "standard names", "study"
+  std::vector<ChannelOrigin> origins;
+  /// Standard deviation that the calibration of a channel leaves, by channel: an error that all samples share.
+  std::vector<std::pair<std::string, double>> calibration_sigma;
+  std::vector<std::string> notes;  ///< sensors that are there but dead, estimates that were not taken for sensors, ...
+};
+
+/// What came with a recording, without its channels.
+[[nodiscard]] Recording without_channels(const Recording& recording);
+
+/// Channels of the log that bear standard names and that `map` does not speak of are taken as they are. One without a
+/// unit is passed over with a note. @throws InputError where a unit is of another kind.
+void keep_standard_channels(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
+                            MappedRecording& mapped);
+
+/// Applies the study's `[data.map]`. A key is a standard name, its value the name of a channel or a table:
+///
+///     airspeed = "ARSP.Airspeed"
+///     alpha    = { channel = "CUR2.Volt", zero = 2.5, scale = 0.61, unit = "rad", delay = "20 ms" }
+///     aileron  = { channels = ["da_l", "da_r"], weights = [0.5, -0.5], unit = "rad" }
+///     elevator = { switch = "mode", cases = { 1 = "de_in", 2 = "de" }, unit = "rad" }
+///
+/// value = scale * (raw - zero), in `unit` where the log has none; `delay` is how late the sensor reports and is taken
+/// off its stamps. `"none"` takes a channel away.
+/// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
+/// has).
+void apply_channel_map(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
+                       MappedRecording& mapped);
+
+/// The recorded numbers in SI: scale * (raw - zero). Where the log's unit is of another kind than `unit` (volts of a
+/// vane, microseconds of a servo) the recorded numbers are scaled and then are in `unit`.
+[[nodiscard]] std::vector<double> in_si(const Channel& raw, double zero, double scale, std::string_view unit);
+
+/// Values of `channel` at the stamps of `at`, by linear interpolation; NaN outside.
+[[nodiscard]] std::vector<double> interpolated(const Channel& channel, std::span<const double> at);
+
+/// Refuses a recording that lacks a channel that the work needs, in one sentence that names it and what there is
+/// instead. `purpose` completes "... is needed for <purpose>".
+void require_channels(const MappedRecording& mapped, std::span<const std::string> needed, std::string_view purpose);
+
+}  // namespace veridyn::recording

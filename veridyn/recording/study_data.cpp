@@ -1,0 +1,152 @@
+#include "veridyn/recording/study_data.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/read.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+/// "vehicle_attitude_0" -> "vehicle_attitude"; "sensor_baro_1" -> "sensor_baro[1]"; others as they are.
+std::string table_name(const std::filesystem::path& path) {
+  const std::string stem = path.stem().string();
+  const std::size_t underscore = stem.rfind('_');
+  if (underscore == std::string::npos || underscore + 2 != stem.size()) return stem;
+  const char digit = stem.back();
+  if (std::isdigit(static_cast<unsigned char>(digit)) == 0) return stem;
+  const std::string topic = stem.substr(0, underscore);
+  return digit == '0' ? topic : fmt::format("{}[{}]", topic, digit);
+}
+
+void merge(Recording& whole, const Recording& part, const std::string& prefix) {
+  for (Channel channel : part.channels()) {
+    if (!prefix.empty()) channel.name = prefix + "." + channel.name;
+    whole.add(std::move(channel));
+  }
+  whole.events.insert(whole.events.end(), part.events.begin(), part.events.end());
+  whole.parameters.insert(part.parameters.begin(), part.parameters.end());
+  whole.information.insert(part.information.begin(), part.information.end());
+  for (const std::string& warning : part.warnings) {
+    whole.warnings.push_back(prefix.empty() ? warning : fmt::format("{}: {}", prefix, warning));
+  }
+  if (part.frame != Frame::kUnspecified) whole.frame = part.frame;
+}
+
+/// Where the stamps of a table are.
+void read_time(const StudyTable& time, io::CsvOptions& options) {
+  const bool named = time.has("column") && !time.is_table("column");
+  if (named) options.time_column = time.text("column");
+  if (time.has("unit") && !time.is_table("unit")) options.time_unit = time.text("unit");
+  if (time.has("rate") && !time.is_table("rate")) {
+    if (named) time.fail("rate", "is for tables without stamps; `column` names their column");
+    options.rate = time.positive("rate", "Hz");
+  }
+}
+
+}  // namespace
+
+Recording without_missing(const Recording& recording) {
+  Recording result = recording;
+  for (const Channel& channel : recording.channels()) {
+    const auto missing =
+        std::count_if(channel.value.begin(), channel.value.end(), [](double v) { return !std::isfinite(v); });
+    if (missing == 0 || static_cast<std::size_t>(missing) == channel.size()) continue;
+    Channel kept = channel;
+    kept.value.clear();
+    std::vector<double> stamps;
+    for (std::size_t i = 0; i < channel.size(); ++i) {
+      if (!std::isfinite(channel.value[i])) continue;
+      stamps.push_back(channel.times()[i]);
+      kept.value.push_back(channel.value[i]);
+    }
+    kept.time = make_time_base(std::move(stamps));
+    result.set(std::move(kept));
+  }
+  return result;
+}
+
+Recording cut(const Recording& recording, TimeSpan span) {
+  Recording result;
+  result.source = recording.source;
+  result.frame = recording.frame;
+  result.parameters = recording.parameters;
+  result.information = recording.information;
+  result.warnings = recording.warnings;
+  std::copy_if(recording.events.begin(), recording.events.end(), std::back_inserter(result.events),
+               [&](const Event& event) { return span.contains(event.time); });
+  // Channels of one message share their stamps before and after.
+  std::map<const std::vector<double>*, TimeBase> bases;
+  bool any = false;
+  for (const Channel& channel : recording.channels()) {
+    const auto times = channel.times();
+    const auto first = std::lower_bound(times.begin(), times.end(), span.begin) - times.begin();
+    const auto last = std::upper_bound(times.begin(), times.end(), span.end) - times.begin();
+    TimeBase& base = bases[channel.time.get()];
+    if (!base) base = make_time_base(std::vector<double>(times.begin() + first, times.begin() + std::max(first, last)));
+    Channel part = channel;
+    part.time = base;
+    part.value.assign(channel.value.begin() + first, channel.value.begin() + std::max(first, last));
+    any = any || !part.empty();
+    result.add(std::move(part));
+  }
+  if (!any) {
+    const TimeSpan whole = recording.span();
+    throw InputError(recording.source, fmt::format("holds nothing from {} s to {} s; it spans {:.3f} s to {:.3f} s",
+                                                   span.begin, span.end, whole.begin, whole.end));
+  }
+  return result;
+}
+
+Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
+  const StudyTable time = data.table_or_empty("time");
+  const std::string name = table_name(path);
+  io::ReadOptions options;
+  if (data.has("columns")) options.csv.columns = data.texts("columns");
+  if (time.has(name)) {
+    read_time(time.table(name), options.csv);
+  } else {
+    read_time(time, options.csv);
+  }
+  return io::read_recording(path, options);
+}
+
+Recording read_study_data(const StudyTable& data) {
+  if (data.has("file") == data.has("files")) {
+    data.fail(data.has("file") ? "files" : "file",
+              "is missing: give `file`, or `files` for the tables of one flight (not both)");
+  }
+  const std::vector<std::filesystem::path> paths = data.files(data.has("file") ? "file" : "files");
+  if (paths.empty()) data.fail("files", "is empty");
+  Recording whole;
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : paths) names.push_back(path.filename().string());
+  whole.source = paths.size() == 1 ? paths.front().string() : fmt::format("{}", fmt::join(names, ", "));
+  for (const std::filesystem::path& path : paths) {
+    const Recording part = read_study_file(data, path);
+    if (paths.size() == 1) {
+      const std::string source = whole.source;
+      whole = part;
+      whole.source = source;
+    } else {
+      merge(whole, part, table_name(path));
+    }
+  }
+  const bool bounded = data.has("from") || data.has("to");
+  whole = without_missing(whole);
+  if (!bounded) return whole;
+  const double from = data.number_or("from", "s", -std::numeric_limits<double>::infinity());
+  const double to = data.number_or("to", "s", std::numeric_limits<double>::infinity());
+  if (!(from < to)) data.fail("to", fmt::format("= {} s must be later than from = {} s", to, from));
+  return cut(whole, {from, to});
+}
+
+}  // namespace veridyn::recording

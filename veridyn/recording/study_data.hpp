@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::recording {
+
+/// The recording that a study's `[data]` names:
+///
+///     file  = "flight.bin"                    # one log of any known format (or folder of arrays), or
+///     files = ["IMU.csv", "GPS.csv"]          # the tables of one flight on one clock
+///     from = 342, to = 850                    # [s] only this part, on the log's clock
+///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header
+///     time = { column = "T", unit = "ms" }    # for a table that does not say where its stamps are, or
+///     time = { rate = "10 Hz" }               # that has none
+///     [data.time]                             # the same for some of several tables
+///     GPS = { column = "T", unit = "ms" }
+///
+/// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
+/// is dropped, so that `vehicle_attitude_0.csv` gives `vehicle_attitude.q[0]` as the log itself would. Keys of other
+/// rooms in `[data]` are left for them.
+/// @throws InputError for unreadable files, or a part of the recording that holds nothing.
+[[nodiscard]] Recording read_study_data(const StudyTable& data);
+
+/// One file, read as `[data.time]` says; for domains whose `[data]` names files under keys of their own.
+[[nodiscard]] Recording read_study_file(const StudyTable& data, const std::filesystem::path& path);
+
+/// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that
+/// they have, so that their rate and gaps are theirs.
+[[nodiscard]] Recording without_missing(const Recording& recording);
+
+/// The samples with stamps in [from, to]. @throws InputError when no channel has one.
+[[nodiscard]] Recording cut(const Recording& recording, TimeSpan span);
+
+}  // namespace veridyn::recording

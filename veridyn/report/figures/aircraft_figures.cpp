@@ -1,0 +1,253 @@
+#include "veridyn/report/figures/aircraft_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "veridyn/aircraft/reconstruction/information_bound.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::aircraft;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kBand95 = 1.959963984540054;
+
+std::vector<double> scaled(const std::vector<double>& values, double factor) {
+  std::vector<double> result = values;
+  for (double& v : result) v *= factor;
+  return result;
+}
+
+Line estimate_line(const Recording& recording, const std::string& channel, const char* label, double factor) {
+  Line line{.name = label};
+  const Channel* value = recording.find(channel);
+  if (value == nullptr) return line;
+  line.x.assign(value->times().begin(), value->times().end());
+  line.y = scaled(value->value, factor);
+  const Channel* sigma = recording.find("sigma_" + channel);
+  if (sigma != nullptr && sigma->size() == value->size()) {
+    Band band;
+    for (std::size_t i = 0; i < line.y.size(); ++i) {
+      const double half = kBand95 * sigma->value[i] * factor;
+      band.low.push_back(line.y[i] - half);
+      band.high.push_back(line.y[i] + half);
+    }
+    line.band = std::move(band);
+  }
+  return line;
+}
+
+void add_channel(Panel& panel, const Recording& recording, const char* channel, const char* label, double factor,
+                 Role role) {
+  const Channel* found = recording.find(channel);
+  if (found == nullptr) return;
+  panel.lines.push_back({.name = label,
+                         .y = scaled(found->value, factor),
+                         .x = {found->times().begin(), found->times().end()},
+                         .role = role});
+}
+
+std::vector<Span> segment_spans(const Segments& segments, bool longitudinal, bool lateral) {
+  std::vector<Span> spans;
+  const auto add = [&](const AxisSegments& axis) {
+    for (const TimeSpan& s : axis.identification) {
+      spans.push_back({.from = s.begin,
+                       .to = s.end,
+                       .label = fmt::format("{} identification", to_string(axis.axis)),
+                       .tone = SpanTone::kPrimary});
+    }
+    for (const TimeSpan& s : axis.holdout) {
+      spans.push_back({.from = s.begin,
+                       .to = s.end,
+                       .label = fmt::format("{} hold-out", to_string(axis.axis)),
+                       .tone = SpanTone::kSecondary});
+    }
+  };
+  if (longitudinal) add(segments.longitudinal);
+  if (lateral) add(segments.lateral);
+  return spans;
+}
+
+/// Root mean square difference of a channel from the truth, on the truth's stamps inside the airborne spans.
+double rms_error(const Recording& estimate, const Recording& truth, const char* channel) {
+  const Channel* e = estimate.find(channel);
+  const Channel* t = truth.find(channel);
+  if (e == nullptr || t == nullptr) return kNaN;
+  const auto times = e->times();
+  double sum = 0.0;
+  std::size_t count = 0;
+  std::size_t j = 0;
+  const auto true_times = t->times();
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    while (j + 1 < true_times.size() && true_times[j + 1] <= times[i]) ++j;
+    if (j + 1 >= true_times.size() || true_times[j] > times[i] || !std::isfinite(e->value[i])) continue;
+    const double share = (times[i] - true_times[j]) / (true_times[j + 1] - true_times[j]);
+    const double expected = (1.0 - share) * t->value[j] + share * t->value[j + 1];
+    sum += (e->value[i] - expected) * (e->value[i] - expected);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNaN;
+}
+
+/// Errors of the state estimates of a simulated flight beside what the sensors allow at best.
+Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Table table{.title = "Against the truth and the information bound",
+              .caption =
+                  "Root mean square errors. The bound is what no estimator that does not know the aircraft can "
+                  "undercut, from the "
+                  "gust spectrum and the vanes alone, with attitude and ground velocity taken as exact.",
+              .columns = {{.name = "Quantity"},
+                          {.name = "Filter", .digits = 3},
+                          {.name = "Bound", .digits = 3},
+                          {.name = "Smoother", .digits = 3},
+                          {.name = "Bound", .digits = 3},
+                          {.name = "Unit"}}};
+  const Reconstruction& rec = analysis.reconstruction;
+  const Channel* airspeed = rec.smoothed.find("airspeed");
+  if (airspeed == nullptr || airspeed->empty()) return table;
+  double mean = 0.0;
+  for (const double v : airspeed->value) mean += v / static_cast<double>(airspeed->size());
+  const Channel* vane = study.mapped.recording.find("alpha");
+  const double rate = vane != nullptr ? vane->rate_Hz() : 0.0;
+  InformationBound bound;
+  if (rate > 0.0) bound = information_bound(rec.turbulence, mean, rec.sigma.alpha, rate);
+  const auto row = [&](const char* name, double factor, const char* unit, const AngleBound* best) {
+    const bool has = best != nullptr && rate > 0.0;
+    table.rows.push_back({.cells = {text_cell(name), number_cell(factor * rms_error(rec.filtered, *study.truth, name)),
+                                    number_cell(has ? factor * best->filter : kNaN),
+                                    number_cell(factor * rms_error(rec.smoothed, *study.truth, name)),
+                                    number_cell(has ? factor * best->smoother : kNaN), text_cell(unit)}});
+  };
+  row("alpha", 1.0 / kDegree, "deg", &bound.alpha);
+  row("beta", 1.0 / kDegree, "deg", &bound.beta);
+  row("airspeed", 1.0, "m/s", nullptr);
+  return table;
+}
+
+}  // namespace
+
+Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "The flight", .id = "flight"};
+  const Recording& smoothed = analysis.reconstruction.smoothed;
+  const Recording& measured = study.mapped.recording;
+  TimeSeries air{.title = "Motion through the air",
+                 .caption =
+                     "Estimates of the smoother with 95 % bands. Shaded: what was used to identify (longitudinal and "
+                     "lateral) and what was held out."};
+  air.spans = segment_spans(analysis.segments, true, true);
+  const auto panel = [&](const char* channel, const char* label, const char* unit, double factor, const char* sensor) {
+    Panel p{.label = label, .unit = unit};
+    add_channel(p, measured, sensor, "measured", factor, Role::kMeasured);
+    p.lines.push_back(estimate_line(smoothed, channel, "smoother", factor));
+    if (study.truth) add_channel(p, *study.truth, channel, "truth", factor, Role::kReference);
+    air.panels.push_back(std::move(p));
+  };
+  panel("airspeed", "airspeed", "m/s", 1.0, "airspeed");
+  panel("alpha", "alpha", "deg", 1.0 / kDegree, "alpha");
+  panel("beta", "beta", "deg", 1.0 / kDegree, "beta");
+  Panel wind{.label = "slow wind", .unit = "m/s"};
+  wind.lines.push_back(estimate_line(smoothed, "wind_north", "north", 1.0));
+  wind.lines.push_back(estimate_line(smoothed, "wind_east", "east", 1.0));
+  wind.lines.push_back(estimate_line(smoothed, "wind_down", "down", 1.0));
+  air.panels.push_back(std::move(wind));
+  section.blocks.emplace_back(std::move(air));
+  if (study.truth) section.blocks.emplace_back(bound_table(study, analysis));
+
+  TimeSeries inputs{.title = "Inputs and rates"};
+  Panel surfaces{.label = "deflections", .unit = "deg"};
+  for (const char* name : {"elevator", "aileron", "rudder"})
+    add_channel(surfaces, measured, name, name, 1.0 / kDegree, Role::kEstimate);
+  if (!surfaces.lines.empty()) inputs.panels.push_back(std::move(surfaces));
+  Panel throttle{.label = "throttle", .unit = "%", .height = 100};
+  add_channel(throttle, measured, "throttle", "throttle", 100.0, Role::kEstimate);
+  if (!throttle.lines.empty()) inputs.panels.push_back(std::move(throttle));
+  Panel rates{.label = "body rates", .unit = "deg/s"};
+  for (const auto& [channel, name] : {std::pair{"gyro_x", "p"}, std::pair{"gyro_y", "q"}, std::pair{"gyro_z", "r"}}) {
+    add_channel(rates, measured, channel, name, 1.0 / kDegree, Role::kEstimate);
+  }
+  inputs.panels.push_back(std::move(rates));
+  Panel attitude{.label = "attitude", .unit = "deg"};
+  for (const char* name : {"roll", "pitch"})
+    add_channel(attitude, smoothed, name, name, 1.0 / kDegree, Role::kEstimate);
+  inputs.panels.push_back(std::move(attitude));
+  inputs.spans = segment_spans(analysis.segments, true, true);
+  section.blocks.emplace_back(std::move(inputs));
+  return section;
+}
+
+Section coefficient_series_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Coefficients over time", .id = "series"};
+  for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
+    TimeSeries figure{.title = axis == Axis::kLongitudinal ? "Longitudinal coefficients" : "Lateral coefficients",
+                      .caption =
+                          "Measured: from specific force, rates and dynamic pressure. Model: the chosen estimate, "
+                          "where it is not rejected."};
+    figure.spans = segment_spans(analysis.segments, axis == Axis::kLongitudinal, axis == Axis::kLateral);
+    for (const CoefficientResult& r : analysis.coefficients) {
+      if (r.axis != axis || r.time.empty()) continue;
+      Panel panel{.label = r.name};
+      panel.lines.push_back({.name = "measured", .y = r.measured, .x = r.time, .role = Role::kMeasured});
+      if (r.verdict == CoefficientVerdict::kIdentified)
+        panel.lines.push_back({.name = "model", .y = r.modelled, .x = r.time});
+      figure.panels.push_back(std::move(panel));
+    }
+    if (!figure.panels.empty()) section.blocks.emplace_back(std::move(figure));
+  }
+  return section;
+}
+
+std::vector<TimeSeries> validation_figures(const Validation& validation) {
+  std::vector<TimeSeries> figures;
+  if (!validation.available()) return figures;
+  TimeSeries figure{
+      .title = "Flown by the model on unseen data",
+      .caption = fmt::format("Started anew every {:.1f} s from the reconstructed state.", validation.period_s)};
+  for (const PredictedQuantity& q : validation.quantities) {
+    const double factor = q.unit == "deg" ? 1.0 / kDegree : 1.0;
+    Panel panel{.label = q.name, .unit = q.unit};
+    panel.lines.push_back({.name = "measured", .y = scaled(q.measured, factor), .x = q.time, .role = Role::kMeasured});
+    panel.lines.push_back({.name = "model", .y = scaled(q.predicted, factor), .x = q.time});
+    figure.panels.push_back(std::move(panel));
+  }
+  figures.push_back(std::move(figure));
+  return figures;
+}
+
+XYPlot residual_autocorrelation_plot(const CoefficientResult& result) {
+  XYPlot plot{.title = fmt::format("{}: residual autocorrelation", result.name),
+              .caption = "Inside the dashed lines 95 % of the time when the residual is white.",
+              .x = {.label = "lag", .unit = "s"},
+              .y = {.label = "correlation"}};
+  XYSeries series{.name = "residual", .style = Style::kStems};
+  for (std::size_t i = 0; i < result.residual_autocorrelation.value.size(); ++i) {
+    series.x.push_back(static_cast<double>(i) * result.row_interval_s);
+    series.y.push_back(result.residual_autocorrelation.value[i]);
+  }
+  plot.series.push_back(std::move(series));
+  const double bound = result.residual_autocorrelation.white_bound95;
+  plot.guides = {{.value = bound, .label = "95 % if white"}, {.value = -bound}};
+  return plot;
+}
+
+XYPlot residual_normal_plot(const CoefficientResult& result) {
+  const numerics::NormalPlot& normal = result.chosen->normal_plot;
+  XYPlot plot{.title = fmt::format("{}: normal probability plot", result.name),
+              .caption = "On the line when the residual is normally distributed.",
+              .x = {.label = "normal quantile"},
+              .y = {.label = "residual"}};
+  plot.series.push_back({.name = "residual", .x = normal.quantile, .y = normal.sample});
+  plot.series.push_back({.name = "normal",
+                         .x = {-4.0, 4.0},
+                         .y = {normal.mean - 4.0 * normal.sd, normal.mean + 4.0 * normal.sd},
+                         .role = Role::kReference,
+                         .style = Style::kLine});
+  return plot;
+}
+
+}  // namespace veridyn::report

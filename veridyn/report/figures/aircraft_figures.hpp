@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/report/document/document.hpp"
+
+namespace veridyn::report {
+
+/// Airspeed, alpha, beta and wind with 95 % bands beside what was measured (and the truth of a simulated flight), and
+/// the inputs, with the segments shaded; how far from the information bound, where the truth is known.
+[[nodiscard]] Section flight_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
+
+/// Measured and modelled coefficients over time.
+[[nodiscard]] Section coefficient_series_section(const aircraft::FlightAnalysis& analysis);
+
+/// Predicted against measured airspeed, alpha and beta.
+[[nodiscard]] std::vector<TimeSeries> validation_figures(const aircraft::Validation& validation);
+
+[[nodiscard]] XYPlot residual_autocorrelation_plot(const aircraft::CoefficientResult& result);
+[[nodiscard]] XYPlot residual_normal_plot(const aircraft::CoefficientResult& result);
+
+}  // namespace veridyn::report

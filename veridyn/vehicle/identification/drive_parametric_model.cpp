@@ -1,0 +1,417 @@
+#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/modulating_kernel.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kLongestStep_s = 5e-3;
+/// Step times the fastest decay rate of the bicycle: RK4 then errs by less than 1e-5 of a transient.
+constexpr double kStepTimesRate = 0.25;
+constexpr int kMostSubsteps = 40;
+/// Beyond it a yaw rate is not that of a vehicle [rad/s].
+constexpr double kLargestYawRate = 50.0;
+/// How far delays reach beyond a segment [s].
+constexpr double kReach_s = 0.5;
+
+/// Cut-off of the smoothing [Hz], and the noise of the steering over its rms from which it is needed.
+constexpr double kSmoothing_Hz = 4.0;
+constexpr double kNoNoise = 1e-4;
+
+double value_of(double x) { return x; }
+template <int kN>
+double value_of(const ceres::Jet<double, kN>& x) {
+  return x.a;
+}
+
+/// Between `samples` at `position`, cubic.
+template <typename Value, typename Scalar>
+Scalar between(const std::vector<Value>& samples, const Scalar& position) {
+  const auto last = static_cast<double>(samples.size() - 1);
+  const double p = std::clamp(value_of(position), 0.0, last);
+  const auto i = static_cast<std::size_t>(std::min(std::floor(p), std::max(0.0, last - 1.0)));
+  if (samples.size() == 1) return Scalar(samples[0]);
+  const Value& y1 = samples[i];
+  const Value& y2 = samples[i + 1];
+  const Value y0 = i > 0 ? samples[i - 1] : Value(2.0 * y1 - y2);
+  const Value y3 = i + 2 < samples.size() ? samples[i + 2] : Value(2.0 * y2 - y1);
+  Scalar s = position - static_cast<double>(i);
+  if (value_of(position) < 0.0 || value_of(position) > last) s = Scalar(p - static_cast<double>(i));
+  return y1 + 0.5 * s * (y2 - y0 + s * (2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3 + s * (3.0 * (y1 - y2) + y3 - y0)));
+}
+
+}  // namespace
+
+template <typename Scalar>
+Scalar SampledInput::at(const Scalar& position) const {
+  const auto n = value.size();
+  const double p = std::clamp(value_of(position), 0.0, static_cast<double>(n - 1));
+  if (n == 1) return Scalar(value[0]);
+  const auto i = std::min(static_cast<std::size_t>(p), n - 2);
+  const double s = p - static_cast<double>(i);
+  const double y1 = value[i], y2 = value[i + 1];
+  const double y0 = i > 0 ? value[i - 1] : 2.0 * y1 - y2;
+  const double y3 = i + 2 < n ? value[i + 2] : 2.0 * y2 - y1;
+  const double c1 = y2 - y0, c2 = 2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3, c3 = 3.0 * (y1 - y2) + y3 - y0;
+  const double y = y1 + 0.5 * s * (c1 + s * (c2 + s * c3));
+  if (p != value_of(position)) return Scalar(y);
+  const double slope = 0.5 * (c1 + s * (2.0 * c2 + 3.0 * s * c3));
+  return Scalar(y) + slope * (position - p);
+}
+template double SampledInput::at(const double&) const;
+template ceres::Jet<double, 8> SampledInput::at(const ceres::Jet<double, 8>&) const;
+
+DriveModelOptions::DriveModelOptions() {
+  const auto set = [](auto& values, DriveUnknown u, auto to) { values[static_cast<std::size_t>(u)] = to; };
+  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
+                               DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
+    set(free, u, true);
+  start.fill(0.0);
+  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
+    set(start, u, kNaN);
+  set(start, DriveUnknown::kMu, 1.0);
+  set(start, DriveUnknown::kShape, 1.3);
+  prior.fill(kInfinity);
+  set(prior, DriveUnknown::kSteerBias, kDegree);
+  set(prior, DriveUnknown::kYawRateBias, kDegree);
+  set(prior, DriveUnknown::kAccelYBias, 0.5);
+  set(prior, DriveUnknown::kSteerScale, 0.1);
+  set(prior, DriveUnknown::kAccelYScale, 0.1);
+  for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
+    set(prior, u, 0.1);
+  set(prior, DriveUnknown::kShape, 0.2);
+  set(prior, DriveUnknown::kCurvature, 0.5);
+}
+
+void DriveModelOptions::read_keys(const StudyTable& table) {
+  const std::vector<std::string> tyres{"linear", "magic formula"};
+  tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
+  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
+  if (tyre == DriveTyre::kMagicFormula) {
+    free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
+    free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+  }
+  if (table.has("estimate")) {
+    free.fill(false);
+    for (const std::string& name : table.texts("estimate")) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end())
+        table.fail("estimate", fmt::format("'{}' is not an unknown of the drive model{}", name,
+                                           suggestion(name, names, names.size())));
+      free[static_cast<std::size_t>(at - names.begin())] = true;
+    }
+  }
+  if (tyre == DriveTyre::kLinear) {
+    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
+      const auto i = static_cast<std::size_t>(u);
+      if (free[i])
+        table.fail("estimate",
+                   fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")", names[i]));
+    }
+  }
+  if (table.has("smoothing")) {
+    smoothing_Hz = table.number("smoothing", "Hz");
+    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
+  }
+  const StudyTable starts = table.table_or_empty("start");
+  const StudyTable priors = table.table_or_empty("prior");
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
+    if (starts.has(names[i])) start[i] = starts.number(names[i], kDriveUnknownUnits[i]);
+    if (!priors.has(names[i])) continue;
+    if (priors.is_text(names[i]) && priors.text(names[i]) == "none")
+      prior[i] = kInfinity;
+    else
+      prior[i] = priors.positive(names[i], kDriveUnknownUnits[i]);
+  }
+}
+
+DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                           const VehicleParameters<double>& start, const DriveModelOptions& options)
+    : signals_(signals), start_(start), options_(options) {
+  for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate}) {
+    if (!signals[s].available()) {
+      throw InputError(signals.source, fmt::format("has no {}, which output error is driven by or compared with",
+                                                   kDriveSignalNames[static_cast<std::size_t>(s)]));
+    }
+  }
+  accel_ = signals[DriveSignal::kAccelY].available();
+  lateral_velocity_ = signals[DriveSignal::kLateralVelocity].available();
+  outputs_ = {{"yaw_rate", "rad/s"}};
+  if (accel_) outputs_.push_back({"accel_y", "m/s^2"});
+  if (lateral_velocity_) outputs_.push_back({"lateral_velocity", "m/s"});
+
+  smooth();
+  const std::array<double, 4> own{start.C_f, start.C_r, start.I_z, start.a};
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (!std::isfinite(options_.start[i])) options_.start[i] = own[i];
+  }
+  parameters_.resize(kDriveUnknowns);
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
+    estimation::ModelParameter& p = parameters_[i];
+    p.name = std::string(kDriveUnknownNames[i]);
+    p.unit = std::string(kDriveUnknownUnits[i]);
+    p.start = options_.start[i];
+    p.prior_sigma = options_.prior[i];
+    p.fixed = !options_.free[i];
+    switch (static_cast<DriveUnknown>(i)) {
+      case DriveUnknown::kCf:
+      case DriveUnknown::kCr:
+      case DriveUnknown::kIz:
+        p.low = 1e-3 * p.start;
+        p.high = 1e3 * p.start;
+        break;
+      case DriveUnknown::kA:
+        p.low = 0.02 * start.wheelbase();
+        p.high = 0.98 * start.wheelbase();
+        break;
+      case DriveUnknown::kMu:
+        p.low = 0.02;
+        p.high = 5.0;
+        break;
+      case DriveUnknown::kShape:
+        p.low = 0.8;
+        p.high = 2.5;
+        break;
+      case DriveUnknown::kCurvature:
+        p.low = -10.0;
+        p.high = 1.0;
+        break;
+      case DriveUnknown::kSteerScale:
+      case DriveUnknown::kAccelYScale:
+        p.low = -0.9;
+        break;
+      case DriveUnknown::kSteerDelay:
+      case DriveUnknown::kYawRateDelay:
+      case DriveUnknown::kAccelYDelay:
+        p.low = -kReach_s;
+        p.high = kReach_s;
+        break;
+      default:
+        break;
+    }
+    // Bounds must hold at the start, whatever was given.
+    p.low = std::min(p.low, p.start);
+    p.high = std::max(p.high, p.start);
+  }
+
+  const double C_f = options_.start[0], C_r = options_.start[1], I_z = options_.start[2];
+  const std::vector<double>& u = speed_;
+  const std::vector<double>& r = yaw_rate_;
+  for (const TimeSpan& span : spans) {
+    const auto [begin, end] = signals.indices(span);
+    if (end <= begin + 1) continue;
+    Segment segment;
+    segment.begin = begin;
+    segment.samples = static_cast<Eigen::Index>(end - begin);
+    const double slowest =
+        *std::min_element(u.begin() + static_cast<std::ptrdiff_t>(begin), u.begin() + static_cast<std::ptrdiff_t>(end));
+    const double rate =
+        2.0 / slowest * ((C_f + C_r) / start.mass + (start.a * start.a * C_f + start.b * start.b * C_r) / I_z);
+    const double step = signals.grid.step;
+    segment.substeps =
+        static_cast<int>(std::clamp(std::ceil(std::max(step / kLongestStep_s, step * rate / kStepTimesRate) - 1e-9),
+                                    1.0, static_cast<double>(kMostSubsteps)));
+    // Steady cornering at the measured yaw rate, averaged over a tenth of a second.
+    const std::size_t few = std::min(end - begin, static_cast<std::size_t>(std::max(1.0, 0.1 / step)));
+    double r0 = 0.0;
+    for (std::size_t k = 0; k < few; ++k) r0 += r[begin + k] / static_cast<double>(few);
+    const double v0 = r0 * (start.b - start.a * start.mass * u[begin] * u[begin] / (2.0 * C_r * start.wheelbase()));
+    segment.initial = {{.name = "lateral_velocity", .unit = "m/s", .start = v0},
+                       {.name = "yaw_rate", .unit = "rad/s", .start = r0}};
+    segments_.push_back(std::move(segment));
+  }
+}
+
+void DriveParametricModel::smooth() {
+  const GridSignal& steer = signals_[DriveSignal::kSteer];
+  const double rate = signals_.grid.rate_Hz();
+  smoothing_Hz_ = options_.smoothing_Hz;
+  if (smoothing_Hz_ < 0.0) {
+    double power = 0.0, count = 0.0;
+    for (const double v : steer.value) {
+      if (!std::isfinite(v)) continue;
+      power += v * v;
+      count += 1.0;
+    }
+    const bool noisy = steer.sigma * steer.sigma * count > kNoNoise * kNoNoise * power;
+    smoothing_Hz_ = noisy ? std::min(kSmoothing_Hz, 0.1 * rate) : 0.0;
+  }
+  steer_ = steer.value;
+  speed_ = signals_[DriveSignal::kSpeed].value;
+  yaw_rate_ = signals_[DriveSignal::kYawRate].value;
+  accel_y_ = signals_[DriveSignal::kAccelY].value;
+  lateral_velocity_meas_ = signals_[DriveSignal::kLateralVelocity].value;
+  if (!(smoothing_Hz_ > 0.0)) return;
+  const numerics::ModulatingKernel kernel = numerics::modulating_kernel(rate, smoothing_Hz_);
+  for (std::vector<double>* x : {&steer_, &speed_, &yaw_rate_, &accel_y_, &lateral_velocity_meas_}) {
+    if (!x->empty()) *x = numerics::filter(*x, kernel.smooth);
+  }
+}
+
+TimeSpan DriveParametricModel::segment_span(std::size_t segment) const {
+  const Segment& s = segments_[segment];
+  return {signals_.grid.at(s.begin), signals_.grid.at(s.begin + static_cast<std::size_t>(s.samples) - 1)};
+}
+
+std::string DriveParametricModel::segment_name(std::size_t segment) const {
+  const TimeSpan span = segment_span(segment);
+  return fmt::format("segment {} ({:.1f} to {:.1f} s)", segment + 1, span.begin, span.end);
+}
+
+std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
+  std::vector<estimation::RowMatrix> all;
+  for (const Segment& s : segments_) {
+    estimation::RowMatrix m(s.samples, static_cast<Eigen::Index>(outputs_.size()));
+    for (Eigen::Index k = 0; k < s.samples; ++k) {
+      const std::size_t at = s.begin + static_cast<std::size_t>(k);
+      Eigen::Index column = 0;
+      m(k, column++) = yaw_rate_[at];
+      if (accel_) m(k, column++) = accel_y_[at];
+      if (lateral_velocity_) m(k, column++) = lateral_velocity_meas_[at];
+    }
+    all.push_back(std::move(m));
+  }
+  return all;
+}
+
+template <typename Scalar, typename Tyre>
+bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scalar, Tyre>& model,
+                                 const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+                                 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
+  const std::vector<double>& steer_all = steer_;
+  const std::vector<double>& speed_all = speed_;
+  const std::size_t n = static_cast<std::size_t>(segment.samples);
+  const double step = signals_.grid.step;
+  // The steering before and after the segment, as far as it is there, for its delay.
+  const auto reach = static_cast<std::size_t>(kReach_s / step);
+  std::size_t lead = 0, tail = 0;
+  while (lead < reach && segment.begin > lead && std::isfinite(steer_all[segment.begin - lead - 1])) ++lead;
+  while (tail < reach && segment.begin + n + tail < steer_all.size() &&
+         std::isfinite(steer_all[segment.begin + n + tail]))
+    ++tail;
+  const SampledInput steer{std::span(steer_all).subspan(segment.begin - lead, lead + n + tail), step};
+  const SampledInput speed{std::span(speed_all).subspan(segment.begin, n), step};
+
+  const Scalar steer_gain = 1.0 / (1.0 + unknown(DriveUnknown::kSteerScale));
+  const Scalar steer_lead = static_cast<double>(lead) - unknown(DriveUnknown::kSteerDelay) / step;
+  struct Input {
+    Scalar delta;
+    Scalar u;
+  };
+  const auto input = [&](double position) -> Input {
+    const Scalar at = steer_lead + position;
+    return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain, Scalar(speed.at(position))};
+  };
+  const bool delayed = !(unknown(DriveUnknown::kYawRateDelay) == Scalar(0.0)) ||
+                       !(unknown(DriveUnknown::kAccelYDelay) == Scalar(0.0)) ||
+                       options_.free[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] ||
+                       options_.free[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)];
+  std::vector<Scalar> yaw_rate(delayed ? n : 0), accel(delayed && accel_ ? n : 0);
+
+  const auto [x, y, z] = signals_.accel_position;
+  static_cast<void>(z);
+  const double h = step / segment.substeps;
+  const auto first = static_cast<Eigen::Index>(parameters_.size());
+  Scalar v = theta(first), r = theta(first + 1);
+  Input now = input(0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const bool sane = v < 2.0 * now.u && -v < 2.0 * now.u && r < kLargestYawRate && -r < kLargestYawRate;
+    if (!sane) return false;
+    for (int i = 0; i < segment.substeps; ++i) {
+      const BicycleRates<Scalar> k1 = model.rates(v, r, now.delta, now.u);
+      if (i == 0) {
+        const Scalar at_sensor = k1.lateral_acceleration + x * k1.dr - y * r * r;
+        Eigen::Index column = 0;
+        if (delayed) {
+          yaw_rate[k] = r;
+          if (accel_) accel[k] = at_sensor;
+        }
+        output(row, column++) = r + unknown(DriveUnknown::kYawRateBias);
+        if (accel_)
+          output(row, column++) =
+              (1.0 + unknown(DriveUnknown::kAccelYScale)) * at_sensor + unknown(DriveUnknown::kAccelYBias);
+        if (lateral_velocity_) output(row, column++) = v;
+        if (k + 1 == n) break;
+      }
+      const double at = static_cast<double>(k) + static_cast<double>(i) / segment.substeps;
+      const Input middle = input(at + 0.5 / segment.substeps);
+      const Input next = input(at + 1.0 / segment.substeps);
+      const BicycleRates<Scalar> k2 =
+          model.rates(Scalar(v + 0.5 * h * k1.dv), Scalar(r + 0.5 * h * k1.dr), middle.delta, middle.u);
+      const BicycleRates<Scalar> k3 =
+          model.rates(Scalar(v + 0.5 * h * k2.dv), Scalar(r + 0.5 * h * k2.dr), middle.delta, middle.u);
+      const BicycleRates<Scalar> k4 = model.rates(Scalar(v + h * k3.dv), Scalar(r + h * k3.dr), next.delta, next.u);
+      v += (h / 6.0) * (k1.dv + 2.0 * (k2.dv + k3.dv) + k4.dv);
+      r += (h / 6.0) * (k1.dr + 2.0 * (k2.dr + k3.dr) + k4.dr);
+      now = next;
+    }
+  }
+  if (!delayed) return true;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const Scalar at_r = static_cast<double>(k) - unknown(DriveUnknown::kYawRateDelay) / step;
+    output(row, 0) = between(yaw_rate, at_r) + unknown(DriveUnknown::kYawRateBias);
+    if (!accel_) continue;
+    const Scalar at_a = static_cast<double>(k) - unknown(DriveUnknown::kAccelYDelay) / step;
+    output(row, 1) =
+        (1.0 + unknown(DriveUnknown::kAccelYScale)) * between(accel, at_a) + unknown(DriveUnknown::kAccelYBias);
+  }
+  return true;
+}
+
+template <typename Scalar>
+bool DriveParametricModel::simulate(
+    std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
+  VehicleParameters<Scalar> p = start_.cast<Scalar>();
+  p.C_f = unknown(DriveUnknown::kCf);
+  p.C_r = unknown(DriveUnknown::kCr);
+  p.I_z = unknown(DriveUnknown::kIz);
+  p.a = unknown(DriveUnknown::kA);
+  p.b = start_.wheelbase() - p.a;
+  if (options_.tyre == DriveTyre::kLinear) {
+    const BicycleModel<Scalar, LinearTyre<Scalar>> model{
+        .parameters = p, .front = {.stiffness = p.C_f}, .rear = {.stiffness = p.C_r}, .gravity = options_.gravity};
+    return drive(segments_[segment], model, theta, output);
+  }
+  const PerWheel<Scalar> load = static_loads(p, options_.gravity);
+  const auto tyre = [&](const Scalar& stiffness, const Scalar& nominal) {
+    SimpleMagicFormulaTyre<Scalar> t;
+    t.stiffness = stiffness;
+    t.mu = unknown(DriveUnknown::kMu);
+    t.C = unknown(DriveUnknown::kShape);
+    t.E = unknown(DriveUnknown::kCurvature);
+    t.nominal_load = nominal;
+    return t;
+  };
+  const BicycleModel<Scalar, SimpleMagicFormulaTyre<Scalar>> model{.parameters = p,
+                                                                   .front = tyre(p.C_f, load[kFrontLeft]),
+                                                                   .rear = tyre(p.C_r, load[kRearLeft]),
+                                                                   .gravity = options_.gravity};
+  return drive(segments_[segment], model, theta, output);
+}
+
+template bool DriveParametricModel::simulate(
+    std::size_t, const Eigen::Matrix<double, Eigen::Dynamic, 1>&,
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>&) const;
+template bool DriveParametricModel::simulate(
+    std::size_t, const Eigen::Matrix<ceres::Jet<double, 8>, Eigen::Dynamic, 1>&,
+    Eigen::Matrix<ceres::Jet<double, 8>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>&) const;
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,466 @@
+#include "veridyn/vehicle/identification/drive_regression.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/estimation/regression/long_run_covariance.hpp"
+#include "veridyn/estimation/regression/total_least_squares.hpp"
+#include "veridyn/numerics/modulating_kernel.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::Method;
+using estimation::RegressionData;
+using estimation::RegressionEstimate;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Rows a cut-off frequency: they are nearly independent then.
+constexpr double kRowsPerCutoff = 4.0;
+/// Rows on which the error covariance is averaged.
+constexpr std::size_t kCovarianceRows = 100;
+/// Relative error of the coefficients that small angles may make.
+constexpr double kSmallAngles = 0.01;
+/// Relative variation of the speed from which a gyro bias is told apart from a constant.
+constexpr double kSpeedVaries = 0.05;
+
+/// Sensors whose noise enters, in this order.
+enum Source : std::size_t { kSteerNoise, kSpeedNoise, kYawRateNoise, kAccelNoise, kLateralNoise, kSources };
+
+/// The slow part of a signal, for coefficients of noise and the rate of change of the speed.
+std::vector<double> slow(const std::vector<double>& x, const numerics::FirKernel& kernel) {
+  return numerics::filter(x, kernel);
+}
+
+/// A term of a column: `coefficient(k)` times the kernel over one sensor's noise.
+struct NoiseTerm {
+  Source source;
+  double coefficient;
+  const numerics::FirKernel* kernel;
+};
+
+class Builder {
+ public:
+  Builder(const DriveSignals& signals, std::span<const TimeSpan> spans, const VehicleParameters<double>& known,
+          double pass_Hz)
+      : s_(signals),
+        spans_(spans),
+        p_(known),
+        kernel_(numerics::modulating_kernel(signals.grid.rate_Hz(), pass_Hz)),
+        stride_(std::max<std::size_t>(
+            1, static_cast<std::size_t>(signals.grid.rate_Hz() / (kRowsPerCutoff * pass_Hz) + 1e-9))) {
+    x_ = signals.accel_position[0];
+    y_ = signals.accel_position[1];
+    const std::array<DriveSignal, kSources> which{DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate,
+                                                  DriveSignal::kAccelY, DriveSignal::kLateralVelocity};
+    for (std::size_t i = 0; i < kSources; ++i) {
+      const GridSignal& signal = s_[which[i]];
+      // A sensor slower than the grid was interpolated: more of its noise lies in the pass band.
+      const double spread = signal.rate_Hz > 0.0 ? std::max(1.0, s_.grid.rate_Hz() / signal.rate_Hz) : 1.0;
+      variance_[i] = signal.sigma * signal.sigma * spread;
+    }
+    out_.direct = s_[DriveSignal::kLateralVelocity].available();
+    out_.filter = {.rate_Hz = s_.grid.rate_Hz(), .pass_Hz = pass_Hz, .stop_Hz = 2.0 * pass_Hz, .attenuation_dB = 20.0};
+    out_.row_interval_s = static_cast<double>(stride_) * s_.grid.step;
+  }
+
+  DriveRegressions run() {
+    u_slow_ = slow(s_[DriveSignal::kSpeed].value, kernel_.smooth);
+    r_slow_ = slow(s_[DriveSignal::kYawRate].value, kernel_.smooth);
+    a_slow_ = slow(s_[DriveSignal::kAccelY].value, kernel_.smooth);
+    du_ = numerics::filter(s_[DriveSignal::kSpeed].value, kernel_.first);
+    for (std::size_t i = 0; i < spans_.size(); ++i) take_span(spans_[i], static_cast<int>(i));
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] double sum(const std::vector<double>& x, std::size_t k, const numerics::FirKernel& kernel) const {
+    const std::size_t m = kernel.half_width();
+    double total = 0.0;
+    for (std::size_t j = 0; j < kernel.taps.size(); ++j) total += kernel.taps[j] * x[k + j - m];
+    return total;
+  }
+
+  void take_span(const TimeSpan& span, int id) {
+    const auto [begin, end] = s_.indices(span);
+    const std::size_t m = kernel_.smooth.half_width();
+    if (end < begin + 2 * m + 1) return;
+    const std::size_t n = end - begin;
+    const auto at = [&](DriveSignal which, std::size_t k) { return s_[which].value[begin + k]; };
+    // Products on unfiltered samples.
+    std::vector<double> delta(n), r(n), u(n), curvature(n), a(n), ua(n), ur(n), du_r(n), v_prime(n);
+    std::vector<double> front(n), rear(n), accel(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      delta[k] = at(DriveSignal::kSteer, k);
+      r[k] = at(DriveSignal::kYawRate, k);
+      u[k] = at(DriveSignal::kSpeed, k);
+      accel[k] = at(DriveSignal::kAccelY, k) + y_ * r[k] * r[k];
+      curvature[k] = r[k] / u[k];
+      ua[k] = u[k] * accel[k];
+      ur[k] = u[k] * r[k];
+      du_r[k] = du_[begin + k] * r[k];
+      v_prime[k] = ur[k] - accel[k];
+      if (!out_.direct) continue;
+      const double v = at(DriveSignal::kLateralVelocity, k);
+      front[k] = (delta[k] - std::atan((v + p_.a * r[k]) / u[k])) * std::cos(delta[k]);
+      rear[k] = -std::atan((v - p_.b * r[k]) / u[k]);
+    }
+    const double L = p_.wheelbase();
+    for (std::size_t k = m; k + m < n; k += stride_) {
+      const double dr = sum(r, k, kernel_.first);
+      const double a_y = sum(accel, k, kernel_.smooth) - x_ * dr;
+      if (out_.direct) {
+        first_.insert(first_.end(), {sum(front, k, kernel_.smooth), sum(rear, k, kernel_.smooth), 1.0, a_y});
+        second_.insert(second_.end(), {sum(front, k, kernel_.smooth), sum(rear, k, kernel_.smooth), 1.0, dr});
+      } else {
+        // u r' = (u r)' - u' r
+        const double d_ur = sum(ur, k, kernel_.second) - sum(du_r, k, kernel_.first);
+        const double d_ua = sum(ua, k, kernel_.first) - x_ * d_ur;
+        first_.insert(first_.end(),
+                      {a_y, dr, 1.0, sum(delta, k, kernel_.smooth) - L * sum(curvature, k, kernel_.smooth)});
+        second_.insert(second_.end(), {d_ua, -d_ur, 1.0, sum(u, k, kernel_.smooth),
+                                       sum(v_prime, k, kernel_.smooth) + (x_ + p_.b) * dr});
+      }
+      out_.time.push_back(s_.grid.at(begin + k));
+      index_.push_back(begin + k);
+      segment_.push_back(id);
+    }
+  }
+
+  /// Noise of the columns [x..., z] at a row, sensors white per sample.
+  [[nodiscard]] Eigen::MatrixXd covariance(const std::vector<std::vector<NoiseTerm>>& columns) const {
+    const auto n = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+    const auto size = static_cast<Eigen::Index>(kernel_.smooth.taps.size());
+    for (std::size_t source = 0; source < kSources; ++source) {
+      if (!(variance_[source] > 0.0)) continue;
+      Eigen::MatrixXd taps = Eigen::MatrixXd::Zero(size, n);
+      for (Eigen::Index j = 0; j < n; ++j) {
+        for (const NoiseTerm& term : columns[static_cast<std::size_t>(j)]) {
+          if (term.source != source) continue;
+          taps.col(j) += term.coefficient * Eigen::Map<const Eigen::VectorXd>(term.kernel->taps.data(), size);
+        }
+      }
+      W += variance_[source] * taps.transpose() * taps;
+    }
+    return W;
+  }
+
+  void finish() {
+    const auto rows = static_cast<Eigen::Index>(out_.time.size());
+    const Eigen::Index wide = out_.direct ? 3 : 4;
+    RegressionData& first = out_.first;
+    RegressionData& second = out_.second;
+    const Eigen::Map<const estimation::RowMatrix> D1(first_.data(), rows, 4);
+    const Eigen::Map<const estimation::RowMatrix> D2(second_.data(), rows, wide + 1);
+    first.regressors = D1.leftCols(3);
+    first.regressand = D1.col(3);
+    Eigen::Index n2 = wide;
+    if (!out_.direct && rows > 0) {
+      const Eigen::VectorXd u = D2.col(3);
+      const double sd = std::sqrt((u.array() - u.mean()).square().mean());
+      if (!(sd > kSpeedVaries * std::abs(u.mean()))) n2 = 3;
+    }
+    second.regressors = D2.leftCols(n2);
+    second.regressand = D2.col(wide);
+    first.segment = second.segment = segment_;
+    if (out_.direct) {
+      first.parameter_names = {"2 C_f/m", "2 C_r/m", "accel_y_bias"};
+      first.parameter_units = {"m/s^2", "m/s^2", "m/s^2"};
+      first.regressand_name = "accel_y";
+      second.parameter_names = {"2 a C_f/I_z", "-2 b C_r/I_z", "yaw_acceleration_bias"};
+      second.parameter_units = {"1/s^2", "1/s^2", "rad/s^2"};
+      second.regressand_name = "yaw_acceleration";
+    } else {
+      first.parameter_names = {"understeer_gradient", "yaw_lag", "steer_bias"};
+      first.parameter_units = {"rad s^2/m", "rad s^2", "rad"};
+      first.regressand_name = "steer - L r/u";
+      second.parameter_names = {"rear_lag_accel", "rear_lag_yaw", "accel_y_bias", "yaw_rate_bias"};
+      second.parameter_units = {"s/m", "s", "m/s^2", "rad/s"};
+      second.parameter_names.resize(static_cast<std::size_t>(n2));
+      second.parameter_units.resize(static_cast<std::size_t>(n2));
+      second.regressand_name = "-v' + b r'";
+    }
+    Eigen::MatrixXd W1 = Eigen::MatrixXd::Zero(4, 4), W2 = Eigen::MatrixXd::Zero(n2 + 1, n2 + 1);
+    const std::size_t every = std::max<std::size_t>(1, index_.size() / kCovarianceRows);
+    double count = 0.0;
+    for (std::size_t i = 0; i < index_.size(); i += every) {
+      const auto [one, two] = noise_terms(index_[i], static_cast<std::size_t>(n2));
+      W1 += covariance(one);
+      W2 += covariance(two);
+      count += 1.0;
+    }
+    const auto set = [&](RegressionData& data, Eigen::MatrixXd W) {
+      if (count > 0.0) W /= count;
+      // A recording without noise has errors of rounding.
+      const Eigen::Index z = W.rows() - 1;
+      const double power = data.rows() > 0 ? data.regressand.squaredNorm() / static_cast<double>(data.rows()) : 1.0;
+      W(z, z) = std::max(W(z, z), 1e-20 * power + std::numeric_limits<double>::min());
+      data.error_covariance = W;
+      data.regressand_error_known = false;
+    };
+    set(first, W1);
+    set(second, W2);
+  }
+
+  using Columns = std::vector<std::vector<NoiseTerm>>;
+  [[nodiscard]] std::pair<Columns, Columns> noise_terms(std::size_t k, std::size_t n2) const {
+    const auto or_zero = [](double v) { return std::isfinite(v) ? v : 0.0; };
+    const double u = u_slow_[k], r = or_zero(r_slow_[k]), a = or_zero(a_slow_[k]);
+    const double L = p_.wheelbase();
+    const auto *h = &kernel_.smooth, *d = &kernel_.first, *dd = &kernel_.second;
+    if (out_.direct) {
+      const std::vector<NoiseTerm> front{
+          {kSteerNoise, 1.0, h}, {kLateralNoise, -1.0 / u, h}, {kYawRateNoise, -p_.a / u, h}};
+      const std::vector<NoiseTerm> rear{{kLateralNoise, -1.0 / u, h}, {kYawRateNoise, p_.b / u, h}};
+      const std::vector<NoiseTerm> accel{
+          {kAccelNoise, 1.0, h}, {kYawRateNoise, 2.0 * y_ * r, h}, {kYawRateNoise, -x_, d}};
+      return {{front, rear, {}, accel}, {front, rear, {}, {{kYawRateNoise, 1.0, d}}}};
+    }
+    const std::vector<NoiseTerm> accel{
+        {kAccelNoise, 1.0, h}, {kYawRateNoise, 2.0 * y_ * r, h}, {kYawRateNoise, -x_, d}};
+    const Columns one{accel,
+                      {{kYawRateNoise, 1.0, d}},
+                      {},
+                      {{kSteerNoise, 1.0, h}, {kYawRateNoise, -L / u, h}, {kSpeedNoise, L * r / (u * u), h}}};
+    const std::vector<NoiseTerm> d_ur{{kYawRateNoise, u, dd}};
+    std::vector<NoiseTerm> d_ua{{kAccelNoise, u, d}, {kSpeedNoise, a, d}, {kYawRateNoise, 2.0 * y_ * r * u, d}};
+    d_ua.push_back({kYawRateNoise, -x_ * u, dd});
+    Columns two{d_ua, {{kYawRateNoise, -u, dd}}, {}};
+    if (n2 == 4) two.push_back({{kSpeedNoise, 1.0, h}});
+    two.push_back({{kYawRateNoise, u, h},
+                   {kSpeedNoise, r, h},
+                   {kAccelNoise, -1.0, h},
+                   {kYawRateNoise, -2.0 * y_ * r, h},
+                   {kYawRateNoise, x_ + p_.b, d}});
+    return {one, two};
+  }
+
+  const DriveSignals& s_;
+  std::span<const TimeSpan> spans_;
+  const VehicleParameters<double>& p_;
+  numerics::ModulatingKernel kernel_;
+  std::size_t stride_;
+  double x_ = 0.0, y_ = 0.0;
+  std::array<double, kSources> variance_{};
+  std::vector<double> u_slow_, r_slow_, a_slow_, du_;
+  std::vector<double> first_, second_;  // rows [x, z]
+  std::vector<int> segment_;
+  std::vector<std::size_t> index_;
+  DriveRegressions out_;
+};
+
+/// Influence of every row on the first two parameters of an estimate: theta_hat - theta = sum of rows.
+Eigen::MatrixXd influence(const RegressionData& data, const RegressionEstimate& estimate) {
+  const auto n = data.parameters();
+  Eigen::MatrixXd W = data.error_covariance;
+  Eigen::MatrixXd M = data.regressors.transpose() * data.regressors;
+  if (estimate.method == Method::kOls) {
+    W.setZero();
+    W(n, n) = 1.0;
+  } else {
+    M -= static_cast<double>(data.rows()) * W.topLeftCorner(n, n);
+    // All of the residual is variance of W's combination.
+    Eigen::VectorXd h(n + 1);
+    h << estimate.theta, -1.0;
+    const double beyond = estimate.residual_sd * estimate.residual_sd - h.dot(W * h);
+    W(n, n) += std::max(0.0, beyond);
+  }
+  estimation::RowMatrix scores;
+  Eigen::VectorXd residual;
+  estimation::errors_in_variables_scores(data.regressors, data.regressand, W, estimate.theta,
+                                         estimation::ErrorRatio::kKnown, scores, residual);
+  const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
+  const Eigen::MatrixXd all =
+      scale.asDiagonal() * scaled.fullPivLu().solve(scale.asDiagonal() * Eigen::MatrixXd(scores.transpose()));
+  return all.topRows(2).transpose();
+}
+
+/// The four coefficients' covariance: what each regression says of its own two, and the correlation between the two
+/// regressions from their scores over the same rows.
+Eigen::Matrix4d joint_covariance(const DriveRegressions& data, const RegressionEstimate& first,
+                                 const RegressionEstimate& second) {
+  estimation::RowMatrix both(data.first.rows(), 4);
+  both << influence(data.first, first), influence(data.second, second);
+  const auto segments = estimation::segment_ranges(data.first.rows(), data.first.segment);
+  const Eigen::Index window = std::max(first.lag_window, second.lag_window);
+  const Eigen::Matrix4d S = estimation::long_run_covariance(both, segments, window).matrix;
+  Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
+  P.topLeftCorner<2, 2>() = first.covariance.topLeftCorner(2, 2);
+  P.bottomRightCorner<2, 2>() = second.covariance.topLeftCorner(2, 2);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    for (Eigen::Index j = 2; j < 4; ++j) {
+      const double norm = std::sqrt(S(i, i) * S(j, j));
+      if (!(norm > 0.0)) continue;
+      P(i, j) = P(j, i) = std::clamp(S(i, j) / norm, -0.99, 0.99) * std::sqrt(P(i, i) * P(j, j));
+    }
+  }
+  // Corners from two sources may together be indefinite: then their correlation is taken down.
+  for (double share = 1.0; share > 0.05; share *= 0.8) {
+    Eigen::Matrix4d Q = P;
+    Q.topRightCorner<2, 2>() *= share;
+    Q.bottomLeftCorner<2, 2>() *= share;
+    const Eigen::Vector4d scale = Q.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::LDLT<Eigen::Matrix4d> factor(scale.asDiagonal() * Q * scale.asDiagonal());
+    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 1e-6) return Q;
+  }
+  P.topRightCorner<2, 2>().setZero();
+  P.bottomLeftCorner<2, 2>().setZero();
+  return P;
+}
+
+/// The four coefficients of a bicycle (C_f, C_r, I_z) and their derivatives.
+void coefficients(const Eigen::Vector3d& x, const VehicleParameters<double>& p, bool direct, Eigen::Vector4d& f,
+                  Eigen::Matrix<double, 4, 3>& J) {
+  const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
+  const double C_f = x(0), C_r = x(1), I = x(2);
+  if (direct) {
+    f << 2.0 * C_f / m, 2.0 * C_r / m, 2.0 * a * C_f / I, -2.0 * b * C_r / I;
+    J << 2.0 / m, 0.0, 0.0,           //
+        0.0, 2.0 / m, 0.0,            //
+        2.0 * a / I, 0.0, -f(2) / I,  //
+        0.0, -2.0 * b / I, -f(3) / I;
+    return;
+  }
+  const double g_f = 0.5 / (L * C_f), g_r = 0.5 / (L * C_r);
+  f << m * (b * g_f - a * g_r), I * (g_f + g_r), m * a * g_r, I * g_r;
+  J << -m * b * g_f / C_f, m * a * g_r / C_r, 0.0,  //
+      -I * g_f / C_f, -I * g_r / C_r, g_f + g_r,    //
+      0.0, -m * a * g_r / C_r, 0.0,                 //
+      0.0, -I * g_r / C_r, g_r;
+}
+
+AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& first, const RegressionEstimate& second,
+                      const VehicleParameters<double>& p) {
+  AxleEstimate out;
+  out.method = first.method;
+  out.covariance.setConstant(kInfinity);
+  out.understeer_sigma = out.steer_bias_sigma = kInfinity;
+  const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
+  if (!first.usable() || !second.usable()) {
+    out.message = first.usable() ? second.message : first.message;
+  }
+  if (first.usable() && !data.direct) {
+    out.understeer = first.theta(0);
+    out.understeer_sigma = std::sqrt(first.covariance(0, 0));
+    out.steer_bias = first.theta(2);
+    out.steer_bias_sigma = std::sqrt(first.covariance(2, 2));
+    out.understeer_only = true;
+    out.degrees_of_freedom = first.degrees_of_freedom;
+  }
+  if (!first.usable() || !second.usable()) return out;
+  const auto unexcited = [](const RegressionEstimate& e) {
+    return std::max(e.parameters[0].unexcited_share, e.parameters[1].unexcited_share) > 0.05;
+  };
+  Eigen::Vector4d theta;
+  theta << first.theta.head(2), second.theta.head(2);
+  Eigen::Vector3d x;
+  if (data.direct) {
+    x << 0.5 * m * theta(0), 0.5 * m * theta(1), 0.5 * m * (a * theta(0) / theta(2) - b * theta(1) / theta(3));
+  } else {
+    const double g_r = theta(2) / (m * a), g_f = (theta(0) + theta(2)) / (m * b);
+    x << 0.5 / (L * g_f), 0.5 / (L * g_r), theta(3) / g_r;
+  }
+  if (unexcited(first) || unexcited(second) || !(x.minCoeff() > 0.0) || !x.allFinite()) {
+    out.message =
+        unexcited(first) || unexcited(second)
+            ? fmt::format("not excited: {}{}{}", first.unexcited.empty() ? "" : first.unexcited[0].text,
+                          first.unexcited.empty() || second.unexcited.empty() ? "" : ", ",
+                          second.unexcited.empty() ? "" : second.unexcited[0].text)
+            : fmt::format("gives C_f = {:.4g}, C_r = {:.4g}, I_z = {:.4g}: none of a vehicle", x(0), x(1), x(2));
+    return out;
+  }
+  const Eigen::Matrix4d P = joint_covariance(data, first, second);
+  const Eigen::Vector4d scale = P.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::LDLT<Eigen::Matrix4d> factor(scale.asDiagonal() * P * scale.asDiagonal());
+  const Eigen::Vector3d size = x;
+  Eigen::Vector4d f;
+  Eigen::Matrix<double, 4, 3> J;
+  Eigen::Matrix3d normal;
+  // Gauss-Newton in units of the start; the surplus is one equation, so few steps.
+  for (int step = 0; step < 30; ++step) {
+    coefficients(x, p, data.direct, f, J);
+    const Eigen::Matrix<double, 4, 3> A = scale.asDiagonal() * J * size.asDiagonal();
+    const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
+    normal = A.transpose() * factor.solve(A);
+    const Eigen::Vector3d move = normal.ldlt().solve(A.transpose() * factor.solve(e));
+    Eigen::Vector3d next = x + size.cwiseProduct(move);
+    for (int halving = 0; halving < 20 && !(next.minCoeff() > 0.0); ++halving) next = 0.5 * (next + x);
+    const double moved = (next - x).cwiseQuotient(size).cwiseAbs().maxCoeff();
+    x = next;
+    if (moved < 1e-12) break;
+  }
+  coefficients(x, p, data.direct, f, J);
+  const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
+  // The small angles' own error is no contradiction.
+  const Eigen::Vector4d own =
+      kSmallAngles * Eigen::Vector4d(data.direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
+  Eigen::Matrix4d doubt = P;
+  doubt.diagonal() += own.cwiseAbs2();
+  const Eigen::LDLT<Eigen::Matrix4d> doubted(scale.asDiagonal() * doubt * scale.asDiagonal());
+  const double chi_square = e.dot(doubted.solve(e));
+  out.value = x;
+  out.covariance = size.asDiagonal() * normal.inverse() * size.asDiagonal();
+  out.consistency_p = std::isfinite(chi_square) ? numerics::chi_square_upper_p(std::max(0.0, chi_square), 1.0) : 0.0;
+  out.degrees_of_freedom = std::min(first.degrees_of_freedom, second.degrees_of_freedom);
+  out.usable = x.allFinite() && x.minCoeff() > 0.0 && out.covariance.allFinite();
+  out.understeer_only = false;
+  const Eigen::Vector3d slope(-0.5 * m * b / (L * x(0) * x(0)), 0.5 * m * a / (L * x(1) * x(1)), 0.0);
+  out.understeer = 0.5 * m / L * (b / x(0) - a / x(1));
+  out.understeer_sigma = std::sqrt(slope.dot(out.covariance * slope));
+  out.message = fmt::format("{} over {} rows", estimation::to_string(out.method), data.first.rows());
+  return out;
+}
+
+}  // namespace
+
+const AxleEstimate* DriveRegressionResult::find(Method method) const {
+  for (const AxleEstimate& e : axles) {
+    if (e.method == method) return &e;
+  }
+  return nullptr;
+}
+
+DriveRegressions drive_regressions(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                   const VehicleParameters<double>& known, double pass_Hz) {
+  for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate, DriveSignal::kAccelY}) {
+    if (!signals[s].available()) {
+      throw InputError(signals.source, fmt::format("has no {}, which equation error needs",
+                                                   kDriveSignalNames[static_cast<std::size_t>(s)]));
+    }
+  }
+  return Builder(signals, spans, known, pass_Hz).run();
+}
+
+DriveRegressionResult equation_error(DriveRegressions data, const VehicleParameters<double>& known,
+                                     const estimation::RegressionOptions& options) {
+  DriveRegressionResult out;
+  out.data = std::move(data);
+  const auto least = 10 * (out.data.first.parameters() + out.data.second.parameters());
+  if (out.data.first.rows() < least) {
+    out.reason = fmt::format("{} rows are left within the segments, {} are needed", out.data.first.rows(), least);
+    return out;
+  }
+  out.first = estimation::compare(out.data.first, options);
+  out.second = estimation::compare(out.data.second, options);
+  for (const RegressionEstimate& first : out.first.estimates) {
+    const RegressionEstimate* second = out.second.find(first.method);
+    if (second != nullptr) out.axles.push_back(axles_of(out.data, first, *second, known));
+  }
+  out.recommends = out.first.recommends && out.second.recommends;
+  if (out.recommends)
+    out.recommended = out.first.recommended == out.second.recommended ? out.first.recommended : Method::kGtls;
+  out.reason = out.first.recommends ? out.second.reason : out.first.reason;
+  return out;
+}
+
+}  // namespace veridyn::vehicle

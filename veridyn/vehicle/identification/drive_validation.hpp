@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// One quantity predicted over all spans.
+struct PredictedDriveQuantity {
+  std::string name;  ///< "yaw_rate", "accel_y", "lateral_velocity", "yaw", "path"
+  std::string unit;
+  numerics::FitMeasures fit;
+  double lag1 = 0.0;  ///< autocorrelation of the residual at one sample: 0 when the model explains all but white noise
+};
+
+/// Measured and predicted motion over one span.
+struct PredictedDrive {
+  TimeSpan span;
+  std::vector<double> time;
+  std::vector<double> steer, speed;
+  std::vector<double> yaw_rate, yaw_rate_predicted, yaw_rate_sigma;  ///< sigma: of the prediction, by the parameters
+  std::vector<double> accel_y, accel_y_predicted, accel_y_sigma;     ///< at the sensor; empty without
+  std::vector<double> lateral_velocity, lateral_velocity_predicted;  ///< the former empty where not measured
+  std::vector<double> yaw, yaw_predicted;                            ///< heading from the span's beginning [rad]
+  /// Path from the span's beginning, heading 0 there: measured position (where recorded, turned by the heading with
+  /// which it fits best) and prediction.
+  std::vector<double> x, y, x_predicted, y_predicted;
+};
+
+struct DriveValidation {
+  std::vector<PredictedDriveQuantity> quantities;
+  std::vector<PredictedDrive> drives;
+  std::string text;  ///< one sentence
+  [[nodiscard]] const PredictedDriveQuantity* find(std::string_view name) const;
+};
+
+/// Simulates a vehicle over spans and compares. Per span two numbers are fitted, v and r at its beginning (the sideslip
+/// is not measured on most cars); all else is given. Measured yaw angle is the integral of the measured yaw rate less
+/// its bias.
+/// @param theta values of all DriveUnknowns, in their order
+/// @param covariance of theta, for the bands of the prediction; empty: none
+[[nodiscard]] DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                            const VehicleParameters<double>& vehicle, const DriveModelOptions& options,
+                                            const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance = {});
+
+}  // namespace veridyn::vehicle

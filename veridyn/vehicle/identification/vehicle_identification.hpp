@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/drive_regression.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/identification/drive_validation.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// What identification may do and what it demands of its result. Study table `[identify]`; every key is optional.
+struct VehicleIdentifyOptions {
+  bool equation_error = true;  ///< `equation_error`
+  bool output_error = true;    ///< `output_error`
+  /// `method`: "auto" takes output error where it converged, else the equation error that its comparison recommends;
+  /// "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  std::string method = "auto";
+  DriveModelOptions model = {};  ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
+  double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
+  double significance = 0.05;    ///< `significance`: level of the t-tests
+  double min_holdout_r2 = 0.5;   ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
+  /// `max_unmodelled`: largest share of an output's power that may be left as coloured residual.
+  double max_unmodelled = 0.1;
+  double contradiction_level = 1e-3;  ///< `contradiction_level`: p below which methods or data parts contradict
+  /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
+  double max_relative_sigma = 0.25;
+  /// `[identify.uncertainty]`: standard deviations of what is taken as known: `mass` [kg], `a`, `b` [m]. Motion alone
+  /// shows only ratios to the mass: C_f/m, C_r/m and I_z/m; the rest of the error bars comes from here.
+  double mass_sigma = 0.0;
+  double a_sigma = 0.0;
+  double b_sigma = 0.0;
+
+  /// @throws InputError for values that make no sense.
+  [[nodiscard]] static VehicleIdentifyOptions read(const StudyTable& table);
+};
+
+/// The vehicle's parameters by one method.
+struct VehicleEstimate {
+  std::string method;  ///< "output error", "GTLS", ...
+  bool usable = false;
+  std::string message;
+  /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances: sensors' biases; of
+  /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
+  std::vector<estimation::ParameterEstimate> parameters;
+  Eigen::MatrixXd covariance;  ///< in their order
+  [[nodiscard]] const estimation::ParameterEstimate* find(std::string_view name) const;
+};
+
+/// What may be said of the vehicle as a whole.
+enum class VehicleVerdict {
+  kIdentified,  ///< predicts the hold-out and its checks passed; single parameters may still be insignificant
+  kNotExcited,  ///< the drive does not move the tyres
+  kRejected     ///< an estimate exists and must not be used
+};
+[[nodiscard]] std::string_view to_string(VehicleVerdict verdict);
+
+/// Everything that became of a drive.
+struct VehicleIdentification {
+  std::optional<DriveRegressionResult> regression;              ///< equation error, where it was asked for
+  std::optional<estimation::OutputErrorEstimate> output_error;  ///< as the estimator gave it
+  std::vector<VehicleEstimate> estimates;                       ///< one a method, chosen one among them
+  std::string chosen;                                           ///< its method; empty when there is none
+  VehicleVerdict verdict = VehicleVerdict::kRejected;
+  std::string reason;                            ///< one sentence
+  std::vector<estimation::HonestyCheck> checks;  ///< colour, agreement of methods, of data parts, hold-out
+  VehicleParameters<double> identified;          ///< the subject with what was identified
+  DriveValidation fit;                           ///< on the identification segments
+  DriveValidation validation;                    ///< on the hold-out
+  std::vector<std::string> warnings;
+  bool interrupted = false;
+
+  [[nodiscard]] const VehicleEstimate* find(std::string_view method) const;
+  [[nodiscard]] const VehicleEstimate* best() const { return chosen.empty() ? nullptr : find(chosen); }
+};
+
+/// Identifies the vehicle from a drive: equation error by all methods, output error started from it, hold-out.
+/// @param start what is known: mass, a, b; C_f, C_r, I_z are where the search begins
+/// @throws InputError when options and signals do not fit
+[[nodiscard]] VehicleIdentification identify_vehicle(const DriveSignals& signals, const DriveSegments& segments,
+                                                     const VehicleParameters<double>& start,
+                                                     const DriveSignalOptions& signal_options,
+                                                     const VehicleIdentifyOptions& options, Progress& progress);
+
+/// All DriveUnknowns of a vehicle on a drive whose constant biases (steering, yaw rate, accel_y) are fitted to it, for
+/// predictions: biases belong to the day, not to the vehicle.
+[[nodiscard]] Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                               const VehicleParameters<double>& vehicle,
+                                               const DriveModelOptions& options);
+
+/// As estimate.json has it; `subject` is the vehicle's name.
+[[nodiscard]] estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification,
+                                                         const std::string& subject);
+
+/// m/(2 L) (b/C_f - a/C_r) [rad/(m/s^2)]: extra steer angle per lateral acceleration of the linear bicycle. Positive:
+/// understeer.
+[[nodiscard]] double understeer_gradient(const VehicleParameters<double>& p);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "veridyn/core/study.hpp"
+#include "veridyn/vehicle/model/driver.hpp"
+#include "veridyn/vehicle/manoeuvre/driver_model.hpp"
+#include "veridyn/vehicle/manoeuvre/lane_change.hpp"
+#include "veridyn/vehicle/manoeuvre/path.hpp"
+#include "veridyn/vehicle/manoeuvre/piecewise_linear.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+enum class ManoeuvreKind {
+  kReference,          ///< steer 0 until 2 s, ramp to 5 deg at 3 s, held to 15 s, ramp to 0 at 16 s
+  kStepSteer,          ///< ISO 7401: a ramp of `rise_time` to `amplitude`, held
+  kSine,               ///< ISO 7401: one period
+  kContinuousSine,     ///< ISO 7401: `periods` of them
+  kSineWithDwell,      ///< ISO 19365, FMVSS 126: 0.7 Hz, 500 ms dwell at the second peak
+  kSweep,              ///< frequency growing exponentially from `frequency` to `end_frequency`
+  kRandomSteer,        ///< ISO 7401: band-limited, from a seed
+  kFishhook,           ///< ramp to the amplitude, dwell, ramp to the opposite one, held (NHTSA fixed timing)
+  kSteadyStateCircle,  ///< ISO 4138: constant speed and slowly growing steer, or constant radius and growing speed
+  kDoubleLaneChange,   ///< ISO 3888-1, driven by a preview driver
+  kFollowPath,         ///< a path from a file or a circle, driven by a preview driver
+  kSignal              ///< a recorded or written steering signal
+};
+[[nodiscard]] std::string_view to_string(ManoeuvreKind kind);
+
+/// A driver and what metrics and reports need to know of the test.
+struct Manoeuvre {
+  ManoeuvreKind kind = ManoeuvreKind::kReference;
+  std::unique_ptr<Driver> driver;
+  double default_duration = 20.0;  ///< [s]
+  double start = 0.0;              ///< when the steering begins [s]
+  double amplitude = 0.0;          ///< at the road wheels, positive left [rad]
+  double rise_time = 0.0;          ///< of a step's ramp [s]
+  double frequency = 0.0;          ///< of a sine, or the lowest of a sweep or random steer [Hz]
+  double end_frequency = 0.0;      ///< the highest [Hz]
+  double radius = 0.0;             ///< of a constant-radius circle [m]
+  std::optional<DoubleLaneChange> course{};
+  BodyOutline body{};
+  std::shared_ptr<const Path> path{};  ///< which is followed: from the origin along x, where simulations start
+  /// Speed over time that the manoeuvre needs to vary; empty: constant.
+  PiecewiseLinear speed{};
+};
+
+// Open loop. Angles at the road wheels [rad], times [s], frequencies [Hz]. All throw InputError for amplitudes beyond
+// 90 deg, times and frequencies that are not > 0.
+
+[[nodiscard]] Manoeuvre reference_manoeuvre();
+/// The ramp crosses half the amplitude at start + rise_time/2. ISO 7401 asks for at most 0.15 s between 10 and 90 %.
+[[nodiscard]] Manoeuvre step_steer(double amplitude, double start = 1.0, double rise_time = 0.1);
+[[nodiscard]] Manoeuvre sine_steer(double amplitude, double frequency, double start = 1.0, int periods = 1);
+[[nodiscard]] Manoeuvre sine_with_dwell(double amplitude, double start = 1.0, double frequency = 0.7,
+                                        double dwell = 0.5);
+/// Instantaneous frequency low (high/low)^((t - start)/duration); begins at phase 0, fades out over
+/// the last half second.
+[[nodiscard]] Manoeuvre sweep_steer(double amplitude, double low = 0.1, double high = 4.0, double duration = 60.0,
+                                    double start = 1.0);
+/// A sum of cosines of equal power and random phase at multiples of 1/duration from `low` to `high`, scaled to a peak
+/// of `amplitude`: a stationary band-limited signal without trend.
+[[nodiscard]] Manoeuvre random_steer(double amplitude, double low = 0.1, double high = 4.0, double duration = 60.0,
+                                     std::uint64_t seed = 1, double start = 1.0);
+[[nodiscard]] Manoeuvre fishhook(double amplitude, double rate, double start = 1.0, double dwell = 0.25);
+/// Steer growing at `rate` [rad/s] to `amplitude`.
+[[nodiscard]] Manoeuvre slowly_increasing_steer(double amplitude, double rate, double start = 1.0);
+[[nodiscard]] Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque = {},
+                                        PiecewiseLinear brake_torque = {});
+
+/// What reading a manoeuvre needs to know of the vehicle.
+struct ManoeuvreContext {
+  VehicleParameters<double> parameters;
+  double speed = 20.0;
+  double gravity = 9.80665;
+  std::uint64_t seed = 1;
+  double wheel_radius = 0.30;  ///< for the torque of a driver who holds a speed [m]
+  /// Cornering stiffnesses of one tyre that a driver expects; those of the parameters when absent.
+  std::optional<double> C_f{}, C_r{};
+};
+
+// Torques, for models with longitudinal dynamics; whatever steers goes on.
+
+/// Adds drive and brake torques over time [N m]: braking or power off in a turn (ISO 7975, ISO 9816).
+/// @throws InputError for a negative brake torque.
+void add_torques(Manoeuvre& manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque);
+/// Drive and brakes hold a speed over time [m/s] (`SpeedControlledDriver`).
+void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context);
+
+/// What a driver expects of the vehicle. @throws InputError when the speed is not > 0.
+[[nodiscard]] LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context);
+
+// Closed loop: a preview driver (MacAdam 1981) with the linear bicycle of the context as its internal model.
+
+/// `vehicle_width` 0: 7/6 of the track.
+[[nodiscard]] Manoeuvre double_lane_change(const ManoeuvreContext& context, double vehicle_width = 0.0,
+                                           double course_scale = 1.0, const PreviewDriverOptions& options = {});
+[[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
+                                    const PreviewDriverOptions& options = {});
+/// A circle of constant radius (negative: to the right) on which the speed grows from `context.speed` to `end_speed`
+/// over `duration`, by drive torque.
+[[nodiscard]] Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius, double end_speed,
+                                               double duration = 120.0, const PreviewDriverOptions& options = {});
+
+/// Reads `[drive]`; keys (with defaults):
+///
+/// - `manoeuvre`: "reference" (default), "step steer", "sine", "continuous sine", "sine with dwell", "sweep", "random
+///   steer", "fishhook", "steady-state circle", "double lane change", "follow path", "signal";
+/// - `amplitude` [rad] (`"5 deg"`): steer at the road wheels; 2 deg by default, less than 90 deg. `start` [s] (1).
+/// - step steer: `rise_time` (0.1 s). sine, sine with dwell: `frequency` [Hz] (0.5; 0.7), `periods` (3), `dwell` (0.5
+/// s).
+/// - sweep, random steer: `low`, `high` [Hz] (0.1, 4), `length` [s] (60), `seed`.
+/// - fishhook: `rate` [rad/s] (0.75: 720 deg/s at the hand wheel, ratio 17), `dwell` (0.25 s).
+/// - steady-state circle: `method` = "constant speed" (default; `rate` [rad/s], 0.2 deg/s) or "constant radius"
+///   (`radius` [m], `end_speed` [m/s], `length` [s]).
+/// - double lane change: `vehicle_width` [m] (7/6 of the track), `course_scale` (1), `front_overhang`, `rear_overhang`
+///   [m] (0). follow path: `file`, or `radius` and `direction` = "left" | "right" of a circle.
+/// - all, with `longitudinal = true`: `hold_speed` (false) or `target_speed` [m/s]: drive and brakes keep it;
+///   `drive_torque`, `brake_torque` [N m]: a number, or as many as there are in `torque_time` [s], straight between.
+/// - drivers of both: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
+/// - signal: `file` (CSV with time[s], steer[rad], and optionally drive_torque[N m], brake_torque[N m]) or arrays
+/// `time`
+///   and `steer`.
+///
+/// Keys that other readers take from `[drive]` (speed, duration, step, ...) are left to them.
+/// @throws InputError with file, line and key: unknown manoeuvres with the nearest name, steer beyond 90 deg, a speed
+/// that is not > 0.
+[[nodiscard]] Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "veridyn/vehicle/tyre/tyre.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// How much geometry a bicycle model keeps.
+enum class BicycleGeometry {
+  kExact,       ///< slip angles with atan, forces of the front axle turned by delta
+  kSmallAngles  ///< slip = (v + a r)/u, cos(delta) = 1: with linear tyres the linear bicycle model
+};
+
+/// What the model says about one moment.
+template <typename Scalar>
+struct BicycleRates {
+  Scalar dv{0.0};                      ///< [m/s^2]
+  Scalar dr{0.0};                      ///< [rad/s^2]
+  Scalar lateral_acceleration{0.0};    ///< v' + r u, of the centre of gravity [m/s^2]
+  std::array<Scalar, 2> slip_angle{};  ///< front, rear [rad]
+  std::array<Scalar, 2> Fy{};          ///< of one tyre, front, rear [N]
+};
+
+/// The bicycle model: lateral velocity v and yaw rate r at a given forward speed u,
+///
+///     m (v' + r u) = 2 F_yf cos(delta) + 2 F_yr,   I_z r' = 2 a F_yf cos(delta) - 2 b F_yr
+///     alpha_f = delta - atan((v + a r)/u),         alpha_r = -atan((v - b r)/u)
+///
+/// with tyre forces at the static loads and zero slip ratio (Milliken & Milliken 1995, chapter 5). No load transfer:
+/// two tyres of an axle are alike. u must be > 0.
+template <typename Scalar, typename Tyre>
+struct BicycleModel {
+  VehicleParameters<Scalar> parameters;
+  Tyre front;
+  Tyre rear;
+  double gravity = 9.80665;  ///< for the static loads [m/s^2]
+  BicycleGeometry geometry = BicycleGeometry::kExact;
+
+  [[nodiscard]] BicycleRates<Scalar> rates(const Scalar& v, const Scalar& r, const Scalar& steer,
+                                           const Scalar& u) const {
+    using std::atan;
+    using std::cos;
+    const VehicleParameters<Scalar>& p = parameters;
+    const PerWheel<Scalar> load = static_loads(p, gravity);
+    const Scalar slope_f = (v + p.a * r) / u;
+    const Scalar slope_r = (v - p.b * r) / u;
+    const bool exact = geometry == BicycleGeometry::kExact;
+    BicycleRates<Scalar> out;
+    out.slip_angle = {exact ? Scalar(steer - atan(slope_f)) : Scalar(steer - slope_f),
+                      exact ? Scalar(-atan(slope_r)) : Scalar(-slope_r)};
+    const Scalar none(0.0);
+    out.Fy = {front.forces(load[kFrontLeft], none, out.slip_angle[0], none).Fy,
+              rear.forces(load[kRearLeft], none, out.slip_angle[1], none).Fy};
+    const Scalar lateral_f = exact ? Scalar(out.Fy[0] * cos(steer)) : out.Fy[0];
+    out.lateral_acceleration = 2.0 * (lateral_f + out.Fy[1]) / p.mass;
+    out.dv = out.lateral_acceleration - r * u;
+    out.dr = 2.0 * (p.a * lateral_f - p.b * out.Fy[1]) / p.I_z;
+    return out;
+  }
+};
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// A vehicle that needs no file.
+struct BuiltinVehicle {
+  std::string name;
+  std::string description;
+  VehicleParameters<double> parameters;
+  double speed = 20.0;  ///< at which it is driven in the published example [m/s]
+};
+
+/// - "reference": the full-size car of the reference manoeuvre, 1100 kg at 20 m/s;
+/// - "reference_1to5": the published model of one fifth its size, 8.8 kg at 4 m/s, with its rounded tyre stiffnesses
+///   (100 and 200 N/rad where exact similarity asks for 96 and 192) and roll inertia.
+[[nodiscard]] std::span<const BuiltinVehicle> builtin_vehicles();
+
+/// @throws InputError at `place` with the nearest name.
+[[nodiscard]] const BuiltinVehicle& builtin_vehicle(std::string_view name, std::string_view place = "vehicle");
+
+}  // namespace veridyn::vehicle

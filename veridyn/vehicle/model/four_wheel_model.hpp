@@ -1,0 +1,379 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "veridyn/vehicle/model/bicycle_model.hpp"
+#include "veridyn/vehicle/model/driver.hpp"
+#include "veridyn/vehicle/model/longitudinal.hpp"
+#include "veridyn/vehicle/model/trigonometry.hpp"
+#include "veridyn/vehicle/tyre/tyre.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/model/wheel_arrays.hpp"
+#include "veridyn/vehicle/model/wheels.hpp"
+
+namespace veridyn::vehicle {
+
+/// Where each state stands in a `FourWheelState`. Per-wheel states follow one another in wheel order.
+enum FourWheelIndex : Eigen::Index {
+  kX,                                   ///< centre of gravity, earth axes [m]
+  kY,                                   ///< [m]
+  kYaw,                                 ///< [rad]
+  kU,                                   ///< forward speed [m/s]
+  kV,                                   ///< leftward speed [m/s]
+  kR,                                   ///< yaw rate [rad/s]
+  kHeave,                               ///< of the sprung mass's centre of gravity above its rest [m]
+  kRoll,                                ///< left side up positive [rad]
+  kPitch,                               ///< nose down positive [rad]
+  kHeaveRate,                           ///< [m/s]
+  kRollRate,                            ///< [rad/s]
+  kPitchRate,                           ///< [rad/s]
+  kWheelHeight,                         ///< 4: of the unsprung masses above their rest [m]
+  kWheelHeightRate = kWheelHeight + 4,  ///< 4: [m/s]
+  kDistance = kWheelHeightRate + 4,     ///< travelled by the centre of gravity on its path [m]
+  kWheelSpin,                           ///< 4: [rad/s]; at rest without longitudinal dynamics
+  kLaggedSlip = kWheelSpin + 4,         ///< 4: slip angles [rad]; at rest without relaxation length
+  kFourWheelStates = kLaggedSlip + 4
+};
+template <typename Scalar>
+using FourWheelState = Eigen::Matrix<Scalar, kFourWheelStates, 1>;
+
+/// Which equations of motion.
+enum class FourWheelConvention {
+  /// From first principles, the default: the sprung mass moves in heave and gravity tilts it; energy is conserved.
+  kFirstPrinciples,
+  /// The similarity study whose curves `veridyn reproduce vehicle` draws again: the whole mass in heave and four
+  /// unsprung masses in addition; vertical forces are deviations from the static load, so that gravity does not tilt
+  /// the body and tyres may pull; contact points do not move with roll and pitch.
+  kSource
+};
+
+/// Below these speeds of a wheel [m/s] slip is what it would be at them: slips of a standing wheel have no meaning.
+inline constexpr double kLeastSpeedOfAngle = 1e-6;
+inline constexpr double kLeastSpeedOfRatio = 0.5;
+
+struct FourWheelOptions {
+  FourWheelConvention convention = FourWheelConvention::kFirstPrinciples;
+  /// kSmallAngles: slip angle delta - V_y/V_x and forces not turned by delta.
+  BicycleGeometry geometry = BicycleGeometry::kExact;
+  double gravity = 9.80665;  ///< [m/s^2]
+  /// 0: both front wheels steered alike; 1: Ackermann, their axes meet on the line of the rear axle. Between: linear.
+  double ackermann = 0.0;
+  double camber_per_roll = 0.0;  ///< inclination of the wheels as a share of the body's roll
+  /// Distance rolled in which the slip angle follows by 63 % [m]; 0: at once.
+  double relaxation_length = 0.0;
+  /// Without: u stays as it is, at the cost of `FourWheelRates::holding_force`, and wheels roll freely.
+  std::optional<LongitudinalParameters> longitudinal{};
+
+  /// Throws InputError("vehicle", ...) naming the first option that makes no sense.
+  void validate() const;
+};
+
+/// The controls as they reach the wheels; the same for all derivatives at one time.
+template <typename Scalar>
+struct WheelControls {
+  WheelArray<Scalar> steer;  ///< [rad]
+  WheelArray<Scalar> cos, sin;
+  WheelArray<double> drive, brake;  ///< torques [N m]
+};
+
+/// What the model says about one moment.
+template <typename Scalar>
+struct FourWheelRates {
+  FourWheelState<Scalar> derivative;
+  Scalar longitudinal_acceleration{0.0};  ///< u' - r v [m/s^2]
+  Scalar lateral_acceleration{0.0};       ///< v' + r u [m/s^2]
+  /// Constant speed only: the force that keeps u as it is, along the vehicle, at the road [N]; 0 otherwise.
+  Scalar holding_force{0.0};
+  WheelArray<Scalar> slip_angle;  ///< that the tyre feels [rad]
+  WheelArray<Scalar> slip_ratio;
+  WheelArray<Scalar> Fx, Fy;                ///< wheel axes [N]
+  WheelArray<Scalar> Fz;                    ///< normal force, static load included; 0 off the ground [N]
+  WheelArray<Scalar> suspension_travel;     ///< wheel less body corner: bump positive [m]
+  WheelArray<Scalar> suspension_force;      ///< on the body, less its static value [N]
+  WheelArray<Scalar> contact_x, contact_y;  ///< velocity of the contact point, vehicle axes [m/s]
+};
+
+/// The four-wheel model: the body in the plane (x, y, yaw) and in heave, roll and pitch, and four unsprung masses that
+/// move up and down between suspension and tyre. Its derivation is in docs/vehicle.md, "Four-wheel model".
+///
+/// Our convention (`FourWheelConvention::kFirstPrinciples`)
+/// - `mass` is the whole vehicle: lateral, longitudinal and yaw motion use it, and I_z. The sprung mass
+///   m_s = m - 4 M_w moves in heave, with I_x and I_y about its own centre of gravity. All mass is at one height c.
+///   The wheels' masses sit at the axles, so the sprung centre of gravity is x_s = 2 M_w (b - a)/m_s ahead of the
+///   whole one: the arms x_i of the corner heights count from there. Static tyre loads are m g b/(2 L), m g a/(2 L).
+/// - Exact planar motion, small roll and pitch. Height of a corner to second order, less its rest,
+///       z_i = z + y_i roll - x_i pitch + c/2 (roll^2 + pitch^2)
+///   and all generalised forces by virtual work from it: gravity's tilting moment m_s g c roll comes from the static
+///   corner loads. No gyroscopic terms (of order r roll'): good up to about 15 deg of roll and pitch.
+/// - Suspension: F_i = static + K_s (z_w - z_i) + C_s (z_w' - z_i') + K_b (travel_i - travel_opposite), both ways.
+/// - Tyre: F_z = max(0, static + K_t (z_road - z_w)): it cannot pull.
+/// - Tyre forces act at the road: contact velocities V_x = u - y_i r - c pitch', V_y = v + x_i r + c roll' make slips,
+///   and the same arms make moments: the power of the tyres is force times contact velocity. Aligning moments are
+///   neglected.
+/// - At constant speed the force that holds u acts at the road too and pitches the body.
+///
+/// Left and right are treated alike to the last bit: mirrored steering, road and state give mirrored rates.
+/// `tyres[i]` serves wheel i (side-dependent tyres come in mirrored copies). Usable with double and ceres::Jet; the
+/// functions do not allocate.
+template <typename Scalar, typename Tyre>
+class FourWheelModel {
+ public:
+  using State = FourWheelState<Scalar>;
+
+  /// Throws InputError("vehicle", ...) on inadmissible options; `parameters` must be admissible.
+  FourWheelModel(const VehicleParameters<Scalar>& parameters, const PerWheel<Tyre>& tyres,
+                 const FourWheelOptions& options = {});
+
+  /// Upright and at rest in its springs at the origin, driving straight ahead at `speed`, wheels rolling freely.
+  [[nodiscard]] State steady_start(const Scalar& speed) const;
+
+  /// Steer angles and torques of the wheels.
+  [[nodiscard]] WheelControls<Scalar> wheel_controls(const Scalar& steer, double drive_torque = 0.0,
+                                                     double brake_torque = 0.0) const;
+  [[nodiscard]] WheelControls<Scalar> wheel_controls(const Controls& controls) const {
+    return wheel_controls(Scalar(controls.steer), controls.drive_torque, controls.brake_torque);
+  }
+
+  /// Derivative and forces at `state` over a road of the heights `road` under the wheels. (Its definition is flattened:
+  /// compilers give up inlining small array operations where many tyres are compiled at once, and lose half the speed.)
+  void rates(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
+             FourWheelRates<Scalar>& out) const;
+
+  /// Position of the wheels from the vehicle's centre of gravity, x forward, y left [m].
+  [[nodiscard]] const WheelArray<Scalar>& wheel_x() const { return x_; }
+  [[nodiscard]] const WheelArray<Scalar>& wheel_y() const { return y_; }
+
+  [[nodiscard]] const VehicleParameters<Scalar>& parameters() const { return p_; }
+  [[nodiscard]] const PerWheel<Tyre>& tyres() const { return tyres_; }
+  [[nodiscard]] const FourWheelOptions& options() const { return options_; }
+  /// Static loads of the tyres [N], on the grade where there is one.
+  [[nodiscard]] const WheelArray<Scalar>& rest_loads() const { return rest_; }
+
+ private:
+  VehicleParameters<Scalar> p_;
+  PerWheel<Tyre> tyres_;
+  FourWheelOptions options_;
+  // What does not change, worked out once. In the source's convention `tilting_` and `contact_height_` are 0.
+  WheelArray<Scalar> x_, y_;                          ///< places of the wheels [m]
+  WheelArray<Scalar> arm_;                            ///< x from the sprung mass's centre of gravity [m]
+  WheelArray<Scalar> spring_, damper_, tyre_, rest_;  ///< stiffness and damping of each corner, static tyre load
+  std::array<Scalar, 2> bar_{};                       ///< front and rear [N/m]
+  Scalar tilting_{0.0};                               ///< m_s g c [N m/rad]
+  Scalar contact_height_{0.0};                        ///< c [m]
+  Scalar per_mass_{0.0}, per_heaving_mass_{0.0}, per_unsprung_mass_{0.0};
+  Scalar per_I_x_{0.0}, per_I_y_{0.0}, per_I_z_{0.0};
+  double gravity_along_ = 0.0;  ///< down the grade [m/s^2]
+};
+
+template <typename Scalar, typename Tyre>
+FourWheelModel<Scalar, Tyre>::FourWheelModel(const VehicleParameters<Scalar>& parameters, const PerWheel<Tyre>& tyres,
+                                             const FourWheelOptions& options)
+    : p_(parameters), tyres_(tyres), options_(options) {
+  options.validate();
+  const bool ours = options.convention == FourWheelConvention::kFirstPrinciples;
+  const double grade = options.longitudinal ? options.longitudinal->grade : 0.0;
+  const double gravity = options.gravity * std::cos(grade);  // square to the road
+  gravity_along_ = options.gravity * std::sin(grade);
+  const PerWheel<Scalar> loads = static_loads(p_, gravity);
+  const Scalar sprung = p_.mass - 4.0 * p_.unsprung_mass;
+  const Scalar x_s = ours ? Scalar(2.0 * p_.unsprung_mass * (p_.b - p_.a) / sprung) : Scalar(0.0);
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto w = static_cast<Eigen::Index>(i);
+    const bool front = is_front(i);
+    const Scalar half = 0.5 * (front ? p_.track_f : p_.track_r);
+    x_[w] = front ? p_.a : Scalar(-p_.b);
+    y_[w] = is_left(i) ? half : Scalar(-half);
+    arm_[w] = x_[w] - x_s;
+    spring_[w] = front ? p_.K_sf : p_.K_sr;
+    damper_[w] = front ? p_.C_sf : p_.C_sr;
+    tyre_[w] = front ? p_.K_tf : p_.K_tr;
+    rest_[w] = loads[i];
+  }
+  bar_ = {p_.K_bf, p_.K_br};
+  tilting_ = ours ? Scalar(sprung * gravity * p_.cg_height) : Scalar(0.0);
+  contact_height_ = ours ? p_.cg_height : Scalar(0.0);
+  per_mass_ = 1.0 / p_.mass;
+  per_heaving_mass_ = 1.0 / (ours ? sprung : p_.mass);
+  per_unsprung_mass_ = 1.0 / p_.unsprung_mass;
+  per_I_x_ = 1.0 / p_.I_x;
+  per_I_y_ = 1.0 / p_.I_y;
+  per_I_z_ = 1.0 / p_.I_z;
+}
+
+template <typename Scalar, typename Tyre>
+FourWheelState<Scalar> FourWheelModel<Scalar, Tyre>::steady_start(const Scalar& speed) const {
+  State state = State::Constant(Scalar(0.0));
+  state(kU) = speed;
+  if (options_.longitudinal) {
+    for (Eigen::Index i = 0; i < 4; ++i) state(kWheelSpin + i) = speed / options_.longitudinal->wheel_radius;
+  }
+  return state;
+}
+
+template <typename Scalar, typename Tyre>
+[[gnu::flatten]] WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar& steer,
+                                                                                    double drive_torque,
+                                                                                    double brake_torque) const {
+  using std::atan2;
+  using std::tan;
+  WheelControls<Scalar> out;
+  const Scalar none(0.0), one(1.0);
+  Scalar left = steer, right = steer;
+  if (options_.ackermann != 0.0) {
+    // The wheel's axis through the turning centre, which lies L/tan(steer) to the left of the rear axle's middle.
+    const Scalar slope = tan(steer), across = p_.track_f / (2.0 * p_.wheelbase()) * slope;
+    left += options_.ackermann * (atan2(slope, Scalar(1.0 - across)) - steer);
+    right += options_.ackermann * (atan2(slope, Scalar(1.0 + across)) - steer);
+  }
+  out.steer << left, right, none, none;
+  out.cos.setConstant(one);
+  out.sin.setConstant(none);
+  if (options_.geometry == BicycleGeometry::kExact) {
+    const SineCosine<Scalar> at_left = sine_cosine(left);
+    const SineCosine<Scalar> at_right = options_.ackermann == 0.0 ? at_left : sine_cosine(right);
+    out.cos << at_left.cos, at_right.cos, one, one;
+    out.sin << at_left.sin, at_right.sin, none, none;
+  }
+  out.drive.setZero();
+  out.brake.setZero();
+  if (options_.longitudinal) {
+    const LongitudinalParameters& l = *options_.longitudinal;
+    const double drive_f = 0.5 * l.front_drive_share * drive_torque, drive_r = 0.5 * drive_torque - drive_f;
+    const double brake_f = 0.5 * l.front_brake_share * brake_torque, brake_r = 0.5 * brake_torque - brake_f;
+    out.drive << drive_f, drive_f, drive_r, drive_r;
+    out.brake << brake_f, brake_f, brake_r, brake_r;
+  }
+  return out;
+}
+
+template <typename Scalar, typename Tyre>
+[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
+                                                          const PerWheel<double>& road,
+                                                          FourWheelRates<Scalar>& out) const {
+  using std::sqrt;
+  using Wheels = WheelArray<Scalar>;
+  const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
+  State& d = out.derivative;
+  const Scalar u = s(kU), v = s(kV), r = s(kR);
+  const Scalar roll = s(kRoll), pitch = s(kPitch);
+  const Scalar heave_rate = s(kHeaveRate), roll_rate = s(kRollRate), pitch_rate = s(kPitchRate);
+  const Wheels height = s.template segment<4>(kWheelHeight).array();
+  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
+
+  // Slips: the velocity of the contact points in vehicle axes, then in wheel axes.
+  const Wheels contact_x = (u - contact_height_ * pitch_rate) - r * y_;
+  const Wheels contact_y = (v + contact_height_ * roll_rate) + r * x_;
+  out.contact_x = contact_x;
+  out.contact_y = contact_y;
+  const Wheels along = controls.cos * contact_x + controls.sin * contact_y;
+  const Wheels speed = along.abs().max(Scalar(kLeastSpeedOfAngle));
+  Wheels slip_angle, slip_ratio, lag;
+  if (options_.geometry == BicycleGeometry::kExact) {
+    const Wheels across = controls.cos * contact_y - controls.sin * contact_x;
+    slip_angle = -arc_tangents<Scalar>(across / speed);
+  } else {
+    slip_angle = controls.steer - contact_y / contact_x;
+  }
+  lag.setConstant(Scalar(0.0));
+  if (options_.relaxation_length > 0.0) {
+    const Wheels lagged = s.template segment<4>(kLaggedSlip).array();
+    lag = (slip_angle - lagged) * speed / Scalar(options_.relaxation_length);
+    slip_angle = lagged;
+  }
+  slip_ratio.setConstant(Scalar(0.0));
+  const Wheels spin = s.template segment<4>(kWheelSpin).array();
+  if (options_.longitudinal) {
+    slip_ratio = (Scalar(options_.longitudinal->wheel_radius) * spin - along) / speed.max(Scalar(kLeastSpeedOfRatio));
+  }
+  out.slip_angle = slip_angle;
+  out.slip_ratio = slip_ratio;
+  d.template segment<4>(kLaggedSlip) = lag.matrix();
+
+  // Suspension and tyres up and down, as deviations from rest.
+  const Scalar body = s(kHeave) + 0.5 * contact_height_ * (roll * roll + pitch * pitch);
+  const Scalar body_rate = heave_rate + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
+  const Wheels travel = height - ((body - pitch * arm_) + roll * y_);
+  const Scalar bar_f = bar_[0] * (travel[0] - travel[1]), bar_r = bar_[1] * (travel[2] - travel[3]);
+  const Wheels bars(bar_f, -bar_f, bar_r, -bar_r);
+  const Wheels lift =
+      spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_)) + bars;
+  const Wheels ground{{Scalar(road[0]), Scalar(road[1]), Scalar(road[2]), Scalar(road[3])}};
+  Wheels normal = tyre_ * (ground - height);
+  if (ours) normal = normal.max(-rest_);
+  const Wheels Fz = (rest_ + normal).max(Scalar(0.0));
+  out.suspension_travel = travel;
+  out.suspension_force = lift;
+  out.Fz = Fz;
+  d.template segment<4>(kWheelHeight) = height_rate.matrix();
+  d.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
+  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
+  const Scalar lift_rolls = sum_of_wheels<Scalar>(y_ * lift), lift_pitches = sum_of_wheels<Scalar>(arm_ * lift);
+
+  // Forces of the tyres, in wheel axes, then in vehicle axes.
+  const Scalar camber = options_.camber_per_roll * roll;
+  const auto force = [&](std::size_t wheel) {
+    const auto w = static_cast<Eigen::Index>(wheel);
+    return tyres_[wheel].forces(Fz[w], slip_ratio[w], slip_angle[w], camber);
+  };
+  const TyreForces<Scalar> fl = force(0), fr = force(1), rl = force(2), rr = force(3);
+  const Wheels Fx(fl.Fx, fr.Fx, rl.Fx, rr.Fx), Fy(fl.Fy, fr.Fy, rl.Fy, rr.Fy);
+  out.Fx = Fx;
+  out.Fy = Fy;
+  const Wheels X = controls.cos * Fx - controls.sin * Fy;
+  const Wheels Y = controls.sin * Fx + controls.cos * Fy;
+  const Scalar sum_X = sum_of_wheels<Scalar>(X), sum_Y = sum_of_wheels<Scalar>(Y);
+
+  // The body in the plane.
+  Scalar longitudinal_acceleration, holding_force(0.0), pitching_force = sum_X, u_rate(0.0);
+  auto spin_up = d.template segment<4>(kWheelSpin);
+  spin_up.setConstant(Scalar(0.0));
+  if (options_.longitudinal) {
+    const LongitudinalParameters& l = *options_.longitudinal;
+    const Scalar drag = 0.5 * l.air_density * l.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
+    longitudinal_acceleration = (sum_X - drag) * per_mass_ - gravity_along_;
+    u_rate = longitudinal_acceleration + r * v;
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      // Coulomb friction: against the spin, and at rest as much as it takes to stay there.
+      const Scalar turning = controls.drive[i] - l.wheel_radius * Fx[i];
+      const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * Fz[i];
+      const bool rests = !(spin[i] > 0.0) && !(spin[i] < 0.0);
+      if (spin[i] > 0.0 || (rests && turning > friction)) spin_up[i] = (turning - friction) / l.wheel_inertia;
+      if (spin[i] < 0.0 || (rests && turning < -friction)) spin_up[i] = (turning + friction) / l.wheel_inertia;
+    }
+  } else {
+    longitudinal_acceleration = -(r * v);
+    holding_force = p_.mass * longitudinal_acceleration - sum_X;
+    if (ours) pitching_force = p_.mass * longitudinal_acceleration;
+  }
+  const Scalar lateral_acceleration = sum_Y * per_mass_;
+  out.longitudinal_acceleration = longitudinal_acceleration;
+  out.lateral_acceleration = lateral_acceleration;
+  out.holding_force = holding_force;
+  const Scalar r_rate = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
+  const SineCosine<Scalar> yaw = sine_cosine<Scalar>(s(kYaw));
+
+  // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
+  const Scalar tilting = tilting_ + contact_height_ * sum_lift;
+  const Scalar roll_moment = lift_rolls + tilting * roll + p_.cg_height * sum_Y;
+  const Scalar pitch_moment = tilting * pitch - lift_pitches - p_.cg_height * pitching_force;
+
+  d(kX) = u * yaw.cos - v * yaw.sin;
+  d(kY) = u * yaw.sin + v * yaw.cos;
+  d(kYaw) = r;
+  d(kU) = u_rate;
+  d(kV) = lateral_acceleration - r * u;
+  d(kR) = r_rate;
+  d(kHeave) = heave_rate;
+  d(kRoll) = roll_rate;
+  d(kPitch) = pitch_rate;
+  d(kHeaveRate) = sum_lift * per_heaving_mass_;
+  d(kRollRate) = roll_moment * per_I_x_;
+  d(kPitchRate) = pitch_moment * per_I_y_;
+  d(kDistance) = sqrt(u * u + v * v);
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,281 @@
+#include "veridyn/vehicle/model/vehicle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/model/builtin_vehicles.hpp"
+#include "veridyn/vehicle/tyre/tir_reader.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+constexpr double kGravity = 9.80665;
+
+using Given = std::array<bool, kVehicleFields.size()>;
+
+std::size_t index_of(std::string_view name) {
+  const auto found =
+      std::find_if(kVehicleFields.begin(), kVehicleFields.end(), [&](const VehicleField& f) { return name == f.name; });
+  return static_cast<std::size_t>(found - kVehicleFields.begin());
+}
+
+/// What a number typically is, where nothing that is asked depends on it.
+double typical(const VehicleParameters<double>& p, std::size_t field) {
+  const double L = p.wheelbase(), m = p.mass;
+  const PerWheel<double> load = static_loads(p, kGravity);
+  const std::string_view name = kVehicleFields[field].name;
+  if (name == "unsprung_mass") return 0.03 * m;
+  if (name == "track_f" || name == "track_r") return 0.6 * L;
+  if (name == "cg_height") return 0.2 * L;
+  if (name == "I_x") return 0.1 * m * L * L;
+  if (name == "I_y" || name == "I_z") return m * p.a * p.b;
+  // Per radian some twelve times the load that the tyre carries.
+  if (name == "C_f") return 12.0 * load[kFrontLeft];
+  if (name == "C_r") return 12.0 * load[kRearLeft];
+  const bool front = name.ends_with('f');
+  // Ride at 1.3 Hz, damped by a third; a tyre ten times as stiff.
+  const double corner = load[front ? kFrontLeft : kRearLeft] / kGravity;
+  const double K = corner * 8.2 * 8.2;
+  if (name == "K_sf" || name == "K_sr") return K;
+  if (name == "C_sf" || name == "C_sr") return 2.0 * 0.33 * std::sqrt(K * corner);
+  if (name == "K_tf" || name == "K_tr") return 10.0 * K;
+  return field_of(p, field);
+}
+
+std::vector<std::string_view> needed(VehicleNeeds needs) {
+  std::vector<std::string_view> names{"mass", "a", "b"};
+  if (needs == VehicleNeeds::kGeometry) return names;
+  names.insert(names.end(), {"I_z", "C_f", "C_r"});
+  if (needs == VehicleNeeds::kBicycle) return names;
+  for (const VehicleField& f : kVehicleFields) {
+    const std::string_view name = f.name;
+    const bool optional = name == "mu" || name == "K_bf" || name == "K_br";
+    if (!optional && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+/// Reads what the table gives of the parameters; both axles by one key first.
+void read_parameters(const StudyTable& table, VehicleParameters<double>& p, Given& given) {
+  constexpr std::array<std::array<std::string_view, 3>, 5> kBoth{{{"track", "track_f", "track_r"},
+                                                                  {"K_s", "K_sf", "K_sr"},
+                                                                  {"C_s", "C_sf", "C_sr"},
+                                                                  {"K_b", "K_bf", "K_br"},
+                                                                  {"K_t", "K_tf", "K_tr"}}};
+  for (const auto& [both, front, rear] : kBoth) {
+    if (!table.has(both)) continue;
+    for (const std::string_view name : {front, rear}) {
+      const std::size_t i = index_of(name);
+      field_of(p, i) = table.number(both, kVehicleFields[i].unit);
+      given[i] = true;
+    }
+  }
+  for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
+    if (!table.has(kVehicleFields[i].name)) continue;
+    field_of(p, i) = table.number(kVehicleFields[i].name, kVehicleFields[i].unit);
+    given[i] = true;
+  }
+}
+
+LongitudinalParameters read_longitudinal(const StudyTable& table) {
+  LongitudinalParameters l;
+  l.front_drive_share = table.number_or("front_drive_share", "1", l.front_drive_share);
+  l.front_brake_share = table.number_or("front_brake_share", "1", l.front_brake_share);
+  l.wheel_radius = table.number_or("wheel_radius", "m", l.wheel_radius);
+  l.wheel_inertia = table.number_or("wheel_inertia", "kg m^2", l.wheel_inertia);
+  l.drag_area = table.number_or("drag_area", "m^2", l.drag_area);
+  l.air_density = table.number_or("air_density", "kg/m^3", l.air_density);
+  l.rolling_resistance = table.number_or("rolling_resistance", "1", l.rolling_resistance);
+  l.grade = table.number_or("grade", "rad", l.grade);
+  if (const std::string why = inadmissible(l); !why.empty()) throw InputError(table.path(), why);
+  return l;
+}
+
+void check(const StudyTable& subject, const VehicleParameters<double>& p) {
+  const std::string why = inadmissible(p);
+  if (!why.empty()) throw InputError(subject.place(why.substr(0, why.find(' '))), why);
+}
+
+bool is_file(const std::string& tyre) { return tyre.ends_with(".tir") || tyre.ends_with(".TIR"); }
+
+/// The tyre file of an axle, and what it says beside the forces.
+TirFile read_axle(const std::filesystem::path& path, Vehicle& vehicle, std::string_view stiffness, Given& given) {
+  TirFile file = read_tir(path);
+  vehicle.inputs.push_back(path);
+  for (const std::string& warning : file.warnings)
+    vehicle.warnings.push_back(path.filename().string() + ": " + warning);
+  const std::size_t i = index_of(stiffness);
+  if (!given[i] && file.vertical_stiffness > 0.0) {
+    field_of(vehicle.parameters, i) = file.vertical_stiffness;
+    given[i] = true;
+  }
+  return file;
+}
+
+void read_tyres(const StudyTable& subject, Vehicle& vehicle, Given& given) {
+  VehicleParameters<double>& p = vehicle.parameters;
+  const StudyTable details = subject.table_or_empty("tyres");
+  std::string kind = subject.text_or("tyre", "linear");
+  const bool own_files = details.has("front") || details.has("rear");
+  if (own_files || is_file(kind)) {
+    const std::filesystem::path both = is_file(kind) ? subject.file("tyre") : std::filesystem::path();
+    const auto path_of = [&](const char* axle) {
+      if (details.has(axle)) return details.file(axle);
+      if (both.empty()) details.fail(axle, "is missing: both axles need a tyre file");
+      return both;
+    };
+    const std::filesystem::path front = path_of("front"), rear = path_of("rear");
+    AxleTyres<MagicFormulaTyre<double>> tyres;
+    // Files are of a tyre for one side: those of the right are brought to the left.
+    const auto left = [](const TirFile& file) { return file.on(TyreSide::kLeft); };
+    tyres.front = left(read_axle(front, vehicle, "K_tf", given));
+    tyres.rear = left(read_axle(rear, vehicle, "K_tr", given));
+    const PerWheel<double> load = static_loads(p, kGravity);
+    p.C_f = tyres.front.symmetric().cornering_stiffness(load[kFrontLeft]);
+    p.C_r = tyres.rear.symmetric().cornering_stiffness(load[kRearLeft]);
+    given[index_of("C_f")] = given[index_of("C_r")] = true;
+    vehicle.tyre_text =
+        front == rear ? "Magic Formula of " + front.filename().string()
+                      : fmt::format("Magic Formula of {} and {}", front.filename().string(), rear.filename().string());
+    vehicle.tyres = tyres;
+    return;
+  }
+  static const std::vector<std::string> kKinds{"linear", "fiala", "magic formula"};
+  kind = subject.choice_or("tyre", kKinds, "linear");
+  vehicle.tyre_text = kind;
+}
+
+/// Tyres that are described by the vehicle's own numbers.
+void make_tyres(const StudyTable& subject, Vehicle& vehicle) {
+  if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) return;
+  const VehicleParameters<double>& p = vehicle.parameters;
+  const StudyTable details = subject.table_or_empty("tyres");
+  const auto slip = [&](double C) { return details.positive_or("slip_stiffness", "N", 1.3 * C); };
+  const bool limited = std::isfinite(p.mu);
+  if (vehicle.tyre_text == "linear") {
+    vehicle.tyres = AxleTyres<LinearTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
+                                                  {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
+  } else if (!limited) {
+    subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
+  } else if (vehicle.tyre_text == "fiala") {
+    vehicle.tyres = AxleTyres<FialaTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
+                                                 {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
+  } else {
+    const PerWheel<double> load = static_loads(p, kGravity);
+    const auto axle = [&](double C, double nominal) {
+      SimpleMagicFormulaTyre<double> t;
+      t.stiffness = C;
+      t.slip_stiffness = slip(C);
+      t.mu = p.mu;
+      t.nominal_load = nominal;
+      t.C = details.number_or("C", "1", t.C);
+      t.E = details.number_or("E", "1", t.E);
+      t.mu_load = details.number_or("mu_load", "1", t.mu_load);
+      t.stiffness_saturation = details.number_or("stiffness_saturation", "1", t.stiffness_saturation);
+      if (!(t.C >= 1.0 && t.C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t.C));
+      if (!(t.E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t.E));
+      if (!(t.mu_load >= 0.0 && t.mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
+      return t;
+    };
+    vehicle.tyres =
+        AxleTyres<SimpleMagicFormulaTyre<double>>{axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
+  }
+}
+
+}  // namespace
+
+bool is_vehicle_study(const StudyTable& root) {
+  if (!root.is_table("subject")) return false;
+  const StudyTable subject = root.table("subject");
+  return subject.is_text("kind") && subject.text("kind") == "vehicle";
+}
+
+Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
+  Vehicle vehicle;
+  VehicleParameters<double>& p = vehicle.parameters;
+  Given given{};
+  static_cast<void>(subject.text_or("kind", "vehicle"));
+  if (subject.has("builtin")) {
+    const BuiltinVehicle& builtin = builtin_vehicle(subject.text("builtin"), subject.place("builtin"));
+    p = builtin.parameters;
+    vehicle.name = builtin.name;
+    vehicle.description = builtin.description;
+    vehicle.speed = builtin.speed;
+    given.fill(true);
+  }
+  vehicle.name = subject.text_or("name", vehicle.name.empty() ? "vehicle" : vehicle.name);
+  vehicle.description = subject.text_or("description", vehicle.description);
+  read_parameters(subject, p, given);
+  for (const std::string_view name : {"mass", "a", "b"}) {
+    const std::size_t i = index_of(name);
+    if (!given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));  // says that it is missing
+    // What is assumed below follows from these.
+    if (!(field_of(p, i) > 0.0))
+      subject.fail(name, fmt::format("is {:g} {}; must be > 0", field_of(p, i), kVehicleFields[i].unit));
+  }
+  read_tyres(subject, vehicle, given);
+  for (const std::string_view name : needed(needs)) {
+    const std::size_t i = index_of(name);
+    if (!given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));
+  }
+  for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
+    const std::string_view name = kVehicleFields[i].name;
+    if (given[i] || name == "mu" || name == "K_bf" || name == "K_br") continue;
+    field_of(p, i) = typical(p, i);
+    vehicle.assumed.push_back(fmt::format("{} = {:.4g} {}", name, field_of(p, i), kVehicleFields[i].unit));
+  }
+  check(subject, p);
+  make_tyres(subject, vehicle);
+  if (subject.has("longitudinal")) vehicle.longitudinal = read_longitudinal(subject.table("longitudinal"));
+  vehicle.ackermann = subject.number_or("ackermann", "1", 0.0);
+  vehicle.camber_per_roll = subject.number_or("camber_per_roll", "1", 0.0);
+  vehicle.relaxation_length = subject.number_or("relaxation_length", "m", 0.0);
+  return vehicle;
+}
+
+std::array<double, 2> cornering_stiffnesses(const Vehicle& vehicle, double gravity) {
+  const PerWheel<double> load = static_loads(vehicle.parameters, gravity);
+  return std::visit(
+      [&](const auto& t) {
+        return std::array<double, 2>{symmetric_tyre(t.front).cornering_stiffness(load[kFrontLeft]),
+                                     symmetric_tyre(t.rear).cornering_stiffness(load[kRearLeft])};
+      },
+      vehicle.tyres);
+}
+
+std::string write_vehicle_toml(const Vehicle& vehicle) {
+  std::string text = "[subject]\nkind = \"vehicle\"\n";
+  const auto quoted = [](const std::string& s) {
+    std::string out = "\"";
+    for (const char c : s) {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c == '\n' ? ' ' : c;
+    }
+    return out + "\"";
+  };
+  text += "name = " + quoted(vehicle.name) + "\n";
+  if (!vehicle.description.empty()) text += "description = " + quoted(vehicle.description) + "\n";
+  for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
+    const double value = field_of(vehicle.parameters, i);
+    if (std::isfinite(value)) {
+      text += fmt::format("{} = {}  # {}, {}\n", kVehicleFields[i].name, value, kVehicleFields[i].unit,
+                          kVehicleFields[i].meaning);
+    }
+  }
+  if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) {
+    if (!vehicle.inputs.empty()) {
+      text += "[subject.tyres]\n";
+      text += "front = " + quoted(std::filesystem::absolute(vehicle.inputs.front()).string()) + "\n";
+      text += "rear = " + quoted(std::filesystem::absolute(vehicle.inputs.back()).string()) + "\n";
+    }
+  } else {
+    text += "tyre = " + quoted(vehicle.tyre_text) + "\n";
+  }
+  return text;
+}
+
+}  // namespace veridyn::vehicle

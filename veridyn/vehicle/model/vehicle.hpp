@@ -1,0 +1,108 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "veridyn/core/study.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/model/longitudinal.hpp"
+#include "veridyn/vehicle/tyre/magic_formula.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// The tyres of both axles, as mounted on the left.
+template <typename Tyre>
+struct AxleTyres {
+  Tyre front;
+  Tyre rear;
+};
+
+/// Tyres of any kind, both axles of the same.
+using VehicleTyres = std::variant<AxleTyres<LinearTyre<double>>, AxleTyres<FialaTyre<double>>,
+                                  AxleTyres<SimpleMagicFormulaTyre<double>>, AxleTyres<MagicFormulaTyre<double>>>;
+
+/// The physical vehicle: what is measured in the workshop, and its tyres as far as known.
+struct Vehicle {
+  std::string name;
+  std::string description;  ///< source of the numbers, in words
+  VehicleParameters<double> parameters;
+  VehicleTyres tyres;
+  std::string tyre_text = "linear";  ///< "linear", "Magic Formula of car.tir"
+  LongitudinalParameters longitudinal;
+  double ackermann = 0.0;          ///< 0: front wheels steered alike, 1: Ackermann
+  double camber_per_roll = 0.0;    ///< inclination of the wheels as a share of the body's roll
+  double relaxation_length = 0.0;  ///< of the tyres [m]; 0: forces follow at once
+  std::optional<double> speed;     ///< of a built-in vehicle's published drive [m/s]
+  /// Numbers that the study does not give and nothing here depends on; "track_f = 1.35 m (0.6 L)".
+  std::vector<std::string> assumed;
+  std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> inputs;  ///< files read
+};
+
+/// What a vehicle is wanted for decides which numbers it must have.
+enum class VehicleNeeds {
+  kGeometry,  ///< mass, a, b: identification finds the rest
+  kBicycle,   ///< and I_z, and tyres: C_f, C_r where they are not described otherwise
+  kFourWheel  ///< and all others but mu and anti-roll bars
+};
+
+/// A vehicle study is one whose `[subject]` says `kind = "vehicle"`.
+[[nodiscard]] bool is_vehicle_study(const StudyTable& root);
+
+/// Reads a vehicle from `[subject]` (or a table of the same keys):
+///
+///     kind = "vehicle"
+///     name = "my car"
+///     builtin = "reference"          # start from a built-in vehicle; every key below then overrides it
+///     mass = "1100 kg"               # and the other names of kVehicleFields
+///     track = 1.5                    # both axles; so also K_s, C_s, K_b, K_t
+///     tyre = "linear"                # "fiala" (smooth friction limit, needs mu), "magic formula", or a .tir file
+///     ackermann = 0.0                # share of Ackermann geometry
+///     camber_per_roll = 0.0
+///     relaxation_length = "0.3 m"
+///     [subject.tyres]                # details, each optional
+///     front = "front.tir"            # tyre files of the axles, instead of `tyre`
+///     rear = "rear.tir"
+///     slip_stiffness = 100000        # linear, fiala, magic formula: dFx/dkappa [N]; 1.3 C of the axle when left out
+///     C = 1.3                        # magic formula: shape, curvature E, load dependence; stiffness is C_f, C_r at
+///     the E = 0.0                        # static load, friction mu mu_load = 0.0 stiffness_saturation = 0.0
+///     [subject.longitudinal]         # see LongitudinalParameters; names as there
+///
+/// Numbers that `needs` does not ask for are assumed where they are missing, and listed.
+/// @throws InputError with file, line and key: what no vehicle can have, what is missing.
+[[nodiscard]] Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs);
+
+/// Left and right tyres of both axles; those of the right are mirrored where sides differ.
+template <typename Tyre>
+[[nodiscard]] PerWheel<Tyre> mounted(const AxleTyres<Tyre>& tyres) {
+  if constexpr (requires { tyres.front.on_other_side(); }) {
+    return {tyres.front, tyres.front.on_other_side(), tyres.rear, tyres.rear.on_other_side()};
+  } else {
+    return {tyres.front, tyres.front, tyres.rear, tyres.rear};
+  }
+}
+
+/// The tyres that the bicycle takes: those without shifts, as its one tyre stands for left and right.
+template <typename Tyre>
+[[nodiscard]] Tyre symmetric_tyre(const Tyre& tyre) {
+  if constexpr (requires { tyre.symmetric(); }) {
+    return tyre.symmetric();
+  } else {
+    return tyre;
+  }
+}
+
+/// Cornering stiffnesses of one tyre at its static load, front and rear [N/rad].
+[[nodiscard]] std::array<double, 2> cornering_stiffnesses(const Vehicle& vehicle, double gravity = 9.80665);
+
+/// The vehicle as the TOML of a `[subject]`, to be read again by `read_vehicle`; tyre files by their absolute path.
+[[nodiscard]] std::string write_vehicle_toml(const Vehicle& vehicle);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/tyre/magic_formula.hpp"
+#include "veridyn/vehicle/similarity/similarity.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+
+namespace veridyn::vehicle {
+
+// Tyres and options of an exactly similar vehicle: together with `scaled(parameters, factors)` the four-wheel model of
+// the twin. Coefficients of friction and shape are plain numbers and stay. Loads scale with force, so that a tyre whose
+// stiffness depends on its load works at the same point of its curve where weight scales with force: for a Froude twin,
+// or under `ScaledVehicle::similar_gravity`.
+
+template <typename Scalar>
+[[nodiscard]] LinearTyre<Scalar> scaled(const LinearTyre<Scalar>& tyre, const ScaleFactors& factors) {
+  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
+}
+
+template <typename Scalar>
+[[nodiscard]] FialaTyre<Scalar> scaled(const FialaTyre<Scalar>& tyre, const ScaleFactors& factors) {
+  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
+}
+
+template <typename Scalar>
+[[nodiscard]] SimpleMagicFormulaTyre<Scalar> scaled(SimpleMagicFormulaTyre<Scalar> tyre, const ScaleFactors& factors) {
+  tyre.stiffness *= factors.force();
+  tyre.slip_stiffness *= factors.force();
+  tyre.nominal_load *= factors.force();
+  return tyre;
+}
+
+/// All coefficients of tyre files but the nominal load and the radius are dimensionless.
+template <typename Scalar>
+[[nodiscard]] MagicFormulaTyre<Scalar> scaled(MagicFormulaTyre<Scalar> tyre, const ScaleFactors& factors) {
+  tyre.coefficients.FNOMIN *= factors.force();
+  tyre.coefficients.UNLOADED_RADIUS *= factors.length;
+  tyre.range.load_min *= factors.force();
+  tyre.range.load_max *= factors.force();
+  return tyre;
+}
+
+/// Gravity scales as an acceleration: put the real one back to see what an unscaled weight does.
+[[nodiscard]] inline FourWheelOptions scaled(FourWheelOptions options, const ScaleFactors& factors) {
+  options.gravity *= factors.acceleration();
+  options.relaxation_length *= factors.length;
+  if (options.longitudinal) {
+    LongitudinalParameters& l = *options.longitudinal;
+    l.wheel_radius *= factors.length;
+    l.wheel_inertia *= factors.of("kg m^2");
+    // The air is the same: the area makes up for it.
+    l.drag_area *= factors.of("kg/m");
+  }
+  return options;
+}
+
+template <typename Tyre>
+[[nodiscard]] FourWheelModel<double, Tyre> scaled(const FourWheelModel<double, Tyre>& model,
+                                                  const ScaleFactors& factors) {
+  PerWheel<Tyre> tyres = model.tyres();
+  for (Tyre& tyre : tyres) tyre = scaled(tyre, factors);
+  return {scaled(model.parameters(), factors), tyres, scaled(model.options(), factors)};
+}
+
+template <typename Tyre>
+[[nodiscard]] BicycleModel<double, Tyre> scaled(const BicycleModel<double, Tyre>& model, const ScaleFactors& factors) {
+  return {scaled(model.parameters, factors), scaled(model.front, factors), scaled(model.rear, factors),
+          model.gravity * factors.acceleration(), model.geometry};
+}
+
+}  // namespace veridyn::vehicle

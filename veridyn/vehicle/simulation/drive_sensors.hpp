@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/vehicle/model/vehicle_trajectory.hpp"
+
+namespace veridyn::vehicle {
+
+/// Error model of one channel: y = bias + (1 + scale) y_true + white noise, at its own rate, stamped late.
+struct DriveSensor {
+  bool enabled = true;
+  double rate_Hz = 100.0;   ///< `rate`
+  double sigma = 0.0;       ///< `sigma`: standard deviation of the white noise
+  double bias = 0.0;        ///< `bias`: fixed
+  double bias_sigma = 0.0;  ///< `bias_sigma`: standard deviation of a further fixed bias, drawn once a drive
+  double scale = 0.0;       ///< `scale`: error of scale [-]
+  double delay_s = 0.0;     ///< `delay`: from event to time stamp
+  friend bool operator==(const DriveSensor&, const DriveSensor&) = default;
+};
+
+/// The sensors of a drive, in this order.
+enum class DriveSensorKind : std::size_t { kSteer, kSpeed, kYawRate, kAccelY, kAccelX, kLateralVelocity, kPosition };
+inline constexpr std::size_t kDriveSensors = 7;
+inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorNames{
+    "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "position"};
+inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorUnits{"rad",   "m/s", "rad/s", "m/s^2",
+                                                                               "m/s^2", "m/s", "m"};
+
+struct DriveSensorSet {
+  std::array<DriveSensor, kDriveSensors> sensors;
+  std::array<double, 3> accel_position{};  ///< of the accelerometer from the centre of gravity, forward, left, up [m]
+  /// A sensor on the body of a vehicle that rolls and pitches feels gravity: g sin(roll) along y, -g sin(pitch) along
+  /// x. Only where the trajectory has these angles.
+  bool feels_gravity = true;
+  double gravity = 9.80665;
+  [[nodiscard]] const DriveSensor& operator[](DriveSensorKind k) const { return sensors[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] DriveSensor& operator[](DriveSensorKind k) { return sensors[static_cast<std::size_t>(k)]; }
+};
+
+/// Sensors as production cars carry them for stability control, all at 100 Hz: yaw rate noise 0.1 deg/s with a bias of
+/// 0.2 deg/s, accel_y and accel_x noise 0.05 m/s^2 with a bias of 0.1 m/s^2, steer noise 0.1 deg with a bias of 0.1 deg
+/// (at the road wheels: a hand wheel resolved to 1.5 deg over a ratio of 15), speed noise 0.05 m/s; biases are drawn
+/// once a drive. Orders of magnitude of automotive yaw-rate and acceleration sensors (data sheets such as Bosch MM5.10
+/// promise offsets below 3 deg/s and 0.1 g before compensation; after the compensation at standstill that stability
+/// control does, the above is left). lateral_velocity (an optical sensor, 0.02 m/s) and position (GNSS with
+/// corrections, 0.05 m at 10 Hz) are off.
+[[nodiscard]] DriveSensorSet reference_drive_sensors();
+
+/// Reads `[sensors]`: `set = "reference"` (or "perfect": the same without errors), `accel_position`, `feels_gravity`,
+/// then a table for each sensor that differs, `[sensors.yaw_rate]` with `enabled`, `rate`, `sigma`, `bias`,
+/// `bias_sigma`, `scale`, `delay`.
+/// @throws InputError naming file, line and key.
+[[nodiscard]] DriveSensorSet read_drive_sensors(const StudyTable& table);
+
+/// What the sensors record of a drive: a recording in frame flu, each sensor on its own time base, values between the
+/// trajectory's samples on the straight line. Each sensor draws from a random stream of its own.
+[[nodiscard]] Recording record_drive(const VehicleTrajectory& trajectory, const DriveSensorSet& sensors,
+                                     std::uint64_t seed);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,339 @@
+#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+using Series = std::span<const double>;
+
+/// Mean over the last fifth of the drive.
+double final_mean(Series x) {
+  const std::size_t from = x.size() - std::max<std::size_t>(x.size() / 5, 1);
+  double sum = 0.0;
+  for (std::size_t i = from; i < x.size(); ++i) sum += x[i];
+  return sum / static_cast<double>(x.size() - from);
+}
+
+/// When x first rises through `level` (both times the sign of level), from sample `from` on; NaN when it does not.
+double crossing(Series time, Series x, double level, std::size_t from = 0) {
+  const double sign = level < 0.0 ? -1.0 : 1.0;
+  for (std::size_t i = from + 1; i < x.size(); ++i) {
+    const double before = sign * x[i - 1] - std::abs(level), after = sign * x[i] - std::abs(level);
+    if (before < 0.0 && after >= 0.0) return time[i - 1] + (time[i] - time[i - 1]) * before / (before - after);
+  }
+  return kNone;
+}
+
+/// The largest of sign x between two samples, refined by a parabola.
+struct Peak {
+  double time = kNone, value = kNone;
+};
+Peak peak_of(Series time, Series x, double sign, std::size_t from, std::size_t to) {
+  if (from >= to) return {};
+  std::size_t at = from;
+  for (std::size_t i = from; i < to; ++i) {
+    if (sign * x[i] > sign * x[at]) at = i;
+  }
+  if (at == 0 || at + 1 >= x.size()) return {time[at], x[at]};
+  const double left = x[at - 1] - x[at], right = x[at + 1] - x[at];
+  const double curvature = left + right;
+  if (!(sign * curvature < 0.0)) return {time[at], x[at]};
+  const double shift = std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5);
+  return {time[at] + shift * 0.5 * (time[at + 1] - time[at - 1]),
+          x[at] - 0.125 * (left - right) * (left - right) / curvature};
+}
+
+double at_time(Series time, Series x, double when) {
+  if (!(when >= time.front() && when <= time.back())) return kNone;
+  const auto after = std::lower_bound(time.begin(), time.end(), when);
+  const auto i = static_cast<std::size_t>(after - time.begin());
+  if (i == 0) return x[0];
+  return x[i - 1] + (x[i] - x[i - 1]) * (when - time[i - 1]) / (time[i] - time[i - 1]);
+}
+
+double largest(Series x) {
+  double most = 0.0;
+  for (const double value : x) most = std::max(most, std::abs(value));
+  return most;
+}
+
+std::vector<double> sideslip_of(const VehicleTrajectory& t) {
+  std::vector<double> beta(t.size());
+  for (std::size_t i = 0; i < t.size(); ++i) beta[i] = std::atan2(t.v[i], t.u[i]);
+  return beta;
+}
+
+/// Response of one quantity to a step, and its metrics.
+void add_step(std::vector<Metric>& list, const char* name, const char* unit, const VehicleTrajectory& t, Series x,
+              double steer, double begin) {
+  const double steady = final_mean(x);
+  const Peak peak = peak_of(t.time, x, steady < 0.0 ? -1.0 : 1.0, 0, x.size());
+  list.push_back({fmt::format("{}_gain", name), steady / steer, unit, "ISO 7401", "steady value per steer"});
+  list.push_back({fmt::format("{}_response_time", name), crossing(t.time, x, 0.9 * steady) - begin, "s", "ISO 7401",
+                  "from half the steer to 90 % of the steady value"});
+  // Without an overshoot the largest value is somewhere in the noise of the steady state.
+  const double overshoot = peak.value / steady - 1.0;
+  const bool peaks = overshoot > 1e-6;
+  list.push_back({fmt::format("{}_peak_response_time", name), peaks ? peak.time - begin : kNone, "s", "ISO 7401",
+                  "from half the steer to the first maximum"});
+  list.push_back(
+      {fmt::format("{}_overshoot", name), peaks ? overshoot : 0.0, "1", "ISO 7401", "over the steady value"});
+}
+
+/// Slope and intercept of y over x.
+struct Line {
+  double slope = kNone, intercept = kNone;
+  std::size_t count = 0;
+};
+Line fit(const std::vector<double>& x, const std::vector<double>& y) {
+  Line line{.count = x.size()};
+  if (x.size() < 3) return line;
+  double mx = 0.0, my = 0.0, xx = 0.0, xy = 0.0;
+  const auto n = static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mx += x[i] / n;
+    my += y[i] / n;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mx) * (x[i] - mx);
+    xy += (x[i] - mx) * (y[i] - my);
+  }
+  if (xx > 0.0) {
+    line.slope = xy / xx;
+    line.intercept = my - line.slope * mx;
+  }
+  return line;
+}
+
+}  // namespace
+
+std::vector<Metric> step_steer_metrics(const VehicleTrajectory& t) {
+  std::vector<Metric> list;
+  if (t.size() < 10) return list;
+  const double steer = final_mean(t.steer);
+  if (steer == 0.0) return list;
+  const double begin = crossing(t.time, t.steer, 0.5 * steer);
+  add_step(list, "yaw_rate", "1/s", t, t.r, steer, begin);
+  add_step(list, "lateral_acceleration", "m/s^2/rad", t, t.lateral_acceleration, steer, begin);
+  const std::vector<double> beta = sideslip_of(t);
+  const double sideslip = final_mean(beta);
+  list.push_back({"sideslip_gain", sideslip / steer, "1", "ISO 7401", "steady value per steer"});
+  double peak_time = kNone;
+  for (const Metric& metric : list) {
+    if (metric.name == "yaw_rate_peak_response_time") peak_time = metric.value;
+  }
+  list.push_back({"tb_factor", peak_time * std::abs(sideslip), "s rad", "ISO 7401",
+                  "peak response time of the yaw rate times the steady sideslip angle"});
+  if (t.roll.size() == t.size()) add_step(list, "roll", "1", t, t.roll, steer, begin);
+  return list;
+}
+
+std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& t) {
+  std::vector<Metric> list;
+  const double most = largest(t.steer);
+  if (t.size() < 10 || most == 0.0) return list;
+  const auto steers = [&](std::size_t i) { return std::abs(t.steer[i]) > 1e-9 * most; };
+  std::size_t first = 0, last = t.size() - 1;
+  while (!steers(first)) ++first;
+  while (!steers(last)) --last;
+  // Straight until the sample before the first that steers.
+  const double begin = t.time[first == 0 ? 0 : first - 1];
+  const double end = t.time[std::min(last + 1, t.size() - 1)];
+  const double second = t.steer[first] > 0.0 ? -1.0 : 1.0;  // sign of the second half
+  std::size_t reversal = first;
+  while (reversal <= last && second * t.steer[reversal] <= 0.0) ++reversal;
+  // While the steer lasts: what a vehicle that spins does later is no answer to it.
+  const Peak peak = peak_of(t.time, t.r, second, reversal, std::min(last + 2, t.size()));
+  const double c = std::cos(t.yaw[0]), s = std::sin(t.yaw[0]);
+  std::vector<double> side(t.size());
+  for (std::size_t i = 0; i < t.size(); ++i) side[i] = c * (t.y[i] - t.y[0]) - s * (t.x[i] - t.x[0]);
+  list.push_back({"lateral_displacement_1.07s", std::abs(at_time(t.time, side, begin + 1.07)), "m",
+                  "FMVSS 126, ISO 19365",
+                  "1.07 s after the beginning of steer; at least 1.83 m for cars up to 3500 kg"});
+  list.push_back({"second_yaw_rate_peak", peak.value, "rad/s", "FMVSS 126, ISO 19365", ""});
+  list.push_back({"yaw_rate_ratio_1.00s", at_time(t.time, t.r, end + 1.0) / peak.value, "1", "FMVSS 126, ISO 19365",
+                  "1.00 s after the end of steer; at most 0.35"});
+  list.push_back({"yaw_rate_ratio_1.75s", at_time(t.time, t.r, end + 1.75) / peak.value, "1", "FMVSS 126, ISO 19365",
+                  "1.75 s after the end of steer; at most 0.20"});
+  return list;
+}
+
+std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double wheelbase, double begin, double low,
+                                         double high) {
+  std::vector<double> acceleration, beyond, sideslip, roll;
+  const bool rolls = t.roll.size() == t.size();
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double speed = std::hypot(t.u[i], t.v[i]);
+    const double centripetal = speed * t.r[i];
+    const double size = std::abs(centripetal);
+    if (!(size >= low && size <= high && t.time[i] >= begin)) continue;
+    const double sign = centripetal < 0.0 ? -1.0 : 1.0;
+    acceleration.push_back(size);
+    beyond.push_back(sign * (t.steer[i] - wheelbase * t.r[i] / speed));
+    sideslip.push_back(sign * std::atan2(t.v[i], t.u[i]));
+    if (rolls) roll.push_back(sign * t.roll[i]);
+  }
+  const Line understeer = fit(acceleration, beyond);
+  const std::string range = fmt::format("over {:g} to {:g} m/s^2", low, high);
+  std::vector<Metric> list{{"understeer_gradient", understeer.slope, "rad s^2/m", "ISO 4138", range},
+                           {"understeer_gradient_deg_per_g", understeer.slope * 9.80665 * 180.0 / std::numbers::pi,
+                            "deg/g", "ISO 4138", range},
+                           {"sideslip_gradient", fit(acceleration, sideslip).slope, "rad s^2/m", "ISO 4138", range}};
+  if (rolls) list.push_back({"roll_gradient", fit(acceleration, roll).slope, "rad s^2/m", "ISO 4138", range});
+  return list;
+}
+
+std::vector<Metric> lane_change_metrics(const VehicleTrajectory& t, const DoubleLaneChange& course,
+                                        const BodyOutline& body) {
+  const LaneCheck check = check_lanes(t, course, body);
+  std::vector<Metric> list{{"within_lanes", check.within && check.finished ? 1.0 : 0.0, "1", "ISO 3888-1",
+                            !check.within    ? fmt::format("left lane {} at {:.2f} s", check.lane, check.time)
+                            : check.finished ? "passed without touching a cone"
+                                             : "the drive ended before the last lane did"},
+                           {"lane_margin", check.margin, "m", "ISO 3888-1",
+                            fmt::format("smallest, in lane {} at {:.2f} s; negative outside", check.lane, check.time)}};
+  const double entry = crossing(t.time, t.x, course.lanes[0].begin);
+  list.push_back({"entry_speed", std::isfinite(entry) ? at_time(t.time, t.u, entry) : kNone, "m/s", "ISO 3888-1", ""});
+  return list;
+}
+
+MeasuredFrequencyResponse measured_frequency_response(const VehicleTrajectory& t, double low_Hz, double high_Hz) {
+  MeasuredFrequencyResponse out;
+  if (t.size() < 64) throw InputError("frequency response", fmt::format("{} samples are too few", t.size()));
+  const double duration = t.time.back() - t.time.front();
+  const double rate = static_cast<double>(t.size() - 1) / duration;
+  const double wanted = std::min(std::max(2.0 / low_Hz, 8.0), 0.25 * duration);
+  const auto segment = static_cast<std::size_t>(wanted * rate);
+  const auto respond = [&](Series x) {
+    return numerics::spectral_response(t.steer, x, rate, segment, std::max(low_Hz, 1.0 / wanted), high_Hz);
+  };
+  out.yaw_rate = respond(t.r);
+  out.lateral_acceleration = respond(t.lateral_acceleration);
+  out.sideslip = respond(sideslip_of(t));
+  if (t.roll.size() == t.size()) out.roll = respond(t.roll);
+  return out;
+}
+
+std::vector<Metric> frequency_response_metrics(const MeasuredFrequencyResponse& response) {
+  std::vector<Metric> list;
+  const auto& r = response.yaw_rate;
+  if (r.size() < 3) return list;
+  const auto gain = [&](std::size_t i) { return std::abs(r[i].response); };
+  double steady = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < r.size() && r[i].frequency_Hz <= 1.26 * r[0].frequency_Hz; ++i, ++count)
+    steady += gain(i);
+  steady /= static_cast<double>(count);
+  double bandwidth = kNone, coherence = 1.0;
+  std::size_t peak = 0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    coherence = std::min(coherence, r[i].coherence);
+    if (gain(i) > gain(peak)) peak = i;
+    const double limit = steady / std::numbers::sqrt2;
+    if (i > 0 && std::isnan(bandwidth) && gain(i - 1) >= limit && gain(i) < limit) {
+      const double share = (gain(i - 1) - limit) / (gain(i - 1) - gain(i));
+      bandwidth = r[i - 1].frequency_Hz + share * (r[i].frequency_Hz - r[i - 1].frequency_Hz);
+    }
+  }
+  const auto phase_at = [](const std::vector<numerics::ResponseEstimate>& x, double frequency) {
+    const auto near =
+        std::ranges::min_element(x, {}, [&](const auto& one) { return std::abs(one.frequency_Hz - frequency); });
+    return near == x.end() || std::abs(near->frequency_Hz - frequency) > 0.2 ? kNone : std::arg(near->response);
+  };
+  const char* source = "ISO 7401";
+  list.push_back({"yaw_rate_gain", steady, "1/s", source, "at the lowest frequencies"});
+  list.push_back({"yaw_rate_bandwidth", bandwidth, "Hz", source, "gain down by 3 dB"});
+  list.push_back({"yaw_rate_peak_frequency", r[peak].frequency_Hz, "Hz", source, "of the largest gain"});
+  list.push_back({"yaw_rate_peak_ratio", gain(peak) / steady, "1", source, "largest over steady gain"});
+  list.push_back({"yaw_rate_phase_1Hz", phase_at(r, 1.0), "rad", source, ""});
+  list.push_back({"lateral_acceleration_phase_1Hz", phase_at(response.lateral_acceleration, 1.0), "rad", source, ""});
+  list.push_back({"smallest_coherence", coherence, "1", source, "of yaw rate and steer over the band"});
+  return list;
+}
+
+std::vector<Metric> peak_metrics(const VehicleTrajectory& t, double gravity) {
+  std::vector<Metric> list;
+  if (t.size() == 0) return list;
+  const double lateral = largest(t.lateral_acceleration);
+  list.push_back(
+      {"peak_lateral_acceleration", lateral, "m/s^2", "", fmt::format("{:.3f} of gravity", lateral / gravity)});
+  list.push_back({"peak_yaw_rate", largest(t.r), "rad/s", "", ""});
+  list.push_back({"peak_sideslip", largest(sideslip_of(t)), "rad", "", "at the centre of gravity"});
+  if (t.roll.size() == t.size()) list.push_back({"peak_roll", largest(t.roll), "rad", "", ""});
+  if (t.Fz[0].size() == t.size()) {
+    double transfer = 0.0, least = std::numeric_limits<double>::infinity();
+    std::size_t lightest = 0;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const double left = t.Fz[kFrontLeft][i] + t.Fz[kRearLeft][i], right = t.Fz[kFrontRight][i] + t.Fz[kRearRight][i];
+      if (left + right > 0.0) transfer = std::max(transfer, std::abs(left - right) / (left + right));
+      for (std::size_t wheel = 0; wheel < kWheels; ++wheel) {
+        const double share = t.Fz[wheel][i] / t.Fz[wheel][0];
+        if (t.Fz[wheel][0] > 0.0 && share < least) {
+          least = share;
+          lightest = wheel;
+        }
+      }
+    }
+    list.push_back(
+        {"peak_load_transfer_ratio", transfer, "1", "", "|left - right|/(left + right); at 1 a side has lifted"});
+    list.push_back({"smallest_wheel_load", least, "1", "",
+                    fmt::format("over its value at the start, wheel {}", kWheelNames[lightest])});
+  }
+  return list;
+}
+
+std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvre& manoeuvre,
+                                      const VehicleParameters<double>& parameters, double gravity) {
+  std::vector<Metric> list;
+  switch (manoeuvre.kind) {
+    case ManoeuvreKind::kStepSteer:
+      if (t.end == SimulationEnd::kCompleted) list = step_steer_metrics(t);
+      break;
+    case ManoeuvreKind::kSineWithDwell:
+      list = sine_with_dwell_metrics(t);
+      break;
+    case ManoeuvreKind::kSweep:
+    case ManoeuvreKind::kRandomSteer:
+      if (t.end == SimulationEnd::kCompleted && t.size() >= 64) {
+        // No higher than the samples can tell, and nothing from a drive too short for the band.
+        const double duration = t.time.back() - t.time.front();
+        const double high = std::min(manoeuvre.end_frequency, 0.5 * static_cast<double>(t.size() - 1) / duration);
+        const double low = std::max(manoeuvre.frequency, 8.0 / duration);
+        if (low < high) list = frequency_response_metrics(measured_frequency_response(t, low, high));
+      }
+      break;
+    case ManoeuvreKind::kSteadyStateCircle:
+      // On a given circle the beginning is the driver's way onto it.
+      list = steady_state_metrics(t, parameters.wheelbase(),
+                                  manoeuvre.radius != 0.0 ? 0.15 * manoeuvre.default_duration : 0.0);
+      break;
+    case ManoeuvreKind::kDoubleLaneChange:
+      if (manoeuvre.course) list = lane_change_metrics(t, *manoeuvre.course, manoeuvre.body);
+      break;
+    case ManoeuvreKind::kReference:
+    case ManoeuvreKind::kSine:
+    case ManoeuvreKind::kContinuousSine:
+    case ManoeuvreKind::kFishhook:
+    case ManoeuvreKind::kFollowPath:
+    case ManoeuvreKind::kSignal:
+      break;
+  }
+  const std::vector<Metric> peaks = peak_metrics(t, gravity);
+  list.insert(list.end(), peaks.begin(), peaks.end());
+  if (std::ranges::any_of(t.road, [](const std::vector<double>& height) { return largest(height) > 0.0; })) {
+    const std::vector<Metric> ride = ride_metrics(t);
+    list.insert(list.end(), ride.begin(), ride.end());
+  }
+  return list;
+}
+
+}  // namespace veridyn::vehicle

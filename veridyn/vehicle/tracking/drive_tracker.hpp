@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/recursive/regression_tracker.hpp"
+#include "veridyn/numerics/modulating_kernel.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// How a vehicle is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these.
+struct DriveTrackOptions : estimation::TrackerOptions {
+  double pass_Hz = 2.0;       ///< `pass_band` of the causal filters' delayed rows [Hz]
+  std::string estimate_file;  ///< `estimate`: estimate.json to start from; without it the subject's C_f, C_r, I_z
+  double start_sigma = 0.3;   ///< `start_sigma`: relative standard deviation of the subject's stiffnesses at the start
+  DriveTrackOptions();
+  /// @throws InputError naming file, line and key.
+  [[nodiscard]] static DriveTrackOptions read(const StudyTable& table);
+};
+
+/// What is followed.
+enum class TrackedAxle : std::size_t {
+  kFront,      ///< compliance of the front axle: C_f
+  kRear,       ///< of the rear axle: C_r
+  kUndersteer  ///< understeer gradient, from quasi-steady cornering too
+};
+inline constexpr std::size_t kTrackedAxles = 3;
+inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleNames{"C_f", "C_r", "understeer_gradient"};
+inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad", "rad s^2/m"};
+
+/// A change that one of the regressions revealed.
+struct DriveChange {
+  TrackedAxle axle = TrackedAxle::kFront;
+  estimation::Change change;
+};
+
+/// One sample of a drive, all at one moment; NaN where missing.
+struct DriveSample {
+  double time = 0.0;
+  double steer = 0.0, speed = 0.0, yaw_rate = 0.0, accel_y = 0.0;  ///< SI, ISO 8855, at the centre of gravity
+};
+
+/// History of the followed parameters, in their own units (the regressions' histories are those of compliances).
+struct DriveTrackHistory {
+  std::vector<double> time;
+  std::vector<double> value, sigma;  ///< sigma infinite before it is usable
+  std::vector<bool> held;            ///< not excited now: stays where it was
+  std::vector<double> suspicion;     ///< of the change detector: 1 is an alarm
+};
+
+/// Cornering stiffnesses followed sample by sample.
+///
+/// The axles' equations with the lateral velocity eliminated by differentiation and the yaw inertia known (k = I_z/m):
+///     d/dt(u delta) - a_y + r u - a r' = 1/C_f [m/(2L) d/dt(u (b a_y + k r'))] + const          (front)
+///     r u - a_y + b r'                 = 1/C_r [m/(2L) d/dt(u (a a_y - k r'))] + const          (rear)
+///     delta - L r/u = K a_y + T r' + const                                                       (understeer)
+/// (the first two divided by the speed, so that their noise hardly depends on it), each a recursive regression with
+/// forgetting, held where it is not excited (steady cornering excites only the last, straight driving none), watched
+/// for changes. The constants are noise-free columns. Rows come from modulating kernels over the past: what is said at
+/// time t is about `latency_s` earlier, and no later sample enters. Work and memory per sample are bounded (but for the
+/// history). A hole of missing or unusable samples (slower than `min_speed`) empties the filters; estimates stay.
+class DriveTracker {
+ public:
+  /// @param start mass, a, b and I_z as given; stiffnesses begin at its C_f and C_r
+  /// @param noise standard deviation of one sample's white noise of steer, speed, yaw_rate, accel_y
+  /// @param estimate where it begins instead, with its error bars; null: the start
+  DriveTracker(const VehicleParameters<double>& start, const DriveTrackOptions& options, double min_speed_mps,
+               double rate_Hz, const std::array<double, 4>& noise, const estimation::Estimate* estimate = nullptr);
+
+  /// Is there a row yet? Before it the values are those of the start.
+  [[nodiscard]] bool started() const { return !trackers_.empty(); }
+
+  /// Takes the next sample, `1/rate` after the last one (a larger step is a hole).
+  /// @return the changes that it reveals
+  std::vector<DriveChange> append(const DriveSample& sample);
+
+  [[nodiscard]] double latency_s() const;
+  [[nodiscard]] double rate_Hz() const { return rate_Hz_; }
+  [[nodiscard]] double row_rate_Hz() const { return rate_Hz_ / static_cast<double>(stride_); }
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] double last_time() const { return last_; }  ///< of the last sample; -infinity before
+  /// Of C_f0/C_f, C_r0/C_r or the understeer gradient over K_0 = m/(2L) (b/C_f0 + a/C_r0), where 0 is the start.
+  /// Only when started.
+  [[nodiscard]] const estimation::RegressionTracker& regression(TrackedAxle axle) const;
+  [[nodiscard]] const DriveTrackHistory& history(TrackedAxle axle) const;
+  [[nodiscard]] const std::vector<DriveChange>& changes() const { return changes_; }
+  [[nodiscard]] double value(TrackedAxle axle) const;
+  [[nodiscard]] double sigma(TrackedAxle axle) const;
+  [[nodiscard]] const VehicleParameters<double>& start() const { return start_; }
+  /// The estimates as they stand, for estimate.json.
+  [[nodiscard]] estimation::Estimate estimate(const std::string& subject) const;
+
+ private:
+  static constexpr std::size_t kColumns = 8;
+  void form_row(std::vector<DriveChange>& found);
+  void begin(double speed);
+  void remember(double time);
+  [[nodiscard]] double filtered(std::size_t column, const numerics::FirKernel& kernel) const;
+
+  [[nodiscard]] double scale(TrackedAxle axle) const;
+  [[nodiscard]] double lag_scale() const;
+  [[nodiscard]] double begin_value(TrackedAxle axle) const;
+  [[nodiscard]] double begin_sigma(TrackedAxle axle) const;
+
+  VehicleParameters<double> start_;
+  DriveTrackOptions options_;
+  double min_speed_;
+  double rate_Hz_;
+  std::array<double, 4> noise_;
+  double sigma_f_, sigma_r_;  // relative, at the start
+  std::string begin_text_;
+  numerics::ModulatingKernel kernel_;
+  std::size_t stride_ = 1;
+  std::vector<std::array<double, kColumns>> ring_;
+  std::size_t filled_ = 0;
+  std::size_t next_ = 0;
+  std::size_t since_row_ = 0;
+  std::size_t rows_ = 0;
+  double last_ = -std::numeric_limits<double>::infinity();
+  double next_history_ = -std::numeric_limits<double>::infinity();
+  std::vector<estimation::RegressionTracker> trackers_;
+  std::array<DriveTrackHistory, kTrackedAxles> history_;
+  std::vector<DriveChange> changes_;
+};
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "veridyn/vehicle/tyre/tyre.hpp"
+
+namespace veridyn::vehicle {
+
+/// A brush tyre: the linear tyre with a friction limit that it reaches smoothly. Fiala (1954), VDI-Zeitschrift 96:973;
+/// Pacejka, Tyre and Vehicle Dynamics, 2nd ed. (2006), section 3.2 (parabolic pressure, one friction coefficient). With
+/// S the length of (C_x kappa, C alpha) and N = mu F_z, along that vector
+///
+///     F = S - S^2/(3 N) + S^3/(27 N^2)   for S < 3 N,   N beyond: the whole contact patch slides
+///
+/// The slip angle itself stands in place of its tangent, so that for small slip this is `LinearTyre` with the same
+/// numbers. Twice continuously differentiable away from zero slip; at zero slip the slope is continuous.
+template <typename Scalar>
+struct FialaTyre {
+  Scalar stiffness{60000.0};        ///< C [N/rad]
+  Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
+  Scalar mu{1.0};                   ///< may be infinite: then the linear tyre
+
+  [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
+                                          const Scalar& /*camber*/) const {
+    using std::sqrt;
+    if (!(load > 0.0)) return {};
+    const Scalar Fx = slip_stiffness * slip_ratio;
+    const Scalar Fy = stiffness * slip_angle;
+    const Scalar squared = Fx * Fx + Fy * Fy;
+    if (!(squared > 0.0) || !(mu < std::numeric_limits<double>::infinity())) return {Fx, Fy};
+    const Scalar S = sqrt(squared);
+    const Scalar limit = mu * load;
+    const Scalar s = S / (3.0 * limit);
+    const Scalar share = s < 1.0 ? Scalar(1.0 - s + s * s / 3.0) : Scalar(limit / S);
+    return {share * Fx, share * Fy};
+  }
+
+  [[nodiscard]] Scalar cornering_stiffness(const Scalar& load) const { return load > 0.0 ? stiffness : Scalar(0.0); }
+
+  template <typename Other>
+  [[nodiscard]] FialaTyre<Other> cast() const {
+    return {Other(stiffness), Other(slip_stiffness), Other(mu)};
+  }
+};
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "veridyn/vehicle/tyre/tyre.hpp"
+
+namespace veridyn::vehicle {
+
+/// A tyre whose force is proportional to its slip, whatever the load: F_y = C alpha, F_x = C_x kappa, shortened to the
+/// friction circle mu F_z where it would be longer (direction kept). With the default infinite mu it is the tyre of the
+/// linear bicycle model. The slope jumps at the circle.
+template <typename Scalar>
+struct LinearTyre {
+  Scalar stiffness{60000.0};        ///< C [N/rad]
+  Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
+  Scalar mu{std::numeric_limits<double>::infinity()};
+
+  [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
+                                          const Scalar& /*camber*/) const {
+    using std::sqrt;
+    Scalar Fx = slip_stiffness * slip_ratio;
+    Scalar Fy = stiffness * slip_angle;
+    if (!(mu < std::numeric_limits<double>::infinity())) return {Fx, Fy};
+    const Scalar limit = mu * load;
+    const Scalar squared = Fx * Fx + Fy * Fy;
+    if (squared <= limit * limit) return {Fx, Fy};
+    const Scalar share = limit / sqrt(squared);
+    return {share * Fx, share * Fy};
+  }
+
+  [[nodiscard]] Scalar cornering_stiffness(const Scalar& /*load*/) const { return stiffness; }
+};
+
+}  // namespace veridyn::vehicle

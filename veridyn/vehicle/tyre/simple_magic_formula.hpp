@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+
+#include "veridyn/vehicle/tyre/magic_formula.hpp"
+#include "veridyn/vehicle/tyre/tyre.hpp"
+
+namespace veridyn::vehicle {
+
+/// The Magic Formula in the few numbers that a drive log can tell (Pacejka, Tyre and Vehicle Dynamics, 2nd ed. 2006,
+/// section 4.3.1): no shifts, no camber, equal friction in all directions.
+///
+///     F_y = D sin(C atan(B a - E (B a - atan(B a)))),   D = mu F_z,   B = K/(C D)
+///
+/// with both load dependences of the full formula in one number each, x = F_z/F_z0:
+///
+///     K = stiffness x (1 + q^2)/(1 + q^2 x^2)      q = stiffness_saturation (1/PKY2; 0: in proportion to the load)
+///     mu = mu/(1 + p (x - 1))                      p = mu_load (-PDY2/PDY1; 0: constant; within [0, 1))
+///
+/// Combined slip: the vector (K_x kappa, K alpha) is shortened to the curve's value at its length, so that
+/// |F| <= mu F_z always. Mirror-symmetric; smooth where F_z > 0 and E <= 1. With C = 1.3, E = 0 the peak is at B a
+/// = 2.9.
+template <typename Scalar>
+struct SimpleMagicFormulaTyre {
+  Scalar stiffness{60000.0};        ///< K at the nominal load [N/rad]
+  Scalar slip_stiffness{100000.0};  ///< K_x at the nominal load [N per unit of slip ratio]
+  Scalar mu{1.0};                   ///< peak friction at the nominal load
+  Scalar C{1.3};                    ///< shape: 1 to 2
+  Scalar E{0.0};                    ///< curvature: at most 1
+  Scalar nominal_load{4000.0};      ///< F_z0 [N]
+  Scalar stiffness_saturation{0.0};
+  Scalar mu_load{0.0};
+
+  [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
+                                          const Scalar& /*camber*/) const {
+    using std::sin;
+    using std::sqrt;
+    if (!(load > 0.0)) return {};
+    const Scalar x = load / nominal_load;
+    const Scalar gain = load_gain(x);
+    const Scalar Fx = gain * slip_stiffness * slip_ratio;
+    const Scalar Fy = gain * stiffness * slip_angle;
+    const Scalar squared = Fx * Fx + Fy * Fy;
+    if (!(squared > 0.0)) return {Fx, Fy};
+    const Scalar linear = sqrt(squared);
+    const Scalar D = mu * load / (1.0 + mu_load * (x - 1.0));
+    const Scalar y = linear / (C * D);
+    const Scalar share = D * sin(magic_formula::angle(C, E, y)) / linear;
+    return {share * Fx, share * Fy};
+  }
+
+  [[nodiscard]] Scalar cornering_stiffness(const Scalar& load) const {
+    if (!(load > 0.0)) return Scalar(0.0);
+    return stiffness * load_gain(Scalar(load / nominal_load));
+  }
+
+  template <typename Other>
+  [[nodiscard]] SimpleMagicFormulaTyre<Other> cast() const {
+    return {Other(stiffness),    Other(slip_stiffness),       Other(mu),     Other(C), Other(E),
+            Other(nominal_load), Other(stiffness_saturation), Other(mu_load)};
+  }
+
+ private:
+  [[nodiscard]] Scalar load_gain(const Scalar& x) const {
+    const Scalar q = stiffness_saturation * stiffness_saturation;
+    return x * (1.0 + q) / (1.0 + q * x * x);
+  }
+};
+
+}  // namespace veridyn::vehicle
