@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -230,7 +230,7 @@ SavitzkyGolay::SavitzkyGolay(int order, int half_width, int derivative, double r
     basis.row(j) = legendre(u, 0);
     wanted.row(j) = unit * legendre(u, derivative);
   }
-  const Eigen::MatrixXd fit = basis.householderQr().solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::MatrixXd fit = HouseholderQr(basis).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
   taps_ = (wanted * fit).transpose();
 }
 

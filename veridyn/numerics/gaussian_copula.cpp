@@ -1,7 +1,5 @@
 #include "veridyn/numerics/gaussian_copula.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +7,8 @@
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -41,17 +41,14 @@ NearestCorrelation nearest_correlation(const Eigen::MatrixXd& symmetric, double 
   result.matrix = symmetric;
   result.matrix.diagonal().setOnes();
   if (symmetric.rows() == 0) return result;
-  const auto least = [](const Eigen::MatrixXd& m) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues()(0);
-  };
+  const auto least = [](const Eigen::MatrixXd& m) { return symmetric_eigenvalues(m)(0); };
   if (least(result.matrix) >= floor) return result;
   result.converged = false;
   Eigen::MatrixXd correction = Eigen::MatrixXd::Zero(symmetric.rows(), symmetric.cols());
   for (int round = 0; round < kRounds && !result.converged; ++round) {
     const Eigen::MatrixXd shifted = result.matrix - correction;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shifted);
-    const Eigen::MatrixXd projected =
-        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(floor).asDiagonal() * eigen.eigenvectors().transpose();
+    const SymmetricEigen eigen = symmetric_eigen(shifted);
+    const Eigen::MatrixXd projected = from_eigen(eigen.vectors, eigen.values.cwiseMax(floor));
     correction = projected - shifted;
     Eigen::MatrixXd next = 0.5 * (projected + projected.transpose());
     next.diagonal().setOnes();
@@ -75,9 +72,9 @@ GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation) {
   VERIDYN_ASSERT(correlation.rows() == correlation.cols());
   VERIDYN_ASSERT(correlation.size() == 0 || correlation.cwiseAbs().maxCoeff() <= 1.0 + 1e-12);
   repair_ = nearest_correlation(correlation.unaryExpr([](double rho) { return normal_correlation_for_uniform(rho); }));
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(repair_.matrix);
-  VERIDYN_ASSERT(repair_.matrix.size() == 0 || cholesky.info() == Eigen::Success);
-  factor_ = cholesky.matrixL();
+  const Cholesky cholesky(repair_.matrix);
+  VERIDYN_ASSERT(repair_.matrix.size() == 0 || cholesky.positive_definite());
+  factor_ = cholesky.L();
 }
 
 void GaussianCopula::couple(Eigen::Ref<Eigen::MatrixXd> normal) const {

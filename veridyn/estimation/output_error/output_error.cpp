@@ -3,9 +3,6 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,6 +11,7 @@
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -279,9 +277,9 @@ class Estimation {
     }
     Eigen::VectorXd length = root.colwise().norm().transpose();
     for (double& l : length) l = l > 0.0 ? l : 1.0;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(root * length.cwiseInverse().asDiagonal()),
-                                                Eigen::ComputeFullV | Eigen::ComputeThinU);
-    const Eigen::VectorXd& s = svd.singularValues();
+    const numerics::SingularValues svd =
+        numerics::singular_values(root * length.cwiseInverse().asDiagonal(), numerics::SingularVectors::kThinUAndFullV);
+    const Eigen::VectorXd& s = svd.values;
     const double largest = s.size() > 0 ? s(0) : 0.0;
     if (!(largest > 0.0)) {
       return end(OutputErrorTermination::kNothingToEstimate, "the outputs do not depend on any free parameter");
@@ -295,14 +293,14 @@ class Estimation {
         inverse(j) = 1.0 / s(j);
         continue;
       }
-      share += svd.matrixV().col(j).cwiseAbs2();
-      Eigen::VectorXd combination = svd.matrixV().col(j).cwiseQuotient(length);
+      share += svd.V.col(j).cwiseAbs2();
+      Eigen::VectorXd combination = svd.V.col(j).cwiseQuotient(length);
       combination /= combination.norm();
       Eigen::VectorXd all = Eigen::VectorXd::Zero(result_.theta.size());
       for (Index i = 0; i < n; ++i) all(free[static_cast<std::size_t>(i)]) = combination(i);
       result_.unidentifiable.push_back({all, kInfinity, describe_combination(combination, names)});
     }
-    const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.matrixV() * inverse.asDiagonal();
+    const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.V * inverse.asDiagonal();
     const Eigen::MatrixXd white = back * back.transpose();
     Eigen::MatrixXd chosen = white;
     const double values = static_cast<double>(result_.values);

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::estimation::internal {
@@ -217,7 +218,7 @@ void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) cons
       for (Index b = 0; b < count; ++b)
         part(a, b) = noise_(seen[static_cast<std::size_t>(a)], seen[static_cast<std::size_t>(b)]);
     }
-    block = part.llt().matrixL().solve(block).eval();
+    block = numerics::Cholesky(part).solve_lower(block);
     for (Index a = 0; a < count; ++a) all.row(seen[static_cast<std::size_t>(a)]) = block.row(a);
   }
 }
@@ -257,15 +258,11 @@ void OutputErrorProblem::set_noise(const Eigen::MatrixXd& noise) {
   }
   // Outputs that repeat each other would make R singular: correlations are kept off 1.
   const Eigen::VectorXd sd = noise_.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * noise_ * sd.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  if (eigen.eigenvalues()(0) < 1e-10) {
-    const Eigen::MatrixXd repaired =
-        eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(1e-10).asDiagonal() * eigen.eigenvectors().transpose();
-    noise_ = sd.asDiagonal() * repaired * sd.asDiagonal();
-  }
-  const Eigen::LLT<Eigen::MatrixXd> llt(noise_);
-  whitener_ = llt.matrixL().solve(Eigen::MatrixXd::Identity(outputs_, outputs_));
+  const Eigen::VectorXd inverse_sd = sd.cwiseInverse();
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(numerics::scaled(inverse_sd, noise_, inverse_sd));
+  if (eigen.values(0) < 1e-10)
+    noise_ = numerics::scaled(sd, numerics::from_eigen(eigen.vectors, eigen.values.cwiseMax(1e-10)), sd);
+  whitener_ = numerics::Cholesky(noise_).solve_lower(Eigen::MatrixXd::Identity(outputs_, outputs_));
 }
 
 void OutputErrorProblem::start_noise() {
@@ -309,7 +306,8 @@ double OutputErrorProblem::update_noise() {
       Eigen::VectorXd e = Eigen::VectorXd::Zero(outputs_);
       for (const Index j : seen) e(j) = r(k, j);
       if (!missing.empty()) {
-        const Eigen::MatrixXd gain = noise_(seen, seen).llt().solve(Eigen::MatrixXd(noise_(seen, missing))).transpose();
+        const Eigen::MatrixXd gain =
+            numerics::Cholesky(noise_(seen, seen)).solve(Eigen::MatrixXd(noise_(seen, missing))).transpose();
         e(missing) = gain * e(seen);
         sum(missing, missing) += noise_(missing, missing) - gain * noise_(seen, missing);
       }
@@ -343,11 +341,9 @@ RowMatrix OutputErrorProblem::shared_root() const {
     Eigen::MatrixXd shared = s.triangle.matrix.block(0, own, size, n);
     Index rank = 0;
     if (own > 0) {
-      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(size, own);
-      qr.setThreshold(1e-10);
-      qr.compute(s.triangle.matrix.topLeftCorner(size, own));
-      shared = (qr.householderQ().adjoint() * shared).eval();
-      rank = qr.rank();
+      numerics::Eliminated eliminated = numerics::eliminate(s.triangle.matrix.topLeftCorner(size, own), shared, 1e-10);
+      shared = std::move(eliminated.rest);
+      rank = eliminated.rank;
     }
     stacked.middleRows(at, size - rank) = shared.bottomRows(size - rank);
     at += size - rank;
@@ -378,10 +374,9 @@ Eigen::MatrixXd OutputErrorProblem::coloured_filling(const ResidualSpectrum& spe
     RowMatrix sensitivity = rows.middleCols(own, n);
     if (own > 0) {
       const Eigen::MatrixXd& triangle = segments_[s].triangle.matrix;
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-      solver.setThreshold(1e-10);
-      solver.compute(triangle.leftCols(own));
-      sensitivity -= rows.leftCols(own) * solver.solve(triangle.middleCols(own, n));
+      sensitivity -=
+          rows.leftCols(own) *
+          numerics::shortest_least_squares(triangle.leftCols(own), Eigen::MatrixXd(triangle.middleCols(own, n)), 1e-10);
     }
     parts[s] = coloured_information(spectrum, sensitivity, outputs_);
   });
@@ -402,7 +397,7 @@ double OutputErrorProblem::negative_log_likelihood() const {
       if (options_.noise != OutputNoise::kFull) {
         for (const Index j : seen) sum += 0.5 * std::log(noise_(j, j));
       } else {
-        const Eigen::MatrixXd L = noise_(seen, seen).llt().matrixL();
+        const Eigen::MatrixXd L = numerics::Cholesky(noise_(seen, seen)).L();
         sum += L.diagonal().array().log().sum();
       }
     }

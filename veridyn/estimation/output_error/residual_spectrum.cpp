@@ -1,12 +1,12 @@
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -103,10 +103,9 @@ ResidualSpectrum residual_spectrum(const std::vector<RowMatrix>& residuals, Eige
   }
   for (auto& density : result.density) {
     for (Eigen::Index a = 0; a < p; ++a) density(a, a) = density(a, a).real();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> eigen(density);
-    if (eigen.eigenvalues()(0) >= kLeastDensity) continue;
-    density = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kLeastDensity).asDiagonal() *
-              eigen.eigenvectors().adjoint();
+    const numerics::HermitianEigen eigen = numerics::hermitian_eigen(density);
+    if (eigen.values(0) >= kLeastDensity) continue;
+    density = numerics::from_eigen(eigen.vectors, eigen.values.cwiseMax(kLeastDensity));
   }
   return result;
 }

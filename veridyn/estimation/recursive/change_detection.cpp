@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
@@ -29,7 +29,7 @@ double chain_run_length(const Distribution& F, double reference, double threshol
     for (int j = 1; j < count; ++j)
       A(i, j) -= edge[static_cast<std::size_t>(j - i + count)] - edge[static_cast<std::size_t>(j - i - 1 + count)];
   }
-  const Eigen::VectorXd length = A.partialPivLu().solve(Eigen::VectorXd::Ones(count));
+  const Eigen::VectorXd length = numerics::solve_linear(A, Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
   return length(0) > 0.0 ? length(0) : 1e15;
 }
 

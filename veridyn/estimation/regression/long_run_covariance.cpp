@@ -1,10 +1,11 @@
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/numerics/filters.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -64,16 +65,15 @@ void set_reliability(LongRunCovariance& result, double rows, Eigen::Index window
 Eigen::MatrixXd raised_to(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& reference, double floor) {
   Eigen::VectorXd scale = reference.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (double& s : scale) s = s > 0.0 ? s : 1.0;
-  const Eigen::MatrixXd unit = scale.cwiseInverse().asDiagonal() * reference * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> basis(unit);
-  const Eigen::VectorXd root = basis.eigenvalues().cwiseMax(1e-14).cwiseSqrt();
-  const Eigen::MatrixXd back = scale.asDiagonal() * basis.eigenvectors() * root.asDiagonal();
-  const Eigen::MatrixXd forth =
-      root.cwiseInverse().asDiagonal() * basis.eigenvectors().transpose() * scale.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd relative = forth * matrix * forth.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ratio(0.5 * (relative + relative.transpose()));
-  const Eigen::MatrixXd vectors = back * ratio.eigenvectors();
-  return vectors * ratio.eigenvalues().cwiseMax(floor).asDiagonal() * vectors.transpose();
+  const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
+  const numerics::SymmetricEigen basis =
+      numerics::symmetric_eigen(numerics::scaled(inverse_scale, reference, inverse_scale));
+  const Eigen::VectorXd root = basis.values.cwiseMax(1e-14).cwiseSqrt();
+  const Eigen::MatrixXd back = numerics::scaled(scale, basis.vectors, root);
+  const Eigen::MatrixXd forth = numerics::scaled(root.cwiseInverse(), basis.vectors.transpose(), inverse_scale);
+  const Eigen::MatrixXd relative = numerics::product_transposed(numerics::product(forth, matrix), forth);
+  const numerics::SymmetricEigen ratio = numerics::symmetric_eigen(0.5 * (relative + relative.transpose()));
+  return numerics::from_eigen(numerics::product(back, ratio.vectors), ratio.values.cwiseMax(floor));
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
-#include <Eigen/SVD>
 #include <limits>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
 namespace veridyn::estimation {
 
@@ -14,20 +15,20 @@ OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle) {
   Eigen::VectorXd length = triangle.leftCols(n).colwise().norm();
   for (double& l : length) l = l > 0.0 ? l : 1.0;
   const Eigen::MatrixXd unit = triangle.topLeftCorner(n, n) * length.cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(unit, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  result.singular_values = svd.singularValues();
+  const numerics::SingularValues svd = numerics::singular_values(unit, numerics::SingularVectors::kFullUAndV);
+  result.singular_values = svd.values;
   const double largest = result.singular_values(0), smallest = result.singular_values(n - 1);
   result.condition_number = smallest > 0.0 ? largest / smallest : std::numeric_limits<double>::infinity();
   result.full_rank = smallest > 1e-13 * largest;
   const Eigen::VectorXd inverse =
       result.singular_values.unaryExpr([&](double s) { return s > 1e-13 * largest ? 1.0 / s : 0.0; });
-  const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.matrixV() * inverse.asDiagonal();
-  result.theta = back * (svd.matrixU().transpose() * triangle.col(n).head(n));
-  result.inverse_normal = back * back.transpose();
+  const Eigen::MatrixXd back = numerics::scaled(length.cwiseInverse(), svd.V, inverse);
+  result.theta = back * (svd.U.transpose() * triangle.col(n).head(n));
+  result.inverse_normal = numerics::product_transposed(back, back);
   // With full rank this is the last diagonal element; otherwise part of z stands beside rows of R_x that are zero.
   result.residual_sum_of_squares = (triangle.col(n) - triangle.leftCols(n) * result.theta).squaredNorm();
   if (result.full_rank) {
-    result.theta = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(triangle.col(n).head(n));
+    result.theta = numerics::solve_upper(triangle.topLeftCorner(n, n), Eigen::VectorXd(triangle.col(n).head(n)));
     result.residual_sum_of_squares = triangle(n, n) * triangle(n, n);
   }
   return result;

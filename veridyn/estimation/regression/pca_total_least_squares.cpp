@@ -1,10 +1,10 @@
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
+
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -13,8 +13,7 @@ namespace {
 std::pair<Eigen::MatrixXd, Eigen::MatrixXd> split_space(const Eigen::MatrixXd& A) {
   const Eigen::Index n = A.rows();
   if (A.cols() == 0) return {Eigen::MatrixXd::Zero(n, 0), Eigen::MatrixXd::Identity(n, n)};
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd Q = numerics::HouseholderQr(A).Q();
   return {Q.leftCols(A.cols()), Q.rightCols(n - A.cols())};
 }
 
@@ -50,7 +49,7 @@ PcaTotalLeastSquares pca_total_least_squares(const Eigen::MatrixXd& triangle, co
   if (!(b_z.norm() > 1e-10)) return result;
   const Eigen::MatrixXd free = split_space(b_z).second;  // keeps h_z
   const Eigen::VectorXd particular = (B * (-b_z / b_z.squaredNorm())).head(n);
-  const Eigen::MatrixXd moves = weight.asDiagonal() * (B.topRows(n) * free);
+  const Eigen::MatrixXd moves = weight.asDiagonal() * numerics::product(B.topRows(n), free);
   const auto [unexcited, excited] = split_space(moves);
   result.unexcited = unexcited;
   result.excited = excited;
@@ -61,15 +60,16 @@ PcaTotalLeastSquares pca_total_least_squares(const Eigen::MatrixXd& triangle, co
   result.inverse_on_excited = Eigen::MatrixXd::Zero(n, n);
   if (excited.cols() > 0) {
     const Eigen::MatrixXd E = weight.cwiseInverse().asDiagonal() * excited;
-    Eigen::MatrixXd inner = E.transpose() * result.jacobian * E;
+    Eigen::MatrixXd inner = numerics::product(numerics::transposed_product(E, result.jacobian), E);
     const Eigen::VectorXd scale = inner.diagonal().cwiseAbs().cwiseSqrt();
     if (!(scale.minCoeff() > 0.0)) return result;
     const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
-    inner = (inverse_scale.asDiagonal() * inner * inverse_scale.asDiagonal()).eval();
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(inner);
-    if (cholesky.info() != Eigen::Success) return result;
-    const Eigen::MatrixXd inverse = cholesky.solve(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()));
-    result.inverse_on_excited = E * (inverse_scale.asDiagonal() * inverse * inverse_scale.asDiagonal()) * E.transpose();
+    inner = numerics::scaled(inverse_scale, inner, inverse_scale);
+    const numerics::Cholesky cholesky(inner);
+    if (!cholesky.positive_definite()) return result;
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(inner.rows(), inner.cols());
+    const Eigen::MatrixXd inverse = numerics::scaled(inverse_scale, cholesky.solve(identity), inverse_scale);
+    result.inverse_on_excited = numerics::product_transposed(numerics::product(E, inverse), E);
   }
   result.solved = true;
   return result;

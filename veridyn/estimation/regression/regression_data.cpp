@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <set>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
 
@@ -44,8 +44,7 @@ void check_error_covariance(const Eigen::MatrixXd& W, Eigen::Index size) {
       if (product > 0.0) correlation(i, j) = W(i, j) / product;
     }
   }
-  const double smallest =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(correlation, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double smallest = numerics::symmetric_eigenvalues(correlation)(0);
   if (smallest < -1e-9) {
     throw InputError(
         "regression.error_covariance",

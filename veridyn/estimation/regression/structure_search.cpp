@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -62,12 +62,11 @@ class Search {
     if (k == 0) return triangle_.col(n).squaredNorm();
     Eigen::MatrixXd part(triangle_.rows(), k);
     for (Index j = 0; j < k; ++j) part.col(j) = triangle_.col(columns[static_cast<std::size_t>(j)]);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(part);
+    const numerics::HouseholderQr qr(part);
     for (Index j = 0; j < k; ++j) {
-      if (!(std::abs(qr.matrixQR()(j, j)) > kDependent * part.col(j).norm()))
-        return std::numeric_limits<double>::infinity();
+      if (!(std::abs(qr.R()(j, j)) > kDependent * part.col(j).norm())) return std::numeric_limits<double>::infinity();
     }
-    const Eigen::VectorXd rest = qr.householderQ().adjoint() * triangle_.col(n);
+    const Eigen::VectorXd rest = qr.apply_transposed(Eigen::VectorXd(triangle_.col(n)));
     return rest.tail(rest.size() - k).squaredNorm();
   }
 
@@ -80,11 +79,10 @@ class Search {
       part.col(j) = triangle_.col(columns[static_cast<std::size_t>(j)]);
       X.col(j) = X_.col(columns[static_cast<std::size_t>(j)]);
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(part);
-    const Eigen::MatrixXd R = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
-    const Eigen::VectorXd theta = qr.solve(triangle_.col(triangle_.cols() - 1));
+    const numerics::HouseholderQr qr(part);
+    const Eigen::VectorXd theta = qr.solve(Eigen::VectorXd(triangle_.col(triangle_.cols() - 1)));
     // Leverage x_k' (X'X)^-1 x_k = |R^-T x_k|^2.
-    const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(k, k));
+    const Eigen::MatrixXd inverse = numerics::solve_upper(qr.R(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(k, k)));
     const Eigen::VectorXd leverage = (X * inverse).rowwise().squaredNorm();
     const Eigen::VectorXd residual = z_ - X * theta;
     double sum = 0.0;
@@ -234,7 +232,7 @@ class Search {
   void drop_small_terms() {
     while (model_.size() > always_.size()) {
       const RegressionData part = select_columns(data_, model_);
-      const Eigen::VectorXd theta = part.regressors.colPivHouseholderQr().solve(part.regressand);
+      const Eigen::VectorXd theta = numerics::least_squares(part.regressors, part.regressand);
       const double rms = (part.regressors * theta).norm();
       Index weakest = -1;
       double least = options_.least_contribution * rms;

@@ -1,12 +1,13 @@
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -36,10 +37,9 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
       correlation(i, j) = W(noisy[static_cast<std::size_t>(i)], noisy[static_cast<std::size_t>(j)]) / (sd(i) * sd(j));
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(correlation);
   Eigen::Index null_count = 0;
-  while (null_count < noisy_count &&
-         eigen.eigenvalues()(null_count) < kNullOfCovariance * eigen.eigenvalues()(noisy_count - 1))
+  while (null_count < noisy_count && eigen.values(null_count) < kNullOfCovariance * eigen.values(noisy_count - 1))
     ++null_count;
 
   // Columns of T: exact columns and null directions of W, then the whitened ones.
@@ -51,11 +51,10 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
   for (Eigen::Index i = 0; i < noisy_count; ++i) {
     const Eigen::Index row = noisy[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < null_count; ++j) {
-      T_exact(row, static_cast<Eigen::Index>(exact.size()) + j) = eigen.eigenvectors()(i, j) / sd(i);
+      T_exact(row, static_cast<Eigen::Index>(exact.size()) + j) = eigen.vectors(i, j) / sd(i);
     }
     for (Eigen::Index j = 0; j < white_count; ++j) {
-      T_white(row, j) =
-          eigen.eigenvectors()(i, null_count + j) / (sd(i) * std::sqrt(eigen.eigenvalues()(null_count + j)));
+      T_white(row, j) = eigen.vectors(i, null_count + j) / (sd(i) * std::sqrt(eigen.values(null_count + j)));
     }
   }
   return {.exact = T_exact, .white = T_white};
@@ -76,29 +75,31 @@ WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd
     Eigen::VectorXd length = (triangle * T_exact).colwise().norm();
     for (double& l : length) l = l > 0.0 ? l : 1.0;
     T_exact = T_exact * length.cwiseInverse().asDiagonal();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * T_exact, Eigen::ComputeFullV);
+    const numerics::SingularValues svd =
+        numerics::singular_values(numerics::product(triangle, T_exact), numerics::SingularVectors::kFullV);
     Eigen::Index rank = 0;
-    while (rank < exact_count && svd.singularValues()(rank) > kDependentColumns * svd.singularValues()(0)) ++rank;
+    while (rank < exact_count && svd.values(rank) > kDependentColumns * svd.values(0)) ++rank;
     if (rank == exact_count) {
       T_rank = T_exact;  // untouched columns lose no digits
     } else {
-      T_rank = T_exact * svd.matrixV().leftCols(rank);
-      result.null_basis = T_exact * svd.matrixV().rightCols(exact_count - rank);
+      T_rank = T_exact * svd.V.leftCols(rank);
+      result.null_basis = T_exact * svd.V.rightCols(exact_count - rank);
     }
   }
   result.exact = T_rank.cols();
 
   Eigen::MatrixXd T(size, T_rank.cols() + white_count);
   T << T_rank, T_white;
-  const Eigen::MatrixXd R = retriangulate(triangle * T);
+  const Eigen::MatrixXd R = retriangulate(numerics::product(triangle, T));
   const Eigen::MatrixXd R22 = R.bottomRightCorner(white_count, white_count);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(R22, Eigen::ComputeFullV);
-  result.singular_values = svd.singularValues();
-  const Eigen::MatrixXd V = svd.matrixV();
-  result.basis = T_white * V;
+  const numerics::SingularValues svd = numerics::singular_values(R22, numerics::SingularVectors::kFullV);
+  result.singular_values = svd.values;
+  const Eigen::MatrixXd& V = svd.V;
+  result.basis = numerics::product(T_white, V);
   if (T_rank.cols() > 0) {
-    const Eigen::MatrixXd R12V = R.topRightCorner(T_rank.cols(), white_count) * V;
-    result.basis -= T_rank * R.topLeftCorner(T_rank.cols(), T_rank.cols()).triangularView<Eigen::Upper>().solve(R12V);
+    const Eigen::MatrixXd R12V = numerics::product(R.topRightCorner(T_rank.cols(), white_count), V);
+    result.basis -=
+        numerics::product(T_rank, numerics::solve_upper(R.topLeftCorner(T_rank.cols(), T_rank.cols()), R12V));
   }
   return result;
 }
@@ -107,30 +108,29 @@ CorrectedNormalMatrix corrected_normal_matrix(const Eigen::MatrixXd& triangle, c
                                               double s_squared) {
   const Eigen::Index n = triangle.cols() - 1;
   CorrectedNormalMatrix result;
-  const auto R = triangle.leftCols(n);
+  const Eigen::MatrixXd R = triangle.leftCols(n);
   Eigen::VectorXd length = R.colwise().norm();
   for (double& l : length) l = l > 0.0 ? l : 1.0;
   const Eigen::VectorXd inverse_length = length.cwiseInverse();
   const Eigen::MatrixXd unit = R * inverse_length.asDiagonal();
-  const Eigen::MatrixXd noise =
-      s_squared * (inverse_length.asDiagonal() * W.topLeftCorner(n, n) * inverse_length.asDiagonal());
-  const Eigen::MatrixXd normal = unit.transpose() * unit;
-  result.matrix = R.transpose() * R - s_squared * W.topLeftCorner(n, n);
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(normal);
-  if (cholesky.info() != Eigen::Success) {
+  const Eigen::MatrixXd noise = s_squared * numerics::scaled(inverse_length, W.topLeftCorner(n, n), inverse_length);
+  const Eigen::MatrixXd normal = numerics::transposed_product(unit, unit);
+  result.matrix = numerics::transposed_product(R, R) - s_squared * W.topLeftCorner(n, n);
+  const numerics::Cholesky cholesky(normal);
+  if (!cholesky.positive_definite()) {
     result.noise_share = 1.0;
     return result;
   }
   // Eigenvalues of noise relative to X'X are shares in [0, 1) for a generic problem.
-  const Eigen::MatrixXd half = cholesky.matrixL().solve(noise);
-  const Eigen::MatrixXd relative = cholesky.matrixL().solve(half.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (relative + relative.transpose()));
-  result.noise_share = eigen.eigenvalues()(n - 1);
+  const Eigen::MatrixXd half = cholesky.solve_lower(noise);
+  const Eigen::MatrixXd relative = cholesky.solve_lower(half.transpose());
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(0.5 * (relative + relative.transpose()));
+  result.noise_share = eigen.values(n - 1);
   if (!(result.noise_share < 1.0 - 1e-9)) return result;
-  const Eigen::VectorXd kept = (1.0 - eigen.eigenvalues().array()).inverse().sqrt().matrix();
-  const Eigen::MatrixXd root = cholesky.matrixU().solve(Eigen::MatrixXd(eigen.eigenvectors() * kept.asDiagonal()));
+  const Eigen::VectorXd kept = (1.0 - eigen.values.array()).inverse().sqrt().matrix();
+  const Eigen::MatrixXd root = cholesky.solve_upper(eigen.vectors * kept.asDiagonal());
   const Eigen::MatrixXd scaled = inverse_length.asDiagonal() * root;
-  result.inverse = scaled * scaled.transpose();
+  result.inverse = numerics::product_transposed(scaled, scaled);
   return result;
 }
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -20,8 +20,8 @@ constexpr std::size_t kBlock = 512;
 
 /// Root of a positive semidefinite matrix: an LDL' would do, but errors may be exactly zero or fully correlated.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 void fill_normal(Eigen::MatrixXd& m, numerics::RandomStream& random) {

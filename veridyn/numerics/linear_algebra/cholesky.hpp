@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace veridyn::numerics {
+
+/// A = L L' of a symmetric positive definite matrix (the lower triangle is read).
+class Cholesky {
+ public:
+  explicit Cholesky(const Eigen::MatrixXd& matrix);
+
+  /// Whether the matrix was positive definite to working precision; nothing else may be asked otherwise.
+  [[nodiscard]] bool positive_definite() const { return positive_definite_; }
+  /// Lower triangle, zeros above.
+  [[nodiscard]] const Eigen::MatrixXd& L() const { return L_; }
+  /// A^-1 B
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  /// L^-1 B: whitens what has covariance A.
+  [[nodiscard]] Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& B) const;
+  /// L'^-1 B
+  [[nodiscard]] Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& B) const;
+
+ private:
+  Eigen::MatrixXd L_;
+  bool positive_definite_ = false;
+};
+
+/// A^-1 B of a symmetric positive or negative semidefinite matrix by L D L' with pivoting: for matrices whose
+/// positive definiteness is in doubt.
+[[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+[[nodiscard]] Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// x' A^-1 x, as above.
+[[nodiscard]] double inverse_quadratic_form(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
+
+}  // namespace veridyn::numerics

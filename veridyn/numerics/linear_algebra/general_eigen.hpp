@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace veridyn::numerics {
+
+/// Eigenvalues of a real square matrix and their right eigenvectors (unit length), in no particular order; complex ones
+/// come in conjugate pairs.
+struct GeneralEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+
+/// By Hessenberg reduction and the real QR algorithm (Golub & Van Loan, Matrix Computations, 7.5). Stability and modes
+/// of x' = A x.
+[[nodiscard]] GeneralEigen general_eigen(const Eigen::MatrixXd& matrix);
+
+/// Eigenvalues alone.
+[[nodiscard]] Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& matrix);
+
+}  // namespace veridyn::numerics

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace veridyn::numerics {
+
+/// A = Q R by Householder reflections (Golub & Van Loan, Matrix Computations, 5.2); A has at least as many rows as
+/// columns for `R` and `solve`.
+class HouseholderQr {
+ public:
+  explicit HouseholderQr(const Eigen::MatrixXd& matrix);
+
+  /// The upper triangle, columns x columns.
+  [[nodiscard]] const Eigen::MatrixXd& R() const { return R_; }
+  /// The square orthogonal factor: the first columns span A, the others its complement.
+  [[nodiscard]] Eigen::MatrixXd Q() const;
+  /// Q' B
+  [[nodiscard]] Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::VectorXd apply_transposed(const Eigen::VectorXd& b) const;
+  /// Least-squares solution of A x = b, A of full column rank.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+
+ private:
+  Eigen::MatrixXd reflectors_;
+  Eigen::VectorXd coefficients_;
+  Eigen::MatrixXd R_;
+};
+
+/// Q' B and the rank of A, by QR with column pivoting: pivots below `threshold` times the largest count as zero. The
+/// first `rank` rows of the result depend on A's unknowns, the others do not.
+struct Eliminated {
+  Eigen::MatrixXd rest;
+  Eigen::Index rank = 0;
+};
+[[nodiscard]] Eliminated eliminate(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double threshold);
+
+/// Least-squares solution of A x = b by QR with column pivoting.
+[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// The shortest least-squares solution of A X = B, whatever the rank of A, by a complete orthogonal decomposition.
+/// Pivots below `threshold` times the largest count as zero; 0: the machine's precision times the size.
+[[nodiscard]] Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                                                     double threshold = 0.0);
+[[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// A^-1 B of a regular square matrix, by LU with partial pivoting.
+[[nodiscard]] Eigen::MatrixXd solve_linear(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+[[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+}  // namespace veridyn::numerics
