@@ -8,7 +8,7 @@ shift 2
 [ $# -gt 0 ] || set -- dataflash dataflash_text ulog csv mat npy storage osim tir crg
 "$build/bin/fuzz_seeds" "$build/fuzz-corpus"
 mkdir -p "$build/fuzz-corpus/osim"
-cp "$(dirname "$0")"/../veridyn/muscle/models/*.osim "$build/fuzz-corpus/osim/"
+cp "$(dirname "$0")"/../veridyn/muscle/osim/models/*.osim "$build/fuzz-corpus/osim/"
 failed=0
 for format in "$@"; do
   mkdir -p "$build/fuzz-findings/$format"
