@@ -24,7 +24,7 @@ OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle) {
   const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.matrixV() * inverse.asDiagonal();
   result.theta = back * (svd.matrixU().transpose() * triangle.col(n).head(n));
   result.inverse_normal = back * back.transpose();
-  // With full rank this is the last diagonal element; otherwise part of z stands beside rows of R_x that are zero.
+  // With full rank this is the last diagonal element; otherwise part of z is in rows in which R_x is zero.
   result.residual_sum_of_squares = (triangle.col(n) - triangle.leftCols(n) * result.theta).squaredNorm();
   if (result.full_rank) {
     result.theta = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(triangle.col(n).head(n));
