@@ -9,7 +9,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
 // Modules whose types and free functions all have comments; the others are counted. Add a module when it is done.
-const complete = ['core', 'numerics', 'estimation'];
+const complete = ['core', 'numerics', 'estimation', 'io', 'recording'];
 
 const output = process.argv[2] ?? 'build/docs';
 const architecture = 'docs/architecture.md';
