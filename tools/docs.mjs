@@ -1,5 +1,5 @@
 // The API reference, build/docs/html: Doxygen over the headers, with a page for each module and sub-module. The sentence of
-// a folder comes from the tables of docs/architecture.md, that of a header from its own comments, so nothing is said twice.
+// a folder comes from the lists of docs/architecture.md, that of a header from its own comments, so nothing is said twice.
 // Fails where a folder has no sentence or a sentence no folder, where Doxygen warns, where a type or a free function of the
 // modules in `complete` has no comment (but `to_string`, whose name says all), and where a document names a file or links
 // to a heading that does not exist.
@@ -21,12 +21,11 @@ for (const folder of [...folders]) {
   if (dirname(folder) !== 'veridyn') folders.add(dirname(folder));
 }
 
-/// The sentences of the folders: rows "| `veridyn/x/y` | sentence |" of the tables of modules.
+/// The sentences of the folders: items "- `veridyn/x/y`: sentence" of the lists of modules, over one or more lines.
 function readSentences() {
   const sentences = new Map();
-  for (const line of readFileSync(architecture, 'utf8').split('\n')) {
-    const row = line.match(/^\| `(veridyn(?:\/[a-z0-9_]+)+)` \| (.+) \|$/);
-    if (row) sentences.set(row[1], row[2]);
+  for (const [, folder, text] of readFileSync(architecture, 'utf8').matchAll(/^- `(veridyn(?:\/[a-z0-9_]+)+)`: (.+(?:\n  \S.*)*)/gm)) {
+    sentences.set(folder, text.replace(/\n\s*/g, ' '));
   }
   return sentences;
 }
@@ -88,7 +87,7 @@ function deadReferences() {
 const problems = deadReferences();
 const sentences = readSentences();
 for (const folder of folders) {
-  if (!sentences.has(folder)) problems.push(`${architecture}: no row for the folder ${folder}`);
+  if (!sentences.has(folder)) problems.push(`${architecture}: does not describe the folder ${folder}`);
 }
 for (const folder of sentences.keys()) {
   if (!folders.has(folder)) problems.push(`${architecture}: there is no folder ${folder} with headers`);
