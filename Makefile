@@ -4,7 +4,7 @@ BUILD  := build/release
 JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 
-.PHONY: help setup build demo test format format-check tidy asan bench fuzz soak install clean
+.PHONY: help setup build demo test docs format format-check tidy asan bench fuzz soak install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -23,6 +23,9 @@ test: setup format-check ## build and run the whole test suite
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	cmake --build $(BUILD) -j $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS) -LE soak
+
+docs: setup ## API reference from the headers: build/docs/html/index.html
+	@node tools/docs.mjs build/docs
 
 format: ## reformat the sources
 	git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format -i

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A broken invariant of our own: prints the condition with its place and aborts, in release builds too. Wrong input is
-/// never reported this way (see InputError), and hot loops use `assert` instead.
+/// Checks an invariant of the library itself. When it is broken, prints the condition with its place and aborts, in
+/// release builds too. Wrong input is never reported this way (see InputError), and hot loops use `assert` instead.
 #define VERIDYN_ASSERT(condition)                                                            \
   do {                                                                                       \
     if (!(condition)) {                                                                      \

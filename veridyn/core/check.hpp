@@ -4,7 +4,8 @@
 
 namespace veridyn {
 
-/// Something that must be seen, such as a published figure, with what was seen.
+/// A check whose outcome is reported, such as the reproduction of a published figure: passed or not, and what was
+/// found.
 struct Check {
   bool passed = false;
   std::string text;

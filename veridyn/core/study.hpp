@@ -18,7 +18,7 @@ struct StudyNode;
 ///
 /// A number with a unit is written either plainly (then it is in the SI unit, radians for angles) or as text with any
 /// unit of the same dimension: `mass = 12.6`, `mass = "27.8 lb"`, `M_alpha0 = "27 deg"`. Each read marks its key as
-/// known; `finish()` then refuses the keys that nobody asked for, which are the misspelt ones.
+/// known; `finish()` then refuses unknown keys, which are the misspelt ones.
 ///
 /// All readers throw InputError, for example
 /// `study.toml:14: subject.mass = -1 must be > 0`, `study.toml:3: subject.span: unit 'kg' is a mass [kg], expected a
@@ -54,7 +54,7 @@ class StudyTable {
   [[nodiscard]] std::filesystem::path file(std::string_view key) const;
   [[nodiscard]] std::vector<std::filesystem::path> files(std::string_view key) const;
 
-  /// Kinds of value, to tell `CL = ["1", "alpha"]` from `CL = { 1 = 0.3, alpha = 4.5 }`.
+  /// Kinds of value, to distinguish `CL = ["1", "alpha"]` from `CL = { 1 = 0.3, alpha = 4.5 }`.
   [[nodiscard]] bool is_table(std::string_view key) const;
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] bool is_text(std::string_view key) const;
@@ -74,8 +74,7 @@ class StudyTable {
   /// Dotted name of this table, "subject.geometry"; empty at the root.
   [[nodiscard]] const std::string& path() const { return path_; }
 
-  /// Refuses keys that were not read, here and in every table opened from here, naming the nearest key that was asked
-  /// for.
+  /// Refuses keys that were not read, here and in every table opened from here, naming the nearest known key.
   void finish() const;
 
  private:

@@ -34,7 +34,7 @@ struct MethodEstimate {
   ParameterStatus status = ParameterStatus::kRejected;
 };
 
-/// How well a quantity was predicted on data that identification did not see.
+/// How well a quantity was predicted on held-out data.
 struct ValidationMeasure {
   double mae = 0.0;
   double rmse = 0.0;
@@ -49,7 +49,7 @@ struct Estimate {
   std::string method;
   std::vector<EstimatedParameter> parameters;
   Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
-  std::vector<MethodEstimate> other_methods;  ///< beside `parameters`; `other_methods` of estimate.json
+  std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
   std::map<std::string, ValidationMeasure> validation;
   std::string verdict;

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "veridyn/core/recording.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/log/log.hpp"
+#include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn::io {
 
@@ -16,8 +16,8 @@ struct ReadOptions {
 
 /// Reads a log of any known format: ArduPilot DataFlash (.bin) and its text form (.log), PX4 ULog (.ulg), MATLAB
 /// (.mat), OpenSim storage (.sto, .mot), CSV, and folders of NumPy arrays (`npy.hpp`). The content decides; the name's
-/// extension only where the content does not tell, and a name that promises another format than the content is noted in
-/// the damage.
+/// extension only where the content does not decide, and a name that promises another format than the content is noted
+/// in the damage.
 /// @throws InputError when the file is missing, empty, or of no known format.
 [[nodiscard]] Log read_log(const std::filesystem::path& path, const ReadOptions& options = {});
 

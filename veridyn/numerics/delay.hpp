@@ -4,9 +4,10 @@
 
 namespace veridyn::numerics {
 
+/// How a delay between two signals is searched, and when it counts as found.
 struct DelayOptions {
   double max_delay_s = 0.5;      ///< searched in both directions
-  double min_correlation = 0.5;  ///< below it the signals do not say the same thing
+  double min_correlation = 0.5;  ///< below it the signals do not show the same motion
   double max_side_peak =
       0.95;  ///< another maximum this near to the peak's height leaves the choice open (periodic signals)
 };

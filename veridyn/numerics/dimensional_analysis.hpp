@@ -44,6 +44,7 @@ struct ReducedMatrix {
   std::vector<std::size_t> pivots;  ///< column of the leading 1 of each row, ascending
   [[nodiscard]] std::size_t rank() const { return pivots.size(); }
 };
+/// Gauss-Jordan elimination, exact.
 [[nodiscard]] ReducedMatrix reduced_row_echelon(FractionMatrix matrix);
 
 /// A basis of {x: matrix x = 0}, exact: one vector for each column without a pivot, in which that column is 1.

@@ -57,6 +57,7 @@ struct FirKernel {
 /// (kNan) become NaN, as NaNs stay. `out` may not overlap `x`. Neither throws nor allocates beyond one padded copy of a
 /// stretch.
 void filter(std::span<const double> x, const FirKernel& kernel, std::span<double> out, Edges edges = Edges::kReflect);
+/// The same into a new vector.
 [[nodiscard]] std::vector<double> filter(std::span<const double> x, const FirKernel& kernel,
                                          Edges edges = Edges::kReflect);
 

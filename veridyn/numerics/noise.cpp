@@ -50,7 +50,7 @@ NoiseEstimate measurement_noise(std::span<const double> x, double rate_Hz, doubl
         0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(length));
     taper_power += taper[k] * taper[k];
   }
-  // The two bins beside the cut and beside Nyquist would mix in what lies outside.
+  // The two bins next to the cut and next to Nyquist would mix in what lies outside.
   const auto first_bin = static_cast<std::size_t>(std::ceil(above_Hz / rate_Hz * static_cast<double>(length))) + 1;
   const std::size_t last_bin = length / 2 - 1;
   Eigen::FFT<double> fft;

@@ -28,6 +28,7 @@ enum class IntegrationEnd {
   kNotFinite,  ///< the state or its derivative became NaN or infinite
 };
 
+/// Accuracy and limits of `integrate_adaptive`.
 struct IntegrationOptions {
   double absolute_tolerance = 1e-9;  ///< per step and component, in units of the state
   double relative_tolerance = 1e-9;
@@ -35,6 +36,7 @@ struct IntegrationOptions {
   long max_steps = 1000000;
 };
 
+/// Where an integration ended, and how.
 struct IntegrationResult {
   Eigen::VectorXd state;  ///< where it ended
   double time = 0.0;

@@ -6,15 +6,16 @@
 namespace veridyn::numerics {
 
 /// Calls `work(i)` for i = 0 .. count - 1, on `threads` threads (0: as many as the machine has). Items are handed out
-/// one by one, so they may take unlike times; results that are stored by `i` do not depend on the number of threads.
+/// one by one, so they may take different times; results that are stored by `i` do not depend on the number of threads.
 /// Stops handing out when `proceed`, called on the calling thread between items, returns false.
 /// The first exception of any item is thrown once all threads have ended.
 /// @return whether all items were done
 bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work,
                   const std::function<bool(std::size_t done)>& proceed = {});
 
-/// What `threads = 0` means everywhere in this program: the number set here, or the machine's when it is 0.
+/// Sets what `threads = 0` means everywhere in this program; 0: as many as the machine has.
 void set_default_threads(int threads);
+/// The number that `threads = 0` means: what was set, or the machine's.
 [[nodiscard]] int default_threads();
 
 }  // namespace veridyn::numerics

@@ -18,12 +18,14 @@ struct UniformGrid {
   [[nodiscard]] static UniformGrid covering(double from, double to, double step);
 };
 
+/// How a signal goes from sample to sample.
 enum class Interpolation {
   kLinear,
   kPchip,  ///< piecewise cubic Hermite, Fritsch & Butland (1984) slopes: C1, third order, never overshoots the data
   kHold    ///< last value: modes, counters, commands that are held
 };
 
+/// How samples are brought onto a grid.
 struct ResampleOptions {
   Interpolation interpolation = Interpolation::kPchip;
   /// Neighbouring samples further apart leave NaN between them [s]; 0 chooses 5 median intervals.

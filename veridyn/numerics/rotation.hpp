@@ -6,8 +6,10 @@
 
 namespace veridyn::numerics {
 
+/// Three components along the axes of a frame.
 template <typename Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+/// A rotation or a tensor in three dimensions.
 template <typename Scalar>
 using Matrix3 = Eigen::Matrix<Scalar, 3, 3>;
 

@@ -68,7 +68,7 @@ std::vector<ResponseEstimate> spectral_response(std::span<const double> input, s
   }
   const auto X = segment_transforms(input, rate_Hz, segment);
   const auto Y = segment_transforms(output, rate_Hz, segment);
-  // Half overlapping Hann windows tell 0.95 as much each as separate ones would (Welch 1967).
+  // Half overlapping Hann windows hold 0.95 as much information each as separate ones would (Welch 1967).
   const double half_overlapping = 2.0 * static_cast<double>(input.size()) / static_cast<double>(segment) - 1.0;
   const double independent = std::max(1.0, 0.95 * half_overlapping);
   const double spacing = rate_Hz / static_cast<double>(segment);

@@ -56,23 +56,24 @@ struct WhitenessTest {
   double ljung_box = 0.0;
   std::size_t lags = 0;
   double p_value = 1.0;
-  double durbin_watson = 2.0;  ///< sum (e_k - e_{k-1})^2 / sum e_k^2: 2 when white, towards 0 when positively coloured
-  double lag1 = 0.0;           ///< r(1)
+  /// sum (e_k - e_{k-1})^2 / sum e_k^2: 2 when white, towards 0 when positively autocorrelated.
+  double durbin_watson = 2.0;
+  double lag1 = 0.0;              ///< r(1)
   double fraction_outside = 0.0;  ///< of r(1..lags) outside the 95 % band of white noise
   [[nodiscard]] bool white(double significance = 0.05) const { return p_value >= significance; }
 };
 
-/// @param lags 0 chooses min(10 log10 N, N/5), at least 1. Mind that any real flight is coloured; the test only says
-/// so.
+/// @param lags 0 chooses min(10 log10 N, N/5), at least 1. Residuals of any real flight are autocorrelated; the test
+/// only says so.
 [[nodiscard]] WhitenessTest whiteness_test(std::span<const double> residual, std::size_t lags = 0,
                                            std::span<const int> segment = {});
 
-/// N (1 - r1)/(1 + r1): independent samples that tell as much about the mean as N samples of an AR(1) process with
-/// lag-1 autocorrelation r1. Never above N nor below 1.
+/// N (1 - r1)/(1 + r1): number of independent samples with as much information about the mean as N samples of an AR(1)
+/// process with lag-1 autocorrelation r1. Never above N nor below 1.
 [[nodiscard]] double effective_sample_size_lag1(std::span<const double> x);
 
-/// Independent samples that tell as much about the variance: N / (1 + 2 sum r(k)^2), summed until r stays inside the
-/// white band.
+/// Number of independent samples with as much information about the variance: N / (1 + 2 sum r(k)^2), summed until r
+/// stays inside the white band.
 [[nodiscard]] double effective_sample_size_variance(std::span<const double> x, std::span<const int> segment = {});
 
 /// How far a model's output is from the measurement. Pairs with a NaN on either side are left out.

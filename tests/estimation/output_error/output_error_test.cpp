@@ -9,8 +9,8 @@
 
 #include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
+#include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
 namespace veridyn::estimation {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "simulated_regression.hpp"
+#include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"

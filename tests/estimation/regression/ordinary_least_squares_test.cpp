@@ -1,6 +1,6 @@
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
-#include "simulated_regression.hpp"
+#include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
 #include "veridyn/estimation/regression/regression.hpp"

@@ -1,6 +1,6 @@
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
 
-#include "simulated_regression.hpp"
+#include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 

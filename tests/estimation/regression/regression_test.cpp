@@ -1,6 +1,6 @@
 #include "veridyn/estimation/regression/regression.hpp"
 
-#include "simulated_regression.hpp"
+#include "tests/estimation/simulated_regression.hpp"
 
 namespace {
 using namespace veridyn::estimation;

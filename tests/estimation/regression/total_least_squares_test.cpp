@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "simulated_regression.hpp"
+#include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "simulated_drive.hpp"
+#include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
 #include "veridyn/vehicle/drive_study.hpp"

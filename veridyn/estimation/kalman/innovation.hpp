@@ -6,14 +6,14 @@
 
 namespace veridyn::estimation {
 
-/// When a measurement is believed.
+/// When a measurement is accepted.
 struct InnovationGate {
-  /// Largest |innovation| / sqrt(S) that is believed: the root of the chi-square threshold with one degree of freedom.
+  /// Largest |innovation| / sqrt(S) that is accepted: the root of the chi-square threshold with one degree of freedom.
   /// At 5 a sound Gaussian sensor loses one sample in 1.7 million, and linearisation errors of a turn still pass.
   double threshold = 5.0;
   /// A sensor whose samples were all refused for this long [s] (and at least `recovery_samples` of them) is taken
   /// back: from then on its variance is inflated until the innovation sits on the gate, so that the filter walks
-  /// towards it instead of jumping. Without this rule a filter that was wrong once would never listen again.
+  /// towards it instead of jumping. Without this rule a filter that was wrong once would never accept the sensor again.
   double recovery_s = 2.0;
   int recovery_samples = 5;
 };
@@ -30,8 +30,8 @@ struct InnovationSummary {
   double lag1 = 0.0;            ///< autocorrelation of the normalised innovations at lag 1: 0 when white
   double white_bound95 = 0.0;   ///< 1.96 / sqrt(n): band of `lag1` when white
   double ljung_box = 0.0;       ///< of the first 10 lags
-  double ljung_box_p = 1.0;     ///< small: the innovations are coloured
-  double log_likelihood = 0.0;  ///< sum of -(ln 2 pi S + nu^2 / S) / 2 over the believed samples
+  double ljung_box_p = 1.0;     ///< small: the innovations are autocorrelated
+  double log_likelihood = 0.0;  ///< sum of -(ln 2 pi S + nu^2 / S) / 2 over the accepted samples
 };
 
 /// Gates the scalar innovations of one sensor and keeps their statistics. Does not allocate.
@@ -39,6 +39,7 @@ class InnovationMonitor {
  public:
   static constexpr std::size_t kLags = 10;
 
+  /// What to do with one innovation.
   struct Verdict {
     bool accept = false;
     double extra_variance = 0.0;  ///< to be added to S and to the measurement's variance

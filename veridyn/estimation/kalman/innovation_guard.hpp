@@ -7,12 +7,12 @@
 
 namespace veridyn::estimation {
 
-/// When a filter's model is no longer believed, and when again. Study table of the same keys:
+/// When the model of a filter is no longer trusted, and when it is trusted again. Study table of the same keys:
 ///
 ///     window = "1 s"             # over which squared innovations are summed
 ///     false_alarms_per_hour = 0.1  # of a sound model: sets the chi-square limit
 ///     tolerance = 1.3            # on the limit: no model is exact, and a variance 30 % too large does no harm
-///     return_after = "10 s"      # of sound windows in a row before the model is believed again
+///     return_after = "10 s"      # of sound windows in a row before the model is trusted again
 struct GuardOptions {
   double window_s = 1.0;
   double false_alarms_per_hour = 0.1;
@@ -42,7 +42,7 @@ class InnovationGuard {
 
   explicit InnovationGuard(const GuardOptions& options = {}) : options_(options) {}
 
-  /// Starts, or starts anew, at time `t` [s], with or without trust.
+  /// Starts, or starts again, at time `t` [s], with or without trust.
   void restart(double t, bool trusted) noexcept;
   /// A normalised squared innovation of a sensor (0 .. kMaxSensors - 1).
   void add(std::size_t sensor, double nis) noexcept;

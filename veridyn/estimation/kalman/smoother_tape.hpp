@@ -20,10 +20,12 @@ class SmootherTape {
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
   using TransitionRows = Eigen::Matrix<double, kDynamic, kStates>;
 
+  /// An accepted measurement: row H, gain K, variance S of the innovation nu.
   struct Update {
     Vector H, K;
     double S, nu;
   };
+  /// A state whose smoothed form is wanted.
   struct Mark {
     std::size_t number;
     State x;

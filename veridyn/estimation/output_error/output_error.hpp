@@ -31,13 +31,14 @@ enum class OutputErrorTermination {
 };
 [[nodiscard]] std::string_view to_string(OutputErrorTermination termination);
 
+/// What is estimated besides the parameters, and when the search ends.
 struct OutputErrorOptions {
   OutputNoise noise = OutputNoise::kDiagonal;
   /// Standard deviation of each output's noise to begin with; empty takes the residuals at the start. Needed with
   /// `kGiven`.
   Eigen::VectorXd noise_start = {};
   /// Error bars: inverse information (kWhite: Cramer-Rao, too small when the model is incomplete) or corrected for the
-  /// colour of the residuals (kColoured, the default).
+  /// autocorrelation of the residuals (kColoured, the default).
   CovarianceKind covariance = CovarianceKind::kColoured;
   bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
@@ -111,7 +112,7 @@ struct OutputErrorEstimate {
 ///
 /// by relaxation: Levenberg-Marquardt (Ceres) over the parameters of all segments and the unknowns of each, then R from
 /// the residuals, until neither moves. Process noise (turbulence) is not modelled: its effect on the residual is
-/// coloured, which is why the default error bars are corrected for colour.
+/// autocorrelated, which is why the default error bars are corrected for that.
 ///
 /// `measured[s]` is samples x outputs; NaN is a missing value. With `kFull` R and missing values the relaxation is the
 /// EM algorithm. Each segment is reduced to a triangle by orthogonal transformations, its own unknowns eliminated
@@ -123,6 +124,7 @@ struct OutputErrorEstimate {
 /// @throws InputError when sizes do not fit or an option is wrong.
 [[nodiscard]] OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                                const OutputErrorOptions& options = {});
+/// The same, interruptible.
 [[nodiscard]] OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                                const OutputErrorOptions& options, Progress& progress);
 

@@ -14,7 +14,7 @@
 
 namespace veridyn::estimation {
 
-/// An unknown of a parametric model and what is known of it before the data speak.
+/// An unknown of a parametric model and what is known of it before the data are used.
 struct ModelParameter {
   std::string name;
   std::string unit = "1";
@@ -26,6 +26,7 @@ struct ModelParameter {
   bool fixed = false;  ///< stays at `start`
 };
 
+/// An output of a parametric model.
 struct ModelOutput {
   std::string name;
   std::string unit = "1";

@@ -8,7 +8,7 @@
 namespace veridyn::estimation {
 
 /// Auto- and cross-covariance of several residuals over lags, as a spectrum, for the covariance of estimators whose
-/// residuals are coloured.
+/// residuals are autocorrelated.
 struct ResidualSpectrum {
   Eigen::Index window = 0;  ///< lags that count in full; weights fall to 0 at twice that [samples]
   Eigen::Index length = 0;  ///< of the Fourier transforms: longest segment and twice the window, zero padded

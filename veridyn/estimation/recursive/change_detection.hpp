@@ -15,6 +15,7 @@ namespace veridyn::estimation {
 /// The same of a one-sided CUSUM on u^2, u white N(0, sd^2): S_k = max(0, S_{k-1} + u_k^2 - reference).
 [[nodiscard]] double spread_cusum_run_length(double reference, double threshold, double sd = 1.0);
 
+/// How changes are searched in innovations.
 struct ChangeDetectionOptions {
   double rate_Hz = 100.0;  ///< of the innovations
   /// Stated rate: mean time between false alarms on unchanged data [s]. Default one per 10 hours.
@@ -39,11 +40,13 @@ struct ChangeDetectionOptions {
   void validate() const;
 };
 
+/// What changed in the innovations.
 enum class ChangeKind {
   kMean,   ///< the innovation has a mean: a bias, a jump of the constant term
   kSpread  ///< the innovation has grown: other derivatives, more noise
 };
 
+/// A detected change.
 struct Change {
   ChangeKind kind = ChangeKind::kMean;
   double detected_s = 0.0;  ///< time of the alarm
@@ -53,14 +56,14 @@ struct Change {
 
 /// Watches normalised innovations for a change, with a stated rate of false alarms.
 ///
-/// Innovations of real flight are coloured, so they are averaged over blocks, and block means b_i are whitened by a
-/// running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
+/// Innovations of real flight are autocorrelated, so they are averaged over blocks, and block means b_i are whitened by
+/// a running first-order model u_i = (b_i - mu - a (b_{i-1} - mu))/s whose mu, a and s are learned first and followed
 /// slowly. Two-sided CUSUM (Page 1954) on u for the mean, and a one-sided one on
 /// u^2 for the spread; thresholds give each half of the stated rate (normal u, average run lengths of Markov chains,
 /// mean rate over the errors that mu and s have at the end of learning). After an alarm the sums start again when
 /// `settle_s` are over, in which the estimate follows; the model of the noise is kept, for it is the aircraft that
-/// changed. A second alarm soon after (within `learn_s`) is reported too, and then the noise is learned anew: it may be
-/// what changed.
+/// changed. A second alarm soon after (within `learn_s`) is reported too, and then the noise is learned again: it may
+/// be what changed.
 class ChangeDetector {
  public:
   explicit ChangeDetector(const ChangeDetectionOptions& options);

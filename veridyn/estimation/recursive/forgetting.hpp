@@ -47,6 +47,7 @@ struct FalseTriggerRate {
   double per_second = 0.0;
   bool bound = false;  ///< none seen: `per_second` is an upper 95 % bound
 };
+/// Counts the false triggers of these options; see FalseTriggerRate.
 [[nodiscard]] FalseTriggerRate false_trigger_rate(const ForgettingOptions& options, Eigen::Index parameters,
                                                   double rate_Hz, std::uint64_t samples = 4'000'000);
 

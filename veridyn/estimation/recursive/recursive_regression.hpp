@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "veridyn/estimation/recursive/forgetting.hpp"
-#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/recursive/small_matrix.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 
 namespace veridyn::estimation {
 
+/// How a regression is estimated row by row.
 struct RecursiveOptions {
   /// OLS, GTLS or PCA-GTLS.
   Method method = Method::kPcaGtls;
@@ -31,7 +32,7 @@ struct RecursiveOptions {
   /// PCA-GTLS: B_0, 95 % bound on |U (theta - theta_0)| along a direction that is not excited. 0 chooses
   /// 10 max(1, largest |U (theta - prior)|_i); never below 1.96 sigma of GTLS in that direction.
   double unexcited_bound = 0.0;
-  /// Error bars for coloured residuals (the default) from sums of scores over blocks, or for white ones.
+  /// Error bars for autocorrelated residuals (the default) from sums of scores over blocks, or for white ones.
   CovarianceKind covariance = CovarianceKind::kColoured;
   /// Length of a block of scores [samples]: longer than the residual stays correlated (1 s at 100 Hz).
   Eigen::Index block = 100;
@@ -46,7 +47,7 @@ struct RecursiveUpdate {
   double innovation_sigma = 0.0;  ///< its standard deviation: errors of row and estimate; NaN until it is known
   double lambda = 1.0;            ///< weight of squares that was applied
   bool accepted = false;   ///< false: the row holds a number that is not finite (or beyond 1e150); nothing changed
-  bool triggered = false;  ///< variable forgetting sees a change
+  bool triggered = false;  ///< variable forgetting was triggered by a change
 };
 
 /// One linear regression z = x theta estimated row by row, by OLS, GTLS or PCA-GTLS, with constant or variable
@@ -54,8 +55,9 @@ struct RecursiveUpdate {
 /// `unexcited_text` do not allocate (at most 8 parameters; construction and `start` may).
 ///
 /// With lambda = 1 theta and its white covariance are those of the batch estimators of the same rows
-/// (veridyn/estimation/regression/regression.hpp); with forgetting they are those of rows weighted by lambda^(k/2), k the age.
-/// Before there are as many independent rows as parameters theta is the prior (OLS, GTLS), and `usable` is false.
+/// (veridyn/estimation/regression/regression.hpp); with forgetting they are those of rows weighted by lambda^(k/2), k
+/// the age. Before there are as many independent rows as parameters theta is the prior (OLS, GTLS), and `usable` is
+/// false.
 ///
 /// PCA-GTLS holds what is not excited: theta_0 of its minimisation |U (theta - theta_0)| is the estimate before the
 /// row, at first the prior. So along directions below the threshold theta stays where it was when they were last
@@ -64,8 +66,8 @@ struct RecursiveUpdate {
 /// linearly dependent to rounding.
 ///
 /// Error bars. White: s2 M^-1 A2 M^-1 with its second-order term, where squares carry their weight and A2 the weight
-/// squared (docs/estimation.md). Coloured: M^-1 S M^-1, S from sums of scores over blocks of `block` samples under the
-/// same weights, hence correct for any correlation shorter than a block.
+/// squared (docs/estimation.md). For autocorrelated residuals: M^-1 S M^-1, S from sums of scores over blocks of
+/// `block` samples under the same weights, hence correct for any correlation shorter than a block.
 class RecursiveRegression {
  public:
   /// @param names of the parameters, 1 to 8 @throws InputError when names or options are wrong

@@ -269,9 +269,9 @@ void RecursiveRegression::State::solve() {
   }
   bool solved = false;
   if (options.method == Method::kPcaGtls) {
-    // A direction of misfit stands out of the noise as one of signal does; taken for signal, it leaves z to directions
-    // that say nothing of it, and theta runs away along those. Such an estimate needs larger errors of the rows (h'Wh)
-    // than the one before and explains them worse: then the weakest direction is not taken for excited.
+    // A direction of misfit exceeds the noise as one of signal does; taken for signal, it leaves z to directions that
+    // hold no information on it, and theta diverges along those. Such an estimate needs larger errors of the rows
+    // (h'Wh) than the one before and explains them worse: then the weakest direction is not taken for excited.
     const SmallVector before = free_theta;
     const double power_before = data.power(h.data()), noise_before = h_W_h;
     for (;; --excited_noisy) {

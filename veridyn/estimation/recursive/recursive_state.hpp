@@ -12,7 +12,7 @@ namespace veridyn::estimation {
 
 namespace internal {
 
-/// What an update leaves for those who ask for error bars. Of all parameters.
+/// Error bars of all parameters, computed when asked for after an update.
 struct RecursiveErrorBars {
   SmallMatrix covariance;
   SmallVector sigma;
@@ -22,8 +22,8 @@ struct RecursiveErrorBars {
 };
 
 /// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k
-/// g_k. Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so colour shorter
-/// than a block is in S in full.
+/// g_k. Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so autocorrelation
+/// shorter than a block is in S in full.
 struct ScoreBlocks {
   Eigen::Index length = 1;
   Eigen::Index filled = 0;

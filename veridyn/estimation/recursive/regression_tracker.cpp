@@ -141,8 +141,8 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
     if (std::isfinite(normalised)) {
       innovation_power_ += normalised * normalised;
       ++innovations_;
-      // Innovations tell of the aircraft once everything was excited: what was not is held at a prior, and later at
-      // what it was. They do not where the row moves along a combination of parameters that is not known now.
+      // Innovations are informative once everything was excited: what was not is held at a prior, and later at its last
+      // value. They are not where the row moves along a combination of parameters that is not known now.
       if (options_.detect_changes && watching_ && !moves_held) {
         change = detector_.update(t, options_.watch_against_W ? against_W(u.innovation, row_W) : normalised);
       }

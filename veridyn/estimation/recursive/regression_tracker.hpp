@@ -12,7 +12,7 @@
 
 namespace veridyn::estimation {
 
-/// How a regression is followed on line. Keys of the study table `[track]`; every one is optional.
+/// How a regression is tracked on line. Keys of the study table `[track]`; every one is optional.
 struct TrackerOptions {
   /// `method`: "PCA-GTLS" holds what is not excited; "GTLS"; "OLS".
   Method method = Method::kPcaGtls;

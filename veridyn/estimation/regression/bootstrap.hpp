@@ -11,6 +11,7 @@
 
 namespace veridyn::estimation {
 
+/// How a bootstrap resamples.
 struct BootstrapOptions {
   std::size_t replicates = 500;
   /// Rows per block; 0 chooses the rule of Politis & White (2004, corrected 2009) for the scores x_k r_k.
@@ -54,6 +55,7 @@ struct Bootstrap {
 /// @throws InputError when data or options are wrong.
 [[nodiscard]] Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& estimator,
                                         const BootstrapOptions& options = {});
+/// The same, interruptible.
 [[nodiscard]] Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& estimator,
                                         const BootstrapOptions& options, Progress& progress);
 

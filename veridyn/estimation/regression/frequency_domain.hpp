@@ -20,6 +20,7 @@ namespace veridyn::estimation {
 [[nodiscard]] Eigen::VectorXcd derivative_transform(std::span<const double> x, double step,
                                                     std::span<const double> frequencies_Hz);
 
+/// The band of a regression in the frequency domain.
 struct FrequencyOptions {
   double low_Hz = 0.1;         ///< below lie biases, drifts and trim
   double high_Hz = 2.0;        ///< above lies no rigid-body motion, only noise
@@ -34,7 +35,7 @@ struct FrequencyOptions {
 
 /// Equation error in the frequency domain.
 struct FrequencyEstimate {
-  RegressionEstimate estimate;   ///< of the parameters that the band can tell; `rows` counts real and imaginary parts
+  RegressionEstimate estimate;   ///< of the parameters that the band determines; `rows` counts real and imaginary parts
   Eigen::Index frequencies = 0;  ///< complex values over all segments
   Eigen::Index segments = 0;     ///< long enough to hold a frequency of the band
   std::vector<std::string> left_out;  ///< parameters of constant regressors, which have no content in the band
@@ -47,8 +48,9 @@ struct FrequencyEstimate {
 /// Constant regressors and whatever is a straight line in a segment vanish, so biases and drifts of the sensors need no
 /// parameters; noise outside the band does no harm. Values of a segment are divided by sqrt(duration): then the noise
 /// of long and short segments weighs the same. Covariance: kWhite: s^2 [Re(X'X)]^-1 with s^2 from 2 M - n real values;
-/// kColoured: residual power may vary over frequency (sandwich with leverage correction HC3), which is what coloured
-/// residuals are here, so no lags are needed. Errors in the regressors within the band still bias, as in OLS.
+/// kColoured: residual power may vary over frequency (sandwich with leverage correction HC3), which is what
+/// autocorrelated residuals are here, so no lags are needed. Errors in the regressors within the band still bias, as in
+/// OLS.
 /// @throws InputError when data, step or options are wrong. With no usable frequency: `kTooFewRows`.
 [[nodiscard]] FrequencyEstimate frequency_equation_error(const RegressionData& data, double step,
                                                          const FrequencyOptions& options = {});

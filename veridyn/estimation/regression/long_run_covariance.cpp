@@ -47,7 +47,8 @@ double flat_top_weight(Eigen::Index lag, Eigen::Index window) {
   return std::max(0.0, 2.0 - static_cast<double>(lag) / static_cast<double>(window));
 }
 
-// Share of a zero-sum sequence's long-run variance that the lag window still sees, and the window's degrees of freedom.
+// Share of a zero-sum sequence's long-run variance that the lag window still covers, and the window's degrees of
+// freedom.
 void set_reliability(LongRunCovariance& result, double rows, Eigen::Index window) {
   double sum = 1.0, squares = 1.0;
   for (Eigen::Index lag = 1; lag < 2 * window; ++lag) {

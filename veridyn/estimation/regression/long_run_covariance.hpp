@@ -15,6 +15,7 @@ struct LongRunCovariance {
   double degrees_of_freedom = 0.0;  ///< of S as an estimate: terms over the sum of squared lag weights
 };
 
+/// Rows [first, second) of each segment.
 using SegmentRanges = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 
 /// Lag after which a sequence is not distinguishably correlated: the smallest m such that |r(m+1..m+K)| all stay below

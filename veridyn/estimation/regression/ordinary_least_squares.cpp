@@ -25,7 +25,7 @@ OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle) {
   const Eigen::MatrixXd back = numerics::scaled(length.cwiseInverse(), svd.V, inverse);
   result.theta = back * (svd.U.transpose() * triangle.col(n).head(n));
   result.inverse_normal = numerics::product_transposed(back, back);
-  // With full rank this is the last diagonal element; otherwise part of z stands beside rows of R_x that are zero.
+  // With full rank this is the last diagonal element; otherwise part of z is in rows in which R_x is zero.
   result.residual_sum_of_squares = (triangle.col(n) - triangle.leftCols(n) * result.theta).squaredNorm();
   if (result.full_rank) {
     result.theta = numerics::solve_upper(triangle.topLeftCorner(n, n), Eigen::VectorXd(triangle.col(n).head(n)));

@@ -18,6 +18,7 @@ struct OrdinaryLeastSquares {
   double condition_number = 0.0;    ///< their ratio; infinity when a column is zero
 };
 
+/// Solves from the triangle of [X, z].
 [[nodiscard]] OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle);
 
 }  // namespace veridyn::estimation

@@ -6,7 +6,7 @@
 
 namespace veridyn::estimation {
 
-/// GTLS over the directions of the data that stand out of the errors (principal-component TLS, Laban 1994).
+/// GTLS over the directions of the data that exceed the errors (principal-component TLS, Laban 1994).
 ///
 /// Singular values are those of D C^-1 with W = C'C (see WhitenedRegression), so they are in units of the errors'
 /// standard deviation and the threshold (S/n + 1) sqrt(N - n_p) needs no tuning to the units or scaling of the data:

@@ -11,11 +11,12 @@
 
 namespace veridyn::estimation {
 
+/// How a regression is solved: where the errors are taken to be.
 enum class Method {
   kOls,     ///< ordinary least squares: all error in z
   kTls,     ///< total least squares: equal, uncorrelated errors in every column that is not exact
   kGtls,    ///< generalised total least squares: errors of covariance W
-  kPcaGtls  ///< GTLS over the directions that stand out of the noise; the rest is reported as not excited
+  kPcaGtls  ///< GTLS over the directions that exceed the noise; the rest is reported as not excited
 };
 /// "OLS", "TLS", "GTLS", "PCA-GTLS".
 [[nodiscard]] std::string_view to_string(Method method);
@@ -25,7 +26,7 @@ enum class ParameterStatus {
   kIdentified,     ///< differs from zero at the chosen significance
   kInsignificant,  ///< determined, but zero lies inside its interval: marked, not zeroed
   kNotExcited,     ///< the data do not determine it; its error bar is the bound on what is not excited
-  kRejected,       ///< the estimate as a whole is not believed
+  kRejected,       ///< the estimate as a whole must not be used
   kFixed           ///< pinned by the user
 };
 [[nodiscard]] std::string_view to_string(ParameterStatus status);
@@ -46,6 +47,7 @@ enum class CovarianceKind {
   kColoured  ///< OLS: Morelli & Klein (1997), residual autocorrelation; TLS family: lag-window sandwich. The default
 };
 
+/// How a regression is estimated and tested.
 struct RegressionOptions {
   CovarianceKind covariance = CovarianceKind::kColoured;
   /// Two-sided level of the t-tests; intervals `low95`, `high95` are always 95 %.
@@ -106,7 +108,7 @@ struct RegressionEstimate {
   Eigen::VectorXd theta;             ///< n_p; the values of `parameters`
   Eigen::MatrixXd covariance;        ///< of the chosen kind, unexcited bound included
   Eigen::MatrixXd covariance_white;  ///< the same with errors taken as white
-  double degrees_of_freedom = 0.0;   ///< of the t-tests: N - n_p, fewer when the residual is coloured
+  double degrees_of_freedom = 0.0;   ///< of the t-tests: N - n_p, fewer when the residual is autocorrelated
   Eigen::Index lag_window = 0;       ///< lags at which correlation enters the covariance in full [samples]
 
   Eigen::Index rows = 0;
@@ -138,7 +140,7 @@ struct HonestyCheck {
   std::string text = {};
 };
 
-/// All methods on the same data, from one pass over it, and what to believe.
+/// All methods on the same data, from one pass over it, and which one is recommended.
 struct RegressionComparison {
   std::vector<RegressionEstimate> estimates;  ///< OLS, TLS, GTLS, PCA-GTLS (without W: OLS, TLS)
   std::vector<HonestyCheck> checks;
@@ -159,8 +161,8 @@ struct RegressionComparison {
 [[nodiscard]] RegressionEstimate estimate(const RegressionData& data, Method method,
                                           const RegressionOptions& options = {});
 
-/// Runs every method and judges: colour of the residual; scale of the GTLS residual against W (chi-square with the
-/// effective number of samples); how far the answer moves if excess residual is equation error; agreement of the
+/// Runs every method and judges: autocorrelation of the residual; scale of the GTLS residual against W (chi-square with
+/// the effective number of samples); how far the answer moves if excess residual is equation error; agreement of the
 /// methods in units of sigma; collinearity. Statuses of a refused comparison stay as estimated: callers turn them into
 /// `rejected` with `reject`.
 /// @throws InputError when data or options are wrong.

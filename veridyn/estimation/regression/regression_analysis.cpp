@@ -280,7 +280,7 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
                        ? fmt::format("all {} directions are excited", n)
                        : fmt::format("{} of {} directions are excited; not excited: {}", pca.excited_directions,
                                      free_count, list_of(result.unexcited));
-  // Kept here because `finish` cannot tell the bound from the excited part.
+  // Kept here because `finish` cannot distinguish the bound from the excited part.
   const double critical = numerics::student_t_quantile(1.0 - 0.5 * options_.significance, result.degrees_of_freedom);
   result.parameters.resize(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -8,12 +8,13 @@
 
 namespace veridyn::estimation {
 
+/// A matrix stored row by row, as samples come.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// What a linear regression z = X theta + error is estimated from.
 ///
 /// N samples (rows), n_p named regressors (columns). The errors of one row, e = [errors of x, error of z], have zero
-/// mean and covariance W (`error_covariance`), the same in every row after scaling; they may be coloured in time.
+/// mean and covariance W (`error_covariance`), the same in every row after scaling; they may be autocorrelated.
 /// Columns whose row and column in W are zero are exactly known (the constant regressor). Rows must be finite: drop the
 /// others with `drop_rows_that_are_not_finite` and give the parts different segment ids, so that no lag is formed
 /// across the hole.

@@ -134,7 +134,7 @@ class Search {
     return best;
   }
 
-  /// Median over the parameters of the full model of their variance with coloured over that with white residuals.
+  /// Median over the parameters of the full model of their variance with autocorrelated over that with white residuals.
   [[nodiscard]] double colour_penalty() const {
     std::vector<Index> all;
     for (Index j = 0; j < data_.parameters(); ++j) {

@@ -9,27 +9,29 @@
 
 namespace veridyn::estimation {
 
+/// How terms are chosen.
 enum class StructureMethod {
   kStepwise,   ///< enter and remove single terms by their partial F
   kOrthogonal  ///< orthogonal functions, as many as minimise the predicted squared error
 };
 
+/// How terms are chosen among candidates, and when the search ends.
 struct StructureOptions {
   StructureMethod method = StructureMethod::kStepwise;
   /// Stepwise: partial F above which a term enters. 20 instead of the 4 of a 95 % test, as Klein & Morelli advise,
-  /// since residuals of flight are coloured and terms many.
+  /// since residuals of flight are autocorrelated and terms many.
   double f_enter = 20.0;
   double f_remove = 20.0;        ///< stepwise: a term whose partial F fell below is removed; at most `f_enter`
   double min_r2_change = 0.005;  ///< stepwise: a term that explains less of the variance does not enter
   bool stop_at_least_press =
       true;  ///< stepwise: a term that raises the sum of squared prediction errors does not enter
-  /// Orthogonal: multiply the penalty of the predicted squared error by how much the residuals' colour raises the
-  /// variance of parameters (median over the fit with all candidates). Without it a term enters for tracking coloured
-  /// noise: Morelli's penalty alone is right for white residuals.
+  /// Orthogonal: multiply the penalty of the predicted squared error by how much the autocorrelation of the residuals
+  /// raises the variance of parameters (median over the fit with all candidates). Without it a term enters for
+  /// following autocorrelated noise: Morelli's penalty alone is right for white residuals.
   bool colour_penalty = true;
   /// Orthogonal: terms of the chosen model that contribute less than this share of its RMS are dropped.
   double least_contribution = 1e-3;
-  /// Columns that are always in, beside constant ones.
+  /// Columns that are always in, in addition to constant ones.
   std::vector<Eigen::Index> always = {};
   double significance = 0.05;  ///< of the t-tests of the final estimate
 
@@ -65,9 +67,9 @@ struct StructureStep {
 struct StructureSearch {
   StructureMethod method = StructureMethod::kStepwise;
   std::vector<StructureStep> history;
-  double penalty = 1.0;  ///< c of the predicted squared error: 1, or what the residuals' colour makes of it
+  double penalty = 1.0;  ///< c of the predicted squared error: 1, or more where residuals are autocorrelated
   std::vector<Eigen::Index> selected;  ///< columns of the data, ascending
-  RegressionEstimate estimate;         ///< OLS of the chosen terms, coloured error bars
+  RegressionEstimate estimate;         ///< OLS of the chosen terms, error bars for autocorrelated residuals
   std::string text;                    ///< one sentence
 };
 

@@ -30,8 +30,11 @@ struct ErrorBasis {
   Eigen::MatrixXd exact;
   Eigen::MatrixXd white;
 };
+/// The basis of W; see ErrorBasis.
 [[nodiscard]] ErrorBasis error_basis(const Eigen::MatrixXd& error_covariance);
 
+/// The regression of a triangle in coordinates where its errors are white; see WhitenedRegression.
+///
 /// Null directions of W are those with less than 1e-10 of the largest eigenvalue of its correlation matrix: rounding of
 /// a W that was itself computed. Exact columns are dependent below 1e-12 of the largest singular value of unit columns.
 [[nodiscard]] WhitenedRegression whiten(const Eigen::MatrixXd& triangle, const Eigen::MatrixXd& error_covariance);
@@ -75,6 +78,7 @@ struct CorrectedNormalMatrix {
   Eigen::MatrixXd inverse;
   double noise_share = 0.0;
 };
+/// See CorrectedNormalMatrix.
 [[nodiscard]] CorrectedNormalMatrix corrected_normal_matrix(const Eigen::MatrixXd& triangle,
                                                             const Eigen::MatrixXd& error_covariance, double s_squared);
 

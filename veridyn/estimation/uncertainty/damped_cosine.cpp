@@ -172,7 +172,7 @@ DampedCosine fit_damped_cosine(std::span<const double> time, std::span<const dou
   for (const double time_i : t)
     fit.mean_square_swing += std::exp(-2.0 * fit.decay * time_i) * (p(2) * p(2) + p(3) * p(3)) / n;
 
-  // Sandwich covariance: what the motion holds beyond the model is coloured.
+  // Sandwich covariance: what the motion holds beyond the model is autocorrelated.
   const SegmentRanges whole{{0, at.J.rows()}};
   const Eigen::Index window = correlation_length(at.residual, whole, std::min<Eigen::Index>(5000, at.J.rows() / 4));
   const Eigen::MatrixXd S = coloured_normal_matrix(at.J, at.residual, whole, window).matrix;

@@ -28,7 +28,7 @@ struct DampedCosine {
   double offset = 0.0;                                                 ///< c
   double start = 0.0;                                                  ///< stamp of t = 0
   double duration = 0.0;                                               ///< of the record [s]
-  double sigma_frequency = 0.0;    ///< of w, from the residual, its colour allowed for
+  double sigma_frequency = 0.0;    ///< of w, from the residual with its autocorrelation
   double residual_rms = 0.0;       ///< unit of y
   double r_squared = 0.0;          ///< 1 - residual power / variance of y
   double mean_square_swing = 0.0;  ///< mean of e^(-2 s t) (a^2 + b^2) over the record, unit of y squared

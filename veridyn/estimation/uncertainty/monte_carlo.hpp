@@ -27,6 +27,7 @@ using InputsToOutputs = std::function<void(const double* x, double* y)>;
 /// Jacobian of f at x: m x n.
 using InputsToJacobian = std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)>;
 
+/// How many draws, of which coverage.
 struct MonteCarloOptions {
   std::size_t draws = 100000;  ///< JCGM 101 recommends 1e6 for two digits of an endpoint; 1e5 gives about 1 %
   std::uint64_t seed = 1;
@@ -47,6 +48,7 @@ struct ErrorDistribution {
   std::size_t not_finite = 0;    ///< draws that were left out
 };
 
+/// Errors of all outputs.
 struct MonteCarloResult {
   std::vector<ErrorDistribution> outputs;
   std::size_t draws = 0;

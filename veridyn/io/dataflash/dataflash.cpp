@@ -132,7 +132,7 @@ class Indexer {
     return length_[type] != 0;
   }
 
-  /// Whether what follows a record is the end, a header, or too little to tell.
+  /// Whether what follows a record is the end, a header, or too little to decide.
   bool ends_well(std::size_t next) { return next + 3 > data_.size() || is_record(next); }
 
   bool is_sound(std::size_t at) {

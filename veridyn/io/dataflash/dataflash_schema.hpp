@@ -42,7 +42,7 @@ struct DataFlashFormat {
 /// unknown character, are left out; names that are missing or appear twice are made up ("column3", "X_2").
 [[nodiscard]] std::vector<DataFlashColumn> dataflash_columns(const DataFlashFormat& format, bool binary);
 
-/// The format of a FMT payload (86 bytes); nothing when it cannot be one: a name that is no word, a length below 3.
+/// The format of a FMT payload (86 bytes); nothing when it cannot be one: a name that is not a word, a length below 3.
 [[nodiscard]] std::optional<DataFlashFormat> parse_dataflash_format(std::string_view payload);
 
 /// Units of the columns: what FMTU, UNIT and MULT records say, otherwise what is known of the standard messages.
@@ -70,6 +70,7 @@ struct DataFlashTime {
   std::size_t column = 0;
   double scale = 1e-6;
 };
+/// The stamps of a message with these columns; nothing when it has none.
 [[nodiscard]] std::optional<DataFlashTime> dataflash_time(const std::vector<DataFlashColumn>& columns);
 
 /// The unit of a standard message's field after the format character's scale: {"deg", 1}; {"1", 1} when not known.
@@ -77,6 +78,7 @@ struct KnownUnit {
   std::string unit = "1";
   double scale = 1.0;
 };
+/// See KnownUnit.
 [[nodiscard]] KnownUnit known_ardupilot_unit(std::string_view message, std::string_view field);
 
 /// Fills parameters, information and events from the topics PARM, MSG, VER, MODE, ARM, EV, STAT and ERR, and marks the

@@ -15,7 +15,7 @@ namespace veridyn::io {
 ///
 /// Lines are `NAME, value, value, ...` with the columns that the FMT lines name; numbers are scaled already. Free lines
 /// ahead of the first FMT, blank lines, FMT lines with fewer columns, empty formats and NaN are no damage. A line of an
-/// undefined message, with too few cells, or with a cell that is no number where the format wants one, is left out and
+/// undefined message, with too few cells, or with a non-numeric cell where the format has a number, is left out and
 /// counted. Texts may hold commas. Units and instances as in `read_dataflash`.
 /// @throws InputError when there is no FMT line.
 [[nodiscard]] Log read_dataflash_text(std::string_view bytes, std::string source);

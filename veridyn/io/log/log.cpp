@@ -77,7 +77,7 @@ Recording convert(SomeLog& log, const RecordingOptions& options) {
   for (auto& topic : log.topics) {
     if (topic.schema) continue;
     if (options.keep_topic && !options.keep_topic(topic.name)) continue;
-    // Two definitions of one name (a log of two firmwares) are told apart.
+    // Two definitions of one name (a log of two firmwares) are kept separate.
     std::string prefix = topic.full_name();
     if (const int number = ++seen[prefix]; number > 1) prefix += fmt::format("~{}", number);
     for (auto& field : topic.fields) {

@@ -19,7 +19,8 @@ struct LogField {
   std::string unit = "1";
   double scale = 1.0;
   Column values;
-  std::vector<std::size_t> shape{};  ///< of an array that is no series (MATLAB): column-major extents; otherwise empty
+  /// Of an array that is not a series (MATLAB): column-major extents; otherwise empty.
+  std::vector<std::size_t> shape{};
 
   [[nodiscard]] double value(std::size_t i) const { return scale * values.number(i); }
 };
@@ -81,6 +82,7 @@ struct RecordingOptions {
 /// log itself make no channels. Parameters, events and information are carried over, and every damage becomes a
 /// warning. The rvalue form releases each column once it is converted, which halves the peak of memory.
 [[nodiscard]] Recording to_recording(const Log& log, const RecordingOptions& options = {});
+/// The same, releasing each column of the log once it is converted.
 [[nodiscard]] Recording to_recording(Log&& log, const RecordingOptions& options = {});
 
 namespace internal {

@@ -16,7 +16,7 @@ namespace veridyn::io {
 /// - A struct, or the file itself, that holds a vector named time, t, Time (s), TimeMS or TimeUS makes a topic of all
 ///   its numeric vectors of that length (`flight_data.p`); a matrix with as many rows gives one field a column,
 ///   `q[0]`. Structs may lie in structs (`a.b.x`).
-/// - A matrix X beside a cell array X_label of column names is one message of an ArduPilot log as its ground stations
+/// - A matrix X with a cell array X_label of column names is one message of an ArduPilot log as its ground stations
 ///   export it; units come from the table of known messages.
 /// - Other numeric arrays become fields of a topic without time, with their `shape`; texts become information.
 /// Level 5 files are read by our own checked code; those of MATLAB 7.3 by matio and HDF5, whose behaviour on damaged

@@ -27,7 +27,7 @@ struct MatValue {
 /// Takes the variables of a level 5 file (MATLAB 5 to 7.2, `-v6`, `-v7`) one after the other.
 ///
 /// Format: MathWorks, "MAT-File Format", chapter 1. Every length is checked against what is left of the file before it
-/// is believed; compressed variables may expand to 2 GiB, the limit of the format. A variable that does not hold
+/// is trusted; compressed variables may expand to 2 GiB, the limit of the format. A variable that does not hold
 /// together is counted in the damage and left out.
 void read_mat5(std::string_view bytes, const std::function<void(MatValue&&)>& take, LogDamage& damage);
 

@@ -29,7 +29,7 @@ struct CsvOptions {
 /// time_s, seconds (s), TimeMS, time_ms, millis (ms), TimeUS, time_us (us), timestamp (us, as ulog2csv of PX4 writes
 /// it; seconds where the first stamp has a decimal point), any `time...[unit]`, the first column that holds dates; in
 /// GPS tables of old ArduPilot logs T, since their TimeMS is the GPS clock; millis before a `time` that has a `date`
-/// beside it, which is a clock reading. Columns of text are kept as text. A unit in brackets is believed when it is a
+/// next to it, which is a clock reading. Columns of text are kept as text. A unit in brackets is used when it is a
 /// unit; otherwise the numbers are left as they are, with unit "1".
 ///
 /// Stamps may be dates (`date_stamp.hpp`): time is then counted from midnight of the first one's day, which is noted as
@@ -40,9 +40,10 @@ struct CsvOptions {
 ///
 /// Tolerated and noted: a last line that is cut, infinite numbers (become NaN), columns without a number. A delimiter
 /// after the last cell of every row is taken for what it is.
-/// @throws InputError with file:line and column for anything else: rows of another length, cells that are no number,
+/// @throws InputError with file:line and column for anything else: rows of another length, non-numeric cells,
 /// time that goes backwards or is missing, names that appear twice, no rows, no time column.
 [[nodiscard]] Log read_csv(std::string_view bytes, std::string source, const CsvOptions& options = {});
+/// Reads a file with `read_csv`.
 [[nodiscard]] Log read_csv_file(const std::filesystem::path& path, const CsvOptions& options = {});
 
 /// Text of a recording as our own CSV: one row for each stamp that any channel has; cells of channels without a sample

@@ -13,10 +13,10 @@ struct DateStamp {
   double second = 0.0;   ///< of that day [s]
 };
 
-/// Reads `2016-09-12 11:12:06.642`, with a blank, `T` or `_` in the middle, `-`, `/`, `.` or `_` in the date, `:` or
-/// `_` in the time, a fraction after `.` or `,` (or whole milliseconds after `_`, as in `2024_02_11_01_04_22_354`) or
-/// none, and `Z` at the end or not. The year comes first and has four digits. Empty when it is none of these or no such
-/// day or time exists. Does not throw.
+/// Reads `2016-09-12 11:12:06.642`. In the middle may be a blank, a T or an underscore; in the date dashes, slashes,
+/// dots or underscores; in the time colons or underscores; then a fraction after a dot or a comma (or whole
+/// milliseconds after an underscore, as in `2024_02_11_01_04_22_354`) or none, and a Z at the end or not. The year
+/// comes first and has four digits. Empty when it is none of these or no such day or time exists. Does not throw.
 [[nodiscard]] std::optional<DateStamp> parse_date_stamp(std::string_view text);
 
 /// "2024-02-11", of a day since 1970-01-01.

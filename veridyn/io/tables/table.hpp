@@ -30,9 +30,10 @@ struct Table {
 
 /// Reads comma-separated columns under a header `name[unit],...` (also `alpha_deg`, `beta_deg` for degrees); lines that
 /// start with '#' are comments.
-/// @throws InputError with file:line for rows of another length, cells that are no number, unknown units, names that
+/// @throws InputError with file:line for rows of another length, non-numeric cells, unknown units, names that
 /// appear twice, or no rows.
 [[nodiscard]] Table read_table(const std::filesystem::path& path);
+/// The same from text.
 [[nodiscard]] Table parse_table(std::string_view text, std::string source);
 
 }  // namespace veridyn::io

@@ -13,6 +13,7 @@ struct Px4Unit {
   std::string unit = "1";
   double scale = 1.0;
 };
+/// See Px4Unit.
 [[nodiscard]] Px4Unit px4_unit(std::string_view topic, std::string_view field);
 
 }  // namespace veridyn::io

@@ -18,7 +18,7 @@ namespace veridyn::io {
 /// form, parameters and their defaults, subscriptions, data, logged and tagged texts, sync, dropouts. Unknown types are
 /// skipped.
 /// - Formats may stand after the data they describe. Data messages that are too short for their format, or of an id
-///   that nobody subscribed, are left out and counted; longer ones are cut.
+///   that were not subscribed, are left out and counted; longer ones are cut.
 /// - After damage the reader goes on where several sound messages follow each other.
 /// - ULog holds no units: see `px4_unit`.
 /// Times are `timestamp` [s] since the autopilot started; see `order_stamps`.

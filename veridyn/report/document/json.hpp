@@ -17,7 +17,7 @@ struct JsonOptions {
 /// The document for the front end (types in web/src/document.ts): lines decimated (the figure's footnote says so),
 /// samples rounded to a 1/20 000 of their range, NaN as null.
 ///
-/// Plain ASCII, and free of '<', '>' and '&' (written as \u003c ...), so that it can stand in a <script> element
+/// Plain ASCII, and free of '<', '>' and '&' (written as `\u003c` ...), so that it can stand in a `<script>` element
 /// whatever the texts hold. Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string to_json(const Document& document, const JsonOptions& options = {});
 
