@@ -105,10 +105,9 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
 
 int simulate_muscle(const Study& study, const std::string& path, const CommonOptions& options,
                     const std::string& verb) {
-  const MuscleStudy muscles = read_muscle_study(study.root());
-  study.root().finish();
   TerminalProgress progress(options.quiet);
-  const MuscleResult result = run_muscle_study(muscles, progress);
+  const MuscleStudy muscles = read_study(study, progress);
+  const MuscleResult result = run_study(muscles, progress);
   if (result.trajectory.end == SimulationEnd::kInterrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

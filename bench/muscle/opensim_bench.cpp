@@ -10,11 +10,12 @@
 #include <numbers>
 
 #include "tests/muscle/arm26_scenarios.hpp"
+#include "tests/support/folders.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/muscle_parametric_model.hpp"
-#include "tests/support/folders.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
 namespace {

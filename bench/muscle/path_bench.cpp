@@ -11,11 +11,12 @@
 #include <memory>
 #include <string>
 
-#include "veridyn/muscle/osim/builtin_models.hpp"
-#include "veridyn/muscle/path/muscle_path.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/muscle_path.hpp"
 #include "veridyn/muscle/path/path_fit.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace {
 using namespace veridyn::muscle;

@@ -22,9 +22,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 MuscleStudy read(const std::string& text, const std::filesystem::path& folder = {}) {
   const Study study = Study::parse(text, "s.toml", folder);
-  MuscleStudy result = read_muscle_study(study.root());
-  study.root().finish();
-  return result;
+  Progress progress;
+  return read_study(study, progress);
 }
 
 std::string error_of(const std::string& text) {
@@ -152,7 +151,7 @@ TEST(MuscleStudy, ErrorsNameFileLineKeyAndTheNearestValidName) {
       {kArm + "[motion]\naccuracy = 1\n", "s.toml:4: motion.accuracy", "1e-13 to 0.1"},
       {kArm + "[motion.start]\nelbow = 1\n", "s.toml:4: motion.start.elbow", "no coordinate 'elbow'"},
       {kArm + "[motion.start]\nelbow_flexion = \"140 deg\"\n", "s.toml:4: motion.start.elbow_flexion",
-       "outside the range of 'elbow_flexion'"},
+       "coordinate 'elbow_flexion' = 3 rad is outside its range"},
       {kArm + "[motion.excitation]\nbrachialis = nan\n", "s.toml:4: motion.excitation.brachialis", "finite"},
       {kArm + "[motion.excitation]\nbrachialis = 1.2\n", "s.toml:4: motion.excitation.brachialis",
        "must be from 0 to 1"},
@@ -192,7 +191,7 @@ TEST(MuscleStudy, InverseDynamicsOfRestIsWhatHoldsTheWeight) {
            "method = \"inverse dynamics\"\nduration = 0.1\n[[motion.ramp]]\n"
            "coordinate = \"elbow_flexion\"\nfrom = \"90 deg\"\nto = \"90 deg\"\nduration = 0.1\n");
   Progress progress;
-  const MuscleResult result = run_muscle_study(study, progress);
+  const MuscleResult result = run_study(study, progress);
   ASSERT_EQ(result.trajectory.time.size(), 21u);
   // The forearm is level: 1.5 kg at 0.17 m and 1 kg at 0.3 m from the elbow.
   EXPECT_NEAR(result.generalized_force(7, 1), (1.5 * 0.17 + 0.3) * 9.80665, 1e-12);
@@ -205,7 +204,7 @@ TEST(MuscleStudy, StaticOptimizationBalancesTheMotion) {
            "rate = 40\n[[motion.ramp]]\ncoordinate = \"elbow_flexion\"\nfrom = \"20 deg\"\nto = \"100 deg\"\n"
            "duration = 0.5\n");
   Progress progress;
-  const MuscleResult result = run_muscle_study(study, progress);
+  const MuscleResult result = run_study(study, progress);
   const MuscleTrajectory& t = result.trajectory;
   ASSERT_EQ(t.time.size(), 21u);
   EXPECT_TRUE(result.warnings.empty());
@@ -226,7 +225,7 @@ TEST(MuscleStudy, SaysWhenASimulationLeavesARange) {
                                  "locked = [\"shoulder_flexion\"]\n[motion]\nduration = 0.2\n[motion.start]\n"
                                  "elbow_flexion = \"120 deg\"\n[motion.start_speed]\nelbow_flexion = \"1000 deg/s\"\n");
   Progress progress;
-  const MuscleResult result = run_muscle_study(study, progress);
+  const MuscleResult result = run_study(study, progress);
   EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("'elbow_flexion' leaves its range 0 .. 130 deg at 0.0")));
 }
 
@@ -248,7 +247,7 @@ TEST_F(MuscleStudyFiles, AForwardStudyReplaysWhatComputedMuscleControlFound) {
                                 "[[motion.ramp]]\ncoordinate = \"elbow_flexion\"\nfrom = \"30 deg\"\nto = \"50 deg\"\n"
                                 "duration = 0.2\n");
   Progress progress;
-  const MuscleResult found = run_muscle_study(wish, progress);
+  const MuscleResult found = run_study(wish, progress);
   ASSERT_TRUE(found.usable());
   EXPECT_LT(found.tracking_error(1), 0.5 * kDegree);
   io::write_storage(state_storage(wish, found), folder_ / "states.sto");
@@ -256,7 +255,7 @@ TEST_F(MuscleStudyFiles, AForwardStudyReplaysWhatComputedMuscleControlFound) {
   const std::string forward = kArm + load +
                               "[motion]\nbegin = 0.1\nduration = 0.2\nstart_file = \"states.sto\"\n"
                               "excitation_file = \"controls.sto\"\ninterpolation = ";
-  const MuscleResult held = run_muscle_study(read(forward + "\"hold\"\n", folder_), progress);
+  const MuscleResult held = run_study(read(forward + "\"hold\"\n", folder_), progress);
   ASSERT_EQ(held.trajectory.q.rows(), found.trajectory.q.rows());
   EXPECT_LT((held.trajectory.q - found.trajectory.q).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((held.trajectory.tendon_force - found.trajectory.tendon_force).cwiseAbs().maxCoeff(), 1e-5);
@@ -265,26 +264,26 @@ TEST_F(MuscleStudyFiles, AForwardStudyReplaysWhatComputedMuscleControlFound) {
   std::string later = forward + "\"hold\"\n";
   const std::string whole = "begin = 0.1\nduration = 0.2\n";
   later.replace(later.find(whole), whole.size(), "begin = 0.2\nduration = 0.1\n");
-  const MuscleResult half = run_muscle_study(read(later, folder_), progress);
+  const MuscleResult half = run_study(read(later, folder_), progress);
   EXPECT_LT((half.trajectory.q - found.trajectory.q.bottomRows(21)).cwiseAbs().maxCoeff(), 1e-5);
   // Both ends of every window are written, so that a program that interpolates has the same controls: what differs is
   // how the integrator comes over the jumps, less and less with its accuracy.
   const std::string finely = "accuracy = 1e-9\n";
-  const MuscleResult exact = run_muscle_study(read(forward + "\"hold\"\n" + finely, folder_), progress);
-  const MuscleResult interpolated = run_muscle_study(read(forward + "\"linear\"\n" + finely, folder_), progress);
+  const MuscleResult exact = run_study(read(forward + "\"hold\"\n" + finely, folder_), progress);
+  const MuscleResult interpolated = run_study(read(forward + "\"linear\"\n" + finely, folder_), progress);
   EXPECT_LT((interpolated.trajectory.q - exact.trajectory.q).cwiseAbs().maxCoeff(), 1e-6);
   // The states are part of it: from rest it is another motion.
   std::string rest = forward + "\"hold\"\n[motion.start]\nelbow_flexion = \"30 deg\"\n";
   const std::string start = "start_file = \"states.sto\"\n";
   rest.replace(rest.find(start), start.size(), "");
-  const MuscleResult other = run_muscle_study(read(rest, folder_), progress);
+  const MuscleResult other = run_study(read(rest, folder_), progress);
   EXPECT_GT((other.trajectory.q - found.trajectory.q).cwiseAbs().maxCoeff(), 1e-4);
 }
 
 TEST_F(MuscleStudyFiles, TablesReadBackAsTheMotionTheyAre) {
   const MuscleStudy study = read(kArm + "[motion]\nduration = 0.1\n[motion.start]\nelbow_flexion = 0.5\n");
   Progress progress;
-  const MuscleResult result = run_muscle_study(study, progress);
+  const MuscleResult result = run_study(study, progress);
   io::write_storage(state_storage(study, result), folder_ / "states.sto");
   const SignalTable table = read_signals(folder_ / "states.sto");
   EXPECT_THAT(table.names,

@@ -1,5 +1,4 @@
 #include "tests/muscle/reference_table.hpp"
-#include "tests/support/folders.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+
+#include "tests/support/folders.hpp"
 
 namespace veridyn::muscle::test {
 

@@ -22,9 +22,9 @@ struct Simulated {
 
 Simulated run(const std::string& motion, const std::string& subject = "") {
   const Study study = Study::parse("[subject]\nmodel = \"arm\"\n" + subject + "[motion]\n" + motion, "s.toml");
-  muscle::MuscleStudy read = muscle::read_muscle_study(study.root());
   Progress progress;
-  muscle::MuscleResult result = muscle::run_muscle_study(read, progress);
+  muscle::MuscleStudy read = muscle::read_study(study, progress);
+  muscle::MuscleResult result = muscle::run_study(read, progress);
   return {std::move(read), std::move(result)};
 }
 

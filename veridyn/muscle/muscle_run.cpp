@@ -121,7 +121,7 @@ double MuscleResult::tracking_error(std::size_t coordinate) const {
   return (trajectory.q.col(c) - wished.col(c)).cwiseAbs().maxCoeff();
 }
 
-MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress) {
+MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
   MuscleResult result;
   switch (study.method) {
     case MuscleMethod::kForward:

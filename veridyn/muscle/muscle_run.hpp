@@ -32,7 +32,7 @@ struct MuscleResult {
 };
 
 /// Does what the study asks. Never throws for a simulation that diverges: the result says how it ended.
-[[nodiscard]] MuscleResult run_muscle_study(const MuscleStudy& study, Progress& progress);
+[[nodiscard]] MuscleResult run_study(const MuscleStudy& study, Progress& progress);
 
 /// motion.csv: by coordinate value and speed, wish, generalised force or reserve where there are any.
 [[nodiscard]] Recording motion_table(const MuscleStudy& study, const MuscleResult& result);

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
-#include "veridyn/muscle/model/signals.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace veridyn::muscle {
@@ -46,7 +47,7 @@ struct ParameterChange {
 struct MuscleStudy {
   std::string title;
   std::string model_name;        ///< as the study names it
-  std::optional<OsimFile> file;  ///< as read; always set by `read_muscle_study`
+  std::optional<OsimFile> file;  ///< as read; always set by `read_study`
   Model written;                 ///< the file's model with the study's parameters: what is written back
   std::vector<HeldLoad> loads;   ///< in the system's masses, not in `written`
   std::vector<ParameterChange> changes;
@@ -72,7 +73,7 @@ struct MuscleStudy {
 /// A muscle study is one whose `[subject]` names a `model`.
 [[nodiscard]] bool is_muscle_study(const StudyTable& root);
 
-/// Reads from the root of a study:
+/// Reads a study:
 ///
 ///     [subject]
 ///     model = "arm26.osim"           # an OpenSim model; "arm": the built-in one
@@ -129,8 +130,7 @@ struct MuscleStudy {
 ///     exponent = 2
 ///     formulation = "with passive"   # "as opensim", "without physiology"
 ///
-/// Other keys of the root are left to others; `Study::root().finish()` finds the misspelt ones.
-/// @throws InputError with file, line and key.
-[[nodiscard]] MuscleStudy read_muscle_study(const StudyTable& root);
+/// @throws InputError with file, line and key, of keys too that no study of muscles has.
+[[nodiscard]] MuscleStudy read_study(const Study& study, Progress& progress);
 
 }  // namespace veridyn::muscle

@@ -1,6 +1,8 @@
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "veridyn/core/assert.hpp"
 
@@ -140,6 +142,30 @@ PiecewisePolynomial PiecewisePolynomial::natural_spline(std::span<const double> 
   f.breaks_ = std::move(p.breaks);
   f.origin_ = std::move(p.origin);
   f.coefficient_ = std::move(p.coefficient);
+  return f;
+}
+
+PiecewisePolynomial PiecewisePolynomial::held_pieces(std::span<const double> breaks,
+                                                     std::span<const std::array<double, 6>> coefficients, double end) {
+  VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end >= breaks.back());
+  PiecewisePolynomial f;
+  f.degree_ = 5;
+  f.origin_.clear();
+  f.coefficient_.clear();
+  const auto add = [&f](double origin, const std::array<double, 6>& c) {
+    f.origin_.push_back(origin);
+    f.coefficient_.insert(f.coefficient_.end(), c.begin(), c.end());
+  };
+  add(breaks.front(), {coefficients.front()[0]});
+  for (std::size_t i = 0; i < breaks.size(); ++i) add(breaks[i], coefficients[i]);
+  const std::array<double, 6>& last = coefficients.back();
+  const double s = end - breaks.back();
+  double value = last[5];
+  for (std::size_t i = 5; i-- > 0;) value = value * s + last[i];
+  add(end, {value});
+  f.breaks_.assign(breaks.begin(), breaks.end());
+  // The end itself belongs to the last piece.
+  f.breaks_.push_back(std::nextafter(end, std::numeric_limits<double>::infinity()));
   return f;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,12 +16,12 @@ struct FunctionValue {
   Scalar curvature{};
 };
 
-/// Every one-variable function that OpenSim's joints, moving points and couplers use (constant, linear, polynomial,
-/// piecewise linear, cubic spline, and those times a factor) is a polynomial between breakpoints; so is this.
+/// A function that is a polynomial between breakpoints: constant, linear, polynomial, piecewise linear, cubic spline
+/// (the functions of OpenSim's joints, moving points and couplers), quintic spline through samples in time.
 ///
-/// Below the first and above the last breakpoint the first and the last piece go on; a spline carries a linear piece
-/// at each end for OpenSim's straight continuation. Evaluation neither throws nor allocates; the piece is found by
-/// bisection on the value.
+/// Below the first and above the last breakpoint the first and the last piece go on; a cubic spline carries a linear
+/// piece at each end for OpenSim's straight continuation, a quintic one a constant piece. At a breakpoint the piece
+/// that begins there counts. Evaluation neither throws nor allocates; the piece is found by bisection on the value.
 class PiecewisePolynomial {
  public:
   /// The zero function.
@@ -38,6 +40,16 @@ class PiecewisePolynomial {
   [[nodiscard]] static PiecewisePolynomial simm_spline(std::span<const double> x, std::span<const double> y);
   /// Natural cubic spline (zero curvature at the ends), straight beyond them. As above.
   [[nodiscard]] static PiecewisePolynomial natural_spline(std::span<const double> x, std::span<const double> y);
+
+  /// The quintic spline through samples (de Boor 2001, chapter XIII): four times continuously differentiable, so that
+  /// accelerations of a sampled motion are smooth; the not-a-knot condition at both ends, two knots each. Four or five
+  /// points make a cubic, two or three straight lines, one a constant. Beyond the ends the first and the last value
+  /// hold. x strictly increasing, at least one point, no NaN.
+  [[nodiscard]] static PiecewisePolynomial quintic_spline(std::span<const double> x, std::span<const double> y);
+  /// sum_k coefficients[i][k] (x - breaks[i])^k from breaks[i] on, the last piece up to and with `end`; beyond, the
+  /// first and the last value hold. `breaks` strictly increasing, at least one, none above `end`; as many coefficients.
+  [[nodiscard]] static PiecewisePolynomial held_pieces(std::span<const double> breaks,
+                                                       std::span<const std::array<double, 6>> coefficients, double end);
 
   /// This function times `factor`.
   [[nodiscard]] PiecewisePolynomial scaled(double factor) const;

@@ -8,8 +8,8 @@
 #include "tests/muscle/reference_table.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/actuator/musculotendon.hpp"
-#include "veridyn/numerics/piecewise_polynomial.hpp"
 #include "veridyn/numerics/ode.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -10,9 +10,9 @@
 #include <filesystem>
 
 #include "tests/muscle/dynamics/model_trees.hpp"
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/numerics/ode.hpp"
 
 namespace veridyn::muscle {

@@ -9,8 +9,8 @@
 
 #include "tests/muscle/dynamics/model_trees.hpp"
 #include "tests/muscle/reference_table.hpp"
-#include "veridyn/core/error.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {

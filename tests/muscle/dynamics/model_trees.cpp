@@ -21,7 +21,8 @@ int new_coordinate(Model& model, Joint& joint, CoordinateMotion motion) {
   return index;
 }
 
-void set_axis(TransformAxis& axis, const Eigen::Vector3d& direction, int coordinate, numerics::PiecewisePolynomial function) {
+void set_axis(TransformAxis& axis, const Eigen::Vector3d& direction, int coordinate,
+              numerics::PiecewisePolynomial function) {
   axis.axis = direction.normalized();
   axis.coordinate = coordinate;
   axis.function = std::move(function);
@@ -120,7 +121,7 @@ Joint& add_joint(Model& model, TreeJoint kind, int parent, int child, numerics::
   joint.child_frame = random_placement(random);
   const auto linear = [&random]() {
     return numerics::PiecewisePolynomial::linear(random.uniform() < 0.5 ? 1.0 : random.uniform(0.5, 1.5),
-                                       random.uniform() < 0.5 ? 0.0 : random.uniform(-0.2, 0.2));
+                                                 random.uniform() < 0.5 ? 0.0 : random.uniform(-0.2, 0.2));
   };
   const auto rotation = [&](int i, const Eigen::Vector3d& axis) {
     const int c = new_coordinate(model, joint, CoordinateMotion::kRotational);

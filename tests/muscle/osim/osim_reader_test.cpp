@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <numbers>
 
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::muscle {

@@ -1,6 +1,5 @@
 #include "veridyn/muscle/path/muscle_path.hpp"
 
-#include <ceres/jet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,10 +10,12 @@
 #include <numbers>
 #include <sstream>
 
-#include "veridyn/core/error.hpp"
-#include "veridyn/muscle/osim/builtin_models.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/muscle/model/simulation_jet.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -241,7 +242,7 @@ TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {
 
 TEST(MusclePaths, JetsCarryTheDerivativesOfTheMomentArms) {
   Arm arm(load_model("arm").model());
-  using Jet = ceres::Jet<double, 2>;
+  using Jet = SimulationJet;
   PathWorkspace<Jet> workspace(arm.paths);
   Kinematics<Jet> kinematics(arm.mechanism);
   for (const double s : {-30.0, 15.0, 70.0}) {

@@ -1,14 +1,15 @@
 #include "veridyn/muscle/path/path_fit.hpp"
 
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "veridyn/muscle/osim/builtin_models.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/muscle/model/simulation_jet.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -74,7 +75,7 @@ TEST(FittedPaths, OfArm26KeepTheirTolerance) {
 
 TEST(FittedPaths, MomentArmsAreTheDerivativesOfTheFittedLengths) {
   const Fit fit(load_model("arm").model());
-  using Jet = ceres::Jet<double, 2>;
+  using Jet = SimulationJet;
   std::vector<Jet> length(6), gradient(fit.fitted.pairs().size());
   for (const double a : {-0.5, 0.2, 0.9}) {
     for (const double b : {0.1, 1.0, 2.0}) {

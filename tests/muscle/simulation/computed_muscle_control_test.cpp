@@ -8,12 +8,14 @@
 #include <numbers>
 
 #include "tests/muscle/reference_table.hpp"
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
-#include "tests/support/folders.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "tests/muscle/arm26_scenarios.hpp"
 #include "tests/muscle/reference_table.hpp"
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::muscle {

@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "tests/muscle/reference_table.hpp"
-#include "veridyn/muscle/dynamics/inverse_dynamics.hpp"
-#include "veridyn/muscle/path/muscle_path.hpp"
-#include "veridyn/muscle/osim/osim_reader.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/muscle/dynamics/inverse_dynamics.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace veridyn::muscle {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "veridyn/numerics/piecewise_polynomial.hpp"
 #include "veridyn/muscle/model/scalar.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 

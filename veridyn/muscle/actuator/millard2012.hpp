@@ -6,8 +6,8 @@
 
 #include "veridyn/muscle/actuator/activation_dynamics.hpp"
 #include "veridyn/muscle/actuator/damped_velocity.hpp"
-#include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/actuator/quintic_bezier_curve.hpp"
+#include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/model/scalar.hpp"
 
 namespace veridyn::muscle {

@@ -43,4 +43,6 @@ void check_excitations(std::span<const MuscleParameters> muscles, std::span<cons
                        fmt::format("its excitation is {}; must be a finite number", excitation[i]));
 }
 
+template class MuscleGroup<double>;
+
 }  // namespace veridyn::muscle

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
-#include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/muscle/actuator/musculotendon.hpp"
+#include "veridyn/muscle/model/muscle_parameters.hpp"
 
 namespace veridyn::muscle {
 
@@ -59,43 +59,17 @@ class MuscleGroup {
   /// The same in place.
   void set_parameters(std::span<const MusculotendonParameters<Scalar>> parameters);
 
-  void rates(const MuscleInputs<Scalar>& in, const MuscleOutputs<Scalar>& out) const {
-    std::apply([&](const auto&... list) { (list_rates(list, in, out), ...); }, members_);
-  }
+  void rates(const MuscleInputs<Scalar>& in, const MuscleOutputs<Scalar>& out) const;
 
   /// Forces alone.
-  void tendon_forces(const MuscleInputs<Scalar>& in, std::span<Scalar> force) const {
-    for_each([&](const auto& m) {
-      const std::size_t i = m.muscle;
-      force[i] = tendon_force(m.curves, m.constants, in.excitation[i], in.activation[i], in.fiber_length[i],
-                              in.path_length[i], m.constants.rigid_tendon ? in.path_speed[i] : Scalar(0.0));
-    });
-  }
+  void tendon_forces(const MuscleInputs<Scalar>& in, std::span<Scalar> force) const;
 
   /// Fibre lengths at rest, by `musculotendon_equilibrium`; `end` (when not empty) says how each ended.
   void equilibrium(std::span<const Scalar> activation, std::span<const Scalar> path_length,
-                   std::span<Scalar> fiber_length, std::span<EquilibriumEnd> end = {}) const {
-    for_each([&](const auto& m) {
-      const std::size_t i = m.muscle;
-      const auto found = musculotendon_equilibrium(m.curves, m.constants, activation[i], path_length[i]);
-      fiber_length[i] = found.fiber_length;
-      if (!end.empty()) end[i] = found.end;
-    });
-  }
+                   std::span<Scalar> fiber_length, std::span<EquilibriumEnd> end = {}) const;
 
   /// Two functions a muscle whose zeros are events: lM - its least length, lT - LS (rigid: lMT - LS for both) [m].
-  void events(const MuscleInputs<Scalar>& in, std::span<Scalar> value) const {
-    for_each([&](const auto& m) {
-      const std::size_t i = m.muscle;
-      const auto& k = m.constants;
-      value[2 * i] = value[2 * i + 1] = in.path_length[i] - k.LS;
-      if (k.rigid_tendon) return;
-      const Scalar& lM = in.fiber_length[i];
-      value[2 * i] = lM - k.minimum_length;
-      value[2 * i + 1] =
-          value[2 * i + 1] - internal::Pennation<Scalar>(k, lM > k.minimum_length ? lM : k.minimum_length).along;
-    });
-  }
+  void events(const MuscleInputs<Scalar>& in, std::span<Scalar> value) const;
 
   /// Forces as if tendons were rigid, at activation a for all muscles: what static optimisation and CMC scale by.
   void rigid_forces(double a, std::span<const double> path_length, std::span<const double> path_speed,
@@ -107,12 +81,7 @@ class MuscleGroup {
 
   /// The same with each muscle's own activation, with derivatives if the scalar carries them.
   void rigid_parts(std::span<const Scalar> activation, std::span<const Scalar> path_length,
-                   std::span<const Scalar> path_speed, std::span<RigidTendonParts<Scalar>> parts) const {
-    for_each([&](const auto& m) {
-      const std::size_t i = m.muscle;
-      parts[i] = rigid_tendon_parts(m.curves, m.constants, activation[i], path_length[i], path_speed[i]);
-    });
-  }
+                   std::span<const Scalar> path_speed, std::span<RigidTendonParts<Scalar>> parts) const;
 
   /// One muscle's forces at its own activation, as if its tendon were rigid.
   [[nodiscard]] RigidTendonForces rigid_forces(std::size_t muscle, double a, double lMT,
@@ -124,9 +93,7 @@ class MuscleGroup {
     return with_member(muscle,
                        [&](const auto& m) { return musculotendon_details(m.curves, m.constants, u, a, lM, lMT, vMT); });
   }
-  [[nodiscard]] double max_isometric_force(std::size_t muscle) const {
-    return with_member(muscle, [](const auto& m) { return value_of(m.constants.F0); });
-  }
+  [[nodiscard]] double max_isometric_force(std::size_t muscle) const;
 
   /// @throws InputError naming the muscle when an excitation is NaN or infinite.
   void check_excitations(std::span<const double> excitation) const;
@@ -202,6 +169,60 @@ MuscleGroup<Scalar>::MuscleGroup(std::span<const MuscleParameters> muscles)
               {c, {muscles[i].musculotendon.template cast<Scalar>(), muscles[i], minimum_norm_length(c)}, i});
         },
         curves[i]);
+}
+
+template <typename Scalar>
+void MuscleGroup<Scalar>::rates(const MuscleInputs<Scalar>& in, const MuscleOutputs<Scalar>& out) const {
+  std::apply([&](const auto&... list) { (list_rates(list, in, out), ...); }, members_);
+}
+
+template <typename Scalar>
+void MuscleGroup<Scalar>::tendon_forces(const MuscleInputs<Scalar>& in, std::span<Scalar> force) const {
+  for_each([&](const auto& m) {
+    const std::size_t i = m.muscle;
+    force[i] = tendon_force(m.curves, m.constants, in.excitation[i], in.activation[i], in.fiber_length[i],
+                            in.path_length[i], m.constants.rigid_tendon ? in.path_speed[i] : Scalar(0.0));
+  });
+}
+
+template <typename Scalar>
+void MuscleGroup<Scalar>::equilibrium(std::span<const Scalar> activation, std::span<const Scalar> path_length,
+                                      std::span<Scalar> fiber_length, std::span<EquilibriumEnd> end) const {
+  for_each([&](const auto& m) {
+    const std::size_t i = m.muscle;
+    const auto found = musculotendon_equilibrium(m.curves, m.constants, activation[i], path_length[i]);
+    fiber_length[i] = found.fiber_length;
+    if (!end.empty()) end[i] = found.end;
+  });
+}
+
+template <typename Scalar>
+void MuscleGroup<Scalar>::events(const MuscleInputs<Scalar>& in, std::span<Scalar> value) const {
+  for_each([&](const auto& m) {
+    const std::size_t i = m.muscle;
+    const auto& k = m.constants;
+    value[2 * i] = value[2 * i + 1] = in.path_length[i] - k.LS;
+    if (k.rigid_tendon) return;
+    const Scalar& lM = in.fiber_length[i];
+    value[2 * i] = lM - k.minimum_length;
+    value[2 * i + 1] =
+        value[2 * i + 1] - internal::Pennation<Scalar>(k, lM > k.minimum_length ? lM : k.minimum_length).along;
+  });
+}
+
+template <typename Scalar>
+void MuscleGroup<Scalar>::rigid_parts(std::span<const Scalar> activation, std::span<const Scalar> path_length,
+                                      std::span<const Scalar> path_speed,
+                                      std::span<RigidTendonParts<Scalar>> parts) const {
+  for_each([&](const auto& m) {
+    const std::size_t i = m.muscle;
+    parts[i] = rigid_tendon_parts(m.curves, m.constants, activation[i], path_length[i], path_speed[i]);
+  });
+}
+
+template <typename Scalar>
+double MuscleGroup<Scalar>::max_isometric_force(std::size_t muscle) const {
+  return with_member(muscle, [](const auto& m) { return value_of(m.constants.F0); });
 }
 
 template <typename Scalar>
@@ -301,5 +322,7 @@ template <typename Scalar>
 void MuscleGroup<Scalar>::check_excitations(std::span<const double> excitation) const {
   muscle::check_excitations(settings_, excitation);
 }
+
+extern template class MuscleGroup<double>;
 
 }  // namespace veridyn::muscle

@@ -6,10 +6,10 @@
 
 #include "veridyn/muscle/actuator/degroote_fregly2016.hpp"
 #include "veridyn/muscle/actuator/millard2012.hpp"
-#include "veridyn/muscle/model/muscle_parameters.hpp"
-#include "veridyn/muscle/model/scalar.hpp"
 #include "veridyn/muscle/actuator/thelen2003.hpp"
 #include "veridyn/muscle/actuator/thelen2003_deprecated.hpp"
+#include "veridyn/muscle/model/muscle_parameters.hpp"
+#include "veridyn/muscle/model/scalar.hpp"
 
 /// One muscle with its tendon: rates of its states, forces, equilibrium.
 ///

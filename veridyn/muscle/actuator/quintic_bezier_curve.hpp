@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "veridyn/numerics/piecewise_polynomial.hpp"
 #include "veridyn/muscle/model/scalar.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 

@@ -250,4 +250,6 @@ void ReducedDynamics<Scalar>::driving_forces(const Scalar* tau, const SpatialVec
   }
 }
 
+extern template class ReducedDynamics<double>;  // in dynamics.cpp
+
 }  // namespace veridyn::muscle

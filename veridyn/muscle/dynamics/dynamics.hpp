@@ -375,4 +375,6 @@ SpatialVector<Scalar> Dynamics<Scalar>::momentum() const {
   return total;
 }
 
+extern template class Dynamics<double>;  // in dynamics.cpp
+
 }  // namespace veridyn::muscle

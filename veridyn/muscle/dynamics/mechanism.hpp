@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/dynamics/spatial.hpp"
+#include "veridyn/muscle/model/model.hpp"
 
 namespace veridyn::muscle {
 
@@ -290,5 +290,9 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
     }
   }
 }
+
+// In dynamics.cpp.
+extern template void update_positions(const Mechanism&, const double*, Kinematics<double>&);
+extern template void update_velocities(const Mechanism&, const double*, Kinematics<double>&);
 
 }  // namespace veridyn::muscle

@@ -31,6 +31,16 @@ Eigen::Matrix3d body_fixed_xyz(const Eigen::Vector3d& angles) {
       .toRotationMatrix();
 }
 
+bool Coordinate::in_range(double value) const {
+  const double slack = 1e-6 * (1.0 + high - low);
+  return value >= low - slack && value <= high + slack;
+}
+
+std::string Coordinate::outside_range(double value) const {
+  return fmt::format("coordinate '{}' = {:.6g} {} is outside its range {:.6g} .. {:.6g}", name, value, unit(), low,
+                     high);
+}
+
 int Model::body(std::string_view wanted) const {
   return index_of(bodies, wanted, [](const Body& b) -> const std::string& { return b.name; });
 }
@@ -41,6 +51,26 @@ int Model::coordinate(std::string_view wanted) const {
 
 int Model::muscle(std::string_view wanted) const {
   return index_of(muscles, wanted, [](const Muscle& m) -> const std::string& { return m.name(); });
+}
+
+std::vector<std::string> Model::coordinate_names() const {
+  std::vector<std::string> names;
+  for (const Coordinate& c : coordinates) names.push_back(c.name);
+  return names;
+}
+
+std::vector<std::string> Model::muscle_names() const {
+  std::vector<std::string> names;
+  for (const Muscle& m : muscles) names.push_back(m.name());
+  return names;
+}
+
+std::string Model::no_coordinate(std::string_view wanted) const {
+  return fmt::format("model '{}' has no coordinate '{}'{}", name, wanted, suggestion(wanted, coordinate_names()));
+}
+
+std::string Model::no_muscle(std::string_view wanted) const {
+  return fmt::format("model '{}' has no muscle '{}'{}", name, wanted, suggestion(wanted, muscle_names()));
 }
 
 Eigen::VectorXd Model::default_pose() const {

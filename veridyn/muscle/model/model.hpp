@@ -52,6 +52,10 @@ struct Coordinate {
   bool clamped = false;
   bool locked = false;
   std::string unit() const { return motion == CoordinateMotion::kTranslational ? "m" : "rad"; }
+  /// low <= value <= high but for rounding; false for NaN.
+  [[nodiscard]] bool in_range(double value) const;
+  /// "coordinate 'elbow_flexion' = 3 rad is outside its range 0 .. 2.2689", for a message about a value that is not.
+  [[nodiscard]] std::string outside_range(double value) const;
 };
 
 /// One of the six motions of a joint: by function(coordinate) about or along `axis`.
@@ -195,6 +199,11 @@ struct Model {
   [[nodiscard]] int body(std::string_view name) const;
   [[nodiscard]] int coordinate(std::string_view name) const;
   [[nodiscard]] int muscle(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> coordinate_names() const;
+  [[nodiscard]] std::vector<std::string> muscle_names() const;
+  /// "model 'arm26' has no coordinate 'elbow'; did you mean 'r_elbow_flex'?", for a message about a name without index.
+  [[nodiscard]] std::string no_coordinate(std::string_view name) const;
+  [[nodiscard]] std::string no_muscle(std::string_view name) const;
   /// Coordinate values and speeds as the file sets them, coupled ones by their couplers.
   [[nodiscard]] Eigen::VectorXd default_pose() const;
 };

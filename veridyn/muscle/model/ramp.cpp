@@ -14,20 +14,20 @@ namespace {
 using Piece = std::array<double, 6>;
 
 /// The quintic with given values, first and second derivatives at both ends of [0, h].
-Piece hermite(double h, const numerics::SplineValue& a, const numerics::SplineValue& b) {
-  const double r0 = b.value - a.value - h * (a.first + 0.5 * h * a.second);
-  const double r1 = h * (b.first - a.first - h * a.second);
-  const double r2 = h * h * (b.second - a.second);
+Piece hermite(double h, const numerics::FunctionValue<double>& a, const numerics::FunctionValue<double>& b) {
+  const double r0 = b.value - a.value - h * (a.slope + 0.5 * h * a.curvature);
+  const double r1 = h * (b.slope - a.slope - h * a.curvature);
+  const double r2 = h * h * (b.curvature - a.curvature);
   const double h3 = h * h * h;
   return {a.value,
-          a.first,
-          0.5 * a.second,
+          a.slope,
+          0.5 * a.curvature,
           (10.0 * r0 - 4.0 * r1 + 0.5 * r2) / h3,
           (-15.0 * r0 + 7.0 * r1 - r2) / (h3 * h),
           (6.0 * r0 - 3.0 * r1 + 0.5 * r2) / (h3 * h * h)};
 }
 
-numerics::SplineValue half_sine(const Ramp& ramp, double s) {
+numerics::FunctionValue<double> half_sine(const Ramp& ramp, double s) {
   const double rate = std::numbers::pi / ramp.duration;
   const double half = 0.5 * (ramp.to - ramp.from), angle = std::numbers::pi * s;
   return {ramp.from + half * (1.0 - std::cos(angle)), half * rate * std::sin(angle),
@@ -56,7 +56,7 @@ void append(const Ramp& ramp, std::vector<double>& breaks, std::vector<Piece>& p
 
 }  // namespace
 
-numerics::InterpolatingSpline ramp_spline(std::span<const Ramp> ramps) {
+numerics::PiecewisePolynomial ramp_spline(std::span<const Ramp> ramps) {
   VERIDYN_ASSERT(!ramps.empty());
   std::vector<double> breaks;
   std::vector<Piece> pieces;
@@ -72,11 +72,11 @@ numerics::InterpolatingSpline ramp_spline(std::span<const Ramp> ramps) {
   }
   breaks.push_back(end);
   pieces.push_back({ramps.back().to});
-  return numerics::InterpolatingSpline::from_pieces(std::move(breaks), std::move(pieces), end);
+  return numerics::PiecewisePolynomial::held_pieces(breaks, pieces, end);
 }
 
-numerics::InterpolatingSpline resting_spline(double value) {
-  return numerics::InterpolatingSpline::from_pieces({0.0}, {{value}}, 0.0);
+numerics::PiecewisePolynomial resting_spline(double value) {
+  return numerics::PiecewisePolynomial::held_pieces(std::vector{0.0}, std::vector<Piece>{{value}}, 0.0);
 }
 
 }  // namespace veridyn::muscle

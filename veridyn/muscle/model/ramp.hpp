@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "veridyn/numerics/interpolating_spline.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 
@@ -24,9 +24,9 @@ struct Ramp {
 
 /// Ramps of one coordinate, in order of time, each beginning after the end of the one before and at its `to`.
 /// Piecewise quintic: minimum jerk and linear ramps exactly, half sines to 1e-11 of their rise.
-[[nodiscard]] numerics::InterpolatingSpline ramp_spline(std::span<const Ramp> ramps);
+[[nodiscard]] numerics::PiecewisePolynomial ramp_spline(std::span<const Ramp> ramps);
 
 /// A coordinate that stays where it is.
-[[nodiscard]] numerics::InterpolatingSpline resting_spline(double value);
+[[nodiscard]] numerics::PiecewisePolynomial resting_spline(double value);
 
 }  // namespace veridyn::muscle

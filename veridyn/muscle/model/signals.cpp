@@ -11,8 +11,8 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/io/read.hpp"
 #include "veridyn/io/opensim/storage.hpp"
+#include "veridyn/io/read.hpp"
 #include "veridyn/numerics/filters.hpp"
 
 namespace veridyn::muscle {
@@ -135,7 +135,7 @@ Motion make_motion(const SignalTable& table, const Model& model, const MotionOpt
     if (*low < coordinate.low - slack || *high > coordinate.high + slack)
       motion.beyond_range.push_back(coordinate.name);
     if (kernel) value = numerics::filter(value, *kernel);
-    motion.coordinate[c].emplace(table.time, value);
+    motion.coordinate[c] = numerics::PiecewisePolynomial::quintic_spline(table.time, value);
   }
   if (motion.missing.size() == model.coordinates.size()) {
     throw InputError(table.source,

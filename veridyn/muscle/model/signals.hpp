@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "veridyn/muscle/model/model.hpp"
-#include "veridyn/numerics/interpolating_spline.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::muscle {
 
@@ -33,7 +33,7 @@ struct SignalTable {
 /// A motion as functions of time, one a coordinate of the model; quintic splines through the samples.
 struct Motion {
   double begin = 0.0, end = 0.0;                                         ///< [s]
-  std::vector<std::optional<numerics::InterpolatingSpline>> coordinate;  ///< in the model's order; rad or m
+  std::vector<std::optional<numerics::PiecewisePolynomial>> coordinate;  ///< in the model's order; rad or m
   /// Coordinates of the model that the file does not have.
   std::vector<std::string> missing;
   /// Coordinates that leave their range by more than a thousandth of it.

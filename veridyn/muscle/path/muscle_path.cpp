@@ -11,24 +11,6 @@
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::muscle {
-namespace {
-
-bool on_path(const Eigen::Vector3d& p, const WrapObject& object) {
-  const Eigen::Vector3d& d = object.dimensions;
-  switch (object.shape) {
-    case WrapShape::kSphere:
-      return p.norm() < d[0];
-    case WrapShape::kCylinder:
-      return p.head<2>().norm() < d[0];
-    case WrapShape::kEllipsoid:
-      return p.cwiseQuotient(d).norm() < 1.0;
-    case WrapShape::kTorus:
-      return std::hypot(p.head<2>().norm() - d[1], p.z()) < d[0];
-  }
-  return false;
-}
-
-}  // namespace
 
 int MusclePaths::point(int link, const Eigen::Vector3d& location) {
   for (std::size_t i = 0; i < points_.size(); ++i)
@@ -84,132 +66,133 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
   for (int link = 0; link < mechanism.links(); ++link)
     for (int c = 0; c < coordinates_; ++c)
       moves_[static_cast<std::size_t>(link * coordinates_ + c)] = mechanism.moves(c, link) ? 1 : 0;
-
-  const int bodies = static_cast<int>(model.bodies.size());
-  for (const WrapObject& object : model.wrap_objects) {
-    if (object.body < 0 || object.body >= bodies)
-      throw InputError(model.name, fmt::format("wrap object {} is fixed to no body", object.name));
-    const int sizes = object.shape == WrapShape::kEllipsoid ? 3 : (object.shape == WrapShape::kSphere ? 1 : 2);
-    for (int i = 0; i < sizes; ++i)
-      if (!(object.dimensions[i] > 0.0))
-        throw InputError(model.name, fmt::format("wrap object {}: its dimensions must be positive, one is {}",
-                                                 object.name, object.dimensions[i]));
-    const Mechanism::BodyPlace& place = mechanism.body(object.body);
-    Object compiled;
-    compiled.name = object.name;
-    compiled.description = object;
-    compiled.link = place.link;
-    compiled.in_link = place.in_link * object.placement;
-    compiled.shape = object.shape;
-    const Eigen::Vector3d& d = object.dimensions;
-    compiled.sphere = {d[0], object.quadrant};
-    compiled.cylinder = {d[0], 0.5 * d[1], object.quadrant};
-    compiled.ellipsoid = {d, object.quadrant};
-    compiled.torus = {d[0], d[1], object.quadrant};
-    if (mode_ == WrapMode::kTaut && (sizes == 1 || sizes == 3)) compiled.reach = d.head(sizes).maxCoeff();
-    objects_.push_back(compiled);
-  }
-
-  for (const Muscle& muscle : model.muscles) {
-    Path path;
-    path.name = muscle.name();
-    if (muscle.points.size() < 2)
-      throw InputError(model.name, fmt::format("muscle {}: a path needs at least two points", path.name));
-    for (const PathPoint& p : muscle.points) {
-      const auto place_of = [&](const char* what) -> const Mechanism::BodyPlace& {
-        if (p.body < 0 || p.body >= bodies)
-          throw InputError(model.name, fmt::format("muscle {}: {} {} is fixed to no body", path.name, what, p.name));
-        return mechanism.body(p.body);
-      };
-      const Mechanism::BodyPlace& place = place_of("point");
-      PathStation station;
-      station.name = p.name;
-      if (p.kind == PathPointKind::kMoving) {
-        MovingPoint moving;
-        moving.point = static_cast<int>(points_.size());
-        moving.in_link = place.in_link;
-        moving.coordinate = p.moving_coordinate;
-        moving.location = p.moving_location;
-        points_.push_back({place.link, Eigen::Vector3d::Zero(), static_cast<int>(moving_.size())});
-        moving_.push_back(moving);
-        station.point = moving.point;
-      } else {
-        station.point = point(place.link, place.in_link * p.location);
-        if (p.kind == PathPointKind::kConditional) {
-          station.condition = p.coordinate;
-          station.low = p.low;
-          station.high = p.high;
-        }
-      }
-      path.stations.push_back(station);
-    }
-    const int stations = static_cast<int>(path.stations.size());
-    for (const PathWrap& w : muscle.wraps) {
-      if (w.object < 0 || w.object >= static_cast<int>(objects_.size()))
-        throw InputError(model.name, fmt::format("muscle {}: it wraps over an object that is not there", path.name));
-      if (!objects_[static_cast<std::size_t>(w.object)].description.active) continue;
-      Wrap wrap;
-      wrap.object = w.object;
-      wrap.first = std::max(0, w.first_point);
-      wrap.last = w.last_point < 0 ? stations - 1 : std::min(stations - 1, w.last_point);
-      wrap.method = w.method;
-      path.wraps.push_back(wrap);
-    }
-    if (path.wraps.size() > 32)
-      throw InputError(model.name, fmt::format("muscle {}: more than 32 wrap objects", path.name));
-    muscles_.push_back(path);
-  }
-
-  for (Path& path : muscles_) {
-    const bool conditional =
-        std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
-    if (!conditional) {
-      for (Wrap& wrap : path.wraps) {
-        for (int i = wrap.first; i < wrap.last; ++i) {
-          const int a = path.stations[static_cast<std::size_t>(i)].point;
-          const int b = path.stations[static_cast<std::size_t>(i) + 1].point;
-          // Object and both ends on one link: the answer is always the same; where it is no, it is not asked again.
-          const Point& pa = points_[static_cast<std::size_t>(a)];
-          const Point& pb = points_[static_cast<std::size_t>(b)];
-          const Object& object = objects_[static_cast<std::size_t>(wrap.object)];
-          if (mode_ == WrapMode::kTaut && pa.link == object.link && pb.link == object.link && pa.moving < 0 &&
-              pb.moving < 0) {
-            const Placement in = object.in_link.inverse();
-            const Eigen::Vector3d p = in * pa.location, q = in * pb.location;
-            WrapStatus status = WrapStatus::kStraight;
-            if (object.shape == WrapShape::kSphere) status = muscle::wrap(object.sphere, p, q).status;
-            if (object.shape == WrapShape::kCylinder) status = muscle::wrap(object.cylinder, p, q).status;
-            if (object.shape == WrapShape::kEllipsoid) status = muscle::wrap(object.ellipsoid, p, q).status;
-            if (object.shape == WrapShape::kTorus) status = muscle::wrap(object.torus, p, q).status;
-            if (status == WrapStatus::kStraight) {
-              wrap.spans.push_back(-1);
-              continue;
-            }
-          }
-          // OpenSim's cylinder depends on whether it is the path's only wrap, its ellipsoid on the method: not shared.
-          const auto same = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) {
-            return mode_ == WrapMode::kTaut && s.a == a && s.b == b && s.object == wrap.object;
-          });
-          wrap.spans.push_back(static_cast<int>(same - spans_.begin()));
-          if (same == spans_.end()) spans_.push_back({a, b, wrap.object});
-        }
-      }
-    }
-    for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
-      const Point& pa = points_[static_cast<std::size_t>(path.stations[i].point)];
-      const Point& pb = points_[static_cast<std::size_t>(path.stations[i + 1].point)];
-      const bool fixed = pa.link == pb.link && pa.moving < 0 && pb.moving < 0;
-      path.fixed.push_back(fixed ? (pb.location - pa.location).norm() : -1.0);
-    }
-    most_stations_ = std::max(most_stations_, path.stations.size());
-    most_wraps_ = std::max(most_wraps_, path.wraps.size());
-    path.pairs[0] = pairs_.size();
-    for (const int c : coordinates_of(path)) pairs_.push_back({static_cast<int>(&path - muscles_.data()), c});
-    path.pairs[1] = pairs_.size();
-    compile_straight(static_cast<int>(&path - muscles_.data()));
-  }
+  for (const WrapObject& object : model.wrap_objects) add_object(model, mechanism, object);
+  for (const Muscle& muscle : model.muscles) add_path(model, mechanism, muscle);
+  for (int muscle = 0; muscle < muscles(); ++muscle) compile_path(muscle);
   sort_segments();
   list_points();
+}
+
+void MusclePaths::add_object(const Model& model, const Mechanism& mechanism, const WrapObject& object) {
+  if (object.body < 0 || object.body >= static_cast<int>(model.bodies.size()))
+    throw InputError(model.name, fmt::format("wrap object {} is fixed to no body", object.name));
+  const int sizes = object.shape == WrapShape::kEllipsoid ? 3 : (object.shape == WrapShape::kSphere ? 1 : 2);
+  for (int i = 0; i < sizes; ++i)
+    if (!(object.dimensions[i] > 0.0))
+      throw InputError(model.name, fmt::format("wrap object {}: its dimensions must be positive, one is {}",
+                                               object.name, object.dimensions[i]));
+  const Mechanism::BodyPlace& place = mechanism.body(object.body);
+  Object compiled;
+  compiled.name = object.name;
+  compiled.description = object;
+  compiled.link = place.link;
+  compiled.in_link = place.in_link * object.placement;
+  compiled.shape = object.shape;
+  const Eigen::Vector3d& d = object.dimensions;
+  compiled.sphere = {d[0], object.quadrant};
+  compiled.cylinder = {d[0], 0.5 * d[1], object.quadrant};
+  compiled.ellipsoid = {d, object.quadrant};
+  compiled.torus = {d[0], d[1], object.quadrant};
+  if (mode_ == WrapMode::kTaut && (sizes == 1 || sizes == 3)) compiled.reach = d.head(sizes).maxCoeff();
+  objects_.push_back(compiled);
+}
+
+MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanism& mechanism, const Muscle& muscle,
+                                              const PathPoint& p) {
+  if (p.body < 0 || p.body >= static_cast<int>(model.bodies.size()))
+    throw InputError(model.name, fmt::format("muscle {}: point {} is fixed to no body", muscle.name(), p.name));
+  const Mechanism::BodyPlace& place = mechanism.body(p.body);
+  PathStation station;
+  station.name = p.name;
+  if (p.kind == PathPointKind::kMoving) {
+    MovingPoint moving;
+    moving.point = static_cast<int>(points_.size());
+    moving.in_link = place.in_link;
+    moving.coordinate = p.moving_coordinate;
+    moving.location = p.moving_location;
+    points_.push_back({place.link, Eigen::Vector3d::Zero(), static_cast<int>(moving_.size())});
+    moving_.push_back(moving);
+    station.point = moving.point;
+  } else {
+    station.point = point(place.link, place.in_link * p.location);
+    if (p.kind == PathPointKind::kConditional) {
+      station.condition = p.coordinate;
+      station.low = p.low;
+      station.high = p.high;
+    }
+  }
+  return station;
+}
+
+void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const Muscle& muscle) {
+  Path path;
+  path.name = muscle.name();
+  if (muscle.points.size() < 2)
+    throw InputError(model.name, fmt::format("muscle {}: a path needs at least two points", path.name));
+  for (const PathPoint& p : muscle.points) path.stations.push_back(station(model, mechanism, muscle, p));
+  const int stations = static_cast<int>(path.stations.size());
+  for (const PathWrap& w : muscle.wraps) {
+    if (w.object < 0 || w.object >= static_cast<int>(objects_.size()))
+      throw InputError(model.name, fmt::format("muscle {}: it wraps over an object that is not there", path.name));
+    if (!objects_[static_cast<std::size_t>(w.object)].description.active) continue;
+    Wrap wrap;
+    wrap.object = w.object;
+    wrap.first = std::max(0, w.first_point);
+    wrap.last = w.last_point < 0 ? stations - 1 : std::min(stations - 1, w.last_point);
+    wrap.method = w.method;
+    path.wraps.push_back(wrap);
+  }
+  if (path.wraps.size() > 32)
+    throw InputError(model.name, fmt::format("muscle {}: more than 32 wrap objects", path.name));
+  muscles_.push_back(path);
+}
+
+/// Object and both ends on one link: the answer is always the same; where it is no, the wrap is not tried again.
+bool MusclePaths::never_wraps(const Object& object, const Point& a, const Point& b) const {
+  if (mode_ != WrapMode::kTaut || a.link != object.link || b.link != object.link || a.moving >= 0 || b.moving >= 0)
+    return false;
+  const Placement in = object.in_link.inverse();
+  return wrap_status(object, in * a.location, in * b.location) == WrapStatus::kStraight;
+}
+
+/// The pairs of points that each wrap of a path without conditions is tried on.
+void MusclePaths::list_spans(Path& path) {
+  for (Wrap& wrap : path.wraps) {
+    for (int i = wrap.first; i < wrap.last; ++i) {
+      const int a = path.stations[static_cast<std::size_t>(i)].point;
+      const int b = path.stations[static_cast<std::size_t>(i) + 1].point;
+      if (never_wraps(objects_[static_cast<std::size_t>(wrap.object)], points_[static_cast<std::size_t>(a)],
+                      points_[static_cast<std::size_t>(b)])) {
+        wrap.spans.push_back(-1);
+        continue;
+      }
+      // OpenSim's cylinder depends on whether it is the path's only wrap, its ellipsoid on the method: not shared.
+      const auto same = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) {
+        return mode_ == WrapMode::kTaut && s.a == a && s.b == b && s.object == wrap.object;
+      });
+      wrap.spans.push_back(static_cast<int>(same - spans_.begin()));
+      if (same == spans_.end()) spans_.push_back({a, b, wrap.object});
+    }
+  }
+}
+
+void MusclePaths::compile_path(int muscle) {
+  Path& path = muscles_[static_cast<std::size_t>(muscle)];
+  const bool conditional =
+      std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
+  if (!conditional) list_spans(path);
+  for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
+    const Point& pa = points_[static_cast<std::size_t>(path.stations[i].point)];
+    const Point& pb = points_[static_cast<std::size_t>(path.stations[i + 1].point)];
+    const bool fixed = pa.link == pb.link && pa.moving < 0 && pb.moving < 0;
+    path.fixed.push_back(fixed ? (pb.location - pa.location).norm() : -1.0);
+  }
+  most_stations_ = std::max(most_stations_, path.stations.size());
+  most_wraps_ = std::max(most_wraps_, path.wraps.size());
+  path.pairs[0] = pairs_.size();
+  for (const int c : coordinates_of(path)) pairs_.push_back({muscle, c});
+  path.pairs[1] = pairs_.size();
+  compile_straight(muscle);
 }
 
 void MusclePaths::compile_straight(int muscle) {
@@ -309,74 +292,6 @@ void MusclePaths::list_points() {
   };
   std::copy_if(for_lengths.begin(), for_lengths.end(), std::back_inserter(points_for_lengths_), placed);
   std::copy_if(for_all.begin(), for_all.end(), std::back_inserter(points_for_all_), placed);
-}
-
-std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kinematics, const double* q, int muscle,
-                                                   int arc_points) const {
-  PathWorkspace<double> workspace(*this);
-  PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
-  const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[static_cast<std::size_t>(muscle)];
-  std::vector<Eigen::Vector3d> line;
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto& node = workspace.nodes[k];
-    line.push_back(node.x);
-    if (node.wrap < 0 || k + 1 == n || workspace.nodes[k + 1].wrap != node.wrap) continue;
-    // Between the tangent points: a Bezier arc with the right ends and directions, laid onto the surface.
-    const WrapResult<double>& r = solver.result(static_cast<std::size_t>(node.wrap));
-    const int index = path.wraps[static_cast<std::size_t>(node.wrap)].object;
-    const auto& frame = workspace.object[static_cast<std::size_t>(index)];
-    const Object& object = objects_[static_cast<std::size_t>(index)];
-    const Eigen::Vector3d d1 = (r.r1 - workspace.nodes[k - 1].x).normalized() * r.surface_length / 3.0;
-    const Eigen::Vector3d d2 = (workspace.nodes[k + 2].x - r.r2).normalized() * r.surface_length / 3.0;
-    for (int i = 1; i <= arc_points; ++i) {
-      const double t = static_cast<double>(i) / (arc_points + 1), u = 1.0 - t;
-      const Eigen::Vector3d x =
-          u * u * u * r.r1 + 3.0 * u * u * t * (r.r1 + d1) + 3.0 * u * t * t * (r.r2 - d2) + t * t * t * r.r2;
-      Eigen::Vector3d local = frame.rotation.transpose() * (x - frame.position);
-      if (object.shape == WrapShape::kSphere) local *= object.sphere.radius / local.norm();
-      if (object.shape == WrapShape::kEllipsoid) local /= local.cwiseQuotient(object.ellipsoid.radii).norm();
-      if (object.shape == WrapShape::kCylinder) local.head<2>() *= object.cylinder.radius / local.head<2>().norm();
-      line.push_back(frame.rotation * local + frame.position);
-    }
-  }
-  return line;
-}
-
-std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinematics, const double* q, int muscle) const {
-  PathWorkspace<double> workspace(*this);
-  PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
-  const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[static_cast<std::size_t>(muscle)];
-  std::vector<std::string> names;
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    const int wrap = workspace.nodes[k].wrap;
-    if (wrap >= 0 && workspace.nodes[k + 1].wrap == wrap)
-      names.push_back(objects_[static_cast<std::size_t>(path.wraps[static_cast<std::size_t>(wrap)].object)].name);
-  }
-  return names;
-}
-
-std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& kinematics, const double* q) const {
-  PathWorkspace<double> workspace(*this);
-  const PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
-  std::vector<std::string> lines;
-  for (const Path& path : muscles_) {
-    for (const Wrap& wrap : path.wraps) {
-      const Object& object = objects_[static_cast<std::size_t>(wrap.object)];
-      const auto& frame = workspace.object[static_cast<std::size_t>(wrap.object)];
-      for (int i = wrap.first; i <= wrap.last; ++i) {
-        const PathStation& station = path.stations[static_cast<std::size_t>(i)];
-        const Eigen::Vector3d local =
-            frame.rotation.transpose() * (workspace.position[static_cast<std::size_t>(station.point)] - frame.position);
-        if (on_path(local, object.description))
-          lines.push_back(
-              fmt::format("muscle {}: point {} lies inside its wrap object {}; the path goes straight there", path.name,
-                          station.name, object.name));
-      }
-    }
-  }
-  return lines;
 }
 
 }  // namespace veridyn::muscle

@@ -34,6 +34,8 @@ struct PathWorkspace;
 /// What is the same for every pose (segments within a link) is computed once here, what several muscles share
 /// (segments, wraps of one pair of points) once per pose. Immutable, used by many threads at once; no call below
 /// allocates, throws, or returns NaN for finite input.
+///
+/// The templates are compiled for double and `SimulationJet`; `muscle_path_evaluation.hpp` defines them for others.
 class MusclePaths {
  public:
   /// @throws InputError naming muscle and point or wrap object where a path has fewer than two points, refers to what
@@ -170,6 +172,14 @@ class MusclePaths {
 
   int point(int link, const Eigen::Vector3d& location);
   int segment(int a, int b);
+  void add_object(const Model& model, const Mechanism& mechanism, const WrapObject& object);
+  void add_path(const Model& model, const Mechanism& mechanism, const Muscle& muscle);
+  [[nodiscard]] PathStation station(const Model& model, const Mechanism& mechanism, const Muscle& muscle,
+                                    const PathPoint& point);
+  [[nodiscard]] bool never_wraps(const Object& object, const Point& a, const Point& b) const;
+  [[nodiscard]] static WrapStatus wrap_status(const Object& object, const Eigen::Vector3d& p, const Eigen::Vector3d& q);
+  void list_spans(Path& path);
+  void compile_path(int muscle);
   void compile_straight(int muscle);
   void sort_segments();
   void list_points();
@@ -205,5 +215,3 @@ class MusclePaths {
 };
 
 }  // namespace veridyn::muscle
-
-#include "veridyn/muscle/path/muscle_path_solver.hpp"

@@ -1,9 +1,12 @@
 #include "veridyn/muscle/path/path_fit.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+
+#include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -65,276 +68,386 @@ double power_of(double x, int n) {
 
 }  // namespace
 
-FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
-                         const PathFitOptions& options) {
-  Sampler sampler{mechanism, exact, Kinematics<double>(mechanism), PathWorkspace<double>(exact)};
-  const int coordinates = exact.coordinates();
-  const Eigen::VectorXd rest = model.default_pose();
-  std::vector<double> low(static_cast<std::size_t>(coordinates)), high(low.size());
-  for (int c = 0; c < coordinates; ++c) {
+/// Makes one `FittedPaths`: a view of what its constructor was given, which lives no longer than that.
+class FittedPaths::Builder {
+ public:
+  Builder(FittedPaths& result, const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
+          const PathFitOptions& options);
+
+  void choose_muscles();
+  void fit(int muscle);
+  /// Errors of the whole, on poses of its own.
+  void check();
+  /// Leaves to `exact` what was fitted badly or not at all.
+  void drop_misfits();
+
+ private:
+  /// Lengths (less that at rest) and slopes of one part: the poses of the fit, then those of its check.
+  struct Samples {
+    Eigen::MatrixXd x, slope;  ///< poses x coordinates of the part; x scaled to -1..1
+    Eigen::VectorXd value;
+    Eigen::Index fitted = 0;
+    Eigen::Index all = 0;
+  };
+  using Powers = std::vector<std::array<unsigned char, 8>>;
+  struct Polynomial {
+    Eigen::VectorXd coefficient;
+    Powers powers;
+    double error = 1e300;
+    int degree = 1;
+  };
+
+  [[nodiscard]] Eigen::VectorXd pose(const std::vector<int>& of, int index) const;
+  [[nodiscard]] int axis(int coordinate);
+  [[nodiscard]] std::vector<int> coordinates_that_matter(int muscle);
+  [[nodiscard]] std::vector<int> groups(int muscle, const std::vector<int>& used);
+  [[nodiscard]] int most_degree(int coordinates) const;
+  [[nodiscard]] Samples sample(const Part& part, const std::vector<int>& of, double at_rest);
+  [[nodiscard]] Polynomial fit_polynomial(const Part& part, const Samples& samples) const;
+  /// Misfit of the best polynomial with `powers` on the poses of the check; its coefficients.
+  [[nodiscard]] double fit_powers(const Part& part, const Samples& samples, const Powers& powers,
+                                  Eigen::VectorXd& coefficient) const;
+  void fit_part(Part& part, const std::vector<int>& of, double at_rest);
+  void store_pieces(Part& part, int coordinate, double at_rest);
+  void store(Part& part, const Polynomial& polynomial);
+  void keep_exact();
+
+  static constexpr int kCheckPoses = 200;  ///< of a part
+
+  FittedPaths& result_;
+  const Model& model_;
+  const MusclePaths& exact_;
+  const PathFitOptions& options_;
+  Sampler sampler_;
+  Eigen::VectorXd rest_;
+  std::vector<double> low_, high_;
+  std::vector<int> axis_of_;
+};
+
+FittedPaths::Builder::Builder(FittedPaths& result, const Model& model, const Mechanism& mechanism,
+                              const MusclePaths& exact, const PathFitOptions& options)
+    : result_(result),
+      model_(model),
+      exact_(exact),
+      options_(options),
+      sampler_{mechanism, exact, Kinematics<double>(mechanism), PathWorkspace<double>(exact)},
+      rest_(model.default_pose()),
+      low_(static_cast<std::size_t>(exact.coordinates())),
+      high_(low_.size()),
+      axis_of_(low_.size(), -1) {
+  for (int c = 0; c < exact.coordinates(); ++c) {
     const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
     const bool range = k.high > k.low && k.high - k.low < 20.0;
-    low[static_cast<std::size_t>(c)] = range ? k.low : rest[c] - 0.5;
-    high[static_cast<std::size_t>(c)] = range ? k.high : rest[c] + 0.5;
+    low_[static_cast<std::size_t>(c)] = range ? k.low : rest_[c] - 0.5;
+    high_[static_cast<std::size_t>(c)] = range ? k.high : rest_[c] + 0.5;
   }
-  const auto pose = [&](const std::vector<int>& of, int index) {
-    Eigen::VectorXd q = rest;
-    for (std::size_t a = 0; a < of.size(); ++a) {
-      const auto c = static_cast<std::size_t>(of[a]);
-      q[of[a]] = low[c] + (high[c] - low[c]) * halton(index, static_cast<int>(a));
-    }
-    return q;
-  };
-  std::vector<int> axis_of(static_cast<std::size_t>(coordinates), -1);
-  const auto axis = [&](int c) {
-    int& known = axis_of[static_cast<std::size_t>(c)];
-    if (known < 0) {
-      known = static_cast<int>(axes_.size());
-      const double a = low[static_cast<std::size_t>(c)], b = high[static_cast<std::size_t>(c)];
-      axes_.push_back({c, 0.5 * (a + b), 2.0 / (b - a)});
-    }
-    return known;
-  };
+}
 
-  // One exact path costs the whole machinery of exact paths: where all straight ones are cheap to fit, none is left.
-  constexpr std::size_t kFew = 2;
-  bool few = true;
-  for (int m = 0; m < exact.muscles(); ++m) {
-    few = few && (exact.can_wrap(m) || exact.end_pair(m) - exact.first_pair(m) <= kFew);
+Eigen::VectorXd FittedPaths::Builder::pose(const std::vector<int>& of, int index) const {
+  Eigen::VectorXd q = rest_;
+  for (std::size_t a = 0; a < of.size(); ++a) {
+    const auto c = static_cast<std::size_t>(of[a]);
+    q[of[a]] = low_[c] + (high_[c] - low_[c]) * halton(index, static_cast<int>(a));
   }
-  for (int m = 0; m < exact.muscles(); ++m) {
-    fitted_.push_back(options.mixed && !few && !exact.can_wrap(m) ? 0 : 1);
-    if (fitted_.back() == 0) {
-      constant_.push_back(0.0);
-      PathFitError none;
-      none.muscle = model.muscles[static_cast<std::size_t>(m)].name();
-      none.fitted = false;
-      errors_.push_back(none);
-      continue;
-    }
-    // Coordinates that matter.
-    std::vector<int> candidates, used;
-    for (std::size_t k = exact.first_pair(m); k < exact.end_pair(m); ++k)
-      candidates.push_back(exact.pairs()[k].coordinate);
-    std::vector<double> greatest(candidates.size(), 0.0);
-    for (int i = 0; i < 64; ++i) {
-      sampler.at(pose(candidates, 1000 + i));
-      for (std::size_t a = 0; a < candidates.size(); ++a)
-        greatest[a] = std::max(greatest[a], std::abs(sampler.slope(m, candidates[a])));
-    }
-    for (std::size_t a = 0; a < candidates.size(); ++a)
-      if (greatest[a] > 1e-9) used.push_back(candidates[a]);
-    if (used.size() > kMostCoordinates) used.resize(kMostCoordinates);
+  return q;
+}
 
-    // Two coordinates belong together where the slope about one changes with the other.
-    std::vector<int> group(used.size());
-    std::iota(group.begin(), group.end(), 0);
-    for (std::size_t a = 0; a < used.size(); ++a) {
-      for (std::size_t b = 0; b < used.size(); ++b) {
-        if (a == b || group[a] == group[b]) continue;
-        double change = 0.0;
-        for (int i = 0; i < 24; ++i) {
-          Eigen::VectorXd q = pose(used, 2000 + i);
-          sampler.at(q);
-          const double before = sampler.slope(m, used[a]);
-          const auto c = static_cast<std::size_t>(used[b]);
-          q[used[b]] = low[c] + (high[c] - low[c]) * halton(i, 5);
-          sampler.at(q);
-          change = std::max(change, std::abs(sampler.slope(m, used[a]) - before));
-        }
-        if (change > 1e-7) {
-          const int from = group[b], to = group[a];
-          for (int& g : group)
-            if (g == from) g = to;
-        }
-      }
-    }
+int FittedPaths::Builder::axis(int coordinate) {
+  const auto c = static_cast<std::size_t>(coordinate);
+  if (axis_of_[c] < 0) {
+    axis_of_[c] = static_cast<int>(result_.axes_.size());
+    const double a = low_[c], b = high_[c];
+    result_.axes_.push_back({coordinate, 0.5 * (a + b), 2.0 / (b - a)});
+  }
+  return axis_of_[c];
+}
 
-    // A sum: L(q) = L(rest) + sum over groups (L(rest but for the group) - L(rest)).
-    sampler.at(rest);
-    const double at_rest = sampler.workspace.length[static_cast<std::size_t>(m)];
-    constant_.push_back(at_rest);
+/// One exact path costs the whole machinery of exact paths: where all straight ones are cheap to fit, none is left.
+void FittedPaths::Builder::choose_muscles() {
+  constexpr std::size_t kCheapCoordinates = 2;
+  bool all_cheap = true;
+  for (int m = 0; m < exact_.muscles(); ++m)
+    all_cheap = all_cheap && (exact_.can_wrap(m) || exact_.end_pair(m) - exact_.first_pair(m) <= kCheapCoordinates);
+  for (int m = 0; m < exact_.muscles(); ++m) {
+    result_.fitted_.push_back(options_.mixed && !all_cheap && !exact_.can_wrap(m) ? 0 : 1);
     PathFitError error;
-    error.muscle = model.muscles[static_cast<std::size_t>(m)].name();
-    error.coordinates = used;
-    const std::size_t first_pair = pairs_.size();
-    for (const int c : used) pairs_.push_back({m, c});
-
-    for (int g = 0; g < static_cast<int>(used.size()); ++g) {
-      std::vector<int> of;
-      Part part;
-      part.muscle = m;
-      for (std::size_t a = 0; a < used.size(); ++a) {
-        if (group[a] != g) continue;
-        part.axes[of.size()] = axis(used[a]);
-        part.pair[of.size()] = first_pair + a;
-        of.push_back(used[a]);
-      }
-      if (of.empty()) continue;
-      const int n = static_cast<int>(of.size());
-      part.coordinates = n;
-      const int most_degree = std::clamp(options.max_degree - (n > 3 ? 6 : (n == 3 ? 3 : 0)), 1, kMostDegree);
-      const int most_terms = static_cast<int>(exponents(n, most_degree).size());
-      const int fit_poses = std::max(48, 3 * most_terms), all = fit_poses + 200;
-      Eigen::MatrixXd x(all, n), slope(all, n);
-      Eigen::VectorXd value(all);
-      for (int i = 0; i < all; ++i) {
-        Eigen::VectorXd q = rest;
-        for (int a = 0; a < n; ++a) {
-          // Denser towards the ends, as Chebyshev's points, for the fit; even for the check.
-          const double u = halton(i + (i < fit_poses ? 0 : 5000), a);
-          x(i, a) = i < fit_poses ? -std::cos(3.14159265358979 * u) : 2.0 * u - 1.0;
-          const Axis& scaled = axes_[static_cast<std::size_t>(part.axes[a])];
-          q[scaled.coordinate] = scaled.middle + x(i, a) / scaled.scale;
-        }
-        sampler.at(q);
-        value[i] = sampler.workspace.length[static_cast<std::size_t>(m)] - at_rest;
-        for (int a = 0; a < n; ++a) slope(i, a) = sampler.slope(m, of[static_cast<std::size_t>(a)]);
-      }
-      Eigen::VectorXd best;
-      std::vector<std::array<unsigned char, 8>> best_powers;
-      double best_error = 1e300;
-      int best_degree = 1;
-      for (int degree = 1; degree <= most_degree; ++degree) {
-        const auto powers = exponents(n, degree);
-        const auto terms = static_cast<Eigen::Index>(powers.size());
-        Eigen::MatrixXd all_rows((n + 1) * all, terms);
-        Eigen::VectorXd all_values((n + 1) * all);
-        for (int i = 0; i < all; ++i) {
-          for (Eigen::Index t = 0; t < terms; ++t) {
-            const auto& p = powers[static_cast<std::size_t>(t)];
-            double product = 1.0;
-            for (int a = 0; a < n; ++a) product *= power_of(x(i, a), p[static_cast<std::size_t>(a)]);
-            all_rows(i * (n + 1), t) = product;
-            for (int a = 0; a < n; ++a) {
-              double d = p[static_cast<std::size_t>(a)] * axes_[static_cast<std::size_t>(part.axes[a])].scale;
-              for (int b = 0; b < n && d != 0.0; ++b)
-                d *= power_of(x(i, b), p[static_cast<std::size_t>(b)] - (a == b ? 1 : 0));
-              all_rows(i * (n + 1) + 1 + a, t) = d;
-            }
-          }
-          all_values[i * (n + 1)] = value[i];
-          for (int a = 0; a < n; ++a) all_values[i * (n + 1) + 1 + a] = slope(i, a);
-        }
-        const Eigen::Index fitted = (n + 1) * fit_poses;
-        const Eigen::VectorXd coefficient = all_rows.topRows(fitted).householderQr().solve(all_values.head(fitted));
-        const double worst =
-            (all_rows.bottomRows((n + 1) * 200) * coefficient - all_values.tail((n + 1) * 200)).cwiseAbs().maxCoeff();
-        if (worst < best_error) {
-          best_error = worst;
-          best = coefficient;
-          best_powers = powers;
-          best_degree = degree;
-        }
-        if (worst < 0.5 * options.tolerance) break;
-      }
-      if (n == 1 && best_error > 0.5 * options.tolerance) {
-        part.degree = -1;
-        part.first = pieces_.size();
-        const Axis scaled = axes_[static_cast<std::size_t>(part.axes[0])];
-        std::vector<double> l, d;
-        for (int i = 0; i <= options.panels; ++i) {
-          Eigen::VectorXd q = rest;
-          q[scaled.coordinate] = scaled.middle + (2.0 * i / options.panels - 1.0) / scaled.scale;
-          sampler.at(q);
-          l.push_back(sampler.workspace.length[static_cast<std::size_t>(m)] - at_rest);
-          d.push_back(sampler.slope(m, of[0]) * 2.0 / (options.panels * scaled.scale));
-        }
-        for (std::size_t i = 0; i + 1 < l.size(); ++i) {
-          const double rise = l[i + 1] - l[i];
-          pieces_.insert(pieces_.end(), {l[i], d[i], 3.0 * rise - 2.0 * d[i] - d[i + 1], d[i] + d[i + 1] - 2.0 * rise});
-        }
-        part.end = pieces_.size();
-      } else {
-        part.degree = best_degree;
-        if (n <= 2) {
-          part.first = rows_.size();
-          rows_.insert(rows_.end(), best.data(), best.data() + best.size());
-          part.end = rows_.size();
-        } else {
-          part.first = terms_.size();
-          for (Eigen::Index t = 0; t < best.size(); ++t) {
-            Term term;
-            term.factor = best[t];
-            std::copy_n(best_powers[static_cast<std::size_t>(t)].begin(), kMostCoordinates, term.power);
-            terms_.push_back(term);
-          }
-          part.end = terms_.size();
-        }
-      }
-      error.terms += static_cast<int>(part.end - part.first);
-      parts_.push_back(part);
-    }
-    errors_.push_back(error);
+    error.muscle = model_.muscles[static_cast<std::size_t>(m)].name();
+    error.fitted = result_.fitted_.back() != 0;
+    result_.errors_.push_back(error);
+    result_.constant_.push_back(0.0);
   }
+}
 
-  // Errors of the whole, on poses of its own.
-  std::vector<double> length(static_cast<std::size_t>(muscles())), gradient(pairs_.size());
+std::vector<int> FittedPaths::Builder::coordinates_that_matter(int muscle) {
+  std::vector<int> candidates, used;
+  for (std::size_t k = exact_.first_pair(muscle); k < exact_.end_pair(muscle); ++k)
+    candidates.push_back(exact_.pairs()[k].coordinate);
+  std::vector<double> greatest(candidates.size(), 0.0);
+  for (int i = 0; i < 64; ++i) {
+    sampler_.at(pose(candidates, 1000 + i));
+    for (std::size_t a = 0; a < candidates.size(); ++a)
+      greatest[a] = std::max(greatest[a], std::abs(sampler_.slope(muscle, candidates[a])));
+  }
+  for (std::size_t a = 0; a < candidates.size(); ++a)
+    if (greatest[a] > 1e-9) used.push_back(candidates[a]);
+  if (used.size() > kMostCoordinates) used.resize(kMostCoordinates);
+  return used;
+}
+
+/// Two coordinates belong together where the slope about one changes with the other.
+std::vector<int> FittedPaths::Builder::groups(int muscle, const std::vector<int>& used) {
+  std::vector<int> group(used.size());
+  std::iota(group.begin(), group.end(), 0);
+  for (std::size_t a = 0; a < used.size(); ++a) {
+    for (std::size_t b = 0; b < used.size(); ++b) {
+      if (a == b || group[a] == group[b]) continue;
+      double change = 0.0;
+      for (int i = 0; i < 24; ++i) {
+        Eigen::VectorXd q = pose(used, 2000 + i);
+        sampler_.at(q);
+        const double before = sampler_.slope(muscle, used[a]);
+        const auto c = static_cast<std::size_t>(used[b]);
+        q[used[b]] = low_[c] + (high_[c] - low_[c]) * halton(i, 5);
+        sampler_.at(q);
+        change = std::max(change, std::abs(sampler_.slope(muscle, used[a]) - before));
+      }
+      if (change > 1e-7) {
+        const int from = group[b], to = group[a];
+        for (int& g : group)
+          if (g == from) g = to;
+      }
+    }
+  }
+  return group;
+}
+
+/// A sum: L(q) = L(rest) + sum over groups (L(rest but for the group) - L(rest)).
+void FittedPaths::Builder::fit(int muscle) {
+  const auto m = static_cast<std::size_t>(muscle);
+  if (result_.fitted_[m] == 0) return;
+  const std::vector<int> used = coordinates_that_matter(muscle);
+  const std::vector<int> group = groups(muscle, used);
+  sampler_.at(rest_);
+  const double at_rest = sampler_.workspace.length[m];
+  result_.constant_[m] = at_rest;
+  result_.errors_[m].coordinates = used;
+  const std::size_t first_pair = result_.pairs_.size();
+  for (const int c : used) result_.pairs_.push_back({muscle, c});
+  for (int g = 0; g < static_cast<int>(used.size()); ++g) {
+    std::vector<int> of;
+    Part part;
+    part.muscle = muscle;
+    for (std::size_t a = 0; a < used.size(); ++a) {
+      if (group[a] != g) continue;
+      part.axes[of.size()] = axis(used[a]);
+      part.pair[of.size()] = first_pair + a;
+      of.push_back(used[a]);
+    }
+    if (of.empty()) continue;
+    part.coordinates = static_cast<int>(of.size());
+    fit_part(part, of, at_rest);
+    result_.errors_[m].terms += static_cast<int>(part.end - part.first);
+    result_.parts_.push_back(part);
+  }
+}
+
+int FittedPaths::Builder::most_degree(int n) const {
+  return std::clamp(options_.max_degree - (n > 3 ? 6 : (n == 3 ? 3 : 0)), 1, kMostDegree);
+}
+
+FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, const std::vector<int>& of,
+                                                           double at_rest) {
+  const int n = part.coordinates;
+  const int most_terms = static_cast<int>(exponents(n, most_degree(n)).size());
+  const int fit_poses = std::max(48, 3 * most_terms), all = fit_poses + kCheckPoses;
+  Samples s{Eigen::MatrixXd(all, n), Eigen::MatrixXd(all, n), Eigen::VectorXd(all), fit_poses, all};
+  for (int i = 0; i < all; ++i) {
+    Eigen::VectorXd q = rest_;
+    for (int a = 0; a < n; ++a) {
+      // Denser towards the ends, as Chebyshev's points, for the fit; even for the check.
+      const double u = halton(i + (i < fit_poses ? 0 : 5000), a);
+      s.x(i, a) = i < fit_poses ? -std::cos(3.14159265358979 * u) : 2.0 * u - 1.0;
+      const Axis& scaled = result_.axes_[static_cast<std::size_t>(part.axes[a])];
+      q[scaled.coordinate] = scaled.middle + s.x(i, a) / scaled.scale;
+    }
+    sampler_.at(q);
+    s.value[i] = sampler_.workspace.length[static_cast<std::size_t>(part.muscle)] - at_rest;
+    for (int a = 0; a < n; ++a) s.slope(i, a) = sampler_.slope(part.muscle, of[static_cast<std::size_t>(a)]);
+  }
+  return s;
+}
+
+double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, const Powers& powers,
+                                        Eigen::VectorXd& coefficient) const {
+  const int n = part.coordinates;
+  const auto terms = static_cast<Eigen::Index>(powers.size());
+  Eigen::MatrixXd rows((n + 1) * s.all, terms);
+  Eigen::VectorXd values((n + 1) * s.all);
+  for (Eigen::Index i = 0; i < s.all; ++i) {
+    for (Eigen::Index t = 0; t < terms; ++t) {
+      const auto& p = powers[static_cast<std::size_t>(t)];
+      double product = 1.0;
+      for (int a = 0; a < n; ++a) product *= power_of(s.x(i, a), p[static_cast<std::size_t>(a)]);
+      rows(i * (n + 1), t) = product;
+      for (int a = 0; a < n; ++a) {
+        double d = p[static_cast<std::size_t>(a)] * result_.axes_[static_cast<std::size_t>(part.axes[a])].scale;
+        for (int b = 0; b < n && d != 0.0; ++b)
+          d *= power_of(s.x(i, b), p[static_cast<std::size_t>(b)] - (a == b ? 1 : 0));
+        rows(i * (n + 1) + 1 + a, t) = d;
+      }
+    }
+    values[i * (n + 1)] = s.value[i];
+    for (int a = 0; a < n; ++a) values[i * (n + 1) + 1 + a] = s.slope(i, a);
+  }
+  const Eigen::Index fitted = (n + 1) * s.fitted, checked = (n + 1) * kCheckPoses;
+  coefficient = rows.topRows(fitted).householderQr().solve(values.head(fitted));
+  return (rows.bottomRows(checked) * coefficient - values.tail(checked)).cwiseAbs().maxCoeff();
+}
+
+/// Of the least degree that meets half the tolerance, or the best of all.
+FittedPaths::Builder::Polynomial FittedPaths::Builder::fit_polynomial(const Part& part, const Samples& samples) const {
+  Polynomial best;
+  for (int degree = 1; degree <= most_degree(part.coordinates); ++degree) {
+    const Powers powers = exponents(part.coordinates, degree);
+    Eigen::VectorXd coefficient;
+    const double worst = fit_powers(part, samples, powers, coefficient);
+    if (worst < best.error) best = {coefficient, powers, worst, degree};
+    if (worst < 0.5 * options_.tolerance) break;
+  }
+  return best;
+}
+
+void FittedPaths::Builder::fit_part(Part& part, const std::vector<int>& of, double at_rest) {
+  const Polynomial best = fit_polynomial(part, sample(part, of, at_rest));
+  if (part.coordinates == 1 && best.error > 0.5 * options_.tolerance) {
+    store_pieces(part, of[0], at_rest);
+  } else {
+    store(part, best);
+  }
+}
+
+/// Cubics through lengths and slopes at even distances of the only coordinate.
+void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_rest) {
+  part.degree = -1;
+  part.first = result_.pieces_.size();
+  const Axis scaled = result_.axes_[static_cast<std::size_t>(part.axes[0])];
+  std::vector<double> l, d;
+  for (int i = 0; i <= options_.panels; ++i) {
+    Eigen::VectorXd q = rest_;
+    q[scaled.coordinate] = scaled.middle + (2.0 * i / options_.panels - 1.0) / scaled.scale;
+    sampler_.at(q);
+    l.push_back(sampler_.workspace.length[static_cast<std::size_t>(part.muscle)] - at_rest);
+    d.push_back(sampler_.slope(part.muscle, coordinate) * 2.0 / (options_.panels * scaled.scale));
+  }
+  for (std::size_t i = 0; i + 1 < l.size(); ++i) {
+    const double rise = l[i + 1] - l[i];
+    result_.pieces_.insert(result_.pieces_.end(),
+                           {l[i], d[i], 3.0 * rise - 2.0 * d[i] - d[i + 1], d[i] + d[i + 1] - 2.0 * rise});
+  }
+  part.end = result_.pieces_.size();
+}
+
+void FittedPaths::Builder::store(Part& part, const Polynomial& polynomial) {
+  part.degree = polynomial.degree;
+  const Eigen::VectorXd& c = polynomial.coefficient;
+  if (part.coordinates <= 2) {
+    part.first = result_.rows_.size();
+    result_.rows_.insert(result_.rows_.end(), c.data(), c.data() + c.size());
+    part.end = result_.rows_.size();
+    return;
+  }
+  part.first = result_.terms_.size();
+  for (Eigen::Index t = 0; t < c.size(); ++t) {
+    Term term;
+    term.factor = c[t];
+    std::copy_n(polynomial.powers[static_cast<std::size_t>(t)].begin(), kMostCoordinates, term.power);
+    result_.terms_.push_back(term);
+  }
+  part.end = result_.terms_.size();
+}
+
+void FittedPaths::Builder::check() {
+  std::vector<PathFitError>& errors = result_.errors_;
+  const std::vector<MusclePaths::Pair>& pairs = result_.pairs_;
+  std::vector<double> length(errors.size()), gradient(pairs.size());
   std::vector<int> all_coordinates;
-  for (const Axis& a : axes_) all_coordinates.push_back(a.coordinate);
-  std::vector<int> above(errors_.size(), 0);
-  for (int i = 0; i < options.check_poses; ++i) {
+  for (const Axis& a : result_.axes_) all_coordinates.push_back(a.coordinate);
+  std::vector<int> above(errors.size(), 0);
+  for (int i = 0; i < options_.check_poses; ++i) {
     const Eigen::VectorXd q = pose(all_coordinates, 20000 + i);
-    sampler.at(q);
-    evaluate(q.data(), length.data(), gradient.data());
-    std::vector<double> worst(errors_.size(), 0.0);
-    for (std::size_t m = 0; m < errors_.size(); ++m)
-      if (fitted_[m] != 0)
-        errors_[m].length = std::max(errors_[m].length, std::abs(length[m] - sampler.workspace.length[m]));
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      const auto m = static_cast<std::size_t>(pairs_[k].muscle);
-      worst[m] = std::max(worst[m], std::abs(gradient[k] - sampler.slope(pairs_[k].muscle, pairs_[k].coordinate)));
+    sampler_.at(q);
+    result_.evaluate(q.data(), length.data(), gradient.data());
+    std::vector<double> worst(errors.size(), 0.0);
+    for (std::size_t m = 0; m < errors.size(); ++m)
+      if (result_.fitted_[m] != 0)
+        errors[m].length = std::max(errors[m].length, std::abs(length[m] - sampler_.workspace.length[m]));
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto m = static_cast<std::size_t>(pairs[k].muscle);
+      worst[m] = std::max(worst[m], std::abs(gradient[k] - sampler_.slope(pairs[k].muscle, pairs[k].coordinate)));
     }
     for (std::size_t m = 0; m < worst.size(); ++m) {
-      errors_[m].moment_arm = std::max(errors_[m].moment_arm, worst[m]);
-      if (worst[m] > options.tolerance) ++above[m];
+      errors[m].moment_arm = std::max(errors[m].moment_arm, worst[m]);
+      if (worst[m] > options_.tolerance) ++above[m];
     }
   }
   for (std::size_t m = 0; m < above.size(); ++m)
-    errors_[m].above_tolerance = static_cast<double>(above[m]) / options.check_poses;
-  if (!options.mixed) return;
-  for (std::size_t m = 0; m < errors_.size(); ++m) {
-    if (fitted_[m] == 0) continue;
-    errors_[m].fitted = errors_[m].length <= options.tolerance && errors_[m].above_tolerance <= options.most_above;
-    fitted_[m] = errors_[m].fitted ? 1 : 0;
-  }
-  keep_exact(exact);
+    errors[m].above_tolerance = static_cast<double>(above[m]) / options_.check_poses;
 }
 
-void FittedPaths::keep_exact(const MusclePaths& exact) {
-  std::erase_if(parts_, [&](const Part& part) { return fitted_[static_cast<std::size_t>(part.muscle)] == 0; });
+void FittedPaths::Builder::drop_misfits() {
+  for (std::size_t m = 0; m < result_.errors_.size(); ++m) {
+    if (result_.fitted_[m] == 0) continue;
+    PathFitError& error = result_.errors_[m];
+    error.fitted = error.length <= options_.tolerance && error.above_tolerance <= options_.most_above;
+    result_.fitted_[m] = error.fitted ? 1 : 0;
+  }
+  keep_exact();
+}
+
+void FittedPaths::Builder::keep_exact() {
+  std::erase_if(result_.parts_,
+                [&](const Part& part) { return result_.fitted_[static_cast<std::size_t>(part.muscle)] == 0; });
   std::vector<MusclePaths::Pair> pairs;
-  std::vector<std::size_t> place(pairs_.size());
+  std::vector<std::size_t> place(result_.pairs_.size());
   std::size_t k = 0;
-  for (int m = 0; m < muscles(); ++m) {
-    const bool is_fitted = fitted_[static_cast<std::size_t>(m)] != 0;
-    for (; k < pairs_.size() && pairs_[k].muscle == m; ++k) {
+  for (int m = 0; m < result_.muscles(); ++m) {
+    const bool is_fitted = result_.fitted_[static_cast<std::size_t>(m)] != 0;
+    for (; k < result_.pairs_.size() && result_.pairs_[k].muscle == m; ++k) {
       place[k] = pairs.size();
-      if (is_fitted) pairs.push_back(pairs_[k]);
+      if (is_fitted) pairs.push_back(result_.pairs_[k]);
     }
     if (is_fitted) continue;
-    constant_[static_cast<std::size_t>(m)] = 0.0;
-    exact_.push_back(m);
-    for (std::size_t from = exact.first_pair(m); from < exact.end_pair(m); ++from) {
-      exact_pairs_.push_back({from, pairs.size()});
-      pairs.push_back(exact.pairs()[from]);
+    result_.constant_[static_cast<std::size_t>(m)] = 0.0;
+    result_.exact_.push_back(m);
+    for (std::size_t from = exact_.first_pair(m); from < exact_.end_pair(m); ++from) {
+      result_.exact_pairs_.push_back({from, pairs.size()});
+      pairs.push_back(exact_.pairs()[from]);
     }
   }
-  pairs_ = pairs;
+  result_.pairs_ = pairs;
   std::vector<Axis> axes;
-  std::vector<int> axis_place(axes_.size(), -1);
-  for (Part& part : parts_) {
+  std::vector<int> axis_place(result_.axes_.size(), -1);
+  for (Part& part : result_.parts_) {
     for (int a = 0; a < part.coordinates; ++a) {
       part.pair[a] = place[part.pair[a]];
       int& now = axis_place[static_cast<std::size_t>(part.axes[a])];
       if (now < 0) {
         now = static_cast<int>(axes.size());
-        axes.push_back(axes_[static_cast<std::size_t>(part.axes[a])]);
+        axes.push_back(result_.axes_[static_cast<std::size_t>(part.axes[a])]);
       }
       part.axes[a] = now;
     }
   }
-  axes_ = axes;
+  result_.axes_ = axes;
+}
+
+FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
+                         const PathFitOptions& options) {
+  Builder builder(*this, model, mechanism, exact, options);
+  builder.choose_muscles();
+  for (int m = 0; m < exact.muscles(); ++m) builder.fit(m);
+  builder.check();
+  if (options.mixed) builder.drop_misfits();
 }
 
 }  // namespace veridyn::muscle

@@ -30,7 +30,7 @@ struct OpenSimWrap {
 /// midpoint, axial; a fan of 298 samples), lengths of polygons with sides of 1 mm, the cylinder's tangent points that
 /// are shifted along the axis by a rule of thumb. `only_wrap_of_path` selects the shorter rule that OpenSim uses for
 /// the cylinder of a path with a single wrap. Facts read in opensim-core 4.5 (WrapCylinder, WrapEllipsoid, WrapSphere,
-/// WrapTorus); written anew here. No memory of earlier poses.
+/// WrapTorus); written again here. No memory of earlier poses.
 ///
 /// Not for simulation: lengths jump, and moment arms are not their derivatives (docs/muscle).
 [[nodiscard]] OpenSimWrap wrap_as_opensim(const WrapObject& object, EllipsoidMethod method, bool only_wrap_of_path,

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/numerics/dormand_prince.hpp"
 #include "veridyn/numerics/separable_qp.hpp"
 
@@ -28,11 +30,13 @@ class Wish {
     }
   }
   [[nodiscard]] std::size_t size() const { return splines_.size(); }
-  [[nodiscard]] numerics::SplineValue at(std::size_t free, double time) const { return splines_[free]->evaluate(time); }
+  [[nodiscard]] numerics::FunctionValue<double> at(std::size_t free, double time) const {
+    return splines_[free]->evaluate(time);
+  }
 
  private:
   std::span<const int> free_;
-  std::vector<const numerics::InterpolatingSpline*> splines_;
+  std::vector<const numerics::PiecewisePolynomial*> splines_;
 };
 
 class Controller {
@@ -151,14 +155,14 @@ class Controller {
 /// Muscles in equilibrium at the wished start, at activations that share the wished moments.
 void Controller::start_muscles(double* x) {
   for (std::size_t f = 0; f < wish_.size(); ++f) {
-    const numerics::SplineValue w = wish_.at(f, options_.begin);
+    const numerics::FunctionValue<double> w = wish_.at(f, options_.begin);
     z_[f] = w.value;
-    zdot_[f] = w.first;
-    zddot_[f] = w.second;
+    zdot_[f] = w.slope;
+    zddot_[f] = w.curvature;
     x[f] = w.value;
-    x[wish_.size() + f] = w.first;
-    demand_[f] = w.second;
-    planned_speed_[f] = w.first;
+    x[wish_.size() + f] = w.slope;
+    demand_[f] = w.curvature;
+    planned_speed_[f] = w.slope;
   }
   require();
   const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
@@ -190,12 +194,12 @@ bool Controller::plan(double t, double end, const double* x) {
   for (std::size_t k = 0; k < MuscleWindow::kNodes; ++k) {
     const double s = static_cast<double>(k) / static_cast<double>(MuscleWindow::kNodes - 1) * (end - t);
     for (std::size_t f = 0; f < n; ++f) {
-      const numerics::SplineValue now = wish_.at(f, t), then = wish_.at(f, t + s);
-      z_[f] = then.value + (x[f] - now.value) + s * (speed[f] - now.first);
-      zdot_[f] = then.first + (speed[f] - now.first);
+      const numerics::FunctionValue<double> now = wish_.at(f, t), then = wish_.at(f, t + s);
+      z_[f] = then.value + (x[f] - now.value) + s * (speed[f] - now.slope);
+      zdot_[f] = then.slope + (speed[f] - now.slope);
       // What the last window fell short of in speed is made up in this one.
       const double shortfall = (planned_speed_[f] - speed[f]) / (end - t);
-      zddot_[f] = then.second + options_.kv * (now.first - speed[f]) + options_.kp * (now.value - x[f]) + shortfall;
+      zddot_[f] = then.curvature + options_.kv * (now.slope - speed[f]) + options_.kp * (now.value - x[f]) + shortfall;
     }
     if (k + 1 < MuscleWindow::kNodes) {
       ahead_.set_motion(z_.data(), zdot_.data());

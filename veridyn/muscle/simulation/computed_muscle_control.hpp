@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/muscle/model/signals.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
-#include "veridyn/muscle/model/signals.hpp"
 
 namespace veridyn::muscle {
 

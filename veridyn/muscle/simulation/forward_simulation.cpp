@@ -4,46 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/muscle/simulation/driven_integration.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
 using Stepper = numerics::DormandPrince<double>;
-
-/// Signals at an instant. Held ones keep the value that `begin_piece` found until the piece ends.
-class DriveState {
- public:
-  DriveState(const Drive& drive, std::size_t muscles, std::size_t coordinates)
-      : drive_(drive), excitation_(muscles), reserve_(drive.reserve.size() > 0 ? coordinates : 0) {}
-
-  void begin_piece(double time) {
-    drive_.excitation.evaluate(time, excitation_.data());
-    if (!reserve_.empty()) drive_.reserve.evaluate(time, reserve_.data());
-  }
-  [[nodiscard]] double piece_end(double time) const {
-    double end = std::numeric_limits<double>::infinity();
-    for (const ControlSignals* signals : {&drive_.excitation, &drive_.reserve}) {
-      if (signals->interpolation() == Interpolation::kHold) end = std::min(end, signals->next_break(time));
-    }
-    return end;
-  }
-  [[nodiscard]] SystemInputs at(double time) {
-    if (drive_.excitation.interpolation() == Interpolation::kLinear)
-      drive_.excitation.evaluate(time, excitation_.data());
-    if (!reserve_.empty() && drive_.reserve.interpolation() == Interpolation::kLinear) {
-      drive_.reserve.evaluate(time, reserve_.data());
-    }
-    return {excitation_, reserve_};
-  }
-
- private:
-  const Drive& drive_;
-  std::vector<double> excitation_, reserve_;
-};
 
 /// Rows of the trajectory and its events, taken while the integrator goes along.
 class Recorder {
@@ -185,12 +153,7 @@ void check_start(const Model& model, const StartState& start) {
     if (!std::isfinite(q) || !std::isfinite(speed)) {
       throw InputError(model.name, fmt::format("start of coordinate '{}' is not a finite number", c.name));
     }
-    const double slack = 1e-6 * (1.0 + c.high - c.low);
-    if (q < c.low - slack || q > c.high + slack) {
-      throw InputError(model.name,
-                       fmt::format("start of coordinate '{}' = {:.6g} {} is outside its range {:.6g} .. {:.6g}", c.name,
-                                   q, c.unit(), c.low, c.high));
-    }
+    if (!c.in_range(q)) throw InputError(model.name, fmt::format("start of {}", c.outside_range(q)));
   }
 }
 
@@ -290,31 +253,23 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   const double span = options.end - options.begin;
   const numerics::StepControl control{
       .tolerance = options.accuracy, .smallest_step = 1e-12 * span, .max_steps = options.max_steps};
-  const auto derivative = [&](double time, const double* state, double* rate) {
-    return evaluator.derivative(state, signals.at(time), rate);
-  };
   constexpr double kFarAway = 1e4;
   double shown = options.begin;
   double t = options.begin;
   Stepper stepper(layout.size);
-  while (t < options.end && result.end == SimulationEnd::kCompleted) {
-    const double piece_end = std::min(options.end, signals.piece_end(t));
-    const numerics::IntegrationEnd end =
-        stepper.advance(derivative, t, x.data(), piece_end, system.scales(), control, [&](double from, double to) {
-          recorder.step(stepper, evaluator, signals, from, to);
-          for (std::size_t i = 0; i < layout.free; ++i) {
-            if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) result.end = SimulationEnd::kDiverged;
-          }
-          if (to - shown > 0.01 * span) {
-            shown = to;
-            if (!progress.update((to - options.begin) / span)) result.end = SimulationEnd::kInterrupted;
-          }
-          return result.end == SimulationEnd::kCompleted;
-        });
-    if (end != numerics::IntegrationEnd::kReached) result.end = end_of(end);
-    signals.begin_piece(t);
-    stepper.restart(true);
-  }
+  const numerics::IntegrationEnd end = integrate_driven(
+      evaluator, system.scales(), signals, stepper, t, x.data(), options.end, control, [&](double from, double to) {
+        recorder.step(stepper, evaluator, signals, from, to);
+        for (std::size_t i = 0; i < layout.free; ++i) {
+          if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) result.end = SimulationEnd::kDiverged;
+        }
+        if (to - shown > 0.01 * span) {
+          shown = to;
+          if (!progress.update((to - options.begin) / span)) result.end = SimulationEnd::kInterrupted;
+        }
+        return result.end == SimulationEnd::kCompleted;
+      });
+  if (end != numerics::IntegrationEnd::kReached) result.end = end_of(end);
   recorder.finish();
   result.end_time = t;
   result.steps = stepper.steps();

@@ -6,8 +6,8 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
-#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 #include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 
 namespace veridyn::muscle {
 

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
+
 namespace veridyn::muscle {
 namespace {
 
@@ -21,10 +24,11 @@ class Follower {
   void go_to(double time) {
     for (Eigen::Index c = 0; c < q.size(); ++c) {
       const auto& spline = motion_.coordinate[static_cast<std::size_t>(c)];
-      const numerics::SplineValue value = spline ? spline->evaluate(time) : numerics::SplineValue{rest_(c), 0.0, 0.0};
+      const numerics::FunctionValue<double> value =
+          spline ? spline->evaluate(time) : numerics::FunctionValue<double>{rest_(c), 0.0, 0.0};
       q(c) = value.value;
-      qdot(c) = value.first;
-      qddot(c) = value.second;
+      qdot(c) = value.slope;
+      qddot(c) = value.curvature;
     }
     // What is coupled follows, whatever the file says of it.
     for (const CoordinateReduction::Coupler& coupler : system_.reduction().couplers()) {

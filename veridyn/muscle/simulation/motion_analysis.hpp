@@ -5,8 +5,8 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
-#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 #include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace veridyn::muscle {

@@ -7,18 +7,18 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/model/simulation_jet.hpp"
+#include "veridyn/muscle/simulation/driven_integration.hpp"
 
 namespace veridyn::muscle {
+
 MuscleParameterName parse_parameter_name(const Model& model, std::string_view text, std::string_view place) {
   const std::size_t dot = text.rfind('.');
   const std::string_view muscle = text.substr(0, dot);
   const std::string_view field = dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1);
-  std::vector<std::string> names;
   MuscleParameterName result{model.muscle(muscle), kMusculotendonFields.size()};
-  if (result.muscle < 0) {
-    for (const Muscle& m : model.muscles) names.push_back(m.name());
-    throw InputError(place, fmt::format("'{}': there is no muscle '{}'{}", text, muscle, suggestion(muscle, names)));
-  }
+  if (result.muscle < 0) throw InputError(place, fmt::format("'{}': {}", text, model.no_muscle(muscle)));
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
     names.emplace_back(kMusculotendonFields[i].name);
     if (kMusculotendonFields[i].name == field) result.field = i;
@@ -84,15 +84,12 @@ bool MuscleParametricModel::simulate(
   for (std::size_t c = 0; c < held.size(); ++c) held[c] = Scalar(segment.start.q(static_cast<Eigen::Index>(c)));
   evaluator.hold(held.data());
 
-  std::vector<double> u(muscles), f(segment.drive.reserve.size());
-  const auto look_up = [&](double time) {
-    segment.drive.excitation.evaluate(time, u.data());
-    if (!f.empty()) segment.drive.reserve.evaluate(time, f.data());
-  };
+  DriveState signals(segment.drive, muscles, system_->coordinates());
   std::vector<Scalar> x(layout.size);
   for (std::size_t i = 0; i < 2 * layout.free; ++i) x[i] = theta(static_cast<Eigen::Index>(names_.size() + i));
-  look_up(segment.time.front());
+  signals.begin_piece(segment.time.front());
   evaluator.set_motion(x.data(), x.data() + layout.free);
+  const std::span<const double> u = signals.at(segment.time.front()).excitation;
   std::vector<Scalar> activation(muscles);
   for (std::size_t m = 0; m < muscles; ++m) {
     activation[m] =
@@ -100,7 +97,6 @@ bool MuscleParametricModel::simulate(
   }
   evaluator.start_muscles(activation.data(), x.data());
 
-  const bool held_excitation = segment.drive.excitation.interpolation() == Interpolation::kHold;
   numerics::DormandPrince<Scalar> stepper(layout.size);
   // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
   constexpr double kLeast = 1e-6;
@@ -116,31 +112,18 @@ bool MuscleParametricModel::simulate(
   };
   write(x.data());
   std::vector<Scalar> between(layout.size);
-  const auto derivative = [&](double time, const Scalar* state, Scalar* rate) {
-    if (!held_excitation) segment.drive.excitation.evaluate(time, u.data());
-    return evaluator.derivative(state, {u, f}, rate);
-  };
-  const double end = segment.time.back();
-  while (t < end) {
-    double piece = end;
-    if (held_excitation) piece = std::min(piece, segment.drive.excitation.next_break(t));
-    if (!f.empty()) piece = std::min(piece, segment.drive.reserve.next_break(t));
-    const numerics::IntegrationEnd how =
-        stepper.advance(derivative, t, x.data(), piece, system_->scales(), control, [&](double, double to) {
-          while (row < output.rows() && segment.time[static_cast<std::size_t>(row)] <= to) {
-            stepper.interpolate(segment.time[static_cast<std::size_t>(row)], between.data());
-            write(between.data());
-          }
-          return true;
-        });
-    if (how != numerics::IntegrationEnd::kReached) return false;
-    look_up(t);
-    stepper.restart(true);
-  }
-  return row == output.rows();
+  const numerics::IntegrationEnd end =
+      integrate_driven(evaluator, system_->scales(), signals, stepper, t, x.data(), segment.time.back(), control,
+                       [&](double, double to) {
+                         while (row < output.rows() && segment.time[static_cast<std::size_t>(row)] <= to) {
+                           stepper.interpolate(segment.time[static_cast<std::size_t>(row)], between.data());
+                           write(between.data());
+                         }
+                         return true;
+                       });
+  return end == numerics::IntegrationEnd::kReached && row == output.rows();
 }
 
-using SimulationJet = ceres::Jet<double, 6>;
 template bool MuscleParametricModel::simulate<double>(std::size_t, const Eigen::VectorXd&,
                                                       estimation::RowMatrix&) const;
 template bool MuscleParametricModel::simulate<SimulationJet>(

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
 
 namespace veridyn::muscle {
 
@@ -34,11 +34,11 @@ struct MotionSegment {
 /// free coordinates. Exact derivatives by automatic differentiation through paths, muscles, equilibrium at the start
 /// and dynamics; steps are those of the values, so that derivatives are those of the numerical solution.
 ///
-/// Initial conditions are fixed at the segment's start unless `estimate_start`.
-class MuscleParametricModel final : public estimation::AutodiffModel<MuscleParametricModel, 6> {
+/// Initial conditions are fixed at the segment's start unless `estimate_start`. A view of its system, which must
+/// outlive it.
+class MuscleParametricModel final : public estimation::AutodiffModel<MuscleParametricModel, SimulationJet::DIMENSION> {
  public:
-  /// `system` must outlive this. Parameters start at the model's values, with bounds of half and one and a half of
-  /// them.
+  /// Parameters start at the model's values, with bounds of half and one and a half of them.
   MuscleParametricModel(const MusculoskeletalSystem& system, std::vector<MuscleParameterName> parameters,
                         std::vector<MotionSegment> segments, double accuracy = 1e-6, bool estimate_start = false);
 

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
 int find_coordinate(const Model& model, const std::string& name) {
   const int index = model.coordinate(name);
-  if (index >= 0) return index;
-  std::vector<std::string> names;
-  for (const Coordinate& c : model.coordinates) names.push_back(c.name);
-  throw InputError(model.name, fmt::format("there is no coordinate '{}'{}", name, suggestion(name, names)));
+  if (index < 0) throw InputError("locked or unlocked", model.no_coordinate(name));
+  return index;
 }
 
 /// The model as it moves: coordinates locked and unlocked as asked, muscles that are off left out.

@@ -7,29 +7,19 @@
 #include <numbers>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/io/tables/table.hpp"
 #include "veridyn/muscle/dynamics/inverse_dynamics.hpp"
 #include "veridyn/muscle/model/signals.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
 void check_range(const Model& model, const std::string& place, Eigen::Index index, double value) {
   const Coordinate& c = model.coordinates[static_cast<std::size_t>(index)];
-  const double slack = 1e-6 * (1.0 + c.high - c.low);
-  if (!std::isfinite(value)) throw InputError(place, fmt::format("coordinate '{}' has no number", c.name));
-  if (value < c.low - slack || value > c.high + slack) {
-    throw InputError(place, fmt::format("coordinate '{}' = {:.6g} {} is outside its range {:.6g} .. {:.6g}", c.name,
-                                        value, c.unit(), c.low, c.high));
-  }
-}
-
-std::vector<std::string> coordinate_names(const Model& model) {
-  std::vector<std::string> names;
-  for (const Coordinate& c : model.coordinates) names.push_back(c.name);
-  return names;
+  if (!std::isfinite(value)) throw InputError(place, fmt::format("coordinate '{}' is not a finite number", c.name));
+  if (!c.in_range(value)) throw InputError(place, c.outside_range(value));
 }
 
 std::string trimmed(std::string text) {
@@ -45,9 +35,7 @@ void read_assignment(const Model& model, const std::string& text, Eigen::VectorX
   if (equal == std::string::npos) throw InputError(place, fmt::format("'{}' is neither a file nor NAME=VALUE", text));
   const std::string name = trimmed(text.substr(0, equal)), value = trimmed(text.substr(equal + 1));
   const int index = model.coordinate(name);
-  if (index < 0)
-    throw InputError(place,
-                     fmt::format("there is no coordinate '{}'{}", name, suggestion(name, coordinate_names(model))));
+  if (index < 0) throw InputError(place, model.no_coordinate(name));
   std::size_t used = 0;
   double number = 0.0;
   try {
@@ -85,7 +73,7 @@ PoseTable from_columns(const Model& model, const std::string& place, std::size_t
       for (std::size_t i = 0; i < rows; ++i) {
         if (ranged) check_range(model, fmt::format("{}, row {}", place, i + 1), c, values[i]);
         if (!std::isfinite(values[i]))
-          throw InputError(place, fmt::format("row {}: '{}' has no number", i + 1, coordinate.name));
+          throw InputError(place, fmt::format("row {}: '{}' is not a finite number", i + 1, coordinate.name));
         to[i](c) = values[i];
       }
     };
@@ -95,7 +83,7 @@ PoseTable from_columns(const Model& model, const std::string& place, std::size_t
   }
   if (!any)
     throw InputError(place, fmt::format("no column is a coordinate of model '{}' ({})", model.name,
-                                        fmt::join(coordinate_names(model), ", ")));
+                                        fmt::join(model.coordinate_names(), ", ")));
   return poses;
 }
 

@@ -158,23 +158,16 @@ StaticOptimizer& StaticOptimizer::operator=(StaticOptimizer&&) noexcept = defaul
 
 void StaticOptimizer::restart() { work_->program.lambda.setZero(); }
 
-void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& path_length,
-                            const Eigen::VectorXd& path_speed, const Eigen::VectorXd& required,
-                            StaticOptimizationFrame& frame) {
-  Work& w = *work_;
-  const Eigen::Index n = arms.rows(), m = arms.cols();
-  const auto count = static_cast<std::size_t>(n);
-  VERIDYN_ASSERT(count == w.muscles.size() && path_length.size() == n && path_speed.size() == n &&
-                 required.size() == m);
-  VERIDYN_ASSERT(options_.reserve.empty() || static_cast<Eigen::Index>(options_.reserve.size()) == m);
+/// Bounds of all controls, and what the reserves do: muscles first, then reserves.
+void StaticOptimizer::bound_controls(Eigen::Index n, Eigen::Index m) {
   const Eigen::Index reserves = options_.reserve.empty() ? 0 : m;
-  SeparableProgram& q = w.program;
+  SeparableProgram& q = work_->program;
   q.resize(n + reserves, m);
   q.p = options_.exponent;
   q.iterations = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    q.low(i) = w.muscles.settings(static_cast<std::size_t>(i)).min_control;
-    q.high(i) = w.muscles.settings(static_cast<std::size_t>(i)).max_control;
+    q.low(i) = work_->muscles.settings(static_cast<std::size_t>(i)).min_control;
+    q.high(i) = work_->muscles.settings(static_cast<std::size_t>(i)).max_control;
   }
   for (Eigen::Index j = 0; j < reserves; ++j) {
     const double optimal = options_.reserve[static_cast<std::size_t>(j)];
@@ -183,59 +176,62 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
     q.low(n + j) = optimal > 0.0 ? -options_.reserve_bound : 0.0;
     q.high(n + j) = optimal > 0.0 ? options_.reserve_bound : 0.0;
   }
+}
 
-  const std::span<const double> length(path_length.data(), count), speed(path_speed.data(), count);
-  w.offset.setZero();
-  if (options_.force == StaticForce::kIsometric) {
-    for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.muscles.max_isometric_force(i);
-  } else if (options_.force == StaticForce::kAsOpenSim) {
-    w.muscles.rigid_forces(1.0, length, speed, w.forces);
-    for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.forces[i].active;
+/// Solves with forces offset + gain a; true when they balance `required`.
+bool StaticOptimizer::balance(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, double tolerance) {
+  Work& w = *work_;
+  for (Eigen::Index i = 0; i < arms.rows(); ++i) w.program.B.col(i) = arms.row(i).transpose() * w.gain(i);
+  w.program.tau.noalias() = required - arms.transpose() * w.offset;
+  return w.program.solve(tolerance);
+}
+
+/// The same with forces that are not linear in a: linearised at the last activations until these stand.
+StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::MatrixXd& arms,
+                                                               std::span<const double> length,
+                                                               std::span<const double> speed,
+                                                               const Eigen::VectorXd& required, double tolerance,
+                                                               const Eigen::VectorXd& start) {
+  Work& w = *work_;
+  SeparableProgram& q = w.program;
+  const Eigen::Index n = arms.rows();
+  Balance result{false, false};
+  q.x.head(n) = q.low.head(n);
+  for (std::size_t i = 0; i < length.size(); ++i) {
+    w.length[i] = Jet(length[i]);
+    w.speed[i] = Jet(speed[i]);
+    const auto e = static_cast<Eigen::Index>(i);
+    w.activation[i] =
+        Jet(start.size() == n ? std::clamp(start(e), q.low(e), q.high(e)) : 0.5 * (q.low(e) + q.high(e)), 0);
   }
-  const double tolerance = options_.tolerance * (1.0 + required.cwiseAbs().maxCoeff());
-  const auto balance = [&] {
-    for (Eigen::Index i = 0; i < n; ++i) q.B.col(i) = arms.row(i).transpose() * w.gain(i);
-    q.tau.noalias() = required - arms.transpose() * w.offset;
-    return q.solve(tolerance);
-  };
-
-  bool balanced = false, settled = true;
-  if (options_.force != StaticForce::kWithPassive) {
-    balanced = balance();
-  } else {
-    // Forces are linearised at the last activations until these stand.
-    settled = false;
-    q.x.head(n) = q.low.head(n);
-    for (std::size_t i = 0; i < count; ++i) {
-      w.length[i] = Jet(length[i]);
-      w.speed[i] = Jet(speed[i]);
-      const auto e = static_cast<Eigen::Index>(i);
-      w.activation[i] = Jet(frame.activation.size() == n ? std::clamp(frame.activation(e), q.low(e), q.high(e))
-                                                         : 0.5 * (q.low(e) + q.high(e)),
-                            0);
-    }
-    for (int round = 0; round < 50 && !settled; ++round) {
-      w.with_slopes.rigid_parts(w.activation, w.length, w.speed, w.parts);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const auto e = static_cast<std::size_t>(i);
-        const Jet total = w.parts[e].active + w.parts[e].passive;
-        w.gain(i) = total.v[0];
-        w.offset(i) = total.a - total.v[0] * w.activation[e].a;
-      }
-      balanced = balance();
-      double change = 0.0;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const auto e = static_cast<std::size_t>(i);
-        change = std::max(change, std::abs(q.x(i) - w.activation[e].a));
-        // Full steps at first; smaller ones should they not settle.
-        const double share = round < 20 ? 1.0 : 0.5;
-        w.activation[e] = Jet(w.activation[e].a + share * (q.x(i) - w.activation[e].a), 0);
-      }
-      settled = change < 1e-11;
-    }
+  for (int round = 0; round < 50 && !result.settled; ++round) {
     w.with_slopes.rigid_parts(w.activation, w.length, w.speed, w.parts);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto e = static_cast<std::size_t>(i);
+      const Jet total = w.parts[e].active + w.parts[e].passive;
+      w.gain(i) = total.v[0];
+      w.offset(i) = total.a - total.v[0] * w.activation[e].a;
+    }
+    result.balanced = balance(arms, required, tolerance);
+    double change = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto e = static_cast<std::size_t>(i);
+      change = std::max(change, std::abs(q.x(i) - w.activation[e].a));
+      // Full steps at first; smaller ones should they not settle.
+      const double share = round < 20 ? 1.0 : 0.5;
+      w.activation[e] = Jet(w.activation[e].a + share * (q.x(i) - w.activation[e].a), 0);
+    }
+    result.settled = change < 1e-11;
   }
+  w.with_slopes.rigid_parts(w.activation, w.length, w.speed, w.parts);
+  return result;
+}
 
+void StaticOptimizer::fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required,
+                           StaticOptimizationFrame& frame) const {
+  const Work& w = *work_;
+  const SeparableProgram& q = w.program;
+  const Eigen::Index n = arms.rows(), m = arms.cols();
   frame.activation = q.x.head(n);
   frame.force.resize(n);
   for (Eigen::Index i = 0; i < n; ++i)
@@ -246,21 +242,53 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
   frame.reserve.setZero(m);
   frame.unbalanced = required;
   frame.unbalanced.noalias() -= arms.transpose() * frame.force;
-  for (Eigen::Index j = 0; j < reserves; ++j) {
+  for (Eigen::Index j = 0; j < q.x.size() - n; ++j) {
     frame.reserve(j) = q.x(n + j);
     frame.unbalanced(j) -= options_.reserve[static_cast<std::size_t>(j)] * q.x(n + j);
   }
   frame.multiplier = q.lambda;
   frame.cost = q.x.cwiseAbs().array().pow(q.p).sum();
   frame.iterations = q.iterations;
+}
+
+void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& path_length,
+                            const Eigen::VectorXd& path_speed, const Eigen::VectorXd& required,
+                            StaticOptimizationFrame& frame) {
+  Work& w = *work_;
+  const Eigen::Index n = arms.rows(), m = arms.cols();
+  const auto count = static_cast<std::size_t>(n);
+  VERIDYN_ASSERT(count == w.muscles.size() && path_length.size() == n && path_speed.size() == n &&
+                 required.size() == m);
+  VERIDYN_ASSERT(options_.reserve.empty() || static_cast<Eigen::Index>(options_.reserve.size()) == m);
+  bound_controls(n, m);
+  const std::span<const double> length(path_length.data(), count), speed(path_speed.data(), count);
+  const double tolerance = options_.tolerance * (1.0 + required.cwiseAbs().maxCoeff());
+  w.offset.setZero();
+  Balance result{false, true};
+  switch (options_.force) {
+    case StaticForce::kIsometric:
+      for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.muscles.max_isometric_force(i);
+      result.balanced = balance(arms, required, tolerance);
+      break;
+    case StaticForce::kAsOpenSim:
+      w.muscles.rigid_forces(1.0, length, speed, w.forces);
+      for (std::size_t i = 0; i < count; ++i) w.gain(static_cast<Eigen::Index>(i)) = w.forces[i].active;
+      result.balanced = balance(arms, required, tolerance);
+      break;
+    case StaticForce::kWithPassive:
+      result = balance_with_passive(arms, length, speed, required, tolerance, frame.activation);
+      break;
+  }
+  fill(arms, required, frame);
   const bool finite = frame.activation.allFinite() && frame.unbalanced.allFinite();
-  if (!finite || !settled)
+  if (!finite || !result.settled) {
     frame.end = StaticEnd::kIterations;
-  else
-    frame.end = balanced && frame.unbalanced.cwiseAbs().maxCoeff() <= 10.0 * tolerance ? StaticEnd::kBalanced
-                                                                                       : StaticEnd::kInfeasible;
+  } else {
+    const bool small = frame.unbalanced.cwiseAbs().maxCoeff() <= 10.0 * tolerance;
+    frame.end = result.balanced && small ? StaticEnd::kBalanced : StaticEnd::kInfeasible;
+  }
   // Multipliers that ran away are no start for the next frame.
-  if (frame.end != StaticEnd::kBalanced) q.lambda.setZero();
+  if (frame.end != StaticEnd::kBalanced) w.program.lambda.setZero();
 }
 
 }  // namespace veridyn::muscle

@@ -55,7 +55,7 @@ struct StaticOptimizationFrame {
 /// Solved through its dual: as many unknowns as there are coordinates, a concave function whose Newton steps end after
 /// finitely many for p = 2 (it then is a quadratic programme, solved exactly) and converge quadratically otherwise;
 /// where the required forces cannot be had it still has one solution, the least squares of what is missing. With
-/// passive forces a muscle's force is not linear in a (Thelen): it is linearised anew until it stands. Frames start
+/// passive forces a muscle's force is not linear in a (Thelen): it is linearised again until it stands. Frames start
 /// from the multipliers of the last one.
 class StaticOptimizer {
  public:
@@ -77,6 +77,17 @@ class StaticOptimizer {
 
  private:
   struct Work;
+  struct Balance {
+    bool balanced = false;
+    bool settled = false;  ///< activations stand
+  };
+  void bound_controls(Eigen::Index muscles, Eigen::Index coordinates);
+  [[nodiscard]] bool balance(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, double tolerance);
+  [[nodiscard]] Balance balance_with_passive(const Eigen::MatrixXd& arms, std::span<const double> length,
+                                             std::span<const double> speed, const Eigen::VectorXd& required,
+                                             double tolerance, const Eigen::VectorXd& start);
+  void fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, StaticOptimizationFrame& frame) const;
+
   StaticOptimizationOptions options_;
   std::unique_ptr<Work> work_;
 };

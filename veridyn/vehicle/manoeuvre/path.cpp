@@ -8,7 +8,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/numerics/interpolating_spline.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -168,10 +168,12 @@ Path Path::through(std::span<const double> x, std::span<const double> y) {
     }
     chord.push_back(chord.back() + distance);
   }
-  const numerics::InterpolatingSpline along(chord, x), across(chord, y);
-  const auto at = [&](const numerics::InterpolatingSpline& spline, double t, double step) {
-    const numerics::SplineValue v = spline.evaluate(t);
-    return Derivatives{v.value, v.first * step, v.second * step * step};
+  using numerics::PiecewisePolynomial;
+  const PiecewisePolynomial along = PiecewisePolynomial::quintic_spline(chord, x);
+  const PiecewisePolynomial across = PiecewisePolynomial::quintic_spline(chord, y);
+  const auto at = [&](const PiecewisePolynomial& spline, double t, double step) {
+    const numerics::FunctionValue<double> v = spline.evaluate(t);
+    return Derivatives{v.value, v.slope * step, v.curvature * step * step};
   };
   Path path(x[0], y[0]);
   for (std::size_t i = 1; i < x.size(); ++i) {

@@ -1,9 +1,10 @@
-#include "veridyn/numerics/interpolating_spline.hpp"
-
+// The quintic spline through samples.
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/numerics/piecewise_polynomial.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -63,15 +64,10 @@ std::vector<double> solve_banded(std::vector<std::array<double, 11>>& rows, std:
 
 }  // namespace
 
-InterpolatingSpline::InterpolatingSpline(std::span<const double> x, std::span<const double> y) {
+PiecewisePolynomial PiecewisePolynomial::quintic_spline(std::span<const double> x, std::span<const double> y) {
   const std::size_t n = x.size();
   VERIDYN_ASSERT(n >= 1 && y.size() == n);
-  end_ = x.back();
-  if (n == 1) {
-    breaks_ = {x.front()};
-    coefficients_ = {{y.front()}};
-    return;
-  }
+  if (n == 1) return held_pieces(x, std::vector<std::array<double, 6>>{{y.front()}}, x.back());
   const std::size_t p = n >= 6 ? 5 : (n >= 4 ? 3 : 1);
   const std::vector<double> knots = knots_of(x, p);
   std::vector<std::array<double, 11>> rows(n);
@@ -90,50 +86,23 @@ InterpolatingSpline::InterpolatingSpline(std::span<const double> x, std::span<co
     }
     c.push_back(std::move(next));
   }
-  coefficients_.resize(knots.size() - 2 * p - 1);
-  breaks_.assign(knots.begin() + static_cast<std::ptrdiff_t>(p), knots.end() - static_cast<std::ptrdiff_t>(p) - 1);
+  std::vector<std::array<double, 6>> coefficients(knots.size() - 2 * p - 1);
+  const std::vector<double> breaks(knots.begin() + static_cast<std::ptrdiff_t>(p),
+                                   knots.end() - static_cast<std::ptrdiff_t>(p) - 1);
   double factorial = 1.0;
   for (std::size_t d = 0; d <= p; ++d) {
     if (d > 0) factorial *= static_cast<double>(d);
     // The derivative is a spline of degree p - d whose knots lack d at each end.
     const std::vector<double> inner(knots.begin() + static_cast<std::ptrdiff_t>(d),
                                     knots.end() - static_cast<std::ptrdiff_t>(d));
-    for (std::size_t piece = 0; piece < breaks_.size(); ++piece) {
-      const std::array<double, 6> b = basis(inner, p - d, piece + p - d, breaks_[piece]);
+    for (std::size_t piece = 0; piece < breaks.size(); ++piece) {
+      const std::array<double, 6> b = basis(inner, p - d, piece + p - d, breaks[piece]);
       double value = 0.0;
       for (std::size_t j = 0; j <= p - d; ++j) value += b[j] * c[d][piece + j];
-      coefficients_[piece][d] = value / factorial;
+      coefficients[piece][d] = value / factorial;
     }
   }
-}
-
-InterpolatingSpline InterpolatingSpline::from_pieces(std::vector<double> breaks,
-                                                     std::vector<std::array<double, 6>> coefficients, double end) {
-  VERIDYN_ASSERT(!breaks.empty() && breaks.size() == coefficients.size() && end >= breaks.back());
-  InterpolatingSpline spline;
-  spline.breaks_ = std::move(breaks);
-  spline.coefficients_ = std::move(coefficients);
-  spline.end_ = end;
-  return spline;
-}
-
-SplineValue InterpolatingSpline::evaluate(double time) const {
-  if (time < begin()) return {coefficients_.front()[0], 0.0, 0.0};
-  const bool beyond = time > end_;
-  const double t = std::min(time, end_);
-  const auto piece =
-      static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), t) - breaks_.begin()) - 1;
-  const std::array<double, kOrder>& c = coefficients_[piece];
-  const double s = t - breaks_[piece];
-  SplineValue f{c[kOrder - 1], 0.0, 0.0};
-  for (std::size_t i = kOrder - 1; i-- > 0;) {
-    f.second = f.second * s + f.first;
-    f.first = f.first * s + f.value;
-    f.value = f.value * s + c[i];
-  }
-  f.second *= 2.0;
-  if (beyond) return {f.value, 0.0, 0.0};
-  return f;
+  return held_pieces(breaks, coefficients, x.back());
 }
 
 }  // namespace veridyn::numerics

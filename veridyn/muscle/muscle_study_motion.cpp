@@ -1,0 +1,79 @@
+// The motion that a muscle study follows.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/muscle/model/ramp.hpp"
+#include "veridyn/muscle/muscle_study_parts.hpp"
+
+namespace veridyn::muscle::internal {
+namespace {
+
+constexpr Words<RampShape, 3> kShapes{
+    {{"minimum jerk", RampShape::kMinimumJerk}, {"half sine", RampShape::kHalfSine}, {"linear", RampShape::kLinear}}};
+
+void read_ramps(const StudyTable& motion, MuscleStudy& study) {
+  const Model& model = study.system->model();
+  const StudyTable pose = motion.table_or_empty("start");
+  std::vector<std::vector<Ramp>> ramps(model.coordinates.size());
+  for (const StudyTable& table : motion.tables("ramp")) {
+    const std::string name = table.text("coordinate");
+    const std::size_t c = coordinate_of(table, "coordinate", name, model);
+    const Coordinate& coordinate = model.coordinates[c];
+    check_not_coupled(table, "coordinate", c, study);
+    if (study.motion.coordinate[c]) table.fail("coordinate", fmt::format("'{}' has its motion from motion.file", name));
+    if (study.method == MuscleMethod::kComputedMuscleControl &&
+        study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kDriven) {
+      table.fail("coordinate", fmt::format("'{}' is locked and cannot follow a ramp; motion.start sets it", name));
+    }
+    Ramp ramp;
+    const Ramp* before = ramps[c].empty() ? nullptr : &ramps[c].back();
+    ramp.from = before != nullptr ? before->to : study.start.q(static_cast<Eigen::Index>(c));
+    if (table.has("from")) {
+      const double from = coordinate_value(table, "from", coordinate);
+      if ((before != nullptr || pose.has(name)) && std::abs(from - ramp.from) > 1e-9) {
+        table.fail("from", fmt::format("{:.6g} {} jumps: {} it is at {:.6g}", from, coordinate.unit(),
+                                       before != nullptr ? "after the ramp before" : "by motion.start", ramp.from));
+      }
+      ramp.from = from;
+    }
+    ramp.to = coordinate_value(table, "to", coordinate);
+    ramp.start = table.number_or("start", "s", before != nullptr ? before->start + before->duration : study.begin);
+    ramp.duration = table.positive("duration", "s");
+    if (before != nullptr && !(ramp.start >= before->start + before->duration - 1e-12)) {
+      table.fail("start", fmt::format("{:g} s is before the end of the ramp before, {:g} s", ramp.start,
+                                      before->start + before->duration));
+    }
+    if (before != nullptr) ramp.start = std::max(ramp.start, before->start + before->duration);
+    ramp.shape = word_or_first(table, "shape", kShapes);
+    ramps[c].push_back(ramp);
+  }
+  for (std::size_t c = 0; c < ramps.size(); ++c) {
+    if (!ramps[c].empty()) study.motion.coordinate[c] = ramp_spline(ramps[c]);
+  }
+}
+
+}  // namespace
+
+void read_desired_motion(const StudyTable& motion, MuscleStudy& study) {
+  const Model& model = study.system->model();
+  read_ramps(motion, study);
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    if (study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) continue;
+    if (study.motion.coordinate[c]) {
+      study.wished.push_back(model.coordinates[c].name);
+    } else {
+      study.motion.coordinate[c] = resting_spline(study.start.q(static_cast<Eigen::Index>(c)));
+    }
+  }
+  if (study.wished.empty()) {
+    motion.fail("", fmt::format("method = \"{}\" needs a motion: file = \"x.mot\" or [[motion.ramp]]",
+                                method_name(study.method)));
+  }
+  study.motion.missing.clear();
+  study.motion.begin = std::min(study.motion.begin, study.begin);
+  study.motion.end = std::max(study.motion.end, study.end);
+}
+
+}  // namespace veridyn::muscle::internal

@@ -1,0 +1,107 @@
+// Where the motion of a muscle study starts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "veridyn/muscle/muscle_study_parts.hpp"
+
+namespace veridyn::muscle::internal {
+namespace {
+
+/// Where a column stands at a time: the sample, or between two on their line.
+double value_at(const SignalTable& table, int column, double time) {
+  const std::vector<double>& t = table.time;
+  const std::vector<double>& v = table.values[static_cast<std::size_t>(column)];
+  const auto after = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time) - t.begin());
+  if (after == 0) return v.front();
+  if (after == t.size() || t[after - 1] == time) return v[after - 1];
+  return v[after - 1] + (time - t[after - 1]) / (t[after] - t[after - 1]) * (v[after] - v[after - 1]);
+}
+
+/// The column "/jointset/.../name/suffix", or "name/suffix", "name.suffix", "name_suffix"; of values also "name".
+int state_column(const SignalTable& table, std::string_view name, std::string_view suffix) {
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const std::string_view column = table.names[i];
+    if (suffix == "value" && column == name) return static_cast<int>(i);
+    for (const char separator : {'/', '.', '_'}) {
+      const std::string wanted = fmt::format("{}{}{}", name, separator, suffix);
+      if (column == wanted || column.ends_with("/" + wanted)) return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+void read_start(const StudyTable& motion, MuscleStudy& study) {
+  const Model& model = study.system->model();
+  study.start = default_start(model);
+  const StudyTable pose = motion.table_or_empty("start");
+  for (const std::string& key : pose.keys()) {
+    const std::size_t c = coordinate_of(pose, key, key, model);
+    check_not_coupled(pose, key, c, study);
+    study.start.q(static_cast<Eigen::Index>(c)) = coordinate_value(pose, key, model.coordinates[c]);
+    if (study.method != MuscleMethod::kForward && study.motion.coordinate[c])
+      pose.fail(key, "and motion.file both say where it is");
+  }
+  if (study.method != MuscleMethod::kForward) return;
+  const StudyTable speed = motion.table_or_empty("start_speed");
+  for (const std::string& key : speed.keys()) {
+    const std::size_t c = coordinate_of(speed, key, key, model);
+    check_not_coupled(speed, key, c, study);
+    study.start.qdot(static_cast<Eigen::Index>(c)) = speed.number(key, model.coordinates[c].unit() + "/s");
+  }
+}
+
+void read_start_file(const StudyTable& motion, MuscleStudy& study) {
+  if (!motion.has("start_file")) return;
+  const Model& model = study.system->model();
+  const std::filesystem::path path = motion.file("start_file");
+  const SignalTable table = read_signals(path);
+  study.inputs.push_back(path);
+  const double slack = 1e-9 * (1.0 + std::abs(study.begin));
+  if (study.begin < table.time.front() - slack || study.begin > table.time.back() + slack) {
+    motion.fail("start_file", fmt::format("has no state at {:g} s, only from {:g} to {:g} s", study.begin,
+                                          table.time.front(), table.time.back()));
+  }
+  const auto value = [&](const std::string& name, std::string_view suffix, double otherwise) {
+    const int column = state_column(table, name, suffix);
+    return column < 0 ? otherwise : value_at(table, column, study.begin);
+  };
+  const auto muscles = static_cast<Eigen::Index>(model.muscles.size());
+  bool any = false;
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    const Coordinate& coordinate = model.coordinates[c];
+    const auto i = static_cast<Eigen::Index>(c);
+    const bool degrees = table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational;
+    const double unit = degrees ? std::numbers::pi / 180.0 : 1.0;
+    any = any || state_column(table, coordinate.name, "value") >= 0;
+    study.start.q(i) = unit * value(coordinate.name, "value", study.start.q(i) / unit);
+    study.start.qdot(i) = unit * value(coordinate.name, "speed", study.start.qdot(i) / unit);
+  }
+  if (!any) motion.fail("start_file", fmt::format("{} has no column of a coordinate's value", path.string()));
+  Eigen::VectorXd activation(muscles), fiber(muscles);
+  bool all = true;
+  for (Eigen::Index m = 0; m < muscles; ++m) {
+    const MuscleParameters& p = model.muscles[static_cast<std::size_t>(m)].parameters;
+    activation(m) = value(p.name, "activation", std::nan(""));
+    fiber(m) = value(p.name, "fiber_length", std::nan(""));
+    const bool needs_activation = !p.ignore_activation_dynamics, needs_fiber = !p.rigid_tendon;
+    if (!needs_activation) activation(m) = 0.0;
+    if (!needs_fiber) fiber(m) = p.musculotendon.optimal_fiber_length;
+    if (std::isnan(activation(m)) != std::isnan(fiber(m)) && needs_activation && needs_fiber)
+      motion.fail("start_file", fmt::format("has only one of activation and fiber_length of '{}'", p.name));
+    all = all && !std::isnan(activation(m)) && !std::isnan(fiber(m));
+  }
+  if (all) {
+    study.start.activation = activation;
+    study.start.fiber_length = fiber;
+  } else {
+    study.warnings.push_back(fmt::format(
+        "{} does not have activation and fibre length of every muscle: muscles start at rest", path.string()));
+  }
+}
+
+}  // namespace veridyn::muscle::internal

@@ -1,0 +1,153 @@
+// The subject of a muscle study: which model, changed in what.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/muscle_study_parts.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+
+namespace veridyn::muscle::internal {
+namespace {
+
+std::string known_parameters() {
+  std::string text;
+  for (const MusculotendonField& p : kMusculotendonFields)
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", p.name);
+  return text;
+}
+
+void set_parameter(const StudyTable& table, const std::string& key, const std::string& muscle,
+                   const std::string& parameter, Model& model, std::vector<ParameterChange>& changes) {
+  Muscle& m = model.muscles[muscle_of(table, key, muscle, model)];
+  const auto found = std::find_if(kMusculotendonFields.begin(), kMusculotendonFields.end(),
+                                  [&](const MusculotendonField& p) { return p.name == parameter; });
+  if (found == kMusculotendonFields.end()) {
+    std::vector<std::string> names;
+    for (const MusculotendonField& p : kMusculotendonFields) names.emplace_back(p.name);
+    table.fail(key, fmt::format("a muscle has no parameter '{}'{}", parameter, suggestion(parameter, names)));
+  }
+  double& value = field_of(m.parameters.musculotendon, static_cast<std::size_t>(found - kMusculotendonFields.begin()));
+  const double before = value;
+  if (std::string_view(found->unit) == "rad") {
+    value = table.number(key, "rad");
+    if (!(value >= 0.0 && value < 1.5)) table.fail(key, fmt::format("{:g} rad must be from 0 to 1.5 rad", value));
+  } else {
+    value = table.positive(key, found->unit);
+  }
+  changes.push_back({muscle, parameter, before, value});
+}
+
+void read_parameters(const StudyTable& table, Model& model, std::vector<ParameterChange>& changes) {
+  for (const std::string& key : table.keys()) {
+    if (table.is_table(key)) {  // BIClong.optimal_fiber_length without quotes
+      const StudyTable muscle = table.table(key);
+      for (const std::string& parameter : muscle.keys())
+        set_parameter(muscle, parameter, key, parameter, model, changes);
+      continue;
+    }
+    const std::size_t dot = key.rfind('.');
+    if (dot == std::string::npos) {
+      table.fail(key, fmt::format("is not MUSCLE.PARAMETER with a parameter of {}", known_parameters()));
+    }
+    set_parameter(table, key, key.substr(0, dot), key.substr(dot + 1), model, changes);
+  }
+}
+
+HeldLoad read_load(const StudyTable& table, const Model& model) {
+  HeldLoad load;
+  load.body = table.text("body");
+  const int body = model.body(load.body);
+  if (body <= 0) {
+    std::vector<std::string> names;
+    for (std::size_t i = 1; i < model.bodies.size(); ++i) names.push_back(model.bodies[i].name);
+    table.fail("body", fmt::format("= '{}' is no body of model '{}' that could carry a load{}", load.body, model.name,
+                                   suggestion(load.body, names)));
+  }
+  load.mass = table.positive("mass", "kg");
+  if (table.has("location")) {
+    const std::vector<double> at = table.numbers("location", "m");
+    if (at.size() != 3) table.fail("location", fmt::format("has {} numbers, expected x, y, z", at.size()));
+    load.location = Eigen::Vector3d(at[0], at[1], at[2]);
+  }
+  return load;
+}
+
+std::vector<std::string> coordinate_list(const StudyTable& table, const std::string& key, const Model& model) {
+  if (!table.has(key)) return {};
+  std::vector<std::string> names = table.texts(key);
+  for (const std::string& name : names) static_cast<void>(coordinate_of(table, key, name, model));
+  return names;
+}
+
+}  // namespace
+
+std::size_t muscle_of(const StudyTable& table, const std::string& key, const std::string& name, const Model& model) {
+  const int index = model.muscle(name);
+  if (index < 0) table.fail(key, model.no_muscle(name));
+  return static_cast<std::size_t>(index);
+}
+
+std::size_t coordinate_of(const StudyTable& table, const std::string& key, const std::string& name,
+                          const Model& model) {
+  const int index = model.coordinate(name);
+  if (index < 0) table.fail(key, model.no_coordinate(name));
+  return static_cast<std::size_t>(index);
+}
+
+double coordinate_value(const StudyTable& table, const std::string& key, const Coordinate& c) {
+  const double value = table.number(key, c.unit());
+  if (!c.in_range(value)) table.fail(key, c.outside_range(value));
+  return value;
+}
+
+void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t c, const MuscleStudy& study) {
+  if (study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) {
+    table.fail(key, fmt::format("'{}' follows another coordinate through a coupler; set that one",
+                                study.system->model().coordinates[c].name));
+  }
+}
+
+void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress) {
+  study.model_name = subject.text("model");
+  const bool file = study.model_name.find('.') != std::string::npos || study.model_name.find('/') != std::string::npos;
+  if (file) {
+    const std::filesystem::path path = subject.file("model");
+    study.file.emplace(OsimFile::load(path));
+    study.inputs.push_back(path);
+  } else {
+    std::vector<std::string> names;
+    for (const EmbeddedText& model : builtin_models()) names.emplace_back(model.name);
+    if (std::find(names.begin(), names.end(), study.model_name) == names.end()) {
+      subject.fail("model", fmt::format("= '{}' is no built-in model{}; a file ends in .osim", study.model_name,
+                                        suggestion(study.model_name, names)));
+    }
+    study.file.emplace(load_model(study.model_name));
+  }
+  study.written = study.file->model();
+  read_parameters(subject.table_or_empty("parameters"), study.written, study.changes);
+  Model model = study.written;
+  for (const StudyTable& table : subject.tables("load")) {
+    study.loads.push_back(read_load(table, model));
+    const HeldLoad& load = study.loads.back();
+    add_load(model, load.body, load.mass, load.location);
+  }
+  SystemOptions options;
+  constexpr Words<PathSource, 3> kSources{
+      {{"exact", PathSource::kExact}, {"fitted", PathSource::kFitted}, {"opensim", PathSource::kAsOpenSim}}};
+  options.paths = word_or_first(subject, "paths", kSources);
+  options.locked = coordinate_list(subject, "locked", model);
+  options.unlocked = coordinate_list(subject, "unlocked", model);
+  for (const std::string& name : options.unlocked) {
+    if (std::find(options.locked.begin(), options.locked.end(), name) != options.locked.end())
+      subject.fail("unlocked", fmt::format("names '{}', which subject.locked names too", name));
+  }
+  options.without_unsupported = subject.flag_or("without_unsupported", false);
+  if (options.paths == PathSource::kFitted) progress.stage("fitting polynomials to the muscle paths");
+  study.system = std::make_unique<MusculoskeletalSystem>(std::move(model), options);
+  if (study.system->reduction().free().empty())
+    subject.fail("locked", "leaves no coordinate that could move: all are locked or coupled");
+}
+
+}  // namespace veridyn::muscle::internal

@@ -1,0 +1,27 @@
+#include "veridyn/muscle/path/muscle_path_evaluation.hpp"
+
+namespace veridyn::muscle {
+
+WrapStatus MusclePaths::wrap_status(const Object& object, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  switch (object.shape) {
+    case WrapShape::kSphere:
+      return muscle::wrap(object.sphere, p, q).status;
+    case WrapShape::kCylinder:
+      return muscle::wrap(object.cylinder, p, q).status;
+    case WrapShape::kEllipsoid:
+      return muscle::wrap(object.ellipsoid, p, q).status;
+    case WrapShape::kTorus:
+      break;
+  }
+  return muscle::wrap(object.torus, p, q).status;
+}
+
+template struct PathWorkspace<double>;
+template class PathSolver<double>;
+template void MusclePaths::lengths(const Kinematics<double>&, const double*, PathWorkspace<double>&) const;
+template void MusclePaths::evaluate(const Kinematics<double>&, const double*, PathWorkspace<double>&) const;
+template void MusclePaths::evaluate(const Kinematics<double>&, const double*, PathWorkspace<double>&,
+                                    std::span<const std::uint8_t>) const;
+template void MusclePaths::speeds(const PathWorkspace<double>&, const double*, double*) const;
+
+}  // namespace veridyn::muscle

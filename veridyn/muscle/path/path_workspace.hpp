@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "veridyn/muscle/path/muscle_path.hpp"
+#include "veridyn/muscle/path/wrap_result.hpp"
+
+namespace veridyn::muscle {
+
+enum class PathFlag : std::uint8_t {
+  kFine = 0,
+  kFading = 1,  ///< a wrap counts in part: an end dips into its object, or a cylinder ends
+  kInside = 2,  ///< a point lies inside a wrap object: straight there
+  kFailed = 3,  ///< a geodesic did not converge: straight there
+};
+
+/// Results and scratch of `MusclePaths`, made once, used by one thread.
+template <typename Scalar>
+struct PathWorkspace {
+  explicit PathWorkspace(const MusclePaths& paths);
+
+  std::vector<Scalar> length;    ///< by muscle [m]
+  std::vector<Scalar> gradient;  ///< dL/dq by pair [m/rad or 1]
+  std::vector<PathFlag> flag;    ///< by muscle
+
+  using Vector = Vector3<Scalar>;
+  struct Frame {
+    Matrix3<Scalar> rotation;
+    Vector position;
+  };
+  struct Node {
+    Vector x;
+    int link = 0;
+    int point = -1;    ///< of a path point
+    int station = -1;  ///< of a path point
+    int wrap = -1;     ///< of a tangent point
+  };
+  std::vector<Vector> position;
+  std::vector<Vector> moving_slope;
+  std::vector<Scalar> segment_length;
+  std::vector<Scalar> term;
+  std::vector<Frame> object;
+  std::vector<WrapResult<Scalar>> span;
+  std::vector<std::uint8_t> span_known;
+  std::vector<Node> stations;
+  std::vector<Node> nodes;
+  std::vector<Node> other_nodes;
+  WrapResult<Scalar> fresh;
+  /// Of the wraps on the path: in `span`, or in `own_result` where an end is a tangent point.
+  std::vector<const WrapResult<Scalar>*> result;
+  std::vector<const WrapResult<Scalar>*> other_result;
+  std::vector<WrapResult<Scalar>> own_result;
+  std::vector<WrapResult<Scalar>> other_own_result;
+  std::vector<const WrapResult<Scalar>*> first;
+  std::vector<WrapResult<Scalar>> own_first;
+  std::vector<int> first_segment;
+  std::vector<Vector> before;  ///< tangent points of the last pass
+  std::vector<Vector> start;   ///< and of the one before
+  std::vector<internal::GeodesicMemory> memory;
+};
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "veridyn/muscle/simulation/forward_simulation.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
+#include "veridyn/numerics/dormand_prince.hpp"
+
+namespace veridyn::muscle {
+
+/// Excitations and reserves of a drive at an instant; a view of the drive, which must outlive it. Held signals keep the
+/// value that `begin_piece` found until the piece ends.
+class DriveState {
+ public:
+  DriveState(const Drive& drive, std::size_t muscles, std::size_t coordinates)
+      : drive_(drive), excitation_(muscles), reserve_(drive.reserve.size() > 0 ? coordinates : 0) {}
+
+  void begin_piece(double time) {
+    drive_.excitation.evaluate(time, excitation_.data());
+    if (!reserve_.empty()) drive_.reserve.evaluate(time, reserve_.data());
+  }
+  /// The first instant after `time` at which a held signal jumps; infinite when there is none.
+  [[nodiscard]] double piece_end(double time) const {
+    double end = std::numeric_limits<double>::infinity();
+    for (const ControlSignals* signals : {&drive_.excitation, &drive_.reserve}) {
+      if (signals->interpolation() == Interpolation::kHold) end = std::min(end, signals->next_break(time));
+    }
+    return end;
+  }
+  [[nodiscard]] SystemInputs at(double time) {
+    if (drive_.excitation.interpolation() == Interpolation::kLinear)
+      drive_.excitation.evaluate(time, excitation_.data());
+    if (!reserve_.empty() && drive_.reserve.interpolation() == Interpolation::kLinear) {
+      drive_.reserve.evaluate(time, reserve_.data());
+    }
+    return {excitation_, reserve_};
+  }
+
+ private:
+  const Drive& drive_;
+  std::vector<double> excitation_, reserve_;
+};
+
+/// Integrates the state `x` of a driven system from `t` to `end`, piece by piece between the instants at which held
+/// signals jump; `signals` stands at `t` (`begin_piece`). After each step `on_step(begin, end)`, which may ask the
+/// stepper for states in between and returns false to stop.
+/// @returns kReached also when `on_step` stopped it; then t < end.
+template <typename Scalar, typename OnStep>
+numerics::IntegrationEnd integrate_driven(SystemEvaluator<Scalar>& evaluator, std::span<const double> scales,
+                                          DriveState& signals, numerics::DormandPrince<Scalar>& stepper, double& t,
+                                          Scalar* x, double end, const numerics::StepControl& control,
+                                          const OnStep& on_step) {
+  const auto derivative = [&](double time, const Scalar* state, Scalar* rate) {
+    return evaluator.derivative(state, signals.at(time), rate);
+  };
+  bool go_on = true;
+  while (t < end && go_on) {
+    const numerics::IntegrationEnd piece =
+        stepper.advance(derivative, t, x, std::min(end, signals.piece_end(t)), scales, control,
+                        [&](double from, double to) { return go_on = on_step(from, to); });
+    if (piece != numerics::IntegrationEnd::kReached) return piece;
+    signals.begin_piece(t);
+    stepper.restart(true);
+  }
+  return numerics::IntegrationEnd::kReached;
+}
+
+}  // namespace veridyn::muscle

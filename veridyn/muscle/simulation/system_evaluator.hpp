@@ -1,0 +1,76 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "veridyn/muscle/actuator/muscle_group.hpp"
+#include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
+#include "veridyn/muscle/path/path_workspace.hpp"
+#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+
+namespace veridyn::muscle {
+
+/// What drives a system at an instant.
+struct SystemInputs {
+  std::span<const double> excitation;        ///< by muscle
+  std::span<const double> coordinate_force;  ///< by coordinate, beside the model's own; empty: zero [N m or N]
+};
+
+/// The workspace of one thread: derivative of a state, and everything computed on the way. No call allocates. A view of
+/// its system, which must outlive it. Compiled for double and `SimulationJet`.
+template <typename Scalar>
+class SystemEvaluator {
+ public:
+  explicit SystemEvaluator(const MusculoskeletalSystem& system) : SystemEvaluator(system, same_muscles(system)) {}
+  /// With other muscle parameters, or parameters that carry derivatives: `system.muscles().with(parameters)`.
+  SystemEvaluator(const MusculoskeletalSystem& system, MuscleGroup<Scalar> muscles);
+
+  /// Values at which locked coordinates are held, by coordinate; other entries are not read.
+  void hold(const Scalar* q);
+
+  /// x' for the state x. False when the mass matrix is singular.
+  [[nodiscard]] bool derivative(const Scalar* x, const SystemInputs& inputs, Scalar* rate);
+
+  /// Positions and speeds, path lengths, speeds and gradients for free coordinates z; muscles are not evaluated.
+  void set_motion(const Scalar* z, const Scalar* zdot);
+  /// The same for q and qdot of all coordinates, constraints not heeded.
+  void set_all(const Scalar* q, const Scalar* qdot);
+  /// Sets activations (by muscle) and fibre lengths in equilibrium with their tendons at the pose set, in the state x.
+  void start_muscles(const Scalar* activation, Scalar* x);
+
+  // After a call above, in the model's order.
+  [[nodiscard]] const Scalar* q() const { return q_; }
+  [[nodiscard]] const Scalar* qdot() const { return qdot_; }
+  [[nodiscard]] std::span<const Scalar> path_length() const { return length_; }
+  [[nodiscard]] std::span<const Scalar> path_speed() const { return speed_; }
+  /// dL/dq in the order of `system.pairs()`.
+  [[nodiscard]] std::span<const Scalar> path_gradient() const { return gradient_; }
+  [[nodiscard]] std::span<const Scalar> tendon_force() const { return force_; }
+  [[nodiscard]] std::span<const Scalar> activation() const { return activation_; }
+  [[nodiscard]] std::span<const Scalar> fiber_length() const { return fiber_; }
+  [[nodiscard]] const MuscleGroup<Scalar>& muscles() const { return muscles_; }
+  [[nodiscard]] ReducedDynamics<Scalar>& dynamics() { return reduced_; }
+  /// Whether fitted paths were ever asked for a pose outside the ranges they were fitted over.
+  [[nodiscard]] bool beyond_fit() const { return beyond_fit_; }
+  /// Evaluations of the derivative so far.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+ private:
+  static MuscleGroup<Scalar> same_muscles(const MusculoskeletalSystem& system);
+  void update_paths();
+
+  const MusculoskeletalSystem* system_;
+  MuscleGroup<Scalar> muscles_;
+  ReducedDynamics<Scalar> reduced_;
+  PathWorkspace<Scalar> path_workspace_;
+  std::vector<DrivenMotion<Scalar>> driven_;
+  const Scalar* q_ = nullptr;
+  const Scalar* qdot_ = nullptr;
+  std::vector<Scalar> tau_;
+  std::vector<Scalar> length_, speed_, gradient_;
+  std::vector<Scalar> excitation_, activation_, fiber_, activation_rate_, fiber_velocity_, force_;
+  long evaluations_ = 0;
+  bool beyond_fit_ = false;
+};
+
+}  // namespace veridyn::muscle
