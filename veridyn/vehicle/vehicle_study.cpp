@@ -1,180 +1,310 @@
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/drive_study.hpp"
 
-#include <array>
-#include <variant>
+#include <fmt/format.h>
 
-#include "veridyn/core/at_place.hpp"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/road/road_study.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/recording/study_data.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-const std::vector<std::string> kModels{"linear bicycle", "bicycle", "four-wheel"};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Cornering stiffness over static load of common tyres [1/rad].
+constexpr double kStiffnessPerLoad = 20.0;
+/// Noise of the sensors is learned from the beginning of a drive [s].
+constexpr double kLearn_s = 20.0;
+/// Read again before the first new sample, for the interpolation [s].
+constexpr double kWarm_s = 2.0;
 
-VehicleModelKind read_model(const StudyTable& drive) {
-  const std::string word = drive.choice_or("model", kModels, "four-wheel");
-  for (const auto kind : {VehicleModelKind::kLinearBicycle, VehicleModelKind::kBicycle}) {
-    if (to_string(kind) == word) return kind;
-  }
-  return VehicleModelKind::kFourWheel;
+DriveStudy read_tables(const Study& study) {
+  const StudyTable& root = study.root();
+  DriveStudy out;
+  out.name = root.text_or("title", study.name());
+  out.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
+  const StudyTable subject = root.table("subject");
+  const Vehicle vehicle = read_vehicle(subject, VehicleNeeds::kGeometry);
+  out.subject_name = vehicle.name.empty() ? "vehicle" : vehicle.name;
+  out.vehicle = vehicle.parameters;
+  out.inputs = vehicle.inputs;
+  out.signals = DriveSignalOptions::read(root.table_or_empty("signals"));
+  VehicleParameters<double>& p = out.vehicle;
+  const bool known = subject.has("builtin");
+  if (!known && !subject.has("I_z")) p.I_z = p.mass * p.a * p.b;
+  const PerWheel<double> load = static_loads(p, out.signals.gravity);
+  if (!known && !subject.has("C_f")) p.C_f = kStiffnessPerLoad * load[kFrontLeft];
+  if (!known && !subject.has("C_r")) p.C_r = kStiffnessPerLoad * load[kRearLeft];
+  out.segments = DriveSegmentOptions::read(root.table_or_empty("segments"));
+  out.identify = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+  out.identify.model.gravity = out.signals.gravity;
+  out.track = DriveTrackOptions::read(root.table_or_empty("track"));
+  const std::vector<std::string> choices{"all", "holdout"};
+  out.validate_on_holdout_only = root.table_or_empty("validate").choice_or("segments", choices, "all") == "holdout";
+  return out;
 }
 
-FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
-  static const std::vector<std::string> kConventions{"first principles", "source"};
-  static const std::vector<std::string> kGeometries{"exact", "small angles"};
-  FourWheelOptions options;
-  options.gravity = drive.positive_or("gravity", "m/s^2", options.gravity);
-  if (drive.choice_or("convention", kConventions, "first principles") == "source")
-    options.convention = FourWheelConvention::kSource;
-  if (drive.choice_or("geometry", kGeometries, "exact") == "small angles")
-    options.geometry = BicycleGeometry::kSmallAngles;
-  options.ackermann = vehicle.ackermann;
-  options.camber_per_roll = vehicle.camber_per_roll;
-  options.relaxation_length = vehicle.relaxation_length;
-  if (drive.flag_or("longitudinal", false)) options.longitudinal = vehicle.longitudinal;
-  return options;
+std::vector<std::string> own_warnings(const DriveStudy& study, const DriveSignals& signals) {
+  std::vector<std::string> warnings = study.log.mapped.recording.warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  add(study.log.mapped.notes);
+  add(signals.notes);
+  add(study.notes);
+  return warnings;
 }
 
-/// A tyre with a share of its stiffness and friction.
-template <typename Tyre>
-Tyre slipperier(Tyre tyre, double grip) {
-  tyre.stiffness *= grip;
-  tyre.slip_stiffness *= grip;
-  tyre.mu *= grip;
-  return tyre;
+DriveSample sample_of(const DriveSignals& s, std::size_t k, const std::vector<double>& yaw_acceleration) {
+  DriveSample out;
+  out.time = s.grid.at(k);
+  out.steer = s[DriveSignal::kSteer].value[k];
+  out.speed = s[DriveSignal::kSpeed].value[k];
+  out.yaw_rate = s[DriveSignal::kYawRate].value[k];
+  const double r = out.yaw_rate;
+  out.accel_y = s[DriveSignal::kAccelY].value[k] + s.accel_position[1] * r * r;
+  if (s.accel_position[0] != 0.0) out.accel_y -= s.accel_position[0] * yaw_acceleration[k];
+  return out;
 }
 
-MagicFormulaTyre<double> slipperier(MagicFormulaTyre<double> tyre, double grip) {
-  auto& c = tyre.coefficients;
-  for (double* scaling : {&c.LKX, &c.LKY, &c.LMUX, &c.LMUY}) *scaling *= grip;
-  return tyre;
-}
-
-std::vector<GripChange> read_grip(const StudyTable& drive) {
-  std::vector<GripChange> changes;
-  for (const StudyTable& table : drive.tables("change")) {
-    GripChange change;
-    change.time = table.number("time", "s");
-    if (!changes.empty() && !(change.time > changes.back().time))
-      table.fail("time", "must be later than the one before");
-    const double both = table.positive_or("grip", "1", 1.0);
-    change.front = table.positive_or("front", "1", both);
-    change.rear = table.positive_or("rear", "1", both);
-    changes.push_back(change);
-  }
-  return changes;
+void require_accel(const DriveSignals& signals) {
+  if (signals[DriveSignal::kAccelY].available()) return;
+  throw InputError(signals.source, "has no accel_y, which tracking needs");
 }
 
 }  // namespace
 
-std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
-
-VehicleStudy read_vehicle_study(const StudyTable& root) {
-  VehicleStudy study;
-  study.title = root.text_or("title", "drive");
-  const long long seed = root.integer_or("seed", 1);
-  if (seed < 0) root.fail("seed", "must not be negative");
-  study.seed = static_cast<std::uint64_t>(seed);
-  const StudyTable drive = root.table_or_empty("drive");
-  study.model = read_model(drive);
-  study.vehicle =
-      read_vehicle(root.table("subject"),
-                   study.model == VehicleModelKind::kFourWheel ? VehicleNeeds::kFourWheel : VehicleNeeds::kBicycle);
-  study.inputs = study.vehicle.inputs;
-  study.four_wheel = read_options(drive, study.vehicle);
-  if (study.four_wheel.longitudinal && study.model != VehicleModelKind::kFourWheel)
-    drive.fail("longitudinal", "needs model = \"four-wheel\"");
-
-  SimulationOptions& s = study.simulation;
-  s.speed = drive.has("speed") || !study.vehicle.speed ? drive.number("speed", "m/s") : *study.vehicle.speed;
-  if (!(s.speed > 0.0)) drive.fail("speed", fmt::format("is {:g} m/s; must be > 0", s.speed));
-  ManoeuvreContext context{.parameters = study.vehicle.parameters,
-                           .speed = s.speed,
-                           .gravity = study.four_wheel.gravity,
-                           .seed = study.seed,
-                           .wheel_radius = study.vehicle.longitudinal.wheel_radius};
-  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
-  context.C_f = C_f;
-  context.C_r = C_r;
-  study.manoeuvre = read_manoeuvre(drive, context);
-  s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
-  s.step = drive.positive_or("step", "s", s.step);
-  s.output_step = drive.positive_or("output_step", "s", s.output_step);
-  at_place(root.place("drive"), [&] { s.validate(); });
-  if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
-    drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
-
-  study.grip = read_grip(drive);
-  if (root.has("road")) {
-    study.road = read_road(root.table("road"), study.seed);
-    if (study.road && study.model != VehicleModelKind::kFourWheel)
-      root.fail("road", "needs model = \"four-wheel\": the bicycle does not move up and down");
-  }
-  if (root.has("sensors")) {
-    study.sensors = read_drive_sensors(root.table("sensors"));
-    study.sensors->gravity = study.four_wheel.gravity;
-  }
-  return study;
+DriveStudy read_drive_study(const Study& study, Progress& progress) {
+  DriveStudy out = read_tables(study);
+  const StudyTable& root = study.root();
+  if (!root.has("data")) root.fail("data", "is missing: the study names no recording of a drive");
+  progress.stage("reading the recording");
+  out.log = read_drive_log(root.table("data"));
+  out.inputs.insert(out.inputs.end(), out.log.inputs.begin(), out.log.inputs.end());
+  return out;
 }
 
-VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
-                                Driver& driver, const Road* road, const SimulationOptions& simulation,
-                                Progress& progress, std::span<const GripChange> grip) {
-  const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
-  return std::visit(
-      [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
-        // The model of the beginning and those of the changes, made and driven alike.
-        const auto drive = [&](const auto& make, const auto& run) {
-          using Model = decltype(make(tyres));
-          std::vector<ModelChange<Model>> changes;
-          for (const GripChange& change : grip) {
-            const AxleTyres<Tyre> changed{slipperier(tyres.front, change.front), slipperier(tyres.rear, change.rear)};
-            changes.push_back({change.time, make(changed)});
-          }
-          return run(make(tyres), std::span<const ModelChange<Model>>(changes));
+DriveStudy read_drive_study(const Study& study, const Recording& recording, Progress& /*progress*/) {
+  DriveStudy out = read_tables(study);
+  const StudyTable data = study.root().table_or_empty("data");
+  out.log.mapped = map_drive_channels(recording, data.table_or_empty("map"), data.text_or("frame", ""),
+                                      data.has("frame") ? data.place("frame") : std::string());
+  out.log.runs = {recording.span()};
+  return out;
+}
+
+DriveAnalysis identify_drive(DriveStudy& study, Progress& progress) {
+  DriveAnalysis out;
+  out.signals = prepare_drive_signals(study.log.mapped, study.signals);
+  out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
+  out.identification =
+      identify_vehicle(out.signals, out.segments, study.vehicle, study.signals, study.identify, progress);
+  out.interrupted = out.identification.interrupted;
+  std::vector<std::string> warnings = own_warnings(study, out.signals);
+  if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
+      !study.identify.model.free[static_cast<std::size_t>(DriveUnknown::kAccelYScale)]) {
+    warnings.emplace_back(
+        "accel_y is taken as it is: where the sensor leans with the body it shows g sin(roll) too (5 deg of roll per g "
+        "make 8.7 % of it); give signals.roll_gradient, record roll, or estimate accel_y_scale");
+  }
+  warnings.insert(warnings.end(), out.identification.warnings.begin(), out.identification.warnings.end());
+  out.identification.warnings = std::move(warnings);
+  out.estimate = make_vehicle_estimate(out.identification, study.subject_name);
+  return out;
+}
+
+DriveAnalysis validate_drive(DriveStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+  DriveAnalysis out;
+  out.signals = prepare_drive_signals(study.log.mapped, study.signals);
+  out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
+  progress.stage("validating");
+  std::vector<TimeSpan> spans = study.validate_on_holdout_only ? out.segments.holdout : out.segments.identification;
+  if (!study.validate_on_holdout_only)
+    spans.insert(spans.end(), out.segments.holdout.begin(), out.segments.holdout.end());
+  std::sort(spans.begin(), spans.end(), [](const TimeSpan& x, const TimeSpan& y) { return x.begin < y.begin; });
+  VehicleIdentification& id = out.identification;
+  VehicleParameters<double> p = study.vehicle;
+  DriveModelOptions model = study.identify.model;
+  std::vector<std::string> missing;
+  const auto take = [&](const char* name, double& to) {
+    const estimation::EstimatedParameter* e = estimate.find(name);
+    if (e != nullptr && std::isfinite(e->value))
+      to = e->value;
+    else if (std::string_view(name) == "C_f" || std::string_view(name) == "C_r" || std::string_view(name) == "I_z")
+      missing.emplace_back(name);
+  };
+  take("C_f", p.C_f);
+  take("C_r", p.C_r);
+  take("I_z", p.I_z);
+  const double L = p.wheelbase();
+  take("a", p.a);
+  p.b = L - p.a;
+  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature,
+                               DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale, DriveUnknown::kSteerDelay,
+                               DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+    const auto i = static_cast<std::size_t>(u);
+    take(std::string(kDriveUnknownNames[i]).c_str(), model.start[i]);
+  }
+  if (estimate.find("mu") != nullptr) model.tyre = DriveTyre::kMagicFormula;
+  if (!missing.empty()) {
+    std::string text = missing[0];
+    for (std::size_t i = 1; i < missing.size(); ++i) text += ", " + missing[i];
+    throw InputError("estimate", fmt::format("has no {}; without it no drive can be predicted", text));
+  }
+  id.chosen = estimate.method;
+  id.identified = p;
+  VehicleEstimate given;
+  given.method = estimate.method;
+  given.usable = true;
+  given.covariance = estimate.covariance;
+  for (const estimation::EstimatedParameter& e : estimate.parameters) {
+    estimation::ParameterEstimate q;
+    q.name = e.name;
+    q.unit = e.unit;
+    q.value = e.value;
+    q.sigma = e.sigma;
+    q.low95 = e.low95;
+    q.high95 = e.high95;
+    q.status = e.status;
+    given.parameters.push_back(std::move(q));
+  }
+  id.estimates.push_back(std::move(given));
+  if (spans.empty()) {
+    id.verdict = VehicleVerdict::kNotExcited;
+    id.reason = fmt::format("the estimate cannot be judged: {}", out.segments.text);
+  } else {
+    const Eigen::VectorXd theta = fit_drive_biases(out.signals, spans, p, model);
+    const auto n = static_cast<Eigen::Index>(kDriveUnknowns);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+    for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+      for (std::size_t j = 0; j < estimate.parameters.size(); ++j) {
+        const auto at = [&](std::size_t k) {
+          return std::find(kDriveUnknownNames.begin(), kDriveUnknownNames.end(), estimate.parameters[k].name) -
+                 kDriveUnknownNames.begin();
         };
-        if (model == VehicleModelKind::kFourWheel) {
-          return drive(
-              [&](const AxleTyres<Tyre>& t) {
-                return FourWheelModel<double, Tyre>(vehicle.parameters, mounted(t), options);
-              },
-              [&](const auto& start, auto changes) {
-                return simulate(start, driver, road, simulation, progress, changes);
-              });
-        }
-        return drive(
-            [&](const AxleTyres<Tyre>& t) {
-              return BicycleModel<double, Tyre>{vehicle.parameters, symmetric_tyre(t.front), symmetric_tyre(t.rear),
-                                                options.gravity, geometry};
-            },
-            [&](const auto& start, auto changes) { return simulate(start, driver, simulation, progress, changes); });
-      },
-      vehicle.tyres);
+        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+        if (at(i) >= n || at(j) >= n || row >= estimate.covariance.rows() || column >= estimate.covariance.cols())
+          continue;
+        const double c = estimate.covariance(row, column);
+        if (std::isfinite(c)) covariance(at(i), at(j)) = c;
+      }
+    }
+    id.validation = predict_drive(out.signals, spans, p, model, theta, covariance);
+    const PredictedDriveQuantity* r = id.validation.find("yaw_rate");
+    const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2;
+    id.verdict = holds ? VehicleVerdict::kIdentified : VehicleVerdict::kRejected;
+    id.reason = r == nullptr ? fmt::format("does not hold: {}", id.validation.text)
+                             : fmt::format("{}: it explains {:.1f} % of the yaw rate's variance of this drive",
+                                           holds ? "holds" : "does not hold", 100.0 * std::max(0.0, r->fit.r2));
+  }
+  id.warnings = own_warnings(study, out.signals);
+  id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");
+  out.interrupted = progress.interrupted();
+  out.estimate = make_vehicle_estimate(id, study.subject_name);
+  out.estimate.parameters = estimate.parameters;
+  out.estimate.covariance = estimate.covariance;
+  out.estimate.method = estimate.method;
+  return out;
 }
 
-VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress) {
-  VehicleRun run;
-  const VehicleParameters<double>& p = study.vehicle.parameters;
-  const double gravity = study.four_wheel.gravity;
-  run.trajectory = drive_vehicle(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver,
-                                 study.road.get(), study.simulation, progress, study.grip);
-  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, gravity);
-  run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
-  run.characteristics = characteristics(run.linear);
-  run.modes = modes(run.linear.A());
-  if (study.model == VehicleModelKind::kFourWheel) {
-    std::visit(
-        [&]<typename Tyre>(const AxleTyres<Tyre>& t) {
-          const FourWheelModel<double, Tyre> model(p, mounted(t), study.four_wheel);
-          run.vehicle_modes = modes(linearise(model, study.simulation.speed));
-        },
-        study.vehicle.tyres);
+TrackedDrive::TrackedDrive(const DriveStudy& study)
+    : subject_(study.subject_name),
+      start_(study.vehicle),
+      options_(study.track),
+      signals_(study.signals),
+      min_speed_(study.segments.min_speed_mps) {
+  if (!options_.estimate_file.empty()) begin_ = io::read_estimate(options_.estimate_file);
+}
+
+std::vector<DriveChange> TrackedDrive::advance(const recording::MappedRecording& mapped, bool finished, Progress& progress) {
+  std::vector<DriveChange> found;
+  const TimeSpan span = mapped.recording.span();
+  if (!tracker_) {
+    if (!finished && span.duration() < kLearn_s) return found;
+    recording::MappedRecording first = mapped;
+    first.recording = recording::cut(mapped.recording, {span.begin, span.begin + kLearn_s});
+    const DriveSignals signals = prepare_drive_signals(first, signals_);
+    require_accel(signals);
+    notes_ = signals.notes;
+    // The rate is kept, whatever later parts would suggest.
+    signals_.rate_Hz = signals.grid.rate_Hz();
+    const std::array<double, 4> noise{signals[DriveSignal::kSteer].sigma, signals[DriveSignal::kSpeed].sigma,
+                                      signals[DriveSignal::kYawRate].sigma, signals[DriveSignal::kAccelY].sigma};
+    tracker_.emplace(start_, options_, min_speed_, signals_.rate_Hz, noise, begin_ ? &*begin_ : nullptr);
   }
-  if (!run.trajectory.usable()) return run;
-  run.metrics = manoeuvre_metrics(run.trajectory, study.manoeuvre, p, gravity);
-  if (study.sensors) run.measured = record_drive(run.trajectory, *study.sensors, study.seed);
-  return run;
+  const double last = tracker_->last_time();
+  recording::MappedRecording part = mapped;
+  if (std::isfinite(last)) {
+    if (!(span.end > last + kWarm_s) && !finished) return found;
+    part.recording = recording::cut(mapped.recording, {last - kWarm_s, kInfinity});
+  }
+  const DriveSignals signals = prepare_drive_signals(part, signals_);
+  require_accel(signals);
+  std::vector<double> yaw_acceleration;
+  if (signals.accel_position[0] != 0.0) {
+    const numerics::ModulatingKernel kernel =
+        numerics::modulating_kernel(signals.grid.rate_Hz(), 0.1 * signals.grid.rate_Hz());
+    yaw_acceleration = numerics::filter(signals[DriveSignal::kYawRate].value, kernel.first);
+  }
+  // What lies close to the end may still change when more is read.
+  const double until = finished ? kInfinity : span.end - 0.5 * kWarm_s;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    const double t = signals.grid.at(k);
+    if (!(t > last + 0.5 * signals.grid.step) || t > until) continue;
+    const std::vector<DriveChange> more = tracker_->append(sample_of(signals, k, yaw_acceleration));
+    found.insert(found.end(), more.begin(), more.end());
+    if (k % 10000 == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(signals.size()))) break;
+  }
+  return found;
+}
+
+estimation::Estimate TrackedDrive::estimate() const {
+  if (tracker_) {
+    estimation::Estimate out = tracker_->estimate(subject_);
+    out.warnings.insert(out.warnings.end(), notes_.begin(), notes_.end());
+    return out;
+  }
+  estimation::Estimate out;
+  out.subject = subject_;
+  out.method = "on line";
+  out.verdict = "nothing was followed yet";
+  return out;
+}
+
+DriveTracking track_drive(DriveStudy& study, Progress& progress) {
+  progress.stage("tracking");
+  DriveTracking out{TrackedDrive(study), false};
+  static_cast<void>(out.drive.advance(study.log.mapped, true, progress));
+  out.interrupted = progress.interrupted();
+  return out;
+}
+
+Recording history_recording(const DriveTracker& tracker) {
+  Recording out;
+  out.source = "track.csv";
+  out.frame = Frame::kFlu;
+  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
+    const DriveTrackHistory& h = tracker.history(static_cast<TrackedAxle>(i));
+    if (h.time.empty()) continue;
+    const std::string name(kTrackedAxleNames[i]);
+    const std::string unit(i < 2 ? "N/rad" : "rad s^2/m");
+    const TimeBase time = make_time_base(h.time);
+    const auto add = [&](std::string channel, const std::string& of, std::vector<double> values) {
+      for (double& v : values) {
+        if (std::isinf(v)) v = std::numeric_limits<double>::quiet_NaN();
+      }
+      out.add(make_channel(std::move(channel), of, time, std::move(values)));
+    };
+    add(name, unit, h.value);
+    add("sigma_" + name, unit, h.sigma);
+    add("held_" + name, "1", {h.held.begin(), h.held.end()});
+    add("suspicion_" + name, "1", h.suspicion);
+  }
+  return out;
 }
 
 }  // namespace veridyn::vehicle
