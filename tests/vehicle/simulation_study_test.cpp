@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,35 +29,35 @@ K_t = 210000
 mu = 0.9
 )";
 
-VehicleStudy read(const std::string& more, const std::string& subject = kCar) {
+SimulationStudy read(const std::string& more, const std::string& subject = kCar) {
   const Study study = Study::parse(subject + more, "study.toml");
-  VehicleStudy out = read_vehicle_study(study.root());
+  SimulationStudy out = read_simulation_study(study.root());
   study.root().finish();
   return out;
 }
 
-VehicleRun drive(const std::string& more, const std::string& subject = kCar) {
-  VehicleStudy study = read(more, subject);
+SimulationRun drive(const std::string& more, const std::string& subject = kCar) {
+  SimulationStudy study = read(more, subject);
   Progress silent;
-  return run_vehicle_study(study, silent);
+  return run_simulation_study(study, silent);
 }
 
-TEST(VehicleStudy, BothAxlesTakeOneKeyAndOwnKeysWin) {
-  const VehicleStudy s = read("K_sr = 21000\n[drive]\nspeed = 20\n");
+TEST(SimulationStudy, BothAxlesTakeOneKeyAndOwnKeysWin) {
+  const SimulationStudy s = read("K_sr = 21000\n[drive]\nspeed = 20\n");
   EXPECT_EQ(s.vehicle.parameters.K_sf, 19000.0);
   EXPECT_EQ(s.vehicle.parameters.K_sr, 21000.0);
   EXPECT_EQ(s.vehicle.parameters.track_r, 1.53);
   EXPECT_TRUE(s.vehicle.assumed.empty());
 }
 
-TEST(VehicleStudy, ABicycleNeedsNoSuspensionAndSaysWhatItAssumed) {
+TEST(SimulationStudy, ABicycleNeedsNoSuspensionAndSaysWhatItAssumed) {
   const std::string bare =
       "[subject]\nkind = \"vehicle\"\nmass = 1000\na = 1.1\nb = 1.4\nI_z = 1500\nC_f = 5e4\nC_r = 5e4\n";
   EXPECT_EQ(read("[drive]\nmodel = \"bicycle\"\nspeed = 20\n", bare).vehicle.assumed.size(), 12u);
   EXPECT_THROW(static_cast<void>(read("[drive]\nspeed = 20\n", bare)), InputError);
 }
 
-TEST(VehicleStudy, TyresAreThoseOfTheirWords) {
+TEST(SimulationStudy, TyresAreThoseOfTheirWords) {
   EXPECT_TRUE(std::holds_alternative<AxleTyres<LinearTyre<double>>>(read("[drive]\nspeed = 20\n").vehicle.tyres));
   EXPECT_TRUE(std::holds_alternative<AxleTyres<FialaTyre<double>>>(
       read("tyre = \"fiala\"\n[drive]\nspeed = 20\n").vehicle.tyres));
@@ -69,7 +69,7 @@ TEST(VehicleStudy, TyresAreThoseOfTheirWords) {
 }
 
 // Whatever the tyre, small slip is the same: all have the stiffness of the study.
-TEST(VehicleStudy, AllTyresAgreeInGentleDriving) {
+TEST(SimulationStudy, AllTyresAgreeInGentleDriving) {
   const std::string gentle =
       "[drive]\nmodel = \"bicycle\"\nspeed = 20\nmanoeuvre = \"step steer\"\namplitude = 1e-4\nduration = 3\n";
   const double linear = drive(gentle).trajectory.r.back();
@@ -80,8 +80,8 @@ TEST(VehicleStudy, AllTyresAgreeInGentleDriving) {
 }
 
 // The friction limit: no more lateral acceleration than mu g, up to the share of drag that the front wheels turn away.
-TEST(VehicleStudy, FrictionLimitsTheLateralAcceleration) {
-  const VehicleRun run = drive(
+TEST(SimulationStudy, FrictionLimitsTheLateralAcceleration) {
+  const SimulationRun run = drive(
       "tyre = \"fiala\"\n[drive]\nmodel = \"bicycle\"\nspeed = 30\nmanoeuvre = \"step steer\"\namplitude = "
       "0.2\nduration = 3\n");
   const double limit = 0.9 * 9.80665;
@@ -90,8 +90,8 @@ TEST(VehicleStudy, FrictionLimitsTheLateralAcceleration) {
 }
 
 // With a share g of the stiffness the linear car is one with g C: steady yaw rate in closed form.
-TEST(VehicleStudy, AfterAChangeOfGripTheCarIsTheSlipperyOne) {
-  const VehicleRun run = drive(
+TEST(SimulationStudy, AfterAChangeOfGripTheCarIsTheSlipperyOne) {
+  const SimulationRun run = drive(
       "[drive]\nmodel = \"linear bicycle\"\nspeed = 20\nmanoeuvre = \"step steer\"\namplitude = 0.02\nduration = 20\n"
       "[[drive.change]]\ntime = 10\ngrip = 0.5\n");
   const auto steady = [](double grip) {
@@ -102,9 +102,9 @@ TEST(VehicleStudy, AfterAChangeOfGripTheCarIsTheSlipperyOne) {
   EXPECT_NEAR(run.trajectory.r.back(), steady(0.5), 1e-9);
 }
 
-TEST(VehicleStudy, WrittenVehicleReadsBackToTheSameNumbers) {
-  const VehicleStudy one = read("tyre = \"fiala\"\n[drive]\nspeed = 20\n");
-  const VehicleStudy two = read("[drive]\nspeed = 20\n", write_vehicle_toml(one.vehicle));
+TEST(SimulationStudy, WrittenVehicleReadsBackToTheSameNumbers) {
+  const SimulationStudy one = read("tyre = \"fiala\"\n[drive]\nspeed = 20\n");
+  const SimulationStudy two = read("[drive]\nspeed = 20\n", write_vehicle_toml(one.vehicle));
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i)
     EXPECT_EQ(field_of(one.vehicle.parameters, i), field_of(two.vehicle.parameters, i)) << kVehicleFields[i].name;
   EXPECT_EQ(two.vehicle.tyre_text, "fiala");

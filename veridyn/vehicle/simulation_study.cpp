@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
 
 #include <array>
 #include <variant>
@@ -70,8 +70,8 @@ std::vector<GripChange> read_grip(const StudyTable& drive) {
 
 std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
 
-VehicleStudy read_vehicle_study(const StudyTable& root) {
-  VehicleStudy study;
+SimulationStudy read_simulation_study(const StudyTable& root) {
+  SimulationStudy study;
   study.title = root.text_or("title", "drive");
   const long long seed = root.integer_or("seed", 1);
   if (seed < 0) root.fail("seed", "must not be negative");
@@ -118,9 +118,9 @@ VehicleStudy read_vehicle_study(const StudyTable& root) {
   return study;
 }
 
-VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
-                                Driver& driver, const Road* road, const SimulationOptions& simulation,
-                                Progress& progress, std::span<const GripChange> grip) {
+VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
+                           Driver& driver, const Road* road, const SimulationOptions& simulation, Progress& progress,
+                           std::span<const GripChange> grip) {
   const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
   return std::visit(
       [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
@@ -153,12 +153,12 @@ VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model, 
       vehicle.tyres);
 }
 
-VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress) {
-  VehicleRun run;
+SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress) {
+  SimulationRun run;
   const VehicleParameters<double>& p = study.vehicle.parameters;
   const double gravity = study.four_wheel.gravity;
-  run.trajectory = drive_vehicle(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver,
-                                 study.road.get(), study.simulation, progress, study.grip);
+  run.trajectory = simulate(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver, study.road.get(),
+                            study.simulation, progress, study.grip);
   const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, gravity);
   run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
   run.characteristics = characteristics(run.linear);

@@ -12,13 +12,13 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/model/bicycle_analysis.hpp"
-#include "veridyn/vehicle/simulation/drive_sensors.hpp"
-#include "veridyn/vehicle/model/four_wheel_analysis.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
-#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
-#include "veridyn/vehicle/road/road.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
+#include "veridyn/vehicle/model/four_wheel_analysis.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
+#include "veridyn/vehicle/road/road.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
+#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 namespace veridyn::vehicle {
@@ -38,7 +38,7 @@ struct GripChange {
 };
 
 /// What a study drives: vehicle, model, manoeuvre and road, read and checked.
-struct VehicleStudy {
+struct SimulationStudy {
   std::string title;
   std::uint64_t seed = 1;
   Vehicle vehicle;
@@ -76,16 +76,16 @@ struct VehicleStudy {
 ///
 /// Tables of the analysis (`[data]`, `[identify]` ...) are left to others.
 /// @throws InputError with file, line and key.
-[[nodiscard]] VehicleStudy read_vehicle_study(const StudyTable& root);
+[[nodiscard]] SimulationStudy read_simulation_study(const StudyTable& root);
 
 /// Drives a vehicle with any of the models. @throws InputError for a step too long or controls out of range.
-[[nodiscard]] VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model,
-                                              const FourWheelOptions& options, Driver& driver, const Road* road,
-                                              const SimulationOptions& simulation, Progress& progress,
-                                              std::span<const GripChange> grip = {});
+[[nodiscard]] VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model,
+                                         const FourWheelOptions& options, Driver& driver, const Road* road,
+                                         const SimulationOptions& simulation, Progress& progress,
+                                         std::span<const GripChange> grip = {});
 
 /// What became of a drive.
-struct VehicleRun {
+struct SimulationRun {
   VehicleTrajectory trajectory;
   std::optional<Recording> measured;  ///< what the sensors recorded
   std::vector<Metric> metrics;
@@ -96,6 +96,6 @@ struct VehicleRun {
 };
 
 /// Drives. @throws InputError for a step too long or controls out of range.
-[[nodiscard]] VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress);
+[[nodiscard]] SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress);
 
 }  // namespace veridyn::vehicle
