@@ -1,16 +1,16 @@
 // From a drive to the tyres of a car: simulate, add the errors of production sensors, identify, and see whether the
-// intervals hold the truth. With a recording of your own only the first part changes: read_drive_study.
+// intervals hold the truth. With a recording of your own only the first part changes: read_study.
 #include <cmath>
 #include <cstdio>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
-#include "veridyn/vehicle/simulation/drive_sensors.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
+#include "veridyn/vehicle/model/bicycle_model.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 int main() {
   using namespace veridyn;
@@ -45,12 +45,12 @@ int main() {
   start.I_z = 2000.0;
   VehicleIdentifyOptions options;
   options.mass_sigma = 15.0;
-  const VehicleIdentification result = identify_vehicle(signals, segments, start, signal_options, options, silent);
+  const VehicleIdentification result = identify_parameters({signals, segments, start, signal_options, options}, silent);
 
-  for (const char* method : {"GTLS", "output error"}) {
+  for (const VehicleMethod method : {VehicleMethod::kGtls, VehicleMethod::kOutputError}) {
     const VehicleEstimate* estimate = result.find(method);
     if (estimate == nullptr || !estimate->usable) continue;
-    std::printf("%s\n", method);
+    std::printf("%s\n", std::string(to_string(method)).c_str());
     for (const auto& p : estimate->parameters) {
       std::printf("  %-20s %12.6g  [%.6g, %.6g] %s, %s\n", p.name.c_str(), p.value, p.low95, p.high95, p.unit.c_str(),
                   std::string(estimation::to_string(p.status)).c_str());

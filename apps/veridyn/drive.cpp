@@ -12,13 +12,14 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/numerics/parallel.hpp"
-#include "veridyn/report/drive_report.hpp"
 #include "veridyn/report/document/html.hpp"
-#include "veridyn/vehicle/drive_study.hpp"
+#include "veridyn/report/drive_report.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::app {
@@ -27,9 +28,9 @@ namespace {
 using namespace veridyn::vehicle;
 
 struct Drive {
-  DriveStudy study;
+  VehicleStudy study;
   std::vector<std::pair<std::string, double>> truth;  ///< of a simulated drive
-  std::optional<VehicleRun> run;
+  std::optional<SimulationRun> run;
 };
 
 std::vector<std::pair<std::string, double>> truth_of(const Vehicle& vehicle, double gravity) {
@@ -48,22 +49,22 @@ std::optional<Drive> prepare(const Study& study, Progress& progress) {
   Drive drive;
   if (study.root().has("data") && (study.root().table("data").has("file") || study.root().table("data").has("files") ||
                                    study.root().table("data").has("runs"))) {
-    drive.study = read_drive_study(study, progress);
+    drive.study = read_study(study, progress);
     for (const char* table : {"drive", "road", "sensors", "scale"}) static_cast<void>(study.root().has(table));
     study.root().finish();
     return drive;
   }
   if (!study.root().has("drive"))
     study.root().fail("data", "is missing: the study names no recording, and no [drive] that could be simulated");
-  VehicleStudy vehicle = read_vehicle_study(study.root());
+  SimulationStudy vehicle = read_simulation_study(study.root());
   if (!vehicle.sensors) vehicle.sensors = reference_drive_sensors();
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
-  drive.run = run_vehicle_study(vehicle, progress);
+  drive.run = run_simulation_study(vehicle, progress);
   if (drive.run->trajectory.end == SimulationEnd::kInterrupted) return std::nullopt;
   if (!drive.run->trajectory.usable()) throw std::runtime_error(drive.run->trajectory.message());
   Recording measured = *drive.run->measured;
   measured.source = "simulated drive";
-  drive.study = read_drive_study(study, measured, progress);
+  drive.study = read_study(study, measured, progress);
   drive.study.inputs = vehicle.inputs;
   drive.truth = truth_of(vehicle.vehicle, vehicle.four_wheel.gravity);
   static_cast<void>(study.root().has("scale"));
@@ -82,7 +83,8 @@ std::string methods_csv(const VehicleIdentification& id) {
   const auto lines = [&](const VehicleEstimate& e) {
     if (!e.usable) return;
     for (const estimation::ParameterEstimate& p : e.parameters)
-      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, e.method, p.value, p.sigma, p.low95, p.high95, p.unit);
+      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, to_string(e.method), p.value, p.sigma, p.low95, p.high95,
+                          p.unit);
   };
   if (id.best() != nullptr) lines(*id.best());
   for (const VehicleEstimate& e : id.estimates)
@@ -98,8 +100,8 @@ std::string prediction_csv(const DriveValidation& v) {
   const auto cell = [](const std::vector<double>& values, std::size_t k) {
     return k < values.size() && std::isfinite(values[k]) ? fmt::format("{:.9g}", values[k]) : std::string();
   };
-  for (std::size_t d = 0; d < v.drives.size(); ++d) {
-    const PredictedDrive& drive = v.drives[d];
+  for (std::size_t d = 0; d < v.stretches.size(); ++d) {
+    const PredictedStretch& drive = v.stretches[d];
     for (std::size_t k = 0; k < drive.time.size(); ++k) {
       text += fmt::format("{:.9g},{},{},{},{},{},{},{},{}\n", drive.time[k], d + 1, cell(drive.steer, k),
                           cell(drive.speed, k), cell(drive.yaw_rate, k), cell(drive.yaw_rate_predicted, k),
@@ -110,7 +112,7 @@ std::string prediction_csv(const DriveValidation& v) {
   return text;
 }
 
-void write_results(const std::filesystem::path& folder, const Drive& drive, const DriveAnalysis& analysis,
+void write_results(const std::filesystem::path& folder, const Drive& drive, const VehicleAnalysis& analysis,
                    bool validation_only) {
   make_folder(folder);
   const VehicleIdentification& id = analysis.identification;
@@ -133,7 +135,7 @@ void write_results(const std::filesystem::path& folder, const Drive& drive, cons
   report::write_html(report::drive_report(drive.study, analysis, context), folder / "report.html");
 }
 
-void tell_analysis(const DriveAnalysis& analysis, const std::filesystem::path& folder, const CommonOptions& options) {
+void tell_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder, const CommonOptions& options) {
   const VehicleIdentification& id = analysis.identification;
   if (const VehicleEstimate* best = id.best()) {
     for (const estimation::ParameterEstimate& p : best->parameters) {
@@ -149,7 +151,7 @@ void tell_analysis(const DriveAnalysis& analysis, const std::filesystem::path& f
   tell(options, fmt::format("report: {}", (folder / "report.html").string()));
 }
 
-nlohmann::ordered_json summary_of(const DriveAnalysis& analysis, const std::filesystem::path& folder) {
+nlohmann::ordered_json summary_of(const VehicleAnalysis& analysis, const std::filesystem::path& folder) {
   nlohmann::ordered_json s;
   s["folder"] = folder.string();
   s["verdict"] = to_string(analysis.identification.verdict);
@@ -160,7 +162,7 @@ nlohmann::ordered_json summary_of(const DriveAnalysis& analysis, const std::file
 
 /// Writes, tells and summarises what identification or validation made of a drive.
 int finish(const Study& study, const std::vector<std::filesystem::path>& inputs, const std::string& verb,
-           const Drive& drive, const DriveAnalysis& analysis, const CommonOptions& options) {
+           const Drive& drive, const VehicleAnalysis& analysis, const CommonOptions& options) {
   const std::filesystem::path folder = options.out;
   write_results(folder, drive, analysis, verb == "validate");
   RunRecord record{verb, study.name(), study.to_toml(), drive.study.seed, drive.study.inputs};
@@ -230,7 +232,7 @@ int identify_vehicle(const Study& study, const std::string& path, const CommonOp
   TerminalProgress progress(options.quiet);
   std::optional<Drive> drive = prepare(study, progress);
   if (!drive) return interrupted();
-  const DriveAnalysis analysis = identify_drive(drive->study, progress);
+  const VehicleAnalysis analysis = identify(drive->study, progress);
   if (analysis.interrupted) return interrupted();
   return finish(study, {path}, verb, *drive, analysis, options);
 }
@@ -241,7 +243,7 @@ int validate_vehicle(const Study& study, const std::string& path, const std::str
   TerminalProgress progress(options.quiet);
   std::optional<Drive> drive = prepare(study, progress);
   if (!drive) return interrupted();
-  const DriveAnalysis analysis = validate_drive(drive->study, given, progress);
+  const VehicleAnalysis analysis = validate(drive->study, given, progress);
   if (analysis.interrupted) return interrupted();
   return finish(study, {path, estimate}, "validate", *drive, analysis, options);
 }
@@ -253,7 +255,7 @@ int track_vehicle(const Study& study, const std::string& path, bool live, const 
     std::optional<TrackedDrive> tracked;
     follow_files(followed_files(study.root()), follow, options, [&](bool finished) {
       Progress silent;
-      drive.study = read_drive_study(study, silent);
+      drive.study = read_study(study, silent);
       if (!tracked) tracked.emplace(drive.study);
       for (const DriveChange& c : tracked->advance(drive.study.log.mapped, finished, silent))
         tell(options, change_line(c));
@@ -265,7 +267,7 @@ int track_vehicle(const Study& study, const std::string& path, bool live, const 
   TerminalProgress progress(options.quiet);
   std::optional<Drive> drive = prepare(study, progress);
   if (!drive) return interrupted();
-  const DriveTracking tracking = track_drive(drive->study, progress);
+  const DriveTracking tracking = track(drive->study, progress);
   if (tracking.interrupted) return interrupted();
   if (const DriveTracker* tracker = tracking.drive.tracker())
     for (const DriveChange& c : tracker->changes()) tell(options, change_line(c));

@@ -93,7 +93,7 @@ int scale_vehicle(const Study& study, const std::string& path, const CommonOptio
   io::write_csv(to_recording(analysis.runs.back().own), folder / "model.csv");
   report::write_html(report::similarity_report(scale_study, analysis, "veridyn " VERIDYN_VERSION),
                      folder / "report.html");
-  RunRecord record{verb, study.name(), study.to_toml(), scale_study.drive.seed, scale_study.drive.inputs};
+  RunRecord record{verb, study.name(), study.to_toml(), scale_study.simulation.seed, scale_study.simulation.inputs};
   record.inputs.emplace_back(path);
   write_run_record(folder, record, options);
   for (const GroupComparison& g : r.mismatches())

@@ -14,15 +14,15 @@
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
 
 namespace veridyn::app {
 namespace {
 
 using namespace veridyn::vehicle;
 
-nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const VehicleStudy& study,
-                                  const VehicleRun& run) {
+nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const SimulationStudy& study,
+                                  const SimulationRun& run) {
   nlohmann::ordered_json s;
   s["folder"] = folder.string();
   s["vehicle"] = study.vehicle.name;
@@ -52,14 +52,14 @@ nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const Veh
 
 int simulate_vehicle(const Study& study, const std::string& path, const CommonOptions& options,
                      const std::string& verb) {
-  VehicleStudy vehicle = read_vehicle_study(study.root());
+  SimulationStudy vehicle = read_simulation_study(study.root());
   // Tables that other verbs read; misspelt keys in them are found there.
   for (const char* table : {"data", "signals", "segments", "identify", "validate", "track", "scale"})
     static_cast<void>(study.root().has(table));
   study.root().finish();
   TerminalProgress progress(options.quiet);
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
-  const VehicleRun run = run_vehicle_study(vehicle, progress);
+  const SimulationRun run = run_simulation_study(vehicle, progress);
   if (run.trajectory.end == SimulationEnd::kInterrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

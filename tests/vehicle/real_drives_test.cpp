@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "veridyn/core/error.hpp"
 #include "tests/support/folders.hpp"
-#include "veridyn/vehicle/drive_study.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -19,9 +19,9 @@ TEST(RealDrives, ADriveWithoutSteeringIsRefusedByName) {
   if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";
   Progress silent;
   const Study study = Study::load(study_file("kalman_balzer82.toml"));
-  DriveStudy drive = read_drive_study(study, silent);
+  VehicleStudy drive = read_study(study, silent);
   try {
-    static_cast<void>(identify_drive(drive, silent));
+    static_cast<void>(identify(drive, silent));
     FAIL() << "identified a drive without steering";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("has no steer"), std::string::npos) << e.what();
@@ -32,8 +32,8 @@ TEST(RealDrives, AMinuteOfFreewayDoesNotGiveTheStiffnesses) {
   if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";
   Progress silent;
   const Study study = Study::load(study_file("comma2k19.toml"));
-  DriveStudy drive = read_drive_study(study, silent);
-  const DriveAnalysis analysis = identify_drive(drive, silent);
+  VehicleStudy drive = read_study(study, silent);
+  const VehicleAnalysis analysis = identify(drive, silent);
   EXPECT_NE(analysis.identification.verdict, VehicleVerdict::kIdentified) << analysis.identification.reason;
   for (const char* name : {"C_f", "C_r", "I_z"}) {
     const auto* p = analysis.estimate.find(name);
@@ -46,13 +46,13 @@ TEST(RealDrives, HunterRunsAreReadWithTheirFrameAndStamps) {
   if (!data_is_there()) GTEST_SKIP() << "the shared data are not here";
   Progress silent;
   const Study study = Study::load(study_file("hunter_se.toml"));
-  const DriveStudy drive = read_drive_study(study, silent);
+  const VehicleStudy drive = read_study(study, silent);
   ASSERT_EQ(drive.log.runs.size(), 5u);
   ASSERT_EQ(drive.log.holdout_runs.size(), 2u);
   const DriveSignals signals = prepare_drive_signals(drive.log.mapped, drive.signals);
   const DriveSegments segments = find_drive_segments(signals, drive.segments, drive.log.holdout_runs);
-  EXPECT_GT(segments.seconds(segments.identification), 200.0);
-  EXPECT_GT(segments.seconds(segments.holdout), 150.0);
+  EXPECT_GT(recording::total_s(segments.identification), 200.0);
+  EXPECT_GT(recording::total_s(segments.holdout), 150.0);
   for (const TimeSpan& span : segments.identification) EXPECT_LE(span.end, drive.log.holdout_runs.front().begin);
   // Steering left turns left.
   double product = 0.0;

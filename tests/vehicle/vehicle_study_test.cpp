@@ -1,149 +1,38 @@
 #include "veridyn/vehicle/vehicle_study.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/scale_study.hpp"
-#include "veridyn/vehicle/vehicle_reproduction.hpp"
+#include "tests/vehicle/simulated_drive.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-constexpr const char* kCar = R"([subject]
-kind = "vehicle"
-mass = 1480
-unsprung_mass = 38
-a = 1.14
-b = 1.50
-track = 1.53
-cg_height = 0.55
-I_x = 540
-I_y = 2150
-I_z = 2350
-C_f = 58000
-C_r = 65000
-K_s = 19000
-C_s = 1650
-K_t = 210000
-mu = 0.9
-)";
+using testing::family_car;
+using testing::lively_drive;
 
-VehicleStudy read(const std::string& more, const std::string& subject = kCar) {
-  const Study study = Study::parse(subject + more, "study.toml");
-  VehicleStudy out = read_vehicle_study(study.root());
-  study.root().finish();
-  return out;
-}
-
-VehicleRun drive(const std::string& more, const std::string& subject = kCar) {
-  VehicleStudy study = read(more, subject);
-  Progress silent;
-  return run_vehicle_study(study, silent);
-}
-
-TEST(VehicleStudy, BothAxlesTakeOneKeyAndOwnKeysWin) {
-  const VehicleStudy s = read("K_sr = 21000\n[drive]\nspeed = 20\n");
-  EXPECT_EQ(s.vehicle.parameters.K_sf, 19000.0);
-  EXPECT_EQ(s.vehicle.parameters.K_sr, 21000.0);
-  EXPECT_EQ(s.vehicle.parameters.track_r, 1.53);
-  EXPECT_TRUE(s.vehicle.assumed.empty());
-}
-
-TEST(VehicleStudy, ABicycleNeedsNoSuspensionAndSaysWhatItAssumed) {
-  const std::string bare =
-      "[subject]\nkind = \"vehicle\"\nmass = 1000\na = 1.1\nb = 1.4\nI_z = 1500\nC_f = 5e4\nC_r = 5e4\n";
-  EXPECT_EQ(read("[drive]\nmodel = \"bicycle\"\nspeed = 20\n", bare).vehicle.assumed.size(), 12u);
-  EXPECT_THROW(static_cast<void>(read("[drive]\nspeed = 20\n", bare)), InputError);
-}
-
-TEST(VehicleStudy, TyresAreThoseOfTheirWords) {
-  EXPECT_TRUE(std::holds_alternative<AxleTyres<LinearTyre<double>>>(read("[drive]\nspeed = 20\n").vehicle.tyres));
-  EXPECT_TRUE(std::holds_alternative<AxleTyres<FialaTyre<double>>>(
-      read("tyre = \"fiala\"\n[drive]\nspeed = 20\n").vehicle.tyres));
-  EXPECT_TRUE(std::holds_alternative<AxleTyres<SimpleMagicFormulaTyre<double>>>(
-      read("tyre = \"magic formula\"\n[drive]\nspeed = 20\n").vehicle.tyres));
-  const std::string slick(kCar);
-  EXPECT_THROW(static_cast<void>(read("tyre = \"fiala\"\n[drive]\nspeed = 20\n", slick.substr(0, slick.find("mu =")))),
-               InputError);
-}
-
-// Whatever the tyre, small slip is the same: all have the stiffness of the study.
-TEST(VehicleStudy, AllTyresAgreeInGentleDriving) {
-  const std::string gentle =
-      "[drive]\nmodel = \"bicycle\"\nspeed = 20\nmanoeuvre = \"step steer\"\namplitude = 1e-4\nduration = 3\n";
-  const double linear = drive(gentle).trajectory.r.back();
-  for (const char* tyre : {"fiala", "magic formula"}) {
-    const double r = drive(std::string("tyre = \"") + tyre + "\"\n" + gentle).trajectory.r.back();
-    EXPECT_NEAR(r / linear, 1.0, 1e-3) << tyre;
-  }
-}
-
-// The friction limit: no more lateral acceleration than mu g, up to the share of drag that the front wheels turn away.
-TEST(VehicleStudy, FrictionLimitsTheLateralAcceleration) {
-  const VehicleRun run = drive(
-      "tyre = \"fiala\"\n[drive]\nmodel = \"bicycle\"\nspeed = 30\nmanoeuvre = \"step steer\"\namplitude = "
-      "0.2\nduration = 3\n");
-  const double limit = 0.9 * 9.80665;
-  for (const double a : run.trajectory.lateral_acceleration) EXPECT_LE(std::abs(a), limit * (1.0 + 1e-9));
-  EXPECT_GT(std::abs(run.trajectory.lateral_acceleration.back()), 0.8 * limit);
-}
-
-// With a share g of the stiffness the linear car is one with g C: steady yaw rate in closed form.
-TEST(VehicleStudy, AfterAChangeOfGripTheCarIsTheSlipperyOne) {
-  const VehicleRun run = drive(
-      "[drive]\nmodel = \"linear bicycle\"\nspeed = 20\nmanoeuvre = \"step steer\"\namplitude = 0.02\nduration = 20\n"
-      "[[drive.change]]\ntime = 10\ngrip = 0.5\n");
-  const auto steady = [](double grip) {
-    const double K = 1480.0 * (1.50 / (grip * 58000.0) - 1.14 / (grip * 65000.0)) / (2.0 * 2.64);
-    return 20.0 * 0.02 / (2.64 + K * 400.0);
-  };
-  EXPECT_NEAR(run.trajectory.r[999], steady(1.0), 1e-9);
-  EXPECT_NEAR(run.trajectory.r.back(), steady(0.5), 1e-9);
-}
-
-TEST(VehicleStudy, WrittenVehicleReadsBackToTheSameNumbers) {
-  const VehicleStudy one = read("tyre = \"fiala\"\n[drive]\nspeed = 20\n");
-  const VehicleStudy two = read("[drive]\nspeed = 20\n", write_vehicle_toml(one.vehicle));
-  for (std::size_t i = 0; i < kVehicleFields.size(); ++i)
-    EXPECT_EQ(field_of(one.vehicle.parameters, i), field_of(two.vehicle.parameters, i)) << kVehicleFields[i].name;
-  EXPECT_EQ(two.vehicle.tyre_text, "fiala");
-}
-
-// A given model that is the exact twin has no mismatch and the same motion under the similar gravity.
-TEST(ScaleStudy, AnExactTwinIsFoundExact) {
+TEST(VehicleStudy, IdentifiesARecordingThatItIsGiven) {
   const Study study = Study::parse(
-      "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmanoeuvre = \"step steer\"\nduration = 4\n"
-      "[scale]\nlength_ratio = 0.2\nmass = 8.8\nspeed = 4\n",
+      "seed = 3\n[subject]\nkind = \"vehicle\"\nname = \"car\"\nmass = 1500\na = 1.2\nb = 1.5\n[identify]\nmethod = "
+      "\"output error\"\n[identify.uncertainty]\nmass = \"15 kg\"\n",
       "study.toml");
-  ScaleStudy scale = read_scale_study(study.root());
   Progress silent;
-  const ScaleAnalysis analysis = run_scale_study(scale, silent);
-  EXPECT_TRUE(analysis.twin_report.similar_without_gravity());
-  EXPECT_FALSE(analysis.twin_report.similar());
-  ASSERT_EQ(analysis.runs.size(), 2u);
-  for (const MotionDifference& d : analysis.runs[0].differences)
-    EXPECT_LT(d.largest, 1e-9 * (1.0 + d.range)) << d.quantity;
-  // Under the same gravity the body leans otherwise.
-  double roll = 0.0;
-  for (const MotionDifference& d : analysis.runs[1].differences)
-    if (d.quantity == "roll") roll = d.largest / d.range;
-  EXPECT_GT(roll, 0.05);
-}
-
-TEST(VehicleReproduction, ANumberThatIsNotMetFailsItsCheck) {
-  const std::string text =
-      "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"linear bicycle\"\n"
-      "[scale]\nlength_ratio = 0.2\nmass = 8.8\nspeed = 4\n[[published]]\nquantity = \"yaw_rate\"\ntime = 10\n";
-  Progress silent;
-  const auto passed = [&](const std::string& value) {
-    const Study study = Study::parse(text + "value = \"" + value + "\"\n", "row.toml");
-    return reproduce_vehicle(study.root(), silent).passed();
-  };
-  EXPECT_TRUE(passed("34.9515 deg/s"));
-  EXPECT_TRUE(passed("35.0 deg/s"));
-  EXPECT_FALSE(passed("34.9516 deg/s"));
-  EXPECT_THROW(static_cast<void>(passed("35 m/s")), InputError);
+  VehicleStudy read =
+      read_study(study, record_drive(lively_drive(family_car(), 1), reference_drive_sensors(), 1), silent);
+  study.root().finish();
+  EXPECT_EQ(read.identify.mass_sigma, 15.0);
+  EXPECT_EQ(read.vehicle.I_z, 1500.0 * 1.2 * 1.5);
+  VehicleAnalysis analysis = identify(read, silent);
+  const estimation::EstimatedParameter* C_f = analysis.estimate.find("C_f");
+  ASSERT_NE(C_f, nullptr);
+  EXPECT_LE(C_f->low95, 55000.0);
+  EXPECT_GE(C_f->high95, 55000.0);
+  EXPECT_GT(analysis.estimate.validation.at("yaw_rate").r2, 0.99);
+  // On another drive, which it has not seen.
+  VehicleStudy other =
+      read_study(study, record_drive(lively_drive(family_car(), 9), reference_drive_sensors(), 9), silent);
+  const VehicleAnalysis seen = validate(other, analysis.estimate, silent);
+  EXPECT_EQ(seen.identification.verdict, VehicleVerdict::kIdentified) << seen.identification.reason;
+  EXPECT_GT(seen.estimate.validation.at("yaw_rate").r2, 0.99);
 }
 
 }  // namespace

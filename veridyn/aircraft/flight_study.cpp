@@ -71,7 +71,9 @@ void check_flight(const FlightStudy& study) {
 void align_and_reconstruct(FlightStudy& study, FlightAnalysis& analysis, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
-  analysis.delays = align_delays(study.mapped, study.delays);
+  analysis.delays = align_delays(study.mapped, study.delays, progress);
+  analysis.interrupted = progress.interrupted();
+  if (analysis.interrupted) return;
   const Subject& model = study.filter_subject ? *study.filter_subject : study.subject;
   analysis.reconstruction = reconstruct(study.mapped.recording, study.reconstruct, progress, &model);
   if (study.truth && study.reconstruct.compare && study.reconstruct.filter != FilterKind::kModelFree) {

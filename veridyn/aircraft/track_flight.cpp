@@ -70,7 +70,7 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
 
 TrackingAnalysis track_flight(FlightStudy& study, Progress& progress) {
   progress.stage("aligning sensor delays");
-  std::vector<DelayReport> delays = align_delays(study.mapped, study.delays);
+  std::vector<DelayReport> delays = align_delays(study.mapped, study.delays, progress);
   TrackingAnalysis analysis{std::move(delays), TrackedFlight(study), false};
   progress.stage("tracking");
   static_cast<void>(analysis.flight.advance(study.mapped, study, true, progress));

@@ -31,7 +31,7 @@ std::vector<double> times(const std::vector<double>& values, double factor) {
   return out;
 }
 
-Verdict verdict(const DriveAnalysis& a) {
+Verdict verdict(const VehicleAnalysis& a) {
   Verdict v;
   const VehicleIdentification& id = a.identification;
   switch (id.verdict) {
@@ -52,21 +52,22 @@ Verdict verdict(const DriveAnalysis& a) {
   return v;
 }
 
-std::vector<Fact> facts(const DriveStudy& study, const DriveAnalysis& a) {
+std::vector<Fact> facts(const VehicleStudy& study, const VehicleAnalysis& a) {
   const VehicleParameters<double>& p = study.vehicle;
   std::vector<Fact> list{{"Vehicle", study.subject_name},
                          {"Mass, a, b", fmt::format("{:g} kg, {:g} m, {:g} m", p.mass, p.a, p.b)},
                          {"Log", study.log.mapped.recording.source},
                          {"Grid", fmt::format("{:g} Hz, {:.1f} s", 1.0 / a.signals.grid.step,
                                               a.signals.grid.step * static_cast<double>(a.signals.size()))},
-                         {"Identified on", fmt::format("{:.1f} s", a.segments.seconds(a.segments.identification))},
-                         {"Held out", fmt::format("{:.1f} s", a.segments.seconds(a.segments.holdout))}};
-  if (!a.identification.chosen.empty()) list.push_back({"Method", a.identification.chosen});
+                         {"Identified on", fmt::format("{:.1f} s", recording::total_s(a.segments.identification))},
+                         {"Held out", fmt::format("{:.1f} s", recording::total_s(a.segments.holdout))}};
+  if (const VehicleEstimate* best = a.identification.best())
+    list.push_back({"Method", std::string(to_string(best->method))});
   return list;
 }
 
 Table parameter_table(const VehicleEstimate& estimate, const DriveReportContext& context) {
-  Table table{.title = fmt::format("Parameters by {}", estimate.method),
+  Table table{.title = fmt::format("Parameters by {}", to_string(estimate.method)),
               .caption =
                   "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
                   "bars where [identify.uncertainty] gives it.",
@@ -100,7 +101,7 @@ IntervalPlot interval_plot(const VehicleIdentification& id, const DriveReportCon
                         "other.",
                     .reference_name = "truth"};
   for (const VehicleEstimate& e : id.estimates)
-    if (e.usable) plot.methods.push_back(e.method);
+    if (e.usable) plot.methods.emplace_back(to_string(e.method));
   for (const char* name : {"C_f", "C_r", "I_z", "understeer_gradient"}) {
     IntervalRow row{.name = name};
     double factor = 1.0;
@@ -171,7 +172,7 @@ TimeSeries prediction_figure(const DriveValidation& v, const std::string& title)
       high.push_back(known ? factor * (middle[k] + 1.96 * sigma[k]) : kNaN);
     }
   };
-  for (const PredictedDrive& d : v.drives) {
+  for (const PredictedStretch& d : v.stretches) {
     if (d.time.empty()) continue;
     const std::size_t n = d.time.size();
     figure.samples.insert(figure.samples.end(), d.time.begin(), d.time.end());
@@ -221,7 +222,7 @@ XYPlot path_plot(const DriveValidation& v) {
               .y = {"y", "m"},
               .equal_scale = true,
               .height = 380};
-  for (const PredictedDrive& d : v.drives) {
+  for (const PredictedStretch& d : v.stretches) {
     if (!d.x.empty())
       plot.series.push_back({.name = "measured", .x = d.x, .y = d.y, .role = Role::kMeasured, .style = Style::kLine});
     if (!d.x_predicted.empty())
@@ -234,7 +235,7 @@ XYPlot path_plot(const DriveValidation& v) {
 struct Cornering {
   std::vector<double> lateral, longitudinal, extra_steer;
 };
-Cornering cornering(const DriveAnalysis& a, const VehicleParameters<double>& p) {
+Cornering cornering(const VehicleAnalysis& a, const VehicleParameters<double>& p) {
   Cornering c;
   const auto& s = a.signals;
   const bool has_ax = s[DriveSignal::kAccelX].available(), has_ay = s[DriveSignal::kAccelY].available();
@@ -253,7 +254,7 @@ Cornering cornering(const DriveAnalysis& a, const VehicleParameters<double>& p) 
   return c;
 }
 
-Section cornering_section(const DriveAnalysis& a, const VehicleParameters<double>& p) {
+Section cornering_section(const VehicleAnalysis& a, const VehicleParameters<double>& p) {
   const Cornering c = cornering(a, p);
   Section section{.title = "How it was driven"};
   section.blocks.emplace_back(XYPlot{.title = "Understeer diagram",
@@ -297,7 +298,7 @@ Section cornering_section(const DriveAnalysis& a, const VehicleParameters<double
   return section;
 }
 
-TimeSeries signal_figure(const DriveAnalysis& a) {
+TimeSeries signal_figure(const VehicleAnalysis& a) {
   TimeSeries figure{.title = "Signals and stretches", .caption = a.segments.text};
   const std::size_t n = a.signals.size();
   for (std::size_t k = 0; k < n; ++k)
@@ -321,7 +322,7 @@ TimeSeries signal_figure(const DriveAnalysis& a) {
   return figure;
 }
 
-Table origin_table(const DriveStudy& study) {
+Table origin_table(const VehicleStudy& study) {
   Table table{.title = "Where the signals come from",
               .columns = {{.name = "channel", .align = Align::kLeft},
                           {.name = "source", .align = Align::kLeft},
@@ -336,7 +337,7 @@ Table origin_table(const DriveStudy& study) {
 
 }  // namespace
 
-Document drive_report(const DriveStudy& study, const DriveAnalysis& analysis, const DriveReportContext& context) {
+Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis, const DriveReportContext& context) {
   const VehicleIdentification& id = analysis.identification;
   Document document;
   document.title = study.name;
@@ -351,12 +352,13 @@ Document drive_report(const DriveStudy& study, const DriveAnalysis& analysis, co
   IntervalPlot plot = interval_plot(id, context);
   if (plot.methods.size() > 1) parameters.blocks.emplace_back(std::move(plot));
   for (const VehicleEstimate& e : id.estimates) {
-    if (!e.usable) parameters.blocks.emplace_back(Paragraph{e.method + ": " + e.message, Tone::kNote});
+    if (!e.usable)
+      parameters.blocks.emplace_back(Paragraph{fmt::format("{}: {}", to_string(e.method), e.message), Tone::kNote});
   }
   if (!id.checks.empty()) parameters.blocks.emplace_back(check_table(id));
   document.sections.push_back(std::move(parameters));
 
-  if (!id.validation.drives.empty()) {
+  if (!id.validation.stretches.empty()) {
     Section validation{.title = "Validation on data not seen"};
     validation.blocks.emplace_back(fit_table(id.validation, "Prediction of the hold-out"));
     validation.blocks.emplace_back(prediction_figure(id.validation, "Measured and predicted, hold-out"));
@@ -364,7 +366,7 @@ Document drive_report(const DriveStudy& study, const DriveAnalysis& analysis, co
     if (!path.series.empty()) validation.blocks.emplace_back(std::move(path));
     document.sections.push_back(std::move(validation));
   }
-  if (!id.fit.drives.empty()) {
+  if (!id.fit.stretches.empty()) {
     Section fit{.title = "Fit", .folded = true};
     fit.blocks.emplace_back(fit_table(id.fit, "On the data of the identification"));
     fit.blocks.emplace_back(prediction_figure(id.fit, "Measured and predicted, identification"));
@@ -398,7 +400,8 @@ Document drive_report(const DriveStudy& study, const DriveAnalysis& analysis, co
   return document;
 }
 
-Document drive_tracking_report(const DriveStudy& study, const TrackedDrive& drive, const DriveReportContext& context) {
+Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& drive,
+                               const DriveReportContext& context) {
   Document document;
   document.title = study.name;
   document.subtitle = "Cornering stiffness followed on line";

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "veridyn/report/document/document.hpp"
-#include "veridyn/vehicle/drive_study.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::report {
 
@@ -19,11 +20,11 @@ struct DriveReportContext {
 
 /// The report of `veridyn identify` (and `validate`) of a vehicle: verdict, parameters by method with intervals,
 /// measured and predicted motion on data not seen, path, g-g diagram, understeer diagram, frequency response.
-[[nodiscard]] Document drive_report(const vehicle::DriveStudy& study, const vehicle::DriveAnalysis& analysis,
+[[nodiscard]] Document drive_report(const vehicle::VehicleStudy& study, const vehicle::VehicleAnalysis& analysis,
                                     const DriveReportContext& context);
 
 /// The report of `veridyn track` of a vehicle.
-[[nodiscard]] Document drive_tracking_report(const vehicle::DriveStudy& study, const vehicle::TrackedDrive& drive,
+[[nodiscard]] Document drive_tracking_report(const vehicle::VehicleStudy& study, const vehicle::TrackedDrive& drive,
                                              const DriveReportContext& context);
 
 }  // namespace veridyn::report

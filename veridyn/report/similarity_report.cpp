@@ -147,7 +147,7 @@ std::vector<Section> overlay_sections(const ScaleStudy& study, const ScaleAnalys
   const std::vector<ShownDrive> drives{
       {.name = model.name, .trajectory = &model.rescaled},
       {.name = "prototype", .trajectory = &analysis.prototype, .role = Role::kReference}};
-  const double gravity = study.drive.four_wheel.gravity;
+  const double gravity = study.simulation.four_wheel.gravity;
   // Static loads do not scale unless gravity does: what the drive adds to them does.
   std::vector<PerWheel<double>> loads(drives.size());
   for (std::size_t i = 0; i < drives.size(); ++i) {
@@ -168,8 +168,8 @@ std::vector<Section> overlay_sections(const ScaleStudy& study, const ScaleAnalys
 Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysis, const std::string& program) {
   const SimilarityReport& r = analysis.judged();
   Document document;
-  document.title = study.drive.title;
-  document.subtitle = study.drive.vehicle.description;
+  document.title = study.simulation.title;
+  document.subtitle = study.simulation.vehicle.description;
   document.generator = "Made with " + program;
   const bool similar = r.similar_without_gravity();
   document.verdict.level = r.similar() ? Level::kGood : similar ? Level::kCaution : Level::kBad;
@@ -179,14 +179,14 @@ Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysi
   for (const std::string& line : r.gravity_changes) {
     if (document.verdict.lines.size() < 3) document.verdict.lines.push_back(line);
   }
-  document.facts = {{"Prototype", study.drive.vehicle.name},
+  document.facts = {{"Prototype", study.simulation.vehicle.name},
                     {"Model", study.given ? study.given->name : "exactly similar"},
                     {"Length ratio", fmt::format("{:.6g}", r.factors.length)},
                     {"Mass ratio", fmt::format("{:.6g}", r.factors.mass)},
                     {"Speed ratio", fmt::format("{:.6g}", r.factors.speed)},
                     {"Time, force", fmt::format("{:.6g}, {:.6g}", r.factors.time(), r.factors.force())},
-                    {"Manoeuvre", std::string(to_string(study.drive.manoeuvre.kind))},
-                    {"Drive model", std::string(to_string(study.drive.model))}};
+                    {"Manoeuvre", std::string(to_string(study.simulation.manoeuvre.kind))},
+                    {"Drive model", std::string(to_string(study.simulation.model))}};
   document.sections.push_back(group_section(analysis));
   Section numbers{.title = "Scaled vehicle", .blocks = {scaled_table(study, analysis)}};
   if (!analysis.scaled.chosen.empty()) numbers.blocks.emplace_back(List{analysis.scaled.chosen, Tone::kNote});

@@ -18,7 +18,7 @@ using namespace veridyn::vehicle;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStandardGravity = 9.80665;
 
-std::vector<Fact> facts(const VehicleStudy& study, const VehicleRun& run) {
+std::vector<Fact> facts(const SimulationStudy& study, const SimulationRun& run) {
   const VehicleParameters<double>& p = study.vehicle.parameters;
   std::vector<Fact> list{
       {"Vehicle", study.vehicle.name},
@@ -35,7 +35,7 @@ std::vector<Fact> facts(const VehicleStudy& study, const VehicleRun& run) {
   return list;
 }
 
-Verdict verdict(const VehicleStudy& study, const VehicleRun& run) {
+Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   const VehicleTrajectory& t = run.trajectory;
   Verdict v;
   const bool clean = t.end == SimulationEnd::kCompleted && t.lift_offs.empty();
@@ -202,7 +202,7 @@ std::vector<Block> frequency_response_figures(std::span<const NamedBicycle> bicy
   return blocks;
 }
 
-Document vehicle_report(const VehicleStudy& study, const VehicleRun& run, const std::string& program) {
+Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, const std::string& program) {
   Document document;
   document.title = study.title;
   document.subtitle = study.vehicle.description;

@@ -3,13 +3,13 @@
 #include <string>
 
 #include "veridyn/report/document/document.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
 
 namespace veridyn::report {
 
 /// The report of `veridyn simulate` of a vehicle: path, time histories, g-g diagram, metrics of the manoeuvre, and the
 /// linear analysis at the drive's speed with frequency responses.
-[[nodiscard]] Document vehicle_report(const vehicle::VehicleStudy& study, const vehicle::VehicleRun& run,
+[[nodiscard]] Document vehicle_report(const vehicle::SimulationStudy& study, const vehicle::SimulationRun& run,
                                       const std::string& program);
 
 /// The numbers of a vehicle as a table, with what was assumed.

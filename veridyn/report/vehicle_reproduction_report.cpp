@@ -30,7 +30,7 @@ Table number_table(std::span<const PublishedNumber> numbers) {
 
 ReproducedRow reproduced_row(const VehicleReproduction& r) {
   ReproducedRow row{.title = r.title, .finding = r.finding, .checks = r.checks};
-  const VehicleStudy& drive = r.study.drive;
+  const SimulationStudy& drive = r.study.simulation;
   row.ours =
       fmt::format("{} at {:g} m/s, {} model{}, {} manoeuvre, Runge-Kutta at {:g} ms.", drive.vehicle.name,
                   drive.simulation.speed, to_string(drive.model),

@@ -38,10 +38,10 @@ MotionDifference difference(const std::string& name, const std::string& unit, co
 
 ScaleStudy read_scale_study(const StudyTable& root) {
   ScaleStudy study;
-  study.drive = read_vehicle_study(root);
-  const double gravity = study.drive.four_wheel.gravity;
-  study.prototype = subject_of(study.drive.vehicle, study.drive.simulation.speed, gravity);
-  if (study.drive.manoeuvre.amplitude != 0.0) study.prototype.steer = study.drive.manoeuvre.amplitude;
+  study.simulation = read_simulation_study(root);
+  const double gravity = study.simulation.four_wheel.gravity;
+  study.prototype = subject_of(study.simulation.vehicle, study.simulation.simulation.speed, gravity);
+  if (study.simulation.manoeuvre.amplitude != 0.0) study.prototype.steer = study.simulation.manoeuvre.amplitude;
   const StudyTable scale = root.table("scale");
   study.prototype.further = read_similarity_parameters(scale);
   study.request = read_scale_request(scale);
@@ -77,8 +77,8 @@ ScaleStudy read_scale_study(const StudyTable& root) {
   return study;
 }
 
-VehicleTrajectory drive_scaled(VehicleStudy& study, const Vehicle& vehicle, const ScaleFactors& factors, double gravity,
-                               Progress& progress) {
+VehicleTrajectory simulate_scaled(SimulationStudy& study, const Vehicle& vehicle, const ScaleFactors& factors,
+                                  double gravity, Progress& progress) {
   SimulationOptions simulation = study.simulation;
   simulation.duration *= factors.time();
   simulation.step *= factors.time();
@@ -91,7 +91,7 @@ VehicleTrajectory drive_scaled(VehicleStudy& study, const Vehicle& vehicle, cons
   ScaledDriver driver(*study.manoeuvre.driver, factors);
   std::optional<ScaledRoad> road;
   if (study.road) road.emplace(*study.road, factors.length);
-  return drive_vehicle(vehicle, study.model, options, driver, road ? &*road : nullptr, simulation, progress);
+  return simulate(vehicle, study.model, options, driver, road ? &*road : nullptr, simulation, progress);
 }
 
 std::vector<MotionDifference> motion_differences(const VehicleTrajectory& prototype,
@@ -135,18 +135,18 @@ ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
   ScaleAnalysis analysis;
   analysis.scaled = scale(study.prototype, study.request);
   const ScaleFactors& factors = analysis.scaled.factors;
-  analysis.twin = scaled(study.drive.vehicle, factors);
+  analysis.twin = scaled(study.simulation.vehicle, factors);
   analysis.twin.name += ", scaled";
   analysis.twin_report = compare(study.prototype, analysis.scaled.model, study.repeating);
   if (study.given) analysis.given_report = compare(study.prototype, study.given_subject, study.repeating);
 
-  const double gravity = study.drive.four_wheel.gravity;
-  analysis.prototype = drive_scaled(study.drive, study.drive.vehicle, {}, gravity, progress);
+  const double gravity = study.simulation.four_wheel.gravity;
+  analysis.prototype = simulate_scaled(study.simulation, study.simulation.vehicle, {}, gravity, progress);
   const auto add = [&](const std::string& name, const Vehicle& vehicle, const ScaleFactors& f, double g) {
     if (analysis.prototype.end == SimulationEnd::kInterrupted) return;
     ScaledRun run;
     run.name = name;
-    run.own = drive_scaled(study.drive, vehicle, f, g, progress);
+    run.own = simulate_scaled(study.simulation, vehicle, f, g, progress);
     run.rescaled = scaled(run.own, f.inverse());
     run.differences = motion_differences(analysis.prototype, run.rescaled);
     analysis.interrupted = analysis.interrupted || run.own.end == SimulationEnd::kInterrupted;

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "veridyn/vehicle/similarity/similarity.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
 
 namespace veridyn::vehicle {
 
 /// A study of a vehicle and its scaled model.
 struct ScaleStudy {
-  VehicleStudy drive;  ///< the prototype and the drive in which both are compared
+  SimulationStudy simulation;  ///< the prototype and the drive in which both are compared
   SimilaritySubject prototype;
   ScaleRequest request;
   bool requested = true;         ///< false: only the given model is checked, the twin is of its length, mass, speed
@@ -20,7 +20,7 @@ struct ScaleStudy {
   std::vector<std::string> repeating;
 };
 
-/// Reads `[subject]`, `[drive]`, `[road]` as read_vehicle_study does, and
+/// Reads `[subject]`, `[drive]`, `[road]` as read_simulation_study does, and
 ///
 ///     [scale]
 ///     length_ratio = 0.2             # any of these: see ScaleRequest; of the given model when all are left out
@@ -79,7 +79,7 @@ struct ScaleAnalysis {
                                                                const VehicleTrajectory& rescaled);
 
 /// Drives a vehicle through a study's manoeuvre, as the model of `factors` would (1, 1, 1: the study's own size).
-[[nodiscard]] VehicleTrajectory drive_scaled(VehicleStudy& study, const Vehicle& vehicle, const ScaleFactors& factors,
-                                             double gravity, Progress& progress);
+[[nodiscard]] VehicleTrajectory simulate_scaled(SimulationStudy& study, const Vehicle& vehicle,
+                                                const ScaleFactors& factors, double gravity, Progress& progress);
 
 }  // namespace veridyn::vehicle

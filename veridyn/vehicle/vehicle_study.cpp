@@ -1,180 +1,215 @@
 #include "veridyn/vehicle/vehicle_study.hpp"
 
-#include <array>
-#include <variant>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "veridyn/core/at_place.hpp"
+#include <algorithm>
+#include <cmath>
+
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/road/road_study.hpp"
+#include "veridyn/vehicle/identification/vehicle_prediction.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-const std::vector<std::string> kModels{"linear bicycle", "bicycle", "four-wheel"};
+/// Cornering stiffness over static load of common tyres [1/rad].
+constexpr double kStiffnessPerLoad = 20.0;
 
-VehicleModelKind read_model(const StudyTable& drive) {
-  const std::string word = drive.choice_or("model", kModels, "four-wheel");
-  for (const auto kind : {VehicleModelKind::kLinearBicycle, VehicleModelKind::kBicycle}) {
-    if (to_string(kind) == word) return kind;
+VehicleStudy read_tables(const Study& study) {
+  const StudyTable& root = study.root();
+  VehicleStudy out;
+  out.name = root.text_or("title", study.name());
+  out.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
+  const StudyTable subject = root.table("subject");
+  const Vehicle vehicle = read_vehicle(subject, VehicleNeeds::kGeometry);
+  out.subject_name = vehicle.name.empty() ? "vehicle" : vehicle.name;
+  out.vehicle = vehicle.parameters;
+  out.inputs = vehicle.inputs;
+  out.signals = DriveSignalOptions::read(root.table_or_empty("signals"));
+  VehicleParameters<double>& p = out.vehicle;
+  const bool known = subject.has("builtin");
+  if (!known && !subject.has("I_z")) p.I_z = p.mass * p.a * p.b;
+  const PerWheel<double> load = static_loads(p, out.signals.gravity);
+  if (!known && !subject.has("C_f")) p.C_f = kStiffnessPerLoad * load[kFrontLeft];
+  if (!known && !subject.has("C_r")) p.C_r = kStiffnessPerLoad * load[kRearLeft];
+  out.segments = DriveSegmentOptions::read(root.table_or_empty("segments"));
+  out.identify = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+  out.identify.model.gravity = out.signals.gravity;
+  out.track = DriveTrackOptions::read(root.table_or_empty("track"));
+  const std::vector<std::string> choices{"all", "holdout"};
+  out.validate_on_holdout_only = root.table_or_empty("validate").choice_or("segments", choices, "all") == "holdout";
+  return out;
+}
+
+std::vector<std::string> own_warnings(const VehicleStudy& study, const DriveSignals& signals) {
+  std::vector<std::string> warnings = study.log.mapped.recording.warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  add(study.log.mapped.notes);
+  add(signals.notes);
+  add(study.notes);
+  return warnings;
+}
+
+/// The vehicle and the drive model with the values of an estimate.
+struct GivenModel {
+  VehicleParameters<double> vehicle;
+  DriveModelOptions options;
+};
+
+GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& study) {
+  GivenModel given{study.vehicle, study.identify.model};
+  const auto take = [&](std::string_view name, double& to) {
+    const estimation::EstimatedParameter* e = estimate.find(std::string(name));
+    const bool known = e != nullptr && std::isfinite(e->value);
+    if (known) to = e->value;
+    return known;
+  };
+  std::vector<std::string> missing;
+  VehicleParameters<double>& p = given.vehicle;
+  for (const auto& [name, to] : {std::pair{"C_f", &p.C_f}, std::pair{"C_r", &p.C_r}, std::pair{"I_z", &p.I_z}}) {
+    if (!take(name, *to)) missing.emplace_back(name);
   }
-  return VehicleModelKind::kFourWheel;
-}
-
-FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
-  static const std::vector<std::string> kConventions{"first principles", "source"};
-  static const std::vector<std::string> kGeometries{"exact", "small angles"};
-  FourWheelOptions options;
-  options.gravity = drive.positive_or("gravity", "m/s^2", options.gravity);
-  if (drive.choice_or("convention", kConventions, "first principles") == "source")
-    options.convention = FourWheelConvention::kSource;
-  if (drive.choice_or("geometry", kGeometries, "exact") == "small angles")
-    options.geometry = BicycleGeometry::kSmallAngles;
-  options.ackermann = vehicle.ackermann;
-  options.camber_per_roll = vehicle.camber_per_roll;
-  options.relaxation_length = vehicle.relaxation_length;
-  if (drive.flag_or("longitudinal", false)) options.longitudinal = vehicle.longitudinal;
-  return options;
-}
-
-/// A tyre with a share of its stiffness and friction.
-template <typename Tyre>
-Tyre slipperier(Tyre tyre, double grip) {
-  tyre.stiffness *= grip;
-  tyre.slip_stiffness *= grip;
-  tyre.mu *= grip;
-  return tyre;
-}
-
-MagicFormulaTyre<double> slipperier(MagicFormulaTyre<double> tyre, double grip) {
-  auto& c = tyre.coefficients;
-  for (double* scaling : {&c.LKX, &c.LKY, &c.LMUX, &c.LMUY}) *scaling *= grip;
-  return tyre;
-}
-
-std::vector<GripChange> read_grip(const StudyTable& drive) {
-  std::vector<GripChange> changes;
-  for (const StudyTable& table : drive.tables("change")) {
-    GripChange change;
-    change.time = table.number("time", "s");
-    if (!changes.empty() && !(change.time > changes.back().time))
-      table.fail("time", "must be later than the one before");
-    const double both = table.positive_or("grip", "1", 1.0);
-    change.front = table.positive_or("front", "1", both);
-    change.rear = table.positive_or("rear", "1", both);
-    changes.push_back(change);
+  if (!missing.empty()) {
+    throw InputError("estimate",
+                     fmt::format("has no {}; without it no drive can be predicted", fmt::join(missing, ", ")));
   }
-  return changes;
+  const double L = p.wheelbase();
+  take("a", p.a);
+  p.b = L - p.a;
+  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature,
+                               DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale, DriveUnknown::kSteerDelay,
+                               DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+    const auto i = static_cast<std::size_t>(u);
+    take(kDriveUnknownNames[i], given.options.start[i]);
+  }
+  if (estimate.find("mu") != nullptr) given.options.tyre = DriveTyre::kMagicFormula;
+  return given;
+}
+
+VehicleEstimate given_estimate(const estimation::Estimate& estimate) {
+  VehicleEstimate given;
+  given.method = vehicle_method(estimate.method);
+  given.usable = true;
+  given.covariance = estimate.covariance;
+  for (const estimation::EstimatedParameter& e : estimate.parameters) {
+    estimation::ParameterEstimate q;
+    q.name = e.name;
+    q.unit = e.unit;
+    q.value = e.value;
+    q.sigma = e.sigma;
+    q.low95 = e.low95;
+    q.high95 = e.high95;
+    q.status = e.status;
+    given.parameters.push_back(std::move(q));
+  }
+  return given;
+}
+
+/// Of all DriveUnknowns, as far as the estimate has it.
+Eigen::MatrixXd drive_covariance(const estimation::Estimate& estimate) {
+  const auto n = static_cast<Eigen::Index>(kDriveUnknowns);
+  const auto at = [&](std::size_t k) {
+    return std::find(kDriveUnknownNames.begin(), kDriveUnknownNames.end(), estimate.parameters[k].name) -
+           kDriveUnknownNames.begin();
+  };
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
+    for (std::size_t j = 0; j < estimate.parameters.size(); ++j) {
+      const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
+      if (at(i) >= n || at(j) >= n || row >= estimate.covariance.rows() || column >= estimate.covariance.cols())
+        continue;
+      const double c = estimate.covariance(row, column);
+      if (std::isfinite(c)) covariance(at(i), at(j)) = c;
+    }
+  }
+  return covariance;
+}
+
+/// Where an estimate is validated, by time.
+std::vector<TimeSpan> validation_spans(const DriveSegments& segments, bool holdout_only) {
+  std::vector<TimeSpan> spans = segments.holdout;
+  if (holdout_only) return spans;
+  spans.insert(spans.end(), segments.identification.begin(), segments.identification.end());
+  std::sort(spans.begin(), spans.end(), [](const TimeSpan& x, const TimeSpan& y) { return x.begin < y.begin; });
+  return spans;
 }
 
 }  // namespace
 
-std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
-
-VehicleStudy read_vehicle_study(const StudyTable& root) {
-  VehicleStudy study;
-  study.title = root.text_or("title", "drive");
-  const long long seed = root.integer_or("seed", 1);
-  if (seed < 0) root.fail("seed", "must not be negative");
-  study.seed = static_cast<std::uint64_t>(seed);
-  const StudyTable drive = root.table_or_empty("drive");
-  study.model = read_model(drive);
-  study.vehicle =
-      read_vehicle(root.table("subject"),
-                   study.model == VehicleModelKind::kFourWheel ? VehicleNeeds::kFourWheel : VehicleNeeds::kBicycle);
-  study.inputs = study.vehicle.inputs;
-  study.four_wheel = read_options(drive, study.vehicle);
-  if (study.four_wheel.longitudinal && study.model != VehicleModelKind::kFourWheel)
-    drive.fail("longitudinal", "needs model = \"four-wheel\"");
-
-  SimulationOptions& s = study.simulation;
-  s.speed = drive.has("speed") || !study.vehicle.speed ? drive.number("speed", "m/s") : *study.vehicle.speed;
-  if (!(s.speed > 0.0)) drive.fail("speed", fmt::format("is {:g} m/s; must be > 0", s.speed));
-  ManoeuvreContext context{.parameters = study.vehicle.parameters,
-                           .speed = s.speed,
-                           .gravity = study.four_wheel.gravity,
-                           .seed = study.seed,
-                           .wheel_radius = study.vehicle.longitudinal.wheel_radius};
-  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
-  context.C_f = C_f;
-  context.C_r = C_r;
-  study.manoeuvre = read_manoeuvre(drive, context);
-  s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
-  s.step = drive.positive_or("step", "s", s.step);
-  s.output_step = drive.positive_or("output_step", "s", s.output_step);
-  at_place(root.place("drive"), [&] { s.validate(); });
-  if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
-    drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
-
-  study.grip = read_grip(drive);
-  if (root.has("road")) {
-    study.road = read_road(root.table("road"), study.seed);
-    if (study.road && study.model != VehicleModelKind::kFourWheel)
-      root.fail("road", "needs model = \"four-wheel\": the bicycle does not move up and down");
-  }
-  if (root.has("sensors")) {
-    study.sensors = read_drive_sensors(root.table("sensors"));
-    study.sensors->gravity = study.four_wheel.gravity;
-  }
-  return study;
+VehicleStudy read_study(const Study& study, Progress& progress) {
+  VehicleStudy out = read_tables(study);
+  const StudyTable& root = study.root();
+  if (!root.has("data")) root.fail("data", "is missing: the study names no recording of a drive");
+  progress.stage("reading the recording");
+  out.log = read_drive_log(root.table("data"));
+  out.inputs.insert(out.inputs.end(), out.log.inputs.begin(), out.log.inputs.end());
+  return out;
 }
 
-VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
-                                Driver& driver, const Road* road, const SimulationOptions& simulation,
-                                Progress& progress, std::span<const GripChange> grip) {
-  const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
-  return std::visit(
-      [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
-        // The model of the beginning and those of the changes, made and driven alike.
-        const auto drive = [&](const auto& make, const auto& run) {
-          using Model = decltype(make(tyres));
-          std::vector<ModelChange<Model>> changes;
-          for (const GripChange& change : grip) {
-            const AxleTyres<Tyre> changed{slipperier(tyres.front, change.front), slipperier(tyres.rear, change.rear)};
-            changes.push_back({change.time, make(changed)});
-          }
-          return run(make(tyres), std::span<const ModelChange<Model>>(changes));
-        };
-        if (model == VehicleModelKind::kFourWheel) {
-          return drive(
-              [&](const AxleTyres<Tyre>& t) {
-                return FourWheelModel<double, Tyre>(vehicle.parameters, mounted(t), options);
-              },
-              [&](const auto& start, auto changes) {
-                return simulate(start, driver, road, simulation, progress, changes);
-              });
-        }
-        return drive(
-            [&](const AxleTyres<Tyre>& t) {
-              return BicycleModel<double, Tyre>{vehicle.parameters, symmetric_tyre(t.front), symmetric_tyre(t.rear),
-                                                options.gravity, geometry};
-            },
-            [&](const auto& start, auto changes) { return simulate(start, driver, simulation, progress, changes); });
-      },
-      vehicle.tyres);
+VehicleStudy read_study(const Study& study, const Recording& recording, Progress& /*progress*/) {
+  VehicleStudy out = read_tables(study);
+  const StudyTable data = study.root().table_or_empty("data");
+  out.log.mapped = map_drive_channels(recording, data.table_or_empty("map"), data.text_or("frame", ""),
+                                      data.has("frame") ? data.place("frame") : std::string());
+  out.log.runs = {recording.span()};
+  return out;
 }
 
-VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress) {
-  VehicleRun run;
-  const VehicleParameters<double>& p = study.vehicle.parameters;
-  const double gravity = study.four_wheel.gravity;
-  run.trajectory = drive_vehicle(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver,
-                                 study.road.get(), study.simulation, progress, study.grip);
-  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, gravity);
-  run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
-  run.characteristics = characteristics(run.linear);
-  run.modes = modes(run.linear.A());
-  if (study.model == VehicleModelKind::kFourWheel) {
-    std::visit(
-        [&]<typename Tyre>(const AxleTyres<Tyre>& t) {
-          const FourWheelModel<double, Tyre> model(p, mounted(t), study.four_wheel);
-          run.vehicle_modes = modes(linearise(model, study.simulation.speed));
-        },
-        study.vehicle.tyres);
+VehicleAnalysis identify(VehicleStudy& study, Progress& progress) {
+  VehicleAnalysis out;
+  out.signals = prepare_drive_signals(study.log.mapped, study.signals);
+  out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
+  out.identification =
+      identify_parameters({out.signals, out.segments, study.vehicle, study.signals, study.identify}, progress);
+  out.interrupted = out.identification.interrupted;
+  std::vector<std::string> warnings = own_warnings(study, out.signals);
+  if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
+      !study.identify.model.free[static_cast<std::size_t>(DriveUnknown::kAccelYScale)]) {
+    warnings.emplace_back(
+        "accel_y is taken as it is: where the sensor leans with the body it shows g sin(roll) too (5 deg of roll per g "
+        "make 8.7 % of it); give signals.roll_gradient, record roll, or estimate accel_y_scale");
   }
-  if (!run.trajectory.usable()) return run;
-  run.metrics = manoeuvre_metrics(run.trajectory, study.manoeuvre, p, gravity);
-  if (study.sensors) run.measured = record_drive(run.trajectory, *study.sensors, study.seed);
-  return run;
+  warnings.insert(warnings.end(), out.identification.warnings.begin(), out.identification.warnings.end());
+  out.identification.warnings = std::move(warnings);
+  out.estimate = make_vehicle_estimate(out.identification, study.subject_name);
+  return out;
+}
+
+VehicleAnalysis validate(VehicleStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+  VehicleAnalysis out;
+  out.signals = prepare_drive_signals(study.log.mapped, study.signals);
+  out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
+  progress.stage("validating");
+  const std::vector<TimeSpan> spans = validation_spans(out.segments, study.validate_on_holdout_only);
+  const GivenModel given = model_of(estimate, study);
+  VehicleIdentification& id = out.identification;
+  id.identified = given.vehicle;
+  id.estimates.push_back(given_estimate(estimate));
+  id.chosen = id.estimates.back().method;
+  if (spans.empty()) {
+    id.verdict = VehicleVerdict::kNotExcited;
+    id.reason = fmt::format("the estimate cannot be judged: {}", out.segments.text);
+  } else {
+    const Eigen::VectorXd theta = fit_drive_biases(out.signals, spans, given.vehicle, given.options);
+    id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, drive_covariance(estimate));
+    const PredictedDriveQuantity* r = id.validation.find("yaw_rate");
+    const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2;
+    id.verdict = holds ? VehicleVerdict::kIdentified : VehicleVerdict::kRejected;
+    id.reason = r == nullptr ? fmt::format("does not hold: {}", id.validation.text)
+                             : fmt::format("{}: it explains {:.1f} % of the yaw rate's variance of this drive",
+                                           holds ? "holds" : "does not hold", 100.0 * std::max(0.0, r->fit.r2));
+  }
+  id.warnings = own_warnings(study, out.signals);
+  id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");
+  out.interrupted = progress.interrupted();
+  out.estimate = make_vehicle_estimate(id, study.subject_name);
+  out.estimate.parameters = estimate.parameters;
+  out.estimate.covariance = estimate.covariance;
+  out.estimate.method = estimate.method;
+  return out;
 }
 
 }  // namespace veridyn::vehicle

@@ -2,100 +2,72 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
-#include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/model/bicycle_analysis.hpp"
-#include "veridyn/vehicle/simulation/drive_sensors.hpp"
-#include "veridyn/vehicle/model/four_wheel_analysis.hpp"
-#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
-#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
-#include "veridyn/vehicle/road/road.hpp"
-#include "veridyn/vehicle/model/vehicle.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/tracking/drive_tracker.hpp"
 
 namespace veridyn::vehicle {
 
-enum class VehicleModelKind {
-  kLinearBicycle,  ///< bicycle, small angles
-  kBicycle,        ///< bicycle, exact geometry
-  kFourWheel,
-};
-/// The word of the study: "linear bicycle", "bicycle", "four-wheel".
-[[nodiscard]] std::string_view to_string(VehicleModelKind kind);
+// A vehicle's pipeline: read_study -> identify or validate (its motion needs no reconstruction) -> report. Simulations
+// are in `simulation_study.hpp`, following a drive on line in `track_drive.hpp`.
 
-/// From `time` on the tyres have that share of their stiffness and friction at the beginning.
-struct GripChange {
-  double time = 0.0;  ///< [s]
-  double front = 1.0, rear = 1.0;
-};
-
-/// What a study drives: vehicle, model, manoeuvre and road, read and checked.
-struct VehicleStudy {
-  std::string title;
-  std::uint64_t seed = 1;
-  Vehicle vehicle;
-  VehicleModelKind model = VehicleModelKind::kFourWheel;
-  SimulationOptions simulation;
-  FourWheelOptions four_wheel;  ///< gravity counts for all models
-  Manoeuvre manoeuvre;
-  std::vector<GripChange> grip;      ///< by time
-  std::shared_ptr<const Road> road;  ///< null: flat
-  std::optional<DriveSensorSet> sensors;
-  std::vector<std::filesystem::path> inputs;
-};
-
-/// Reads from the root of a study:
+/// A study of one vehicle's recorded drive, read and checked.
 ///
-///     title = "step steer at 100 km/h"
 ///     seed = 1
-///     [subject]                      # see read_vehicle
-///     [drive]
-///     model = "four-wheel"           # "bicycle", "linear bicycle"
-///     speed = "100 km/h"             # kept, unless `longitudinal`; a built-in vehicle has one
-///     manoeuvre = "step steer"       # and its own keys: see read_manoeuvre
-///     duration = 20                  # [s]; the manoeuvre's own when left out
-///     step = 0.001                   # of the integration [s]
-///     output_step = 0.01             # of the results [s]
-///     gravity = 9.80665              # [m/s^2]
-///     longitudinal = false           # true: speed follows from torques, drag and grade ([subject.longitudinal])
-///     convention = "first principles"  # "source": that of the published similarity study
-///     geometry = "exact"             # four-wheel: "small angles"
-///     [[drive.change]]               # the tyres change on the way, by time
-///     time = 60                      # [s]
-///     grip = 0.6                     # factor on stiffness and friction of the beginning; or `front`, `rear`
-///     [road]                         # see read_road; needs the four-wheel model
-///     [sensors]                      # see read_drive_sensors; with it what sensors record is written too
-///
-/// Tables of the analysis (`[data]`, `[identify]` ...) are left to others.
-/// @throws InputError with file, line and key.
-[[nodiscard]] VehicleStudy read_vehicle_study(const StudyTable& root);
-
-/// Drives a vehicle with any of the models. @throws InputError for a step too long or controls out of range.
-[[nodiscard]] VehicleTrajectory drive_vehicle(const Vehicle& vehicle, VehicleModelKind model,
-                                              const FourWheelOptions& options, Driver& driver, const Road* road,
-                                              const SimulationOptions& simulation, Progress& progress,
-                                              std::span<const GripChange> grip = {});
-
-/// What became of a drive.
-struct VehicleRun {
-  VehicleTrajectory trajectory;
-  std::optional<Recording> measured;  ///< what the sensors recorded
-  std::vector<Metric> metrics;
-  LinearBicycle<double> linear;  ///< the bicycle about straight running at the study's speed
-  BicycleCharacteristics<double> characteristics;
-  std::vector<Mode> modes;                   ///< of the bicycle
-  std::vector<FourWheelMode> vehicle_modes;  ///< of the four-wheel model, where it was driven
+///     [subject]    kind = "vehicle", name = "...", and numbers of kVehicleFields: mass, a and b are needed; C_f, C_r
+///                  and I_z are where the search begins (I_z: m a b when it is not given; stiffnesses: 20 times the
+///                  static load per rad, or from the equation error)
+///     [data]       see read_drive_log          [signals]   see DriveSignalOptions
+///     [segments]   see DriveSegmentOptions     [identify]  see VehicleIdentifyOptions
+///     [track]      see DriveTrackOptions       [validate]  `segments = "all"` (default) or "holdout": where an
+///                                                          estimate of other data is validated
+struct VehicleStudy {
+  std::string name;
+  std::uint64_t seed = 0;
+  std::string subject_name;
+  VehicleParameters<double> vehicle;  ///< mass, a, b as given; C_f, C_r, I_z a start
+  DriveLog log;
+  DriveSignalOptions signals;
+  DriveSegmentOptions segments;
+  VehicleIdentifyOptions identify;
+  DriveTrackOptions track;
+  bool validate_on_holdout_only = false;
+  std::vector<std::filesystem::path> inputs;  ///< files that were read
+  std::vector<std::string> notes;
 };
 
-/// Drives. @throws InputError for a step too long or controls out of range.
-[[nodiscard]] VehicleRun run_vehicle_study(VehicleStudy& study, Progress& progress);
+/// Reads every table of the study and its recording. Tables `[drive]`, `[road]` and `[sensors]` are left for the
+/// simulation (the caller refuses unknown keys with `study.root().finish()` once all have read).
+/// @throws InputError for anything that is wrong in either.
+[[nodiscard]] VehicleStudy read_study(const Study& study, Progress& progress);
+
+/// The same with a recording at hand (a simulated one) instead of `[data] file`; `[data.map]` and `frame` still count.
+[[nodiscard]] VehicleStudy read_study(const Study& study, const Recording& recording, Progress& progress);
+
+/// What identification or validation made of a drive.
+struct VehicleAnalysis {
+  DriveSignals signals;
+  DriveSegments segments;
+  VehicleIdentification identification;
+  estimation::Estimate estimate;
+  bool interrupted = false;
+};
+
+/// The full pipeline: signals, segments, equation error, output error, hold-out, verdict.
+/// @throws InputError when a channel that it needs is missing, or the vehicle never drives.
+[[nodiscard]] VehicleAnalysis identify(VehicleStudy& study, Progress& progress);
+
+/// An estimate against the drive of a study, which it has not seen: `identification.validation` and the verdict are
+/// new, parameters are those of the estimate.
+[[nodiscard]] VehicleAnalysis validate(VehicleStudy& study, const estimation::Estimate& estimate, Progress& progress);
 
 }  // namespace veridyn::vehicle

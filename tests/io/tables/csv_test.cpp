@@ -89,7 +89,8 @@ TEST(Csv, RefusesWithFileLineAndColumn) {
   EXPECT_THAT(refusal("time[m],a[1]\n0,1\n"), HasSubstr("a.csv:1: column 'time': unit 'm' is a length [m]"));
   EXPECT_EQ(refusal("# frame: up\ntime[s],a[1]\n"), "a.csv:1: frame is 'up', expected frd or flu");
   EXPECT_EQ(refusal("alpha,CL\n0,1\n"),
-            "a.csv:1: no time column found among alpha, CL; name it (time_column), or call it 'time[s]'");
+            "a.csv:1: no time column found among alpha, CL; name it in the study ([data.time] column = \"...\"), "
+            "or call it 'time[s]'");
   EXPECT_EQ(refusal("stamp,CL\n0,1\n", {.time_column = "stam"}),
             "a.csv:1: no column 'stam' for the time (did you mean 'stamp'?)");
 }

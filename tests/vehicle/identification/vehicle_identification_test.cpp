@@ -30,26 +30,26 @@ VehicleIdentification identify(const VehicleTrajectory& trajectory, const DriveS
   const DriveSignals signals = prepare_drive_signals(mapped(record_drive(trajectory, sensors, seed)), signal_options);
   const DriveSegments segments = find_drive_segments(signals, {});
   Progress silent;
-  return identify_vehicle(signals, segments, start, signal_options, options, silent);
+  return identify_parameters({signals, segments, start, signal_options, options}, silent);
 }
 
-double relative(const VehicleIdentification& id, const char* method, const char* name, double truth) {
+double relative(const VehicleIdentification& id, VehicleMethod method, const char* name, double truth) {
   return std::abs(id.find(method)->find(name)->value / truth - 1.0);
 }
 
 TEST(VehicleIdentification, RecoversTheTruthFromAPerfectLogByOutputError) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1), testing::perfect_sensors(), 1);
-  ASSERT_EQ(id.chosen, "output error");
-  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 1e-6);
-  EXPECT_LT(relative(id, "output error", "C_r", p.C_r), 1e-6);
-  EXPECT_LT(relative(id, "output error", "I_z", p.I_z), 1e-6);
-  EXPECT_LT(relative(id, "output error", "understeer_gradient", understeer_gradient(p)), 1e-6);
+  ASSERT_EQ(id.chosen, VehicleMethod::kOutputError);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 1e-6);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_r", p.C_r), 1e-6);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "I_z", p.I_z), 1e-6);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "understeer_gradient", understeer_gradient(p)), 1e-6);
   EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << id.reason;
   // Small angles: alpha^2/3 of slip angles up to 6 deg.
-  EXPECT_LT(relative(id, "GTLS", "C_f", p.C_f), 0.004);
-  EXPECT_LT(relative(id, "GTLS", "C_r", p.C_r), 0.004);
-  EXPECT_LT(relative(id, "GTLS", "I_z", p.I_z), 0.004);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_f", p.C_f), 0.004);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_r", p.C_r), 0.004);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "I_z", p.I_z), 0.004);
 }
 
 TEST(VehicleIdentification, EstimatesFromSmallAnglesAreExactToTheSquareOfTheAngle) {
@@ -58,7 +58,7 @@ TEST(VehicleIdentification, EstimatesFromSmallAnglesAreExactToTheSquareOfTheAngl
   for (const bool half : {false, true}) {
     const VehicleIdentification id =
         identify(lively_drive(p, 1, half ? 0.01 : 0.02), testing::perfect_sensors(), 1, {.output_error = false});
-    error[half ? 1 : 0] = relative(id, "OLS", "C_f", p.C_f);
+    error[half ? 1 : 0] = relative(id, VehicleMethod::kOls, "C_f", p.C_f);
   }
   EXPECT_NEAR(error[0] / error[1], 4.0, 0.8);
 }
@@ -70,10 +70,10 @@ TEST(VehicleIdentification, RecoversTheTruthWithMeasuredLateralVelocity) {
   const VehicleIdentification id = identify(lively_drive(p, 2), sensors, 1);
   ASSERT_TRUE(id.regression && id.regression->data.direct);
   // The direct form takes no small angles; what is left is the interpolation of the recording.
-  EXPECT_LT(relative(id, "GTLS", "C_f", p.C_f), 1e-4);
-  EXPECT_LT(relative(id, "GTLS", "C_r", p.C_r), 1e-4);
-  EXPECT_LT(relative(id, "GTLS", "I_z", p.I_z), 1e-4);
-  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 1e-6);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_f", p.C_f), 1e-4);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_r", p.C_r), 1e-4);
+  EXPECT_LT(relative(id, VehicleMethod::kGtls, "I_z", p.I_z), 1e-4);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 1e-6);
 }
 
 /// How often intervals of drives with the reference sensors, their biases drawn anew each time, hold the truth.
@@ -86,11 +86,11 @@ std::map<std::string, int> intervals_that_hold(int drives, double duration) {
     const auto s = static_cast<std::uint64_t>(seed);
     const VehicleIdentification id = identify(lively_drive(p, s, 0.02, duration), reference_drive_sensors(), s);
     EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << seed << ": " << id.reason;
-    for (const char* method : {"GTLS", "output error"}) {
+    for (const VehicleMethod method : {VehicleMethod::kGtls, VehicleMethod::kOutputError}) {
       for (const auto& [name, value] : truth) {
         const estimation::ParameterEstimate* e = id.find(method)->find(name);
         if (e == nullptr) continue;
-        held[std::string(method) + " " + name] += e->low95 <= value && value <= e->high95 ? 1 : 0;
+        held[std::string(to_string(method)) + " " + name] += e->low95 <= value && value <= e->high95 ? 1 : 0;
       }
     }
   }
@@ -121,9 +121,9 @@ TEST(VehicleIdentification, FindsTheBiasesOfTheSensors) {
   options.model.prior.fill(std::numeric_limits<double>::infinity());
   const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
   // The speed varies by 10 %, which tells the three apart when there is no noise.
-  EXPECT_NEAR(id.find("output error")->find("steer_bias")->value, 0.004, 1e-6);
-  EXPECT_NEAR(id.find("output error")->find("yaw_rate_bias")->value, -0.006, 1e-6);
-  EXPECT_NEAR(id.find("output error")->find("accel_y_bias")->value, 0.15, 1e-5);
+  EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("steer_bias")->value, 0.004, 1e-6);
+  EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("yaw_rate_bias")->value, -0.006, 1e-6);
+  EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("accel_y_bias")->value, 0.15, 1e-5);
 }
 
 TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
@@ -134,8 +134,8 @@ TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
   VehicleIdentifyOptions options;
   options.model.free[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = true;
   const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
-  EXPECT_NEAR(id.find("output error")->find("steer_delay")->value, 0.03, 2e-3);
-  EXPECT_LT(relative(id, "output error", "C_f", p.C_f), 0.02);
+  EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("steer_delay")->value, 0.03, 2e-3);
+  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 0.02);
 }
 
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
@@ -188,7 +188,7 @@ TEST(VehicleIdentification, FindsFrictionAndShapeOfMagicFormulaTyresDrivenHard) 
   options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
   options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.04), reference_drive_sensors(), 1, options);
-  const VehicleEstimate* e = id.find("output error");
+  const VehicleEstimate* e = id.find(VehicleMethod::kOutputError);
   ASSERT_TRUE(e != nullptr && e->usable) << id.reason;
   for (const auto& [name, truth] : {std::pair{"C_f", p.C_f}, std::pair{"mu", 0.9}, std::pair{"I_z", p.I_z}}) {
     const auto* q = e->find(name);
@@ -204,7 +204,7 @@ TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
   options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
   options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.004), reference_drive_sensors(), 1, options);
-  const VehicleEstimate* e = id.find("output error");
+  const VehicleEstimate* e = id.find(VehicleMethod::kOutputError);
   ASSERT_NE(e, nullptr);
   const auto* mu = e->find("mu");
   EXPECT_TRUE(mu == nullptr || mu->status == ParameterStatus::kNotExcited) << mu->value << " +- " << mu->sigma;
@@ -225,12 +225,12 @@ TEST(VehicleIdentification, UncertaintyOfTheMassGoesIntoTheErrorBars) {
   const VehicleIdentification sure = identify(drive, reference_drive_sensors(), 1, options);
   options.mass_sigma = 75.0;
   const VehicleIdentification unsure = identify(drive, reference_drive_sensors(), 1, options);
-  const auto* a = sure.find("GTLS")->find("C_f");
-  const auto* b = unsure.find("GTLS")->find("C_f");
+  const auto* a = sure.find(VehicleMethod::kGtls)->find("C_f");
+  const auto* b = unsure.find(VehicleMethod::kGtls)->find("C_f");
   EXPECT_NEAR(b->sigma, std::hypot(a->sigma, 0.05 * a->value), 1e-6 * b->sigma);
   // The understeer gradient is a ratio of motions: the mass cancels.
-  EXPECT_NEAR(unsure.find("GTLS")->find("understeer_gradient")->sigma,
-              sure.find("GTLS")->find("understeer_gradient")->sigma, 1e-12);
+  EXPECT_NEAR(unsure.find(VehicleMethod::kGtls)->find("understeer_gradient")->sigma,
+              sure.find(VehicleMethod::kGtls)->find("understeer_gradient")->sigma, 1e-12);
 }
 
 TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {

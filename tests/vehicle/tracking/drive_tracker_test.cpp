@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/vehicle/simulated_drive.hpp"
-#include "veridyn/vehicle/drive_study.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -27,8 +27,8 @@ Recording drive_with_drop(std::uint64_t seed, double duration, double drop_s, do
   return record_drive(t, reference_drive_sensors(), seed);
 }
 
-DriveStudy study_of(const Recording& recording) {
-  DriveStudy study;
+VehicleStudy study_of(const Recording& recording) {
+  VehicleStudy study;
   study.subject_name = "car";
   study.vehicle = family_car();
   study.vehicle.C_f *= 1.2;
@@ -39,9 +39,9 @@ DriveStudy study_of(const Recording& recording) {
 
 TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
   for (const std::uint64_t seed : {1, 2}) {
-    DriveStudy study = study_of(drive_with_drop(seed, 90.0, 60.0));
+    VehicleStudy study = study_of(drive_with_drop(seed, 90.0, 60.0));
     Progress silent;
-    const DriveTracking tracking = track_drive(study, silent);
+    const DriveTracking tracking = track(study, silent);
     const DriveTracker& tracker = *tracking.drive.tracker();
     ASSERT_FALSE(tracker.changes().empty()) << seed;
     for (const DriveChange& c : tracker.changes()) EXPECT_GT(c.change.detected_s, 60.0) << seed;
@@ -65,18 +65,18 @@ TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
 TEST(DriveTracker, RaisesNoMoreFalseAlarmsThanStated) {
   std::size_t alarms = 0;
   for (const std::uint64_t seed : {1, 2}) {
-    DriveStudy study = study_of(drive_with_drop(seed, 500.0, 1e9));
+    VehicleStudy study = study_of(drive_with_drop(seed, 500.0, 1e9));
     Progress silent;
-    alarms += track_drive(study, silent).drive.tracker()->changes().size();
+    alarms += track(study, silent).drive.tracker()->changes().size();
   }
   EXPECT_EQ(alarms, 0u);
 }
 
 TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
-  DriveStudy study = study_of(drive_with_drop(1, 120.0, 1e9, 1e-4));
+  VehicleStudy study = study_of(drive_with_drop(1, 120.0, 1e9, 1e-4));
   study.vehicle = family_car();
   Progress silent;
-  const DriveTracking tracking = track_drive(study, silent);
+  const DriveTracking tracking = track(study, silent);
   const DriveTracker& tracker = *tracking.drive.tracker();
   for (const TrackedAxle axle : {TrackedAxle::kFront, TrackedAxle::kRear}) {
     const DriveTrackHistory& h = tracker.history(axle);
@@ -94,9 +94,9 @@ TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
 
 TEST(DriveTracker, DoesNotDependOnThePiecesInWhichARecordingComes) {
   const Recording whole = drive_with_drop(4, 80.0, 1e9);
-  DriveStudy study = study_of(whole);
+  VehicleStudy study = study_of(whole);
   Progress silent;
-  const DriveTracking at_once = track_drive(study, silent);
+  const DriveTracking at_once = track(study, silent);
   TrackedDrive pieces(study);
   for (const double until : {5.0, 21.0, 21.5, 40.0, 77.3}) {
     Recording part = recording::without_channels(whole);

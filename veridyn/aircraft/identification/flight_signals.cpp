@@ -8,34 +8,17 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/numerics/noise.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
 using numerics::FirKernel;
-using numerics::UniformGrid;
+using recording::angle_on_grid;
+using recording::on_grid;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDefaultPass_Hz = 10.0;
-constexpr double kMaxRate_Hz = 100.0;
-
-std::vector<double> on_grid(const Channel& channel, const UniformGrid& grid,
-                            numerics::Interpolation interpolation = numerics::Interpolation::kPchip) {
-  numerics::ResampleOptions options;
-  options.interpolation = interpolation;
-  // Slow sensors are interpolated, but a hole of a second is a hole.
-  options.gap_limit_s = std::max(0.5, channel.rate_Hz() > 0.0 ? 3.0 / channel.rate_Hz() : 0.0);
-  return numerics::resample(channel.times(), channel.value, grid, options);
-}
-
-/// Angle channels cross +-180 deg: unwrapped before they are interpolated.
-std::vector<double> angle_on_grid(const Channel& channel, const UniformGrid& grid) {
-  Channel unwrapped = channel;
-  numerics::unwrap_angles(unwrapped.value);
-  return on_grid(unwrapped, grid);
-}
 
 class Preparation {
  public:
@@ -58,13 +41,13 @@ class Preparation {
     const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
     require_channels(mapped_, needed, "the aerodynamic forces");
     const Channel& gyro = mapped_.recording.at("gyro_x");
-    const double rate = options_.rate_Hz > 0.0 ? options_.rate_Hz : std::min(kMaxRate_Hz, std::round(gyro.rate_Hz()));
+    const double rate = recording::grid_rate(gyro, options_.rate_Hz);
     if (!(rate >= 10.0)) {
       throw InputError(
           mapped_.recording.source,
           fmt::format("its gyro is sampled at {:.1f} Hz; derivatives need at least 10 Hz", gyro.rate_Hz()));
     }
-    out_.grid = UniformGrid::covering(gyro.span().begin, gyro.span().end, 1.0 / rate);
+    out_.grid = recording::grid_over(gyro, rate, mapped_.recording.source);
     out_.filter.rate_Hz = rate;
     out_.filter.pass_Hz = options_.pass_Hz > 0.0 ? options_.pass_Hz : std::min(kDefaultPass_Hz, rate / 5.0);
     out_.filter.stop_Hz = std::min(1.5 * out_.filter.pass_Hz, 0.5 * rate);
@@ -74,22 +57,9 @@ class Preparation {
     out_.stride = std::max<std::size_t>(1, static_cast<std::size_t>(rate / (2.0 * out_.filter.stop_Hz)));
   }
 
-  /// White noise apart from the tail of the signal itself, which in turbulence falls with the square of the frequency:
-  /// the mean of A / f^2 from f to the Nyquist frequency N is A / (f N), so that levels above two frequencies, one
-  /// twice the other, tell the floor, 2 S(2f) - S(f).
-  static double floor_of(const std::vector<double>& values, double rate) {
-    const double low = numerics::measurement_noise(values, rate, 0.2 * rate).sd;
-    const double high = numerics::measurement_noise(values, rate, 0.4 * rate).sd;
-    const double variance = 2.0 * high * high - low * low;
-    // Noise that is not white but falls towards high frequencies would come out negative: then the higher level it is.
-    return variance > 0.25 * high * high && low > high ? std::sqrt(variance) : std::min(low, high);
-  }
-
   /// Standard deviation of the white noise of a channel, as the user says or as its content above the pass band shows.
   double noise_of(const std::string& name, const std::vector<double>& raw) const {
-    for (const auto& [channel, sd] : options_.noise) {
-      if (channel == name) return sd;
-    }
+    if (const std::optional<double> given = recording::given_noise(options_.noise, name)) return *given;
     if (known_ != nullptr) {
       if (name.starts_with("gyro")) return known_->gyro;
       if (name.starts_with("accel")) return known_->accelerometer;
@@ -100,15 +70,11 @@ class Preparation {
     // A channel that is slower than the grid was interpolated: its noise is not white there and is measured at its own
     // rate.
     const Channel& channel = mapped_.recording.at(name);
-    if (channel.rate_Hz() < 0.8 * rate) {
-      const double own = channel.rate_Hz();
-      const UniformGrid grid = UniformGrid::covering(channel.span().begin, channel.span().end, 1.0 / own);
-      numerics::ResampleOptions nearest;
-      nearest.interpolation = numerics::Interpolation::kLinear;
-      const auto values = numerics::resample(channel.times(), channel.value, grid, nearest);
-      return floor_of(values, own);
-    }
-    return floor_of(raw, rate);
+    return channel.rate_Hz() < 0.8 * rate ? recording::noise_floor(channel) : recording::noise_floor(raw, rate);
+  }
+
+  std::vector<double> linear_on_grid(const Channel& channel) const {
+    return on_grid(channel, out_.grid, recording::Holes::kOfHalfASecond, numerics::Interpolation::kLinear);
   }
 
   void put(FlightSignal which, std::vector<double> value, double sigma, ErrorKind kind, std::string origin) {
@@ -223,15 +189,13 @@ class Preparation {
       const Channel* channel = mapped_.recording.find(name);
       if (channel == nullptr) continue;
       // Positions of servos are what was commanded or read back: known, but for the delay that was taken off before.
-      put(which, numerics::filter(on_grid(*channel, out_.grid, numerics::Interpolation::kLinear), smooth_), 0.0,
-          ErrorKind::kExact, "filtered position");
+      put(which, numerics::filter(linear_on_grid(*channel), smooth_), 0.0, ErrorKind::kExact, "filtered position");
     }
   }
 
   void thrust() {
     const Channel* rho = smoothed_.find("air_density");
-    out_.air_density = rho != nullptr ? on_grid(*rho, out_.grid, numerics::Interpolation::kLinear)
-                                      : std::vector<double>(out_.size(), 1.225);
+    out_.air_density = rho != nullptr ? linear_on_grid(*rho) : std::vector<double>(out_.size(), 1.225);
     double last = 1.225;
     for (double& density : out_.air_density) {
       if (!std::isfinite(density)) density = last;
@@ -248,7 +212,7 @@ class Preparation {
                                                   : "thrust is unknown: the subject has no propulsion model");
       return;
     }
-    const std::vector<double> command = on_grid(*throttle, out_.grid, numerics::Interpolation::kLinear);
+    const std::vector<double> command = linear_on_grid(*throttle);
     const std::vector<double>& airspeed = out_[FlightSignal::kAirspeed].value;
     std::vector<double> force(out_.size(), kNaN);
     out_.torque.assign(out_.size(), 0.0);
@@ -301,10 +265,7 @@ SignalOptions SignalOptions::read(const StudyTable& table) {
   options.pass_Hz = table.has("pass_band") ? table.positive("pass_band", "Hz") : 0.0;
   const std::vector<std::string> choices{"auto", "vane", "smoothed"};
   options.flow_angles = table.choice_or("flow_angles", choices, options.flow_angles);
-  const StudyTable noise = table.table_or_empty("noise");
-  for (const StandardChannel& channel : standard_channels()) {
-    if (noise.has(channel.name)) options.noise.emplace_back(channel.name, noise.positive(channel.name, channel.unit));
-  }
+  options.noise = recording::read_noise(table.table_or_empty("noise"), standard_channels());
   return options;
 }
 
@@ -312,14 +273,6 @@ FlightSample<double> FlightSignals::sample(std::size_t k) const {
   FlightSample<double> s;
   for (std::size_t i = 0; i < kFlightSignals; ++i) s.value[i] = signals[i].available() ? signals[i].value[k] : 0.0;
   return s;
-}
-
-std::pair<std::size_t, std::size_t> FlightSignals::indices(const TimeSpan& span) const {
-  const auto index = [&](double t, double rounding) {
-    const double k = std::floor((t - grid.begin) / grid.step + rounding);
-    return static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(grid.count)));
-  };
-  return {index(span.begin, 1.0 - 1e-6), index(span.end, 1.0 + 1e-6)};
 }
 
 FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/aircraft/identification/measured_coefficients.hpp"
-#include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
+#include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/filters.hpp"
-#include "veridyn/numerics/resample.hpp"
+#include "veridyn/recording/grid_signals.hpp"
 
 namespace veridyn::aircraft {
 
@@ -24,50 +24,29 @@ struct SignalOptions {
   std::string flow_angles = "auto";
   /// `[signals.noise]`: standard deviation of a channel's white noise per sample, by standard channel name; channels
   /// that are not given are measured from their content above the pass band.
-  std::vector<std::pair<std::string, double>> noise;
+  recording::GivenNoise noise;
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static SignalOptions read(const StudyTable& table);
 };
 
-/// Where a signal's error comes from.
-enum class ErrorKind {
-  kExact,      ///< no error worth naming
-  kClassical,  ///< measured = true + error, error independent of the truth: biases least squares, belongs into W
-  kBerkson,    ///< true = estimate + error, error independent of the estimate: widens the residual, biases nothing
-};
-
-/// One signal on the common grid.
-struct GridSignal {
-  std::vector<double> value;  ///< NaN where missing; empty when the recording has none
-  double sigma = 0.0;         ///< standard deviation of what error is left after the filter
-  ErrorKind error = ErrorKind::kExact;
-  std::string origin;  ///< "filtered vane", "smoother", "thrust model"
-  [[nodiscard]] bool available() const { return !value.empty(); }
-};
+using recording::ErrorKind;
+using recording::GridSignal;
 
 /// All signals of a flight on one uniform grid, through one zero-phase filter, so that a relation that is linear in the
 /// unfiltered signals holds for the filtered ones too.
-struct FlightSignals {
-  numerics::UniformGrid grid;
+struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   numerics::LowPassDesign filter;
   std::size_t stride = 1;  ///< every stride-th sample is as good as all: the pass band's Nyquist rate
-  std::array<GridSignal, kFlightSignals> signals;
   std::vector<double> air_density;
   std::vector<double> torque;                            ///< reaction torque of the engine about x [N m]; empty without
   std::vector<double> roll, pitch, yaw;                  ///< smoothed attitude
   std::vector<double> vel_north, vel_east, vel_down;     ///< smoothed ground velocity
   std::vector<double> wind_north, wind_east, wind_down;  ///< smoothed slow wind
   std::vector<double> alpha_smoothed, beta_smoothed;     ///< the smoother's, whatever is regressed on
-  std::vector<std::string> notes;
 
-  [[nodiscard]] const GridSignal& operator[](FlightSignal s) const { return signals[static_cast<std::size_t>(s)]; }
-  [[nodiscard]] GridSignal& operator[](FlightSignal s) { return signals[static_cast<std::size_t>(s)]; }
-  [[nodiscard]] std::size_t size() const { return grid.count; }
   /// The sample at grid point k; missing signals are 0.
   [[nodiscard]] FlightSample<double> sample(std::size_t k) const;
-  /// First and one-past-last grid index inside a span.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> indices(const TimeSpan& span) const;
 };
 
 /// Resamples, filters and differentiates the mapped channels; takes airspeed, attitude, wind and (where there is no

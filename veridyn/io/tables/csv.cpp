@@ -3,289 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <limits>
 #include <optional>
 #include <set>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
-#include "veridyn/io/tables/date_stamp.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
+#include "veridyn/io/tables/csv_cells.hpp"
+#include "veridyn/io/tables/csv_header.hpp"
+#include "veridyn/io/tables/date_stamp.hpp"
 
 namespace veridyn::io {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-// A cell for a message: at most 40 characters.
-std::string shown(std::string_view cell) {
-  std::string text = internal::printable(cell.substr(0, 40));
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return cell.size() > 40 ? text + "..." : text;
-}
-
-/// Takes cells one by one from a row; quotes as in RFC 4180.
-class CellReader {
- public:
-  CellReader(std::string_view bytes, char delimiter)
-      : at_(bytes.data()), end_(bytes.data() + bytes.size()), delimiter_(delimiter) {}
-
-  [[nodiscard]] bool at_end() const { return at_ == end_; }
-  [[nodiscard]] const char* position() const { return at_; }
-  void move_to(const char* position) { at_ = position; }
-  [[nodiscard]] std::size_t lines() const { return lines_; }
-  [[nodiscard]] bool last_cell_of_row() const { return row_ended_; }
-  [[nodiscard]] bool row_has_newline() const { return newline_; }
-
-  /// The rest of a line, the line end left behind.
-  std::string_view line() {
-    const auto* stop = static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
-    const char* const last = stop != nullptr ? stop : end_;
-    const std::string_view text(at_, static_cast<std::size_t>(last - at_));
-    at_ = stop != nullptr ? stop + 1 : end_;
-    ++lines_;
-    return trim(text);
-  }
-
-  /// Tries to read the next cell as a number without looking at it twice. False leaves the position unchanged.
-  bool number(double& value) {
-    const char* from = at_;
-    while (from != end_ && *from == ' ') ++from;
-    if (from != end_ && *from == '+') ++from;
-    const auto [stop, error] = std::from_chars(from, end_, value);
-    if (error != std::errc{}) return false;
-    return close(stop);
-  }
-
-  /// The next cell as text without its quotes.
-  std::string text() {
-    const char* from = at_;
-    while (from != end_ && *from == ' ') ++from;
-    std::string cell;
-    if (from != end_ && *from == '"') {
-      ++from;
-      while (from != end_) {
-        if (*from == '"') {
-          if (from + 1 != end_ && from[1] == '"') {
-            ++from;
-          } else {
-            break;
-          }
-        }
-        if (*from == '\n') ++lines_;
-        cell += *from++;
-      }
-      if (from != end_) ++from;
-      while (from != end_ && *from != delimiter_ && *from != '\n') cell += *from++;
-      close(from);
-      return std::string(trim(cell));
-    }
-    while (from != end_ && *from != delimiter_ && *from != '\n') ++from;
-    cell.assign(at_, from);
-    close(from);
-    return std::string(trim(cell));
-  }
-
- private:
-  bool close(const char* from) {
-    while (from != end_ && (*from == ' ' || *from == '\r')) ++from;
-    if (from == end_) {
-      at_ = from;
-      row_ended_ = true;
-      newline_ = false;
-      ++lines_;
-      return true;
-    }
-    if (*from == delimiter_) {
-      at_ = from + 1;
-      row_ended_ = false;
-      newline_ = false;
-      return true;
-    }
-    if (*from == '\n') {
-      at_ = from + 1;
-      row_ended_ = true;
-      newline_ = true;
-      ++lines_;
-      return true;
-    }
-    return false;
-  }
-
-  const char* at_;
-  const char* end_;
-  char delimiter_;
-  std::size_t lines_ = 0;
-  bool row_ended_ = false;
-  bool newline_ = false;
-};
-
-struct Header {
-  std::string name;
-  std::string unit;  ///< empty: none given
-};
-
-Header split_header(const std::string& cell, bool our_own, const std::string& place) {
-  Header header{cell, ""};
-  if (cell.empty() || cell.back() != ']') return header;
-  const std::size_t open = cell.rfind('[');
-  if (open == std::string::npos || open == 0) return header;
-  const std::string unit = cell.substr(open + 1, cell.size() - open - 2);
-  const std::string name(trim(std::string_view(cell).substr(0, open)));
-  // In files by others "control[3]" is an element, in ours the last brackets always hold a unit.
-  const bool element = !unit.empty() && unit.find_first_not_of("0123456789") == std::string::npos;
-  if (!our_own && element) return header;
-  try {
-    (void)parse_unit(unit);
-  } catch (const InputError& error) {
-    if (our_own) throw InputError(fmt::format("{}: column '{}'", place, name), error.what());
-    return header;
-  }
-  return {name, unit.empty() ? "1" : unit};
-}
-
-struct TimeChoice {
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::size_t column = kNone;  ///< none: stamps are made from a rate
-  double scale = 1.0;
-  bool dates = false;
-};
-
-// Names under which stamps are known, with their unit. '?': microseconds, or seconds with a decimal point.
-struct TimeName {
-  std::string_view name;
-  std::string_view unit;
-};
-constexpr TimeName kTimeNames[] = {{"time", "s"},          {"t", "s"},
-                                   {"t_s", "s"},           {"time_s", "s"},
-                                   {"seconds", "s"},       {"sec", "s"},
-                                   {"time_sec", "s"},      {"timems", "ms"},
-                                   {"time_ms", "ms"},      {"t_ms", "ms"},
-                                   {"timeus", "us"},       {"time_us", "us"},
-                                   {"t_us", "us"},         {"timestamp_us", "us"},
-                                   {"timestamp_ms", "ms"}, {"timestamp_s", "s"},
-                                   {"timestamp_ns", "ns"}, {"time_ns", "ns"},
-                                   {"millis", "ms"},       {"timestamp", "?"}};
-
-TimeChoice choose_time(const std::vector<Header>& headers, const CsvOptions& options, std::string_view first_row,
-                       char delimiter, const std::string& place) {
-  if (options.rate > 0.0) return {};
-  std::vector<std::string> first_cells;
-  CellReader first(first_row, delimiter);
-  while (first_cells.size() < headers.size() && !first.at_end()) first_cells.push_back(first.text());
-  first_cells.resize(headers.size());
-  std::vector<std::string> names;
-  for (const Header& header : headers) names.push_back(header.name);
-  const auto column_of = [&](std::string_view wanted) -> std::optional<std::size_t> {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (lower(names[i]) == wanted) return i;
-    }
-    return std::nullopt;
-  };
-  std::optional<std::size_t> column;
-  std::string unit;
-  if (!options.time_column.empty()) {
-    const auto found = std::find(names.begin(), names.end(), options.time_column);
-    if (found == names.end()) {
-      throw InputError(place, fmt::format("no column '{}' for the time{}", options.time_column,
-                                          suggestion(options.time_column, names)));
-    }
-    column = static_cast<std::size_t>(found - names.begin());
-  } else if (column_of("timems") && column_of("week") && column_of("t")) {
-    column = column_of("t");
-    unit = "ms";
-  } else if (column_of("date") && column_of("time") && column_of("millis")) {
-    column = column_of("millis");
-  }
-  for (const TimeName& known : kTimeNames) {
-    if (column && lower(names[*column]) != known.name) continue;
-    const auto found = column_of(known.name);
-    if (!found) continue;
-    column = column ? column : found;
-    if (unit.empty()) unit = known.unit;
-    break;
-  }
-  if (!column) {
-    const Unit second = parse_unit("s");
-    for (std::size_t i = 0; i < headers.size() && !column; ++i) {
-      if (headers[i].unit.empty() || lower(headers[i].name).rfind("time", 0) != 0) continue;
-      if (parse_unit(headers[i].unit).same_dimension(second)) column = i;
-    }
-  }
-  for (std::size_t i = 0; i < headers.size() && !column; ++i) {
-    if (parse_date_stamp(first_cells[i])) column = i;
-  }
-  if (!column) {
-    throw InputError(place, fmt::format("no time column found among {}; name it (time_column), or call it 'time[s]'",
-                                        shown(fmt::format("{}", fmt::join(names, ", ")))));
-  }
-  if (parse_date_stamp(first_cells[*column])) return {*column, 1.0, true};
-  if (!headers[*column].unit.empty()) unit = headers[*column].unit;
-  if (!options.time_unit.empty()) unit = options.time_unit;
-  if (unit == "?") unit = first_cells[*column].find('.') != std::string::npos ? "s" : "us";
-  if (unit.empty()) unit = "s";
-  try {
-    return {*column, parse_unit_like(unit, parse_unit("s")).scale};
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: column '{}'", place, names[*column]), error.what());
-  }
-}
-
-char guess_delimiter(std::string_view line) {
-  char best = ',';
-  std::ptrdiff_t most = 0;
-  for (const char candidate : {',', ';', '\t'}) {
-    const auto count = std::count(line.begin(), line.end(), candidate);
-    if (count > most) {
-      most = count;
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-/// A cell that is no plain number but stands for one.
-std::optional<double> unusual_number(std::string_view cell, bool& infinite) {
-  if (cell.empty()) return kMissing;
-  double value = 0.0;
-  const char* const end = cell.data() + cell.size();
-  const auto [stop, error] = std::from_chars(cell.front() == '+' ? cell.data() + 1 : cell.data(), end, value);
-  if (stop == end && error == std::errc{}) {
-    infinite = infinite || std::isinf(value);
-    return std::isinf(value) ? kMissing : value;
-  }
-  if (stop == end && error == std::errc::result_out_of_range) {
-    const double limit = std::strtod(std::string(cell).c_str(), nullptr);
-    infinite = infinite || std::isinf(limit);
-    return std::isinf(limit) ? kMissing : limit;
-  }
-  for (const std::string_view word : {"NA", "N/A", "null", "NULL", "None", "-"}) {
-    if (cell == word) return kMissing;
-  }
-  if (cell == "true" || cell == "True" || cell == "TRUE") return 1.0;
-  if (cell == "false" || cell == "False" || cell == "FALSE") return 0.0;
-  return std::nullopt;
-}
+using internal::CellReader;
+using internal::Header;
+using internal::kMissing;
+using internal::lower;
+using internal::shown;
+using internal::TimeChoice;
+using internal::trim;
 
 /// A column while it is being read; text once its first cell that is not empty is no number.
 struct Growing {
@@ -349,7 +87,7 @@ class CsvParser {
       const auto byte = static_cast<unsigned char>(c);
       if (byte < 0x20 && c != '\t') throw InputError(place(line_ + 1), "not a CSV file: the first row is not text");
     }
-    delimiter_ = options_.delimiter != '\0' ? options_.delimiter : guess_delimiter(line);
+    delimiter_ = options_.delimiter != '\0' ? options_.delimiter : internal::guess_delimiter(line);
     CellReader reader(rest, delimiter_);
     std::vector<std::string> cells;
     do {
@@ -373,7 +111,7 @@ class CsvParser {
         throw InputError(fmt::format("{}: column {}", place(header_line_), i + 1), "has no name");
       }
       // Units that a user wrote are not to be guessed at, as ours are not.
-      headers_.push_back(split_header(internal::printable(cells[i]), our_own || named, place(header_line_)));
+      headers_.push_back(internal::split_header(internal::printable(cells[i]), our_own || named, place(header_line_)));
       if (!taken.insert(headers_.back().name).second) {
         throw InputError(place(header_line_), fmt::format("column '{}' appears twice", shown(headers_.back().name)));
       }
@@ -386,7 +124,8 @@ class CsvParser {
       rows_ = std::string_view(reader.position(),
                                static_cast<std::size_t>(bytes_.data() + bytes_.size() - reader.position()));
     }
-    time_ = choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));
+    time_ =
+        internal::choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));
     if (headers_.size() < 2 && time_.column != TimeChoice::kNone)
       throw InputError(place(header_line_), "there is no column beside the time");
     columns_.resize(headers_.size());
@@ -397,7 +136,7 @@ class CsvParser {
     bool any = false;
     for (const std::string& cell : cells) {
       bool infinite = false;
-      const bool data = parse_date_stamp(cell).has_value() || unusual_number(cell, infinite).has_value();
+      const bool data = parse_date_stamp(cell).has_value() || internal::unusual_number(cell, infinite).has_value();
       if (!data) return false;
       any = any || !cell.empty();
     }
@@ -446,7 +185,7 @@ class CsvParser {
       return;
     }
     bool infinite = false;
-    if (const auto number = unusual_number(cell, infinite)) {
+    if (const auto number = internal::unusual_number(cell, infinite)) {
       column.infinite += infinite ? 1U : 0U;
       if (!cell.empty() && column.kind == Growing::Kind::kOpen) column.kind = Growing::Kind::kNumber;
       column.numbers.push_back(*number);

@@ -10,10 +10,10 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
+#include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 

@@ -6,7 +6,7 @@
 
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/filters.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {

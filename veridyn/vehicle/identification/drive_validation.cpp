@@ -95,7 +95,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
   const double step = signals.grid.step;
   Pairs yaw_rate, accel_y, lateral_velocity, yaw, path;
   for (std::size_t s = 0; s < model.segments(); ++s) {
-    PredictedDrive drive;
+    PredictedStretch drive;
     drive.span = model.segment_span(s);
     const std::size_t begin = model.first_sample(s);
     const auto n = static_cast<std::size_t>(model.samples(s));
@@ -184,7 +184,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
     yaw.add(drive.yaw, drive.yaw_predicted, id);
     path.add(drive.x, drive.x_predicted, id);
     path.add(drive.y, drive.y_predicted, id);
-    out.drives.push_back(std::move(drive));
+    out.stretches.push_back(std::move(drive));
   }
   const auto judge = [&](const char* name, const char* unit, const Pairs& pairs) {
     if (pairs.measured.empty()) return;
@@ -207,7 +207,7 @@ DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeS
   const PredictedDriveQuantity* r = out.find("yaw_rate");
   out.text = r == nullptr ? "nothing to compare"
                           : fmt::format("predicts {:.1f} % of the yaw rate's variance over {} segments",
-                                        100.0 * std::max(0.0, r->fit.r2), out.drives.size());
+                                        100.0 * std::max(0.0, r->fit.r2), out.stretches.size());
   return out;
 }
 

@@ -7,8 +7,8 @@
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/statistics.hpp"
-#include "veridyn/vehicle/identification/drive_log.hpp"
 #include "veridyn/vehicle/identification/drive_parametric_model.hpp"
+#include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
@@ -22,7 +22,7 @@ struct PredictedDriveQuantity {
 };
 
 /// Measured and predicted motion over one span.
-struct PredictedDrive {
+struct PredictedStretch {
   TimeSpan span;
   std::vector<double> time;
   std::vector<double> steer, speed;
@@ -37,7 +37,7 @@ struct PredictedDrive {
 
 struct DriveValidation {
   std::vector<PredictedDriveQuantity> quantities;
-  std::vector<PredictedDrive> drives;
+  std::vector<PredictedStretch> stretches;
   std::string text;  ///< one sentence
   [[nodiscard]] const PredictedDriveQuantity* find(std::string_view name) const;
 };

@@ -16,6 +16,7 @@
 #include "veridyn/vehicle/identification/drive_regression.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
 #include "veridyn/vehicle/identification/drive_validation.hpp"
+#include "veridyn/vehicle/identification/vehicle_method.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
@@ -24,9 +25,9 @@ namespace veridyn::vehicle {
 struct VehicleIdentifyOptions {
   bool equation_error = true;  ///< `equation_error`
   bool output_error = true;    ///< `output_error`
-  /// `method`: "auto" takes output error where it converged, else the equation error that its comparison recommends;
-  /// "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
-  std::string method = "auto";
+  /// `method`: "auto" (nothing) takes output error where it converged, else the equation error that its comparison
+  /// recommends; "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  std::optional<VehicleMethod> method = {};
   DriveModelOptions model = {};  ///< `tyre`, `estimate`, `[identify.prior]`, ...: see DriveModelOptions
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;    ///< `significance`: level of the t-tests
@@ -48,7 +49,7 @@ struct VehicleIdentifyOptions {
 
 /// The vehicle's parameters by one method.
 struct VehicleEstimate {
-  std::string method;  ///< "output error", "GTLS", ...
+  VehicleMethod method = VehicleMethod::kNone;
   bool usable = false;
   std::string message;
   /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances: sensors' biases; of
@@ -71,7 +72,7 @@ struct VehicleIdentification {
   std::optional<DriveRegressionResult> regression;              ///< equation error, where it was asked for
   std::optional<estimation::OutputErrorEstimate> output_error;  ///< as the estimator gave it
   std::vector<VehicleEstimate> estimates;                       ///< one a method, chosen one among them
-  std::string chosen;                                           ///< its method; empty when there is none
+  VehicleMethod chosen = VehicleMethod::kNone;                  ///< its method
   VehicleVerdict verdict = VehicleVerdict::kRejected;
   std::string reason;                            ///< one sentence
   std::vector<estimation::HonestyCheck> checks;  ///< colour, agreement of methods, of data parts, hold-out
@@ -81,23 +82,25 @@ struct VehicleIdentification {
   std::vector<std::string> warnings;
   bool interrupted = false;
 
-  [[nodiscard]] const VehicleEstimate* find(std::string_view method) const;
-  [[nodiscard]] const VehicleEstimate* best() const { return chosen.empty() ? nullptr : find(chosen); }
+  /// Null where that method was not tried.
+  [[nodiscard]] const VehicleEstimate* find(VehicleMethod method) const;
+  /// The chosen estimate; null where no method gave one. What was not excited has one too, which says so.
+  [[nodiscard]] const VehicleEstimate* best() const { return find(chosen); }
 };
 
-/// Identifies the vehicle from a drive: equation error by all methods, output error started from it, hold-out.
-/// @param start what is known: mass, a, b; C_f, C_r, I_z are where the search begins
-/// @throws InputError when options and signals do not fit
-[[nodiscard]] VehicleIdentification identify_vehicle(const DriveSignals& signals, const DriveSegments& segments,
-                                                     const VehicleParameters<double>& start,
-                                                     const DriveSignalOptions& signal_options,
-                                                     const VehicleIdentifyOptions& options, Progress& progress);
+/// View of what identification is given. Mass, a and b of `start` are known; C_f, C_r, I_z are where the search begins.
+struct VehicleProblem {
+  const DriveSignals& signals;
+  const DriveSegments& segments;
+  const VehicleParameters<double>& start;
+  const DriveSignalOptions& signal_options;
+  const VehicleIdentifyOptions& options;
+};
 
-/// All DriveUnknowns of a vehicle on a drive whose constant biases (steering, yaw rate, accel_y) are fitted to it, for
-/// predictions: biases belong to the day, not to the vehicle.
-[[nodiscard]] Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const TimeSpan> spans,
-                                               const VehicleParameters<double>& vehicle,
-                                               const DriveModelOptions& options);
+/// Identifies the vehicle from a drive: equation error by all methods (`vehicle_estimates.hpp`), output error started
+/// from it, prediction of the hold-out (`vehicle_prediction.hpp`), checks and verdict (`vehicle_judgement.hpp`).
+/// @throws InputError when options and signals do not fit
+[[nodiscard]] VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress);
 
 /// As estimate.json has it; `subject` is the vehicle's name.
 [[nodiscard]] estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification,

@@ -1,0 +1,96 @@
+#include "veridyn/aircraft/sensors/delays.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace veridyn::aircraft {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kLate_s = 0.15;
+
+double acceleration(double t) { return std::sin(0.9 * t) + std::sin(1.7 * t + 1.0) + std::sin(3.1 * t + 2.0); }
+double velocity(double t) {
+  return -std::cos(0.9 * t) / 0.9 - std::cos(1.7 * t + 1.0) / 1.7 - std::cos(3.1 * t + 2.0) / 3.1;
+}
+
+/// Level flight that is only accelerated forward; the GPS is late and `stamp_scale` times slower than it should be.
+MappedRecording flight(double stamp_scale = 1.0) {
+  std::vector<double> fast, slow;
+  for (int k = 0; k < 60 * 50; ++k) fast.push_back(0.02 * k);
+  for (int k = 0; k < 60 * 5; ++k) slow.push_back(0.2 * k * stamp_scale);
+  const TimeBase imu = make_time_base(fast), gps = make_time_base(slow);
+  MappedRecording mapped;
+  const auto add = [&](const char* name, const char* unit, const TimeBase& time, auto f) {
+    std::vector<double> values;
+    for (const double t : *time) values.push_back(f(t));
+    mapped.recording.add(make_channel(name, unit, time, std::move(values)));
+  };
+  const auto zero = [](double) { return 0.0; };
+  for (const char* name : {"gyro_x", "gyro_y", "gyro_z"}) add(name, "rad/s", imu, zero);
+  for (const char* name : {"roll", "pitch", "yaw"}) add(name, "rad", imu, zero);
+  add("accel_x", "m/s^2", imu, acceleration);
+  add("accel_y", "m/s^2", imu, zero);
+  add("accel_z", "m/s^2", imu, [](double) { return -9.80665; });
+  add("vel_north", "m/s", gps, [&](double t) { return velocity(t / stamp_scale - kLate_s); });
+  add("vel_east", "m/s", gps, zero);
+  return mapped;
+}
+
+const DelayReport* find(const std::vector<DelayReport>& reports, const char* group) {
+  for (const DelayReport& report : reports) {
+    if (report.group == group) return &report;
+  }
+  return nullptr;
+}
+
+class Stopped : public Progress {
+ public:
+  bool update(double) override { return false; }
+  [[nodiscard]] bool interrupted() const override { return true; }
+};
+
+TEST(AlignDelays, TakesTheLatenessOfTheGpsOffItsStamps) {
+  MappedRecording mapped = flight();
+  const std::vector<DelayReport> reports = align_delays(mapped, {});
+  const DelayReport* gps = find(reports, "gps");
+  ASSERT_NE(gps, nullptr);
+  EXPECT_TRUE(gps->applied) << gps->text;
+  EXPECT_NEAR(gps->delay_s, kLate_s, 0.01);
+  EXPECT_NEAR(mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
+}
+
+TEST(AlignDelays, StampsInMillisecondsCalledSecondsCostNoTime) {
+  // Five fixes a second become one in 200 s: the filter that they would need has millions of taps.
+  MappedRecording mapped = flight(1000.0);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::vector<DelayReport> reports = align_delays(mapped, {});
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
+  const DelayReport* gps = find(reports, "gps");
+  ASSERT_NE(gps, nullptr);
+  EXPECT_FALSE(gps->applied);
+  EXPECT_EQ(gps->text, "not determined: 0.005 samples a second are fewer than 0.5");
+}
+
+TEST(AlignDelays, StopsWhenItIsInterrupted) {
+  MappedRecording mapped = flight();
+  Stopped progress;
+  EXPECT_THAT(align_delays(mapped, {}, progress), IsEmpty());
+  EXPECT_EQ(mapped.recording.at("vel_north").times().front(), 0.0);
+}
+
+TEST(AlignDelays, GivenOnesAreAppliedAndNothingElseWithoutTheAutomatic) {
+  const Study study = Study::parse("[delays]\nautomatic = false\ngps = '50 ms'\n", "study.toml", ".");
+  MappedRecording mapped = flight();
+  const std::vector<DelayReport> reports = align_delays(mapped, DelayAlignment::read(study.root().table("delays")));
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].text, "given in the study");
+  EXPECT_DOUBLE_EQ(mapped.recording.at("vel_east").times().front(), -0.05);
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

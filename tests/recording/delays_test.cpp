@@ -1,0 +1,135 @@
+#include "veridyn/recording/delays.hpp"
+
+#include <cmath>
+
+#include "tests/io/support.hpp"
+#include "veridyn/numerics/random.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::message_of;
+
+constexpr double kRate_Hz = 100.0;
+
+/// Band-limited noise: a random walk through a slow pole, the same for the same name.
+std::vector<double> lively(std::size_t count, const char* name) {
+  numerics::RandomStream random(3, name);
+  std::vector<double> x(count);
+  double fast = 0.0, slow = 0.0;
+  for (double& v : x) {
+    fast += 0.2 * (random.normal() - fast);
+    slow += 0.2 * (fast - slow);
+    v = slow;
+  }
+  return x;
+}
+
+std::vector<double> later(const std::vector<double>& x, std::size_t samples) {
+  std::vector<double> y(x.size(), 0.0);
+  for (std::size_t k = samples; k < x.size(); ++k) y[k] = x[k - samples];
+  return y;
+}
+
+Channel channel(const char* name, double rate, double seconds, double value = 0.0) {
+  std::vector<double> stamps, values;
+  for (std::size_t k = 0; static_cast<double>(k) <= rate * seconds; ++k) {
+    stamps.push_back(static_cast<double>(k) / rate);
+    values.push_back(value);
+  }
+  return make_channel(name, "rad/s", make_time_base(std::move(stamps)), std::move(values));
+}
+
+class Stopped : public Progress {
+ public:
+  bool update(double) override { return false; }
+  [[nodiscard]] bool interrupted() const override { return true; }
+};
+
+TEST(Delays, PairsShareTheDelayThatBothWereGiven) {
+  const std::vector<double> a = lively(3000, "a"), b = lively(3000, "b");
+  const DelayReport report = shared_delay("gps", "accelerometer", {{a, later(a, 7)}, {b, later(b, 7)}}, kRate_Hz, {});
+  EXPECT_NEAR(report.delay_s, 0.07, 0.003);
+  EXPECT_TRUE(report.applied);
+  EXPECT_EQ(report.text, "applied");
+}
+
+TEST(Delays, SmallOnesAreLeftAloneAndAnOppositeSignIsNamed) {
+  const std::vector<double> a = lively(3000, "a");
+  const DelayReport small = shared_delay("gps", "accelerometer", {{a, a}}, kRate_Hz, {});
+  EXPECT_FALSE(small.applied);
+  EXPECT_EQ(small.text, "too small to matter");
+  std::vector<double> turned = later(a, 5);
+  for (double& v : turned) v = -v;
+  const DelayReport opposite = shared_delay("gps", "accelerometer", {{a, turned}}, kRate_Hz, {});
+  EXPECT_FALSE(opposite.applied);
+  EXPECT_THAT(opposite.text, HasSubstr("opposite sign"));
+}
+
+TEST(Delays, EffectOfACauseIsAsLateAsTheLagThatExplainsItBest) {
+  const std::vector<double> cause = lively(6000, "cause"), other = lively(6000, "other");
+  std::vector<double> effect = later(cause, 6);
+  for (std::size_t k = 0; k < effect.size(); ++k) effect[k] = 2.0 * effect[k] - 0.5 * other[k] + 0.1;
+  const Progress silent;
+  const DelayReport late =
+      effect_delay("elevator", "angular acceleration", effect, cause, {other}, 1.0 / kRate_Hz, {}, silent);
+  EXPECT_TRUE(late.applied);
+  EXPECT_NEAR(late.delay_s, 0.06, 0.001);
+  EXPECT_NEAR(late.correlation, 1.0, 1e-6);
+  // An effect before its cause is none.
+  const DelayReport early =
+      effect_delay("elevator", "angular acceleration", cause, later(cause, 6), {other}, 1.0 / kRate_Hz, {}, silent);
+  EXPECT_FALSE(early.applied);
+  EXPECT_EQ(early.text, "negative: a cause cannot follow its effect, left alone");
+  const DelayReport none = effect_delay("rudder", "angular acceleration", effect, lively(6000, "x"), {other},
+                                        1.0 / kRate_Hz, {}, silent, "surface");
+  EXPECT_EQ(none.text, "not determined: the surface explains too little");
+}
+
+TEST(Delays, SearchStopsWhenItIsInterrupted) {
+  const std::vector<double> x = lively(6000, "x");
+  const DelayReport report = effect_delay("elevator", "q", x, later(x, 6), {}, 1.0 / kRate_Hz, {}, Stopped());
+  EXPECT_FALSE(report.applied);
+  EXPECT_EQ(report.text, "not determined: interrupted");
+}
+
+TEST(Delays, ClockForOthersMustBeFastAndLongEnoughAndIsSearchedInItsMiddle) {
+  EXPECT_FALSE(BandLimited::around(channel("gyro_x", 10.0, 60.0), 4.0).has_value());
+  EXPECT_FALSE(BandLimited::around(channel("gyro_x", 100.0, 5.0), 4.0).has_value());
+  const auto whole = BandLimited::around(channel("gyro_x", 50.0, 60.0), 4.0);
+  ASSERT_TRUE(whole.has_value());
+  EXPECT_EQ(whole->size(), 3001u);
+  const auto part = BandLimited::around(channel("gyro_x", 20.0, 2000.0), 4.0);
+  ASSERT_TRUE(part.has_value());
+  EXPECT_NEAR(static_cast<double>(part->size()) * part->step(), kLongestDelaySearch_s, 0.1);
+}
+
+TEST(Delays, GivenOnesAreTakenOffTheStampsOfTheirGroup) {
+  Recording recording;
+  recording.add(channel("alpha", 10.0, 1.0));
+  recording.add(channel("beta", 10.0, 1.0));
+  const DelayGroup group{"vanes", {"alpha", "beta", "missing"}};
+  const Study study = Study::parse("[delays]\nvanes = '20 ms'\n", "study.toml", ".");
+  DelayOptions options;
+  options.read_keys(study.root().table("delays"), {group});
+  const std::optional<DelayReport> report = take_off_given(recording, group, options);
+  ASSERT_TRUE(report.has_value());
+  EXPECT_EQ(report->text, "given in the study");
+  EXPECT_DOUBLE_EQ(recording.at("beta").times().front(), -0.02);
+  EXPECT_FALSE(take_off_given(recording, {"gps", {"alpha"}}, options).has_value());
+  EXPECT_FALSE(take_off_given(recording, {"vanes", {"missing"}}, options).has_value());
+}
+
+TEST(Delays, RefuseASearchOfNoLength) {
+  const Study study = Study::parse("[delays]\nmax = 0\n", "study.toml", ".");
+  EXPECT_THAT(message_of([&] {
+                DelayOptions options;
+                options.read_keys(study.root().table("delays"), {});
+              }),
+              HasSubstr("delays.max"));
+}
+
+}  // namespace
+}  // namespace veridyn::recording

@@ -1,0 +1,118 @@
+#include "veridyn/recording/segments.hpp"
+
+#include <cmath>
+
+#include "tests/io/support.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::message_of;
+
+std::string refusal(const std::string& toml) {
+  const Study study = Study::parse("[segments]\n" + toml, "study.toml", ".");
+  return message_of([&] {
+    SegmentOptions options;
+    options.read_keys(study.root().table("segments"));
+    (void)read_spans(study.root().table("segments"), "spans");
+  });
+}
+
+TEST(Segments, StretchesAreTheLongestRunsForWhichSomethingHolds) {
+  const numerics::UniformGrid grid{1.0, 0.5, 8};
+  const std::vector<bool> holds{true, true, false, true, false, true, true, true};
+  std::vector<TimeSpan> found = stretches(grid, grid.count, [&](std::size_t k) { return holds[k]; });
+  EXPECT_THAT(found, ElementsAre(TimeSpan{1.0, 1.5}, TimeSpan{2.5, 2.5}, TimeSpan{3.5, 4.5}));
+  EXPECT_DOUBLE_EQ(total_s(found), 1.5);
+  drop_shorter(found, 0.0);
+  EXPECT_THAT(found, ElementsAre(TimeSpan{1.0, 1.5}, TimeSpan{3.5, 4.5}));
+  drop_shorter(found, 1.0);
+  EXPECT_THAT(found, ElementsAre(TimeSpan{3.5, 4.5}));
+}
+
+TEST(Segments, SpansNoFurtherApartThanTheGapAreJoined) {
+  const std::vector<TimeSpan> spans{{0, 1}, {3, 4}, {8, 9}};
+  EXPECT_THAT(merged(spans, 2.0), ElementsAre(TimeSpan{0, 4}, TimeSpan{8, 9}));
+  EXPECT_THAT(merged(spans, 1.9).size(), 3u);
+}
+
+TEST(Segments, PartsWithinOthersAreTheirIntersection) {
+  const std::vector<TimeSpan> a{{0, 5}, {6, 10}}, b{{4, 7}, {9, 12}};
+  EXPECT_THAT(within(a, b), ElementsAre(TimeSpan{4, 5}, TimeSpan{6, 7}, TimeSpan{9, 10}));
+}
+
+TEST(Segments, ActivityIsTheRootMeanSquareAboutTheMean) {
+  // +-1 about 1000: the mean is not activity, and running sums must not cancel.
+  std::vector<double> x(200);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] = 1000.0 + (k % 2 == 0 ? 1.0 : -1.0);
+  const std::vector<double> found = activity(x, 20);
+  EXPECT_NEAR(found[100], 1.0, 1e-3);
+  for (std::size_t k = 60; k < 140; ++k) x[k] = NAN;
+  EXPECT_TRUE(std::isnan(activity(x, 20)[100]));
+}
+
+TEST(Segments, MeanSquareOfAConstantIsItsSquareUpToTheEnds) {
+  const std::vector<double> x(50, -3.0);
+  for (const double v : mean_square(x, 7)) EXPECT_NEAR(v, 9.0, 1e-12);
+}
+
+TEST(Segments, BlocksAreEqualAndFillTheSpan) {
+  EXPECT_THAT(blocks({0, 34}, 10.0).size(), 3u);
+  EXPECT_THAT(blocks({0, 36}, 10.0).size(), 4u);
+  EXPECT_THAT(blocks({5, 7}, 10.0), ElementsAre(TimeSpan{5, 7}));
+  EXPECT_EQ(blocks({0, 34}, 10.0).back().end, 34.0);
+}
+
+TEST(Segments, HoldOutHasItsShareAndAGuardBetweenTheUses) {
+  Segments s;
+  s.excited = {{0, 300}};
+  const SegmentOptions options{.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 0.5};
+  assign_blocks(s, options, Neighbours::kJoined, 1.0);
+  EXPECT_EQ(s.holdout.size(), 10u);
+  EXPECT_NEAR(total_s(s.holdout), 10.0 * 9.0, 1e-9);
+  EXPECT_EQ(s.identification.front().begin, 0.0);
+  for (const TimeSpan& a : s.identification) {
+    for (const TimeSpan& b : s.holdout) EXPECT_TRUE(a.end + 0.99 < b.begin || b.end + 0.99 < a.begin);
+  }
+}
+
+TEST(Segments, NeighbouringBlocksOfOneUseAreJoinedOrKeptSeparately) {
+  const SegmentOptions options{.holdout = 0.0};
+  Segments joined, separate;
+  joined.excited = separate.excited = {{0, 30}, {40, 50}};
+  assign_blocks(joined, options, Neighbours::kJoined, 1.0);
+  assign_blocks(separate, options, Neighbours::kSeparate, 1.0);
+  EXPECT_THAT(joined.identification, ElementsAre(TimeSpan{0, 30}, TimeSpan{40, 50}));
+  EXPECT_THAT(separate.identification,
+              ElementsAre(TimeSpan{0, 10}, TimeSpan{10, 20}, TimeSpan{20, 30}, TimeSpan{40, 50}));
+  EXPECT_THAT(joined.holdout, IsEmpty());
+}
+
+TEST(Segments, FirstBlockIsForIdentificationWhateverTheShare) {
+  Segments s;
+  s.excited = {{0, 10}};
+  assign_blocks(s, {.holdout = 0.8}, Neighbours::kJoined, 1.0);
+  EXPECT_EQ(s.identification.size(), 1u);
+}
+
+TEST(Segments, BlocksThatTheGuardMakesTooShortAreDropped) {
+  Segments s;
+  s.excited = {{0, 30}};
+  assign_blocks(s, {.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 4.6}, Neighbours::kJoined, 1.0);
+  EXPECT_THAT(s.holdout, IsEmpty());
+  EXPECT_EQ(s.identification.size(), 2u);
+}
+
+TEST(Segments, RefuseSpansAndSharesThatMakeNoSense) {
+  EXPECT_THAT(refusal("spans = [1, 2, 3]\n"), HasSubstr("spans: has 3 numbers; must be pairs of begin and end"));
+  EXPECT_THAT(refusal("spans = [2, 1]\n"), HasSubstr("spans: segment 2 s to 1 s has no length"));
+  EXPECT_THAT(refusal("spans = [1, 5, 4, 8]\n"), HasSubstr("overlap or are not in order"));
+  EXPECT_THAT(refusal("holdout: = 0.9\n"), HasSubstr("holdout = 0.9 must be a share from 0 to 0.8"));
+  EXPECT_THAT(refusal("guard: = -1\n"), HasSubstr("guard = -1 s must be >= 0"));
+}
+
+}  // namespace
+}  // namespace veridyn::recording

@@ -1,0 +1,106 @@
+#include "veridyn/io/tables/csv_cells.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "veridyn/io/log/log.hpp"
+
+namespace veridyn::io::internal {
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kBlank);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+std::string shown(std::string_view cell) {
+  std::string text = printable(cell.substr(0, 40));
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return cell.size() > 40 ? text + "..." : text;
+}
+
+char guess_delimiter(std::string_view line) {
+  char best = ',';
+  std::ptrdiff_t most = 0;
+  for (const char candidate : {',', ';', '\t'}) {
+    const auto count = std::count(line.begin(), line.end(), candidate);
+    if (count > most) {
+      most = count;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::optional<double> unusual_number(std::string_view cell, bool& infinite) {
+  if (cell.empty()) return kMissing;
+  double value = 0.0;
+  const char* const end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.front() == '+' ? cell.data() + 1 : cell.data(), end, value);
+  if (stop == end && error == std::errc{}) {
+    infinite = infinite || std::isinf(value);
+    return std::isinf(value) ? kMissing : value;
+  }
+  if (stop == end && error == std::errc::result_out_of_range) {
+    const double limit = std::strtod(std::string(cell).c_str(), nullptr);
+    infinite = infinite || std::isinf(limit);
+    return std::isinf(limit) ? kMissing : limit;
+  }
+  for (const std::string_view word : {"NA", "N/A", "null", "NULL", "None", "-"}) {
+    if (cell == word) return kMissing;
+  }
+  if (cell == "true" || cell == "True" || cell == "TRUE") return 1.0;
+  if (cell == "false" || cell == "False" || cell == "FALSE") return 0.0;
+  return std::nullopt;
+}
+
+std::string_view CellReader::line() {
+  const auto* stop = static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
+  const char* const last = stop != nullptr ? stop : end_;
+  const std::string_view text(at_, static_cast<std::size_t>(last - at_));
+  at_ = stop != nullptr ? stop + 1 : end_;
+  ++lines_;
+  return trim(text);
+}
+
+std::string CellReader::text() {
+  const char* from = at_;
+  while (from != end_ && *from == ' ') ++from;
+  std::string cell;
+  if (from != end_ && *from == '"') {
+    ++from;
+    while (from != end_) {
+      if (*from == '"') {
+        if (from + 1 != end_ && from[1] == '"') {
+          ++from;
+        } else {
+          break;
+        }
+      }
+      if (*from == '\n') ++lines_;
+      cell += *from++;
+    }
+    if (from != end_) ++from;
+    while (from != end_ && *from != delimiter_ && *from != '\n') cell += *from++;
+    close(from);
+    return std::string(trim(cell));
+  }
+  while (from != end_ && *from != delimiter_ && *from != '\n') ++from;
+  cell.assign(at_, from);
+  close(from);
+  return std::string(trim(cell));
+}
+
+}  // namespace veridyn::io::internal

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace veridyn::io::internal {
+
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Without blanks, tabulators and carriage returns at its ends.
+[[nodiscard]] std::string_view trim(std::string_view text);
+/// ASCII letters in lower case.
+[[nodiscard]] std::string lower(std::string_view text);
+/// A cell for a message: at most 40 characters.
+[[nodiscard]] std::string shown(std::string_view cell);
+/// Comma, semicolon or tabulator, whichever the line holds most of.
+[[nodiscard]] char guess_delimiter(std::string_view line);
+/// The number that a cell stands for which is no plain one: empty, NA and the like are missing, true is 1; infinite
+/// ones are missing and set `infinite`. Nothing for other text.
+[[nodiscard]] std::optional<double> unusual_number(std::string_view cell, bool& infinite);
+
+/// A view of rows of which cells are taken one by one; quotes as in RFC 4180.
+class CellReader {
+ public:
+  CellReader(std::string_view bytes, char delimiter)
+      : at_(bytes.data()), end_(bytes.data() + bytes.size()), delimiter_(delimiter) {}
+
+  [[nodiscard]] bool at_end() const { return at_ == end_; }
+  [[nodiscard]] const char* position() const { return at_; }
+  void move_to(const char* position) { at_ = position; }
+  [[nodiscard]] std::size_t lines() const { return lines_; }
+  [[nodiscard]] bool last_cell_of_row() const { return row_ended_; }
+  [[nodiscard]] bool row_has_newline() const { return newline_; }
+
+  /// The rest of a line, the line end left behind.
+  std::string_view line();
+  /// Tries to read the next cell as a number without looking at it twice. False leaves the position unchanged.
+  bool number(double& value);
+  /// The next cell as text without its quotes.
+  std::string text();
+
+ private:
+  bool close(const char* from);
+
+  const char* at_;
+  const char* end_;
+  char delimiter_;
+  std::size_t lines_ = 0;
+  bool row_ended_ = false;
+  bool newline_ = false;
+};
+
+// In the header: most of the time of reading a table is spent here.
+inline bool CellReader::number(double& value) {
+  const char* from = at_;
+  while (from != end_ && *from == ' ') ++from;
+  if (from != end_ && *from == '+') ++from;
+  const auto [stop, error] = std::from_chars(from, end_, value);
+  if (error != std::errc{}) return false;
+  return close(stop);
+}
+
+inline bool CellReader::close(const char* from) {
+  while (from != end_ && (*from == ' ' || *from == '\r')) ++from;
+  if (from == end_) {
+    at_ = from;
+    row_ended_ = true;
+    newline_ = false;
+    ++lines_;
+    return true;
+  }
+  if (*from == delimiter_) {
+    at_ = from + 1;
+    row_ended_ = false;
+    newline_ = false;
+    return true;
+  }
+  if (*from == '\n') {
+    at_ = from + 1;
+    row_ended_ = true;
+    newline_ = true;
+    ++lines_;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace veridyn::io::internal

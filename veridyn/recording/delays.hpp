@@ -1,0 +1,115 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/numerics/filters.hpp"
+#include "veridyn/numerics/resample.hpp"
+
+namespace veridyn::recording {
+
+/// Channels of one sensor, which are late together.
+struct DelayGroup {
+  std::string name;  ///< "gps", the key of the study
+  std::vector<std::string> channels;
+};
+
+/// How sensors are brought onto one clock. Study table `[delays]`; every key is optional.
+struct DelayOptions {
+  bool automatic = true;      ///< `automatic`: estimate and remove; false: only what the study says
+  double max_delay_s = 0.3;   ///< `max`: searched up to here
+  double min_delay_s = 0.01;  ///< `min`: smaller ones are left alone
+  double band_Hz = 4.0;       ///< `band`: signals are compared below this frequency
+  /// Given by the user, by the name of the group [s].
+  std::vector<std::pair<std::string, double>> given;
+
+  /// Takes the keys that are there, with one for each group. @throws InputError for values that make no sense.
+  void read_keys(const StudyTable& table, const std::vector<DelayGroup>& groups);
+  [[nodiscard]] std::optional<double> given_for(std::string_view group) const;
+};
+
+/// How late a group of channels is, against what.
+struct DelayReport {
+  std::string group;      ///< "attitude"
+  std::string reference;  ///< "gyro"
+  double delay_s = 0.0;   ///< positive: the group reports late
+  double sigma_s = 0.0;
+  double correlation = 0.0;
+  bool applied = false;
+  std::string text;  ///< "applied", or why not
+};
+
+/// The longest part of a recording that is searched [s]. A delay is one number: the middle quarter of an hour of a
+/// longer recording determines it.
+inline constexpr double kLongestDelaySearch_s = 900.0;
+/// The slowest sensor whose delay is searched [Hz]. The filter that its samples need grows with their distance.
+inline constexpr double kSlowestDelayed_Hz = 0.5;
+
+/// Channels on one grid, low-passed at a band's edge, and their derivatives, all by zero-phase filters; NaN in holes.
+class BandLimited {
+ public:
+  using Series = std::vector<double>;
+
+  /// The middle of `reference` (see kLongestDelaySearch_s) at its own rate; nothing where it is slower than four times
+  /// the band or lasts less than 10 s: it can then be no clock for others.
+  [[nodiscard]] static std::optional<BandLimited> around(const Channel& reference, double band_Hz);
+
+  [[nodiscard]] Series raw(const Channel& channel) const;
+  [[nodiscard]] Series smooth(const Channel& channel) const { return numerics::filter(raw(channel), smooth_); }
+  [[nodiscard]] Series derivative(const Channel& channel) const {
+    return numerics::filter(raw(channel), differentiate_);
+  }
+  /// The same for angles, which may jump by a turn.
+  [[nodiscard]] Series smooth_angle(const Channel& channel) const;
+  [[nodiscard]] Series angle_derivative(const Channel& channel) const;
+
+  /// The low-pass and the differentiator for a band of their own [Hz], for signals slower than the others.
+  [[nodiscard]] std::pair<numerics::FirKernel, numerics::FirKernel> kernels(double band_Hz) const;
+
+  [[nodiscard]] std::size_t size() const { return grid_.count; }
+  [[nodiscard]] double step() const { return grid_.step; }
+  [[nodiscard]] double rate_Hz() const { return grid_.rate_Hz(); }
+
+ private:
+  BandLimited(const numerics::UniformGrid& grid, double band_Hz);
+
+  numerics::UniformGrid grid_;
+  numerics::FirKernel smooth_;
+  numerics::FirKernel differentiate_;
+};
+
+/// Two signals that are the same but for a delay (and noise).
+struct DelayPair {
+  std::vector<double> expected;
+  std::vector<double> observed;
+};
+
+/// The delay that several pairs share, by cross-correlation (numerics::estimate_delay). `applied` says whether it is to
+/// be taken off: determined, of the right sign and larger than `min_delay_s` and three standard errors.
+[[nodiscard]] DelayReport shared_delay(std::string group, std::string reference, const std::vector<DelayPair>& pairs,
+                                       double rate_Hz, const DelayOptions& options);
+
+/// How much later `effect` answers `cause` when it is a linear function of the cause and of `others`: the lag at which
+/// least squares explains most of it, from -max/3 to max. `delay_s` is positive when the effect is late; `correlation`
+/// is the multiple correlation. `applied` as above; never for a negative delay, an effect before its cause.
+/// Stops early, undetermined, when `progress` is interrupted. `kind` is what messages call the cause.
+[[nodiscard]] DelayReport effect_delay(std::string cause_name, std::string effect_name,
+                                       const std::vector<double>& effect, const std::vector<double>& cause,
+                                       const std::vector<std::vector<double>>& others, double step_s,
+                                       const DelayOptions& options, const Progress& progress,
+                                       std::string_view kind = "cause");
+
+/// Takes a delay off the stamps of those of the channels that are there. Says whether there was one.
+bool take_off_delay(Recording& recording, const std::vector<std::string>& channels, double delay_s);
+
+/// The delay that the study gives for a group, taken off; nothing where it gives none or the channels are missing.
+[[nodiscard]] std::optional<DelayReport> take_off_given(Recording& recording, const DelayGroup& group,
+                                                        const DelayOptions& options);
+
+}  // namespace veridyn::recording

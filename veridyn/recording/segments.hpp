@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/numerics/resample.hpp"
+
+namespace veridyn::recording {
+
+/// What every domain asks of the excited stretches of a recording. Study table `[segments]`; every key is optional.
+struct SegmentOptions {
+  double window_s = 4.0;        ///< `window`: excitation is measured over this long
+  double merge_s = 3.0;         ///< `merge`: excited stretches closer than this are one
+  double min_duration_s = 3.0;  ///< `min_duration`
+  double holdout = 1.0 / 3.0;   ///< `holdout`: share kept from identification, in [0, 0.8]
+  double block_s = 10.0;  ///< `block`: stretches are assigned to identification and hold-out in blocks of this length
+  double guard_s = 0.5;   ///< `guard`: cut from both sides where blocks of different use meet, >= 0
+
+  /// Takes the keys that are there. @throws InputError for values that make no sense.
+  void read_keys(const StudyTable& table);
+};
+
+/// Excited stretches of a recording and how they are used.
+struct Segments {
+  std::vector<TimeSpan> excited;
+  std::vector<TimeSpan> identification;  ///< blocks used to identify
+  std::vector<TimeSpan> holdout;         ///< blocks that identification never sees
+  bool given = false;                    ///< by the user
+  std::string text;                      ///< one sentence for the report
+};
+
+/// Sum of the durations [s].
+[[nodiscard]] double total_s(std::span<const TimeSpan> spans);
+
+/// `key = [10, 60, 80, 95]`: begin and end of each [s]; none when the key is missing.
+/// @throws InputError for an odd number of values, a span without length, spans that overlap or are not in order.
+[[nodiscard]] std::vector<TimeSpan> read_spans(const StudyTable& table, std::string_view key);
+
+/// Maximal stretches of samples for which `holds(k)`; one sample alone is a stretch without length.
+template <typename Predicate>
+[[nodiscard]] std::vector<TimeSpan> stretches(const numerics::UniformGrid& grid, std::size_t count, Predicate holds) {
+  std::vector<TimeSpan> found;
+  bool open = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool now = holds(k);
+    if (now && !open) found.push_back({grid.at(k), grid.at(k)});
+    if (now) found.back().end = grid.at(k);
+    open = now;
+  }
+  return found;
+}
+
+/// Spans in order, those no further apart than `gap_s` joined.
+[[nodiscard]] std::vector<TimeSpan> merged(std::span<const TimeSpan> spans, double gap_s);
+
+/// Removes spans shorter than `least_s` by more than a nanosecond, and those without length.
+void drop_shorter(std::vector<TimeSpan>& spans, double least_s);
+
+/// The parts of `a` within `b`.
+[[nodiscard]] std::vector<TimeSpan> within(std::span<const TimeSpan> a, std::span<const TimeSpan> b);
+
+/// Root mean square of x about its mean over a window of `half` samples to either side; NaN where no more than half of
+/// the window is there.
+[[nodiscard]] std::vector<double> activity(std::span<const double> x, std::size_t half);
+
+/// Mean of x^2 over a window of `half` samples to either side, at the ends over what there is of it. x must be finite.
+[[nodiscard]] std::vector<double> mean_square(std::span<const double> x, std::size_t half);
+
+/// A span cut into equal blocks, as many as make their length nearest to `block_s`; at least one.
+[[nodiscard]] std::vector<TimeSpan> blocks(const TimeSpan& span, double block_s);
+
+/// What becomes of neighbouring blocks of the same use.
+enum class Neighbours {
+  kJoined,
+  kSeparate  ///< each gets its own initial state, which keeps simulations short
+};
+
+/// Assigns every excited stretch in blocks to identification and hold-out, in turn, so that both see the recording's
+/// beginning and end and every manoeuvre that is repeated. The share of the hold-out, counted over the whole recording,
+/// is kept as closely as whole blocks allow; the first block is for identification. Where blocks of different use meet,
+/// both lose the guard; what is left shorter than `least_s` is dropped.
+void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours neighbours, double least_s);
+
+}  // namespace veridyn::recording

@@ -1,0 +1,348 @@
+#include "veridyn/vehicle/identification/vehicle_estimates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using estimation::Method;
+using estimation::ParameterEstimate;
+using estimation::ParameterStatus;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Cut-off of the regressions' filter where none is given [Hz].
+constexpr double kDefaultPass_Hz = 2.0;
+/// Longest correlation of residuals that is looked for.
+constexpr double kLongestLag_s = 2.0;
+
+constexpr auto row_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
+
+ParameterEstimate describe(std::string name, std::string unit, double value, double variance, double freedom,
+                           double significance) {
+  ParameterEstimate p;
+  p.name = std::move(name);
+  p.unit = std::move(unit);
+  p.value = value;
+  p.sigma = p.sigma_white = std::sqrt(std::max(0.0, variance));
+  const bool known = std::isfinite(p.sigma);
+  const double dof = std::max(1.0, freedom);
+  const double quantile = numerics::student_t_quantile(0.975, dof);
+  p.low95 = known ? value - quantile * p.sigma : -kInfinity;
+  p.high95 = known ? value + quantile * p.sigma : kInfinity;
+  if (!known) {
+    p.status = ParameterStatus::kNotExcited;
+    return p;
+  }
+  p.t = p.sigma > 0.0 ? value / p.sigma : std::copysign(kInfinity, value);
+  p.p_value = numerics::student_t_two_sided_p(p.t, dof);
+  p.status = p.p_value < significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+  return p;
+}
+
+/// Derivatives of the understeer gradient with respect to C_f, C_r and a (at a given wheelbase).
+Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
+  const double L = p.wheelbase(), m = p.mass;
+  return {-0.5 * m * p.b / (L * p.C_f * p.C_f), 0.5 * m * p.a / (L * p.C_r * p.C_r),
+          -0.5 * m / L * (1.0 / p.C_f + 1.0 / p.C_r)};
+}
+
+/// Physical parameters that are hardly known are not excited, whatever their t-test says.
+void mark_unexcited(VehicleEstimate& e, double max_relative_sigma) {
+  for (ParameterEstimate& p : e.parameters) {
+    const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
+    if (physical && !(p.sigma <= max_relative_sigma * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
+  }
+}
+
+/// What the uncertainty of mass, a and b adds to the covariance of C_f, C_r, I_z and the understeer gradient.
+Eigen::Matrix4d known_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                                 const Eigen::Vector4d& value) {
+  const VehicleIdentifyOptions& o = problem.options;
+  Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
+  if (o.mass_sigma > 0.0) {
+    Eigen::Vector4d g = value / problem.start.mass;
+    g(3) = 0.0;
+    P += o.mass_sigma * o.mass_sigma * g * g.transpose();
+  }
+  for (const bool front : {true, false}) {
+    const Eigen::Vector4d& g = front ? slopes.a : slopes.b;
+    const double sigma = front ? o.a_sigma : o.b_sigma;
+    const Eigen::Vector4d scaled = g.cwiseProduct(value);
+    P += sigma * sigma * scaled * scaled.transpose();
+  }
+  return P;
+}
+
+Eigen::Vector4d values_of(const AxleEstimate& e) { return {e.value(0), e.value(1), e.value(2), e.understeer}; }
+
+GeometrySlopes geometry_slopes(const VehicleProblem& problem, const AxleEstimate& typical) {
+  const auto slope = [&](double VehicleParameters<double>::*field, double sigma) -> Eigen::Vector4d {
+    if (!(sigma > 0.0)) return Eigen::Vector4d::Zero();
+    VehicleParameters<double> changed = problem.start;
+    changed.*field += sigma;
+    const DriveRegressionResult again = regress(problem, problem.segments.identification, changed);
+    const AxleEstimate* other = again.find(Method::kGtls);
+    if (other == nullptr || !other->usable) return Eigen::Vector4d::Zero();
+    return (values_of(*other) - values_of(typical)).cwiseQuotient(values_of(typical)) / sigma;
+  };
+  return {slope(&VehicleParameters<double>::a, problem.options.a_sigma),
+          slope(&VehicleParameters<double>::b, problem.options.b_sigma)};
+}
+
+/// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset.
+Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimate& axle, const GeometrySlopes& slopes,
+                                bool steer_bias) {
+  const Eigen::Index n = steer_bias ? 5 : 4;
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n, n);
+  if (axle.usable) {
+    VehicleParameters<double> p = problem.start;
+    p.C_f = axle.value(0);
+    p.C_r = axle.value(1);
+    p.I_z = axle.value(2);
+    Eigen::Vector3d g = understeer_slope(p);
+    g(2) = 0.0;
+    P.topLeftCorner(3, 3) = axle.covariance;
+    P.block(0, 3, 3, 1) = axle.covariance * g;
+    P.block(3, 0, 1, 3) = (axle.covariance * g).transpose();
+    P(3, 3) = g.dot(axle.covariance * g);
+    P.topLeftCorner(4, 4) += known_covariance(problem, slopes, values_of(axle));
+  } else {
+    P.diagonal().head(3).setConstant(kInfinity);
+    P(3, 3) = axle.understeer_only ? axle.understeer_sigma * axle.understeer_sigma : kInfinity;
+  }
+  if (steer_bias) P(4, 4) = axle.steer_bias_sigma * axle.steer_bias_sigma;
+  return P;
+}
+
+VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& axle, const GeometrySlopes& slopes,
+                            bool steer_bias) {
+  VehicleEstimate e;
+  e.method = vehicle_method(axle.method);
+  e.message = axle.message;
+  e.usable = axle.usable;
+  e.covariance = axle_covariance(problem, axle, slopes, steer_bias);
+  const auto add = [&](const char* name, const char* unit, double v) {
+    const auto i = static_cast<Eigen::Index>(e.parameters.size());
+    e.parameters.push_back(
+        describe(name, unit, v, e.covariance(i, i), axle.degrees_of_freedom, problem.options.significance));
+  };
+  add("C_f", "N/rad", axle.usable ? axle.value(0) : problem.start.C_f);
+  add("C_r", "N/rad", axle.usable ? axle.value(1) : problem.start.C_r);
+  add("I_z", "kg m^2", axle.usable ? axle.value(2) : problem.start.I_z);
+  add("understeer_gradient", "rad s^2/m", axle.understeer);
+  if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
+  mark_unexcited(e, problem.options.max_relative_sigma);
+  // Without the lateral velocity all three come out of the same coefficients: what noise does to one of them (it
+  // pulls p and q towards zero) it does to all.
+  const auto unexcited = [](const ParameterEstimate& p) { return p.status == ParameterStatus::kNotExcited; };
+  if (std::any_of(e.parameters.begin(), e.parameters.begin() + 3, unexcited)) {
+    for (std::size_t i = 0; i < 3; ++i) e.parameters[i].status = ParameterStatus::kNotExcited;
+  }
+  return e;
+}
+
+/// Where output error begins: the equation error that is known well enough, else the start.
+VehicleParameters<double> begin_of_search(const VehicleProblem& problem, const EquationErrorEstimates* equation_error) {
+  VehicleParameters<double> begin = problem.start;
+  if (equation_error == nullptr) return begin;
+  const DriveRegressionResult& regression = equation_error->regression;
+  for (const Method method : {regression.recommended, Method::kGtls, Method::kOls}) {
+    const AxleEstimate* e = regression.find(method);
+    if (e == nullptr || !e->usable) continue;
+    const Eigen::Vector3d sigma = e->covariance.diagonal().cwiseSqrt();
+    if (!(sigma.cwiseQuotient(e->value).maxCoeff() < problem.options.max_relative_sigma)) continue;
+    begin.C_f = e->value(0);
+    begin.C_r = e->value(1);
+    begin.I_z = e->value(2);
+    break;
+  }
+  return begin;
+}
+
+/// The free unknowns in their order, with the understeer gradient behind the vehicle's own.
+struct Places {
+  std::vector<Eigen::Index> unknown;  // of each free one
+  Eigen::Index understeer = 0;        // row of the understeer gradient
+  [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(unknown.size()) + 1; }
+  /// Row i's unknown; not for the understeer gradient's row.
+  [[nodiscard]] Eigen::Index at(Eigen::Index row) const {
+    return unknown[static_cast<std::size_t>(row < understeer ? row : row - 1)];
+  }
+};
+
+Places places_of(const DriveModelOptions& options) {
+  Places places;
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
+    if (options.free[i]) places.unknown.push_back(static_cast<Eigen::Index>(i));
+  }
+  places.understeer = std::count_if(places.unknown.begin(), places.unknown.end(),
+                                    [](Eigen::Index i) { return i < row_of(DriveUnknown::kSteerBias); });
+  return places;
+}
+
+/// Covariance of the rows of `places`, with what the uncertainty of mass, a and b adds.
+Eigen::MatrixXd output_error_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                                        const estimation::OutputErrorEstimate& result,
+                                        const VehicleParameters<double>& p, const Places& places) {
+  const Eigen::Index n = places.rows(), own = places.understeer;
+  const Eigen::Vector3d g = understeer_slope(p);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kDriveUnknowns));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i == own) {
+      J(i, 0) = g(0);
+      J(i, 1) = g(1);
+      J(i, 3) = g(2);
+    } else {
+      J(i, places.at(i)) = 1.0;
+    }
+  }
+  const Eigen::MatrixXd finite = result.covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; });
+  Eigen::MatrixXd P = J * finite * J.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < J.cols(); ++j) {
+      if (J(i, j) != 0.0 && !std::isfinite(result.covariance(j, j))) P(i, i) = kInfinity;
+    }
+  }
+  const Eigen::Matrix4d extra =
+      known_covariance(problem, slopes, {result.theta(0), result.theta(1), result.theta(2), understeer_gradient(p)});
+  // Rows of C_f, C_r, I_z (where free) and the understeer gradient.
+  std::array<Eigen::Index, 4> row{-1, -1, -1, own};
+  for (std::size_t i = 0; i < places.unknown.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (places.unknown[i] < 3) row[static_cast<std::size_t>(places.unknown[i])] = at < own ? at : at + 1;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (row[i] >= 0 && row[j] >= 0)
+        P(row[i], row[j]) += extra(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  return P;
+}
+
+VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                            const estimation::OutputErrorEstimate& result) {
+  VehicleEstimate e;
+  e.method = VehicleMethod::kOutputError;
+  e.usable = result.usable();
+  e.message = result.message;
+  if (!e.usable) return e;
+  const VehicleIdentifyOptions& o = problem.options;
+  const Places places = places_of(o.model);
+  VehicleParameters<double> p = problem.start;
+  p.C_f = result.theta(0);
+  p.C_r = result.theta(1);
+  p.I_z = result.theta(2);
+  p.a = result.theta(3);
+  p.b = problem.start.wheelbase() - p.a;
+  e.covariance = output_error_covariance(problem, slopes, result, p, places);
+  for (Eigen::Index i = 0; i < places.rows(); ++i) {
+    if (i == places.understeer) {
+      e.parameters.push_back(describe("understeer_gradient", "rad s^2/m", understeer_gradient(p), e.covariance(i, i),
+                                      result.degrees_of_freedom, o.significance));
+      continue;
+    }
+    const ParameterEstimate& given = result.parameters[static_cast<std::size_t>(places.at(i))];
+    ParameterEstimate made =
+        describe(given.name, given.unit, given.value, e.covariance(i, i), result.degrees_of_freedom, o.significance);
+    made.sigma_white = given.sigma_white;
+    made.variance_inflation = given.variance_inflation;
+    made.unexcited_share = given.unexcited_share;
+    if (given.status == ParameterStatus::kNotExcited) made.status = given.status;
+    e.parameters.push_back(std::move(made));
+  }
+  mark_unexcited(e, o.max_relative_sigma);
+  return e;
+}
+
+}  // namespace
+
+double understeer_gradient(const VehicleParameters<double>& p) {
+  return 0.5 * p.mass / p.wheelbase() * (p.b / p.C_f - p.a / p.C_r);
+}
+
+DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
+                              const VehicleParameters<double>& known) {
+  estimation::RegressionOptions options;
+  options.significance = problem.options.significance;
+  options.signal_to_noise = problem.options.signal_to_noise;
+  const double pass_Hz = problem.signal_options.pass_Hz > 0.0
+                             ? problem.signal_options.pass_Hz
+                             : std::min(kDefaultPass_Hz, 0.1 * problem.signals.grid.rate_Hz());
+  return equation_error(drive_regressions(problem.signals, spans, known, pass_Hz), known, options);
+}
+
+EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem) {
+  EquationErrorEstimates out;
+  out.regression = regress(problem, problem.segments.identification, problem.start);
+  const AxleEstimate* typical = out.regression.find(Method::kGtls);
+  if (typical != nullptr && typical->usable) out.slopes = geometry_slopes(problem, *typical);
+  for (const AxleEstimate& axle : out.regression.axles)
+    out.estimates.push_back(estimate_of(problem, axle, out.slopes, !out.regression.data.direct));
+  return out;
+}
+
+OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                           Progress& progress) {
+  DriveModelOptions model_options = problem.options.model;
+  model_options.gravity = problem.signal_options.gravity;
+  const DriveParametricModel model(problem.signals, problem.segments.identification,
+                                   begin_of_search(problem, equation_error), model_options);
+  estimation::OutputErrorOptions options;
+  options.significance = problem.options.significance;
+  // What is not determined by then crawls along a valley: more relaxations would not help it.
+  options.max_relaxations = 12;
+  options.max_lag =
+      std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * problem.signals.grid.rate_Hz()));
+  OutputErrorResult out;
+  out.raw = estimation::output_error(model, model.measured(), options, progress);
+  out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
+  return out;
+}
+
+VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason) {
+  VehicleEstimate e;
+  e.message = std::move(reason);
+  const VehicleParameters<double>& p = problem.start;
+  for (const auto& [name, unit, value] :
+       {std::tuple{"C_f", "N/rad", p.C_f}, std::tuple{"C_r", "N/rad", p.C_r}, std::tuple{"I_z", "kg m^2", p.I_z},
+        std::tuple{"understeer_gradient", "rad s^2/m", understeer_gradient(p)}})
+    e.parameters.push_back(describe(name, unit, value, kInfinity, 1.0, problem.options.significance));
+  e.covariance = Eigen::MatrixXd::Zero(4, 4);
+  e.covariance.diagonal().setConstant(kInfinity);
+  return e;
+}
+
+VehicleMethod choose_method(std::span<const VehicleEstimate> estimates, const DriveRegressionResult* regression,
+                            std::optional<VehicleMethod> desired) {
+  const auto usable = [&](VehicleMethod method) {
+    const VehicleEstimate* e = find_estimate(estimates, method);
+    return e != nullptr && e->usable;
+  };
+  if (desired) return usable(*desired) ? *desired : VehicleMethod::kNone;
+  if (usable(VehicleMethod::kOutputError)) return VehicleMethod::kOutputError;
+  if (regression == nullptr) return VehicleMethod::kNone;
+  std::vector<Method> order{Method::kGtls, Method::kPcaGtls, Method::kOls};
+  if (regression->recommends) order.insert(order.begin(), regression->recommended);
+  for (const Method m : order) {
+    if (usable(vehicle_method(m))) return vehicle_method(m);
+  }
+  // Steady cornering: the understeer gradient alone.
+  const AxleEstimate* pca = regression->find(Method::kPcaGtls);
+  const bool understeer = pca != nullptr && pca->understeer_only && std::isfinite(pca->understeer_sigma);
+  return understeer ? VehicleMethod::kPcaGtls : VehicleMethod::kNone;
+}
+
+const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method) {
+  for (const VehicleEstimate& e : estimates) {
+    if (e.method == method) return &e;
+  }
+  return nullptr;
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+
+namespace veridyn::vehicle {
+
+/// How C_f, C_r, I_z and the understeer gradient change, as shares of themselves, per metre of a and of b. They enter
+/// the estimates' covariances through `[identify.uncertainty]`; 0 where that gives no uncertainty.
+struct GeometrySlopes {
+  Eigen::Vector4d a = Eigen::Vector4d::Zero();
+  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+};
+
+/// Equation error by all regressions, with the vehicle's parameters that each gives.
+struct EquationErrorEstimates {
+  DriveRegressionResult regression;
+  GeometrySlopes slopes;
+  std::vector<VehicleEstimate> estimates;  ///< one for each regression
+};
+
+/// Output error, with the vehicle's parameters that it gives.
+struct OutputErrorResult {
+  estimation::OutputErrorEstimate raw;
+  VehicleEstimate estimate;
+};
+
+/// The regressions over some spans, with `known` for mass, a and b.
+[[nodiscard]] DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
+                                            const VehicleParameters<double>& known);
+
+[[nodiscard]] EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem);
+
+/// Starts from the equation error where that is known well enough; `equation_error` may be null.
+[[nodiscard]] OutputErrorResult estimate_by_output_error(const VehicleProblem& problem,
+                                                         const EquationErrorEstimates* equation_error,
+                                                         Progress& progress);
+
+/// The parameters of the start, all of them not excited; `reason` is its message.
+[[nodiscard]] VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason);
+
+/// As VehicleIdentifyOptions::method describes; kNone when no method gave an estimate. `regression` may be null.
+[[nodiscard]] VehicleMethod choose_method(std::span<const VehicleEstimate> estimates,
+                                          const DriveRegressionResult* regression,
+                                          std::optional<VehicleMethod> desired);
+
+/// The estimate by a method, or null.
+[[nodiscard]] const VehicleEstimate* find_estimate(std::span<const VehicleEstimate> estimates, VehicleMethod method);
+
+}  // namespace veridyn::vehicle

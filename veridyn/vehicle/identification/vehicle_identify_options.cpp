@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
+
+namespace veridyn::vehicle {
+
+VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
+  VehicleIdentifyOptions o;
+  o.equation_error = table.flag_or("equation_error", o.equation_error);
+  o.output_error = table.flag_or("output_error", o.output_error);
+  if (!o.equation_error && !o.output_error)
+    table.fail("output_error", "and equation_error are both false: nothing is left to identify by");
+  std::vector<std::string> methods{"auto"};
+  for (const VehicleMethod m : {VehicleMethod::kOutputError, VehicleMethod::kOls, VehicleMethod::kTls,
+                                VehicleMethod::kGtls, VehicleMethod::kPcaGtls})
+    methods.emplace_back(to_string(m));
+  const std::string method = table.choice_or("method", methods, "auto");
+  if (method != "auto") o.method = vehicle_method(method);
+  o.model.read_keys(table);
+  o.signal_to_noise = table.number_or("signal_to_noise", "1", o.signal_to_noise);
+  if (!(o.signal_to_noise >= 1.0 && o.signal_to_noise <= 10.0))
+    table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", o.signal_to_noise));
+  o.significance = table.number_or("significance", "1", o.significance);
+  if (!(o.significance > 0.0 && o.significance < 1.0))
+    table.fail("significance", fmt::format("= {} must be between 0 and 1", o.significance));
+  o.min_holdout_r2 = table.number_or("min_holdout_r2", "1", o.min_holdout_r2);
+  o.max_unmodelled = table.number_or("max_unmodelled", "1", o.max_unmodelled);
+  o.contradiction_level = table.number_or("contradiction_level", "1", o.contradiction_level);
+  o.max_relative_sigma = table.positive_or("max_relative_sigma", "1", o.max_relative_sigma);
+  const StudyTable known = table.table_or_empty("uncertainty");
+  const auto sigma = [&](const char* key, const char* unit) {
+    const double s = known.number_or(key, unit, 0.0);
+    if (!(s >= 0.0)) known.fail(key, fmt::format("= {:g} must be >= 0: it is a standard deviation", s));
+    return s;
+  };
+  o.mass_sigma = sigma("mass", "kg");
+  o.a_sigma = sigma("a", "m");
+  o.b_sigma = sigma("b", "m");
+  return o;
+}
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/vehicle/identification/vehicle_estimates.hpp"
+
+namespace veridyn::vehicle {
+
+/// View of what is judged. `equation_error` and `output_error` are null where they were not tried.
+struct VehicleFindings {
+  const VehicleEstimate& chosen;
+  const EquationErrorEstimates* equation_error = nullptr;
+  const OutputErrorResult* output_error = nullptr;
+  const DriveValidation& fit;         ///< of the chosen estimate on the identification segments
+  const DriveValidation& validation;  ///< on the hold-out
+  const DriveValidation& by_noise;    ///< see with_noisier_inputs
+};
+
+/// The verdict on an identified vehicle and what it rests on.
+struct VehicleJudgement {
+  VehicleVerdict verdict = VehicleVerdict::kRejected;
+  std::string reason;                            ///< one sentence
+  std::vector<estimation::HonestyCheck> checks;  ///< in the order of the report
+  std::vector<std::string> warnings;             ///< texts of the checks that failed, and what could not be checked
+};
+
+/// Equation error against output error and hold-out, and the regressions' consistency equation; each is missing where
+/// there is nothing to compare.
+struct AgreementChecks {
+  std::optional<estimation::HonestyCheck> consistency, methods, data_parts;
+};
+[[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
+
+/// Rejected: when the identified model cannot be simulated, leaves more than `max_unmodelled` of an output's power
+/// unexplained, predicts less than `min_holdout_r2` of the hold-out's yaw rate, or (linear tyres) an agreement check
+/// contradicts it beyond `contradiction_level`. Not excited: when no parameter of the vehicle is determined.
+[[nodiscard]] VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings);
+
+}  // namespace veridyn::vehicle

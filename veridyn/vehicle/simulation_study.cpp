@@ -1,0 +1,180 @@
+#include "veridyn/vehicle/simulation_study.hpp"
+
+#include <array>
+#include <variant>
+
+#include "veridyn/core/at_place.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/road/road_study.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+const std::vector<std::string> kModels{"linear bicycle", "bicycle", "four-wheel"};
+
+VehicleModelKind read_model(const StudyTable& drive) {
+  const std::string word = drive.choice_or("model", kModels, "four-wheel");
+  for (const auto kind : {VehicleModelKind::kLinearBicycle, VehicleModelKind::kBicycle}) {
+    if (to_string(kind) == word) return kind;
+  }
+  return VehicleModelKind::kFourWheel;
+}
+
+FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
+  static const std::vector<std::string> kConventions{"first principles", "source"};
+  static const std::vector<std::string> kGeometries{"exact", "small angles"};
+  FourWheelOptions options;
+  options.gravity = drive.positive_or("gravity", "m/s^2", options.gravity);
+  if (drive.choice_or("convention", kConventions, "first principles") == "source")
+    options.convention = FourWheelConvention::kSource;
+  if (drive.choice_or("geometry", kGeometries, "exact") == "small angles")
+    options.geometry = BicycleGeometry::kSmallAngles;
+  options.ackermann = vehicle.ackermann;
+  options.camber_per_roll = vehicle.camber_per_roll;
+  options.relaxation_length = vehicle.relaxation_length;
+  if (drive.flag_or("longitudinal", false)) options.longitudinal = vehicle.longitudinal;
+  return options;
+}
+
+/// A tyre with a share of its stiffness and friction.
+template <typename Tyre>
+Tyre slipperier(Tyre tyre, double grip) {
+  tyre.stiffness *= grip;
+  tyre.slip_stiffness *= grip;
+  tyre.mu *= grip;
+  return tyre;
+}
+
+MagicFormulaTyre<double> slipperier(MagicFormulaTyre<double> tyre, double grip) {
+  auto& c = tyre.coefficients;
+  for (double* scaling : {&c.LKX, &c.LKY, &c.LMUX, &c.LMUY}) *scaling *= grip;
+  return tyre;
+}
+
+std::vector<GripChange> read_grip(const StudyTable& drive) {
+  std::vector<GripChange> changes;
+  for (const StudyTable& table : drive.tables("change")) {
+    GripChange change;
+    change.time = table.number("time", "s");
+    if (!changes.empty() && !(change.time > changes.back().time))
+      table.fail("time", "must be later than the one before");
+    const double both = table.positive_or("grip", "1", 1.0);
+    change.front = table.positive_or("front", "1", both);
+    change.rear = table.positive_or("rear", "1", both);
+    changes.push_back(change);
+  }
+  return changes;
+}
+
+}  // namespace
+
+std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
+
+SimulationStudy read_simulation_study(const StudyTable& root) {
+  SimulationStudy study;
+  study.title = root.text_or("title", "drive");
+  const long long seed = root.integer_or("seed", 1);
+  if (seed < 0) root.fail("seed", "must not be negative");
+  study.seed = static_cast<std::uint64_t>(seed);
+  const StudyTable drive = root.table_or_empty("drive");
+  study.model = read_model(drive);
+  study.vehicle =
+      read_vehicle(root.table("subject"),
+                   study.model == VehicleModelKind::kFourWheel ? VehicleNeeds::kFourWheel : VehicleNeeds::kBicycle);
+  study.inputs = study.vehicle.inputs;
+  study.four_wheel = read_options(drive, study.vehicle);
+  if (study.four_wheel.longitudinal && study.model != VehicleModelKind::kFourWheel)
+    drive.fail("longitudinal", "needs model = \"four-wheel\"");
+
+  SimulationOptions& s = study.simulation;
+  s.speed = drive.has("speed") || !study.vehicle.speed ? drive.number("speed", "m/s") : *study.vehicle.speed;
+  if (!(s.speed > 0.0)) drive.fail("speed", fmt::format("is {:g} m/s; must be > 0", s.speed));
+  ManoeuvreContext context{.parameters = study.vehicle.parameters,
+                           .speed = s.speed,
+                           .gravity = study.four_wheel.gravity,
+                           .seed = study.seed,
+                           .wheel_radius = study.vehicle.longitudinal.wheel_radius};
+  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
+  context.C_f = C_f;
+  context.C_r = C_r;
+  study.manoeuvre = read_manoeuvre(drive, context);
+  s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
+  s.step = drive.positive_or("step", "s", s.step);
+  s.output_step = drive.positive_or("output_step", "s", s.output_step);
+  at_place(root.place("drive"), [&] { s.validate(); });
+  if (!study.manoeuvre.speed.empty() && !study.four_wheel.longitudinal)
+    drive.fail("manoeuvre", "changes its speed, which needs `longitudinal = true`");
+
+  study.grip = read_grip(drive);
+  if (root.has("road")) {
+    study.road = read_road(root.table("road"), study.seed);
+    if (study.road && study.model != VehicleModelKind::kFourWheel)
+      root.fail("road", "needs model = \"four-wheel\": the bicycle does not move up and down");
+  }
+  if (root.has("sensors")) {
+    study.sensors = read_drive_sensors(root.table("sensors"));
+    study.sensors->gravity = study.four_wheel.gravity;
+  }
+  return study;
+}
+
+VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model, const FourWheelOptions& options,
+                           Driver& driver, const Road* road, const SimulationOptions& simulation, Progress& progress,
+                           std::span<const GripChange> grip) {
+  const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
+  return std::visit(
+      [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
+        // The model of the beginning and those of the changes, made and driven alike.
+        const auto drive = [&](const auto& make, const auto& run) {
+          using Model = decltype(make(tyres));
+          std::vector<ModelChange<Model>> changes;
+          for (const GripChange& change : grip) {
+            const AxleTyres<Tyre> changed{slipperier(tyres.front, change.front), slipperier(tyres.rear, change.rear)};
+            changes.push_back({change.time, make(changed)});
+          }
+          return run(make(tyres), std::span<const ModelChange<Model>>(changes));
+        };
+        if (model == VehicleModelKind::kFourWheel) {
+          return drive(
+              [&](const AxleTyres<Tyre>& t) {
+                return FourWheelModel<double, Tyre>(vehicle.parameters, mounted(t), options);
+              },
+              [&](const auto& start, auto changes) {
+                return simulate(start, driver, road, simulation, progress, changes);
+              });
+        }
+        return drive(
+            [&](const AxleTyres<Tyre>& t) {
+              return BicycleModel<double, Tyre>{vehicle.parameters, symmetric_tyre(t.front), symmetric_tyre(t.rear),
+                                                options.gravity, geometry};
+            },
+            [&](const auto& start, auto changes) { return simulate(start, driver, simulation, progress, changes); });
+      },
+      vehicle.tyres);
+}
+
+SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress) {
+  SimulationRun run;
+  const VehicleParameters<double>& p = study.vehicle.parameters;
+  const double gravity = study.four_wheel.gravity;
+  run.trajectory = simulate(study.vehicle, study.model, study.four_wheel, *study.manoeuvre.driver, study.road.get(),
+                            study.simulation, progress, study.grip);
+  const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, gravity);
+  run.linear = {p.mass, p.I_z, p.a, p.b, C_f, C_r, study.simulation.speed};
+  run.characteristics = characteristics(run.linear);
+  run.modes = modes(run.linear.A());
+  if (study.model == VehicleModelKind::kFourWheel) {
+    std::visit(
+        [&]<typename Tyre>(const AxleTyres<Tyre>& t) {
+          const FourWheelModel<double, Tyre> model(p, mounted(t), study.four_wheel);
+          run.vehicle_modes = modes(linearise(model, study.simulation.speed));
+        },
+        study.vehicle.tyres);
+  }
+  if (!run.trajectory.usable()) return run;
+  run.metrics = manoeuvre_metrics(run.trajectory, study.manoeuvre, p, gravity);
+  if (study.sensors) run.measured = record_drive(run.trajectory, *study.sensors, study.seed);
+  return run;
+}
+
+}  // namespace veridyn::vehicle

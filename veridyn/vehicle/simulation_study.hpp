@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/recording.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
+#include "veridyn/vehicle/model/four_wheel_analysis.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
+#include "veridyn/vehicle/road/road.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
+#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+
+namespace veridyn::vehicle {
+
+enum class VehicleModelKind {
+  kLinearBicycle,  ///< bicycle, small angles
+  kBicycle,        ///< bicycle, exact geometry
+  kFourWheel,
+};
+/// The word of the study: "linear bicycle", "bicycle", "four-wheel".
+[[nodiscard]] std::string_view to_string(VehicleModelKind kind);
+
+/// From `time` on the tyres have that share of their stiffness and friction at the beginning.
+struct GripChange {
+  double time = 0.0;  ///< [s]
+  double front = 1.0, rear = 1.0;
+};
+
+/// What a study drives: vehicle, model, manoeuvre and road, read and checked.
+struct SimulationStudy {
+  std::string title;
+  std::uint64_t seed = 1;
+  Vehicle vehicle;
+  VehicleModelKind model = VehicleModelKind::kFourWheel;
+  SimulationOptions simulation;
+  FourWheelOptions four_wheel;  ///< gravity counts for all models
+  Manoeuvre manoeuvre;
+  std::vector<GripChange> grip;      ///< by time
+  std::shared_ptr<const Road> road;  ///< null: flat
+  std::optional<DriveSensorSet> sensors;
+  std::vector<std::filesystem::path> inputs;
+};
+
+/// Reads from the root of a study:
+///
+///     title = "step steer at 100 km/h"
+///     seed = 1
+///     [subject]                      # see read_vehicle
+///     [drive]
+///     model = "four-wheel"           # "bicycle", "linear bicycle"
+///     speed = "100 km/h"             # kept, unless `longitudinal`; a built-in vehicle has one
+///     manoeuvre = "step steer"       # and its own keys: see read_manoeuvre
+///     duration = 20                  # [s]; the manoeuvre's own when left out
+///     step = 0.001                   # of the integration [s]
+///     output_step = 0.01             # of the results [s]
+///     gravity = 9.80665              # [m/s^2]
+///     longitudinal = false           # true: speed follows from torques, drag and grade ([subject.longitudinal])
+///     convention = "first principles"  # "source": that of the published similarity study
+///     geometry = "exact"             # four-wheel: "small angles"
+///     [[drive.change]]               # the tyres change on the way, by time
+///     time = 60                      # [s]
+///     grip = 0.6                     # factor on stiffness and friction of the beginning; or `front`, `rear`
+///     [road]                         # see read_road; needs the four-wheel model
+///     [sensors]                      # see read_drive_sensors; with it what sensors record is written too
+///
+/// Tables of the analysis (`[data]`, `[identify]` ...) are left to others.
+/// @throws InputError with file, line and key.
+[[nodiscard]] SimulationStudy read_simulation_study(const StudyTable& root);
+
+/// Drives a vehicle with any of the models. @throws InputError for a step too long or controls out of range.
+[[nodiscard]] VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model,
+                                         const FourWheelOptions& options, Driver& driver, const Road* road,
+                                         const SimulationOptions& simulation, Progress& progress,
+                                         std::span<const GripChange> grip = {});
+
+/// What became of a drive.
+struct SimulationRun {
+  VehicleTrajectory trajectory;
+  std::optional<Recording> measured;  ///< what the sensors recorded
+  std::vector<Metric> metrics;
+  LinearBicycle<double> linear;  ///< the bicycle about straight running at the study's speed
+  BicycleCharacteristics<double> characteristics;
+  std::vector<Mode> modes;                   ///< of the bicycle
+  std::vector<FourWheelMode> vehicle_modes;  ///< of the four-wheel model, where it was driven
+};
+
+/// Drives. @throws InputError for a step too long or controls out of range.
+[[nodiscard]] SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress);
+
+}  // namespace veridyn::vehicle
