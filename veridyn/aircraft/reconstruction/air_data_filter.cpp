@@ -135,7 +135,7 @@ Eigen::Matrix<double, 3, AirDataMotion::kCore> AirDataMotion::air_velocity_jacob
 Prediction predict_ground_velocity(const AirDataState<double>& x, int axis) {
   Prediction p;
   p.value = x.velocity(axis);
-  p.H(AirDataMotion::kVelocity + axis) = 1.0;
+  p.core(AirDataMotion::kVelocity + axis) = 1.0;
   return p;
 }
 
@@ -148,15 +148,15 @@ std::optional<Prediction> predict_euler_angle(const AirDataState<double>& x, int
   switch (axis) {
     case 0:
       p.value = e.phi;
-      p.H.head<3>() << 1.0, sf * tt, cf * tt;
+      p.core.head<3>() << 1.0, sf * tt, cf * tt;
       break;
     case 1:
       p.value = e.theta;
-      p.H.head<3>() << 0.0, cf, -sf;
+      p.core.head<3>() << 0.0, cf, -sf;
       break;
     default:
       p.value = e.psi;
-      p.H.head<3>() << 0.0, sf / ct, cf / ct;
+      p.core.head<3>() << 0.0, sf / ct, cf / ct;
       break;
   }
   return p;
@@ -168,7 +168,7 @@ Prediction predict_dynamic_pressure(const AirDataMotion& model, const AirDataSta
   const double gain = 1.0 + x.air_error(AirDataMotion::kPitotScale);
   Prediction p;
   p.value = gain * pressure + x.air_error(AirDataMotion::kPitotBias);
-  p.H.head<AirDataMotion::kCore>() = model.air_velocity_jacobian(x).transpose() * (gain * air_density * v);
+  p.core = model.air_velocity_jacobian(x).transpose() * (gain * air_density * v);
   return p;
 }
 
@@ -178,7 +178,7 @@ Prediction predict_airspeed(const AirDataMotion& model, const AirDataState<doubl
   const double gain = std::sqrt(std::max(1.0 + x.air_error(AirDataMotion::kPitotScale), 0.01));
   Prediction p;
   p.value = gain * speed;
-  p.H.head<AirDataMotion::kCore>() = model.air_velocity_jacobian(x).transpose() * (v * (gain / speed));
+  p.core = model.air_velocity_jacobian(x).transpose() * (v * (gain / speed));
   return p;
 }
 
@@ -190,8 +190,7 @@ Prediction predict_alpha(const AirDataMotion& model, const AirDataState<double>&
   const double gain = 1.0 + x.air_error(AirDataMotion::kAlphaScale);
   Prediction p;
   p.value = gain * alpha + x.air_error(AirDataMotion::kAlphaBias);
-  p.H.head<AirDataMotion::kCore>() =
-      model.air_velocity_jacobian(x).transpose() * Eigen::Vector3d(-v.z(), 0.0, v.x()) * (gain / square);
+  p.core = model.air_velocity_jacobian(x).transpose() * Eigen::Vector3d(-v.z(), 0.0, v.x()) * (gain / square);
   return p;
 }
 
@@ -210,7 +209,7 @@ Prediction predict_beta(const AirDataMotion& model, const AirDataState<double>& 
     gradient = Eigen::Vector3d(-v.x() * v.y() / plane, plane, -v.z() * v.y() / plane) / square;
   }
   p.value += x.air_error(AirDataMotion::kBetaBias);
-  p.H.head<AirDataMotion::kCore>() = model.air_velocity_jacobian(x).transpose() * gradient;
+  p.core = model.air_velocity_jacobian(x).transpose() * gradient;
   return p;
 }
 

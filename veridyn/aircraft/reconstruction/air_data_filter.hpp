@@ -70,7 +70,13 @@ struct AirDataErrorVector {
 /// What a sensor should show, and how that changes with the error vector that all filters share.
 struct Prediction {
   double value = 0.0;
-  Eigen::Matrix<double, AirDataErrorVector::kFull, 1> H = Eigen::Matrix<double, AirDataErrorVector::kFull, 1>::Zero();
+  Eigen::Matrix<double, AirDataErrorVector::kCore, 1> core =
+      Eigen::Matrix<double, AirDataErrorVector::kCore, 1>::Zero();
+  /// By the errors of gyro and accelerometer and of CL, CD, CY; zero where `by_sensor_errors` is
+  /// not.
+  Eigen::Matrix<double, AirDataErrorVector::kFull - AirDataErrorVector::kCore, 1> further =
+      Eigen::Matrix<double, AirDataErrorVector::kFull - AirDataErrorVector::kCore, 1>::Zero();
+  bool by_sensor_errors = false;
 };
 
 /// Kinematics of an aircraft in moving air: what a filter knows that does not know the aircraft.
@@ -262,8 +268,8 @@ struct AirDataModel : AirDataMotion {
   /// Jacobian of `propagate`, dynamic rows, in closed form.
   [[nodiscard]] Eigen::Matrix<double, kDynamic, kStates> transition_rows(const State<double>& x, const Input& u,
                                                                          double dt, State<double>& after) const {
-    after = propagate<double>(x, u, dt);
     const Eigen::Vector3d omega = rates<double>(x, u.gyro), force = true_force<double>(x, u.specific_force);
+    after = advance<double>(x, omega, force, u.airspeed, dt);
     if constexpr (kHasImu) {
       Eigen::Matrix<double, kDynamic, kStates> F;
       F.template leftCols<kCore>() = core_rows(x, omega, force, u.airspeed, dt);
@@ -279,7 +285,20 @@ struct AirDataModel : AirDataMotion {
   }
 
   /// The row of a filter of this kind from the row that all share.
-  [[nodiscard]] static Vector row(const Prediction& p) { return p.H.template head<kStates>(); }
+  [[nodiscard]] static Vector row(const Prediction& p) {
+    if constexpr (kHasImu) {
+      Vector H;
+      H.template head<kCore>() = p.core;
+      if (p.by_sensor_errors) {
+        H.template tail<kImuErrors>() = p.further.template head<kImuErrors>();
+      } else {
+        H.template tail<kImuErrors>().setZero();
+      }
+      return H;
+    } else {
+      return p.core;
+    }
+  }
 };
 
 /// Velocity over ground along north, east or down (axis 0, 1, 2) [m/s].

@@ -5,9 +5,9 @@ namespace veridyn::aircraft::internal {
 std::optional<OfferedSample> offered_sample(const AirDataMotion& motion, const ModelBasedMotion* forces,
                                             const AirDataState<double>& x, const MeasurementContext& c, Sensor which,
                                             double z, double sigma) {
-  OfferedSample sample;
-  Prediction& p = sample.prediction;
-  sample.variance = sigma * sigma;
+  std::optional<OfferedSample> sample(std::in_place);
+  Prediction& p = sample->prediction;
+  sample->variance = sigma * sigma;
   bool angle = false;
   switch (which) {
     case kRoll:
@@ -45,11 +45,11 @@ std::optional<OfferedSample> offered_sample(const AirDataMotion& motion, const M
       u.air_density = c.air_density;
       double gyro_noise = 0.0;
       p = predict_specific_force(*forces, x, u, which - kAccelX, c.gyro_sigma, gyro_noise);
-      sample.variance += gyro_noise;
+      sample->variance += gyro_noise;
       break;
     }
   }
-  sample.nu = angle ? numerics::wrap_angle(z - p.value) : z - p.value;
+  sample->nu = angle ? numerics::wrap_angle(z - p.value) : z - p.value;
   return sample;
 }
 

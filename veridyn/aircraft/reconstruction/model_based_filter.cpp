@@ -114,24 +114,23 @@ ModelBasedMotion::FullRows ModelBasedMotion::full_rows(const State<double>& x, c
 
 Prediction predict_specific_force(const ModelBasedMotion& model, const AirDataState<double>& x, const AirDataInput& u,
                                   int axis, double gyro_sigma, double& noise_variance) {
-  constexpr int kImu = AirDataMotion::kCore;
   const Eigen::Vector3d omega = AirDataMotion::rates<double>(x, u.gyro);
   const ModelBasedMotion::SpecificForce f =
       model.specific_force_derivatives(model.air_velocity<double>(x), omega, x.coefficient_error, u);
   const double gain = 1.0 + x.imu_scale(3 + axis);
   Prediction p;
   p.value = gain * f.value(axis) + x.imu_bias(3 + axis);
-  p.H.head<AirDataMotion::kCore>() =
-      model.air_velocity_jacobian(x).transpose() * (gain * f.by_velocity.row(axis).transpose());
-  p.H.tail<3>() = gain * f.by_coefficient_error.row(axis).transpose();
+  p.core = model.air_velocity_jacobian(x).transpose() * (gain * f.by_velocity.row(axis).transpose());
+  p.by_sensor_errors = true;
+  p.further.tail<3>() = gain * f.by_coefficient_error.row(axis).transpose();
   const Eigen::Vector3d by_rate = gain * f.by_rates.row(axis).transpose();
   for (int i = 0; i < 3; ++i) {
     const double gyro_gain = 1.0 / (1.0 + x.imu_scale(i));
-    p.H(kImu + i) = -by_rate(i) * gyro_gain;
-    p.H(kImu + 6 + i) = -by_rate(i) * omega(i) * gyro_gain;
+    p.further(i) = -by_rate(i) * gyro_gain;
+    p.further(6 + i) = -by_rate(i) * omega(i) * gyro_gain;
   }
-  p.H(kImu + 3 + axis) = 1.0;
-  p.H(kImu + 9 + axis) = f.value(axis);
+  p.further(3 + axis) = 1.0;
+  p.further(9 + axis) = f.value(axis);
   noise_variance = by_rate.squaredNorm() * gyro_sigma * gyro_sigma;
   return p;
 }

@@ -124,8 +124,12 @@ struct ModelBasedAirData : ModelBasedMotion {
   /// The row of a filter of this kind from the row that all share.
   [[nodiscard]] static Vector row(const Prediction& p) {
     Vector H;
-    H.template head<Free::kStates>() = p.H.template head<Free::kStates>();
-    H.template tail<3>() = p.H.template tail<3>();
+    H.template head<Free::kStates>() = Free::row(p);
+    if (p.by_sensor_errors) {
+      H.template tail<3>() = p.further.template tail<3>();
+    } else {
+      H.template tail<3>().setZero();
+    }
     return H;
   }
 };

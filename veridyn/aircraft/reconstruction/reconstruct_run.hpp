@@ -89,8 +89,9 @@ class EventCursor {
 /// The covariance at the start of a filter of one kind.
 template <class Model>
 [[nodiscard]] typename Model::Covariance start_covariance(const Start& start) {
-  Prediction diagonal;
-  diagonal.H = start.variance;
+  Prediction diagonal{.core = start.variance.head<Model::kCore>(),
+                      .further = start.variance.tail<Model::kFull - Model::kCore>(),
+                      .by_sensor_errors = true};
   typename Model::Covariance P = Model::row(diagonal).asDiagonal();
   P.template block<5, 5>(Model::kGust, Model::kGust) = Model::stationary_gust_covariance();
   return P;
