@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 
 int main() try {
   using namespace veridyn;
@@ -21,8 +21,8 @@ int main() try {
   )",
                                    "example 05");
   Progress silent;
-  aircraft::FlightStudy flight = aircraft::read_flight_study(study, silent);
-  const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, silent);
+  aircraft::FlightStudy flight = aircraft::read_study(study, silent);
+  const aircraft::FlightAnalysis analysis = aircraft::identify(flight, silent);
 
   for (const aircraft::CoefficientResult& coefficient : analysis.coefficients) {
     std::printf("%-12s %s\n", aircraft::to_string(coefficient.verdict), coefficient.reason.c_str());

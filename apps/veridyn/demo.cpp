@@ -10,7 +10,7 @@
 #include "apps/veridyn/results.hpp"
 #include "apps/veridyn/scale.hpp"
 #include "apps/veridyn/simulate_muscle.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
 
@@ -120,8 +120,8 @@ int aircraft_demo(const CommonOptions& options) {
   write_file(folder / "study.toml", kDemoStudy);
   const Study study = load_study((folder / "study.toml").string(), options);
   TerminalProgress progress(options.quiet);
-  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, progress);
+  aircraft::FlightStudy flight = aircraft::read_study(study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

@@ -8,7 +8,7 @@
 #include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/ground.hpp"
 #include "apps/veridyn/results.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
@@ -32,8 +32,8 @@ int identify(const Options& options) {
                      "simulate` runs the study, [subject.parameters] sets parameters by hand");
   }
   TerminalProgress progress(options.common.quiet);
-  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::identify_flight(flight, progress);
+  aircraft::FlightStudy flight = aircraft::read_study(study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

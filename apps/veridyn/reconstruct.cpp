@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/veridyn/results.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
@@ -20,8 +20,8 @@ struct Options {
 int reconstruct(const Options& options) {
   const Study study = load_study(options.study, options.common);
   TerminalProgress progress(options.common.quiet);
-  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::reconstruct_flight(flight, progress);
+  aircraft::FlightStudy flight = aircraft::read_study(study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::reconstruct(flight, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "apps/veridyn/output.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 
 namespace veridyn::app {
 

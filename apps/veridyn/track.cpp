@@ -120,7 +120,7 @@ void write_results(const Options& options, const Study& study, const FlightStudy
 
 int replay(const Options& options, const Study& study) {
   TerminalProgress progress(options.common.quiet);
-  FlightStudy flight_study = read_flight_study(study, progress);
+  FlightStudy flight_study = read_study(study, progress);
   const TrackingAnalysis analysis = track_flight(flight_study, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
@@ -138,7 +138,7 @@ int follow(const Options& options, const Study& study) {
   std::optional<TrackedFlight> flight;
   follow_files(followed_files(study.root()), options.follow, options.common, [&](bool finished) {
     Progress silent;
-    flight_study = read_flight_study(study, silent);
+    flight_study = read_study(study, silent);
     if (!flight) flight.emplace(*flight_study);
     view.show(*flight, flight->advance(flight_study->mapped, *flight_study, finished, silent));
   });

@@ -7,7 +7,7 @@
 
 #include "apps/veridyn/drive.hpp"
 #include "apps/veridyn/results.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
@@ -27,8 +27,8 @@ int validate(const Options& options) {
     return validate_vehicle(study, options.study, options.estimate, options.common);
   const estimation::Estimate estimate = io::read_estimate(options.estimate);
   TerminalProgress progress(options.common.quiet);
-  aircraft::FlightStudy flight = aircraft::read_flight_study(study, progress);
-  aircraft::FlightAnalysis analysis = aircraft::validate_estimate(flight, estimate, progress);
+  aircraft::FlightStudy flight = aircraft::read_study(study, progress);
+  aircraft::FlightAnalysis analysis = aircraft::validate(flight, estimate, progress);
   if (analysis.interrupted) {
     fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
     return kFailed;

@@ -44,7 +44,7 @@ detection_learning = "30 s"
 
 FlightStudy flown(const std::string& more = "") {
   Progress silent;
-  return read_flight_study(Study::parse(std::string(kStudy) + more, "test.toml"), silent);
+  return read_study(Study::parse(std::string(kStudy) + more, "test.toml"), silent);
 }
 
 const TrackedCoefficient& of(const TrackedFlight& flight, Coefficient c) {

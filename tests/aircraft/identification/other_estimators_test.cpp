@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/identification/output_error_model.hpp"
 #include "veridyn/core/error.hpp"
 
@@ -30,8 +30,8 @@ turbulence = "none"
 
 FlightAnalysis identify(const std::string& more, FlightStudy* out = nullptr) {
   Progress progress;
-  FlightStudy study = read_flight_study(Study::parse(std::string(kCalmFlight) + more, "calm.toml"), progress);
-  FlightAnalysis analysis = identify_flight(study, progress);
+  FlightStudy study = read_study(Study::parse(std::string(kCalmFlight) + more, "calm.toml"), progress);
+  FlightAnalysis analysis = identify(study, progress);
   if (out != nullptr) *out = std::move(study);
   return analysis;
 }

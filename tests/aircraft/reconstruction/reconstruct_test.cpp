@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
+#include "veridyn/aircraft/reconstruction/air_data_filter.hpp"
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
@@ -57,7 +58,7 @@ const SensorReport& sensor(const Reconstruction& r, const char* name) {
 
 // --- The model ------------------------------------------------------------------------------------------------------
 
-using FullModel = AirDataModel<12, true>;
+using FullModel = AirDataModel<true>;
 
 FullModel::State<double> some_state() {
   FullModel::State<double> x;
@@ -71,7 +72,11 @@ FullModel::State<double> some_state() {
   return x;
 }
 
-FullModel some_model() { return {.spectrum = {200.0, 200.0, 50.0, 2.12, 2.12, 1.4}, .noise = {}}; }
+FullModel some_model() {
+  FullModel model;
+  model.spectrum = {200.0, 200.0, 50.0, 2.12, 2.12, 1.4};
+  return model;
+}
 
 TEST(AirDataModel, TransitionEqualsAutomaticDifferentiation) {
   const FullModel model = some_model();
@@ -107,12 +112,11 @@ TEST(AirDataModel, MeasurementRowsEqualFiniteDifferences) {
   const FullModel model = some_model();
   const Eigen::Vector3d arm(0.2, -0.1, 0.4);
   using State = FullModel::State<double>;
-  bool usable = false;
-  const std::vector<std::function<Prediction<FullModel>(const State&)>> sensors{
-      [&](const State& x) { return predict_ground_velocity<FullModel>(x, 1); },
-      [&](const State& x) { return predict_euler_angle<FullModel>(x, 0, usable); },
-      [&](const State& x) { return predict_euler_angle<FullModel>(x, 1, usable); },
-      [&](const State& x) { return predict_euler_angle<FullModel>(x, 2, usable); },
+  const std::vector<std::function<Prediction(const State&)>> sensors{
+      [&](const State& x) { return predict_ground_velocity(x, 1); },
+      [&](const State& x) { return predict_euler_angle(x, 0).value(); },
+      [&](const State& x) { return predict_euler_angle(x, 1).value(); },
+      [&](const State& x) { return predict_euler_angle(x, 2).value(); },
       [&](const State& x) { return predict_dynamic_pressure(model, x, 1.1); },
       [&](const State& x) { return predict_airspeed(model, x); },
       [&](const State& x) { return predict_alpha(model, x, arm); },
@@ -120,16 +124,40 @@ TEST(AirDataModel, MeasurementRowsEqualFiniteDifferences) {
       [&](const State& x) { return predict_beta(model, x, arm, true); }};
   constexpr double h = 1e-5;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
-    const auto p = sensors[s](some_state());
+    const FullModel::Vector H = FullModel::row(sensors[s](some_state()));
     for (int j = 0; j < FullModel::kStates; ++j) {
       FullModel::Vector e = FullModel::Vector::Zero();
       e(j) = h;
       const double slope = (sensors[s](FullModel::retract<double>(some_state(), e)).value -
                             sensors[s](FullModel::retract<double>(some_state(), FullModel::Vector(-e))).value) /
                            (2.0 * h);
-      EXPECT_NEAR(p.H(j), slope, 1e-6 * std::max(1.0, std::abs(slope))) << "sensor " << s << ", component " << j;
+      EXPECT_NEAR(H(j), slope, 1e-6 * std::max(1.0, std::abs(slope))) << "sensor " << s << ", component " << j;
     }
   }
+}
+
+TEST(AirDataModel, HasNoEulerAnglesAtTheZenith) {
+  FullModel::State<double> x = some_state();
+  x.attitude = numerics::quaternion_from_euler(0.1, 88.0 * kDeg, 0.2);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_FALSE(predict_euler_angle(x, axis).has_value()) << axis;
+}
+
+// The filter without errors of inertial sensors is the other one with these held at zero: the same step to the last
+// bit.
+TEST(AirDataModel, StepsAlikeWithAndWithoutErrorsOfInertialSensors) {
+  AirDataModel<false> small;
+  small.spectrum = some_model().spectrum;
+  const FullModel full = some_model();
+  AirDataState<double> x = some_state();
+  x.imu_bias.setZero();
+  x.imu_scale.setZero();
+  const AirDataInput u{.gyro = {0.5, -0.3, 0.2}, .specific_force = {1.0, -0.5, -11.0}, .airspeed = 15.0};
+  AirDataState<double> after_small, after_full;
+  const auto F = small.transition_rows(x, u, 0.02, after_small);
+  const auto G = full.transition_rows(x, u, 0.02, after_full);
+  EXPECT_EQ((F - G.leftCols<AirDataMotion::kCore>()).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ(after_small.velocity, after_full.velocity);
+  EXPECT_EQ(after_small.attitude.coeffs(), after_full.attitude.coeffs());
 }
 
 TEST(AirDataModel, KeepsTheGustsStationaryForAnyStep) {
@@ -149,8 +177,8 @@ TEST(AirDataModel, KeepsTheGustsStationaryForAnyStep) {
 
 // The specification's equations of section 5, with the gusts frozen: u_r' = ax - q w_r + r v_r - g sin(theta), ...
 TEST(AirDataModel, ObeysTheSpecificationsEquationsOfMotion) {
-  AirDataModel<0, false> model{.spectrum = {}, .noise = {}};
-  AirDataModel<0, false>::State<double> x;
+  const AirDataModel<false> model;
+  AirDataState<double> x;
   const double phi = 0.4, theta = -0.3, dt = 1e-5;
   x.attitude = numerics::quaternion_from_euler(phi, theta, 2.0);
   x.velocity << 12.0, 9.0, -2.0;

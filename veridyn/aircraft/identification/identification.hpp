@@ -93,6 +93,9 @@ struct CoefficientResult {
                                                                    const Segments& segments, const Subject& subject,
                                                                    const IdentifyOptions& options, Progress& progress);
 
+/// Why a coefficient is rejected whose residual holds more than the sensors' noise: one clause, without its name.
+[[nodiscard]] std::string unmodelled_text(const CoefficientResult& result);
+
 /// Terms that a structure search chooses among unless told otherwise: those of `model`, the coefficient's usual linear
 /// ones, and second-order ones: alpha^2, alpha q_n, alpha de, de^2 (longitudinal), alpha beta,
 /// alpha p_n, alpha r_n, alpha da, alpha dr, beta^3 (lateral).

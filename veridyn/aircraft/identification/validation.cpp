@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "veridyn/aircraft/model/wind_axes.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// Beyond these the prediction has left what any linear model is about.
 constexpr double kLargestAngle_rad = 60.0 * kDegree;
 constexpr double kLeastAirspeed_mps = 2.0;

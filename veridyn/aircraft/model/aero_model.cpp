@@ -7,6 +7,7 @@
 #include <charconv>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/units.hpp"
@@ -15,7 +16,6 @@ namespace veridyn::aircraft {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kHighestPower = 9;
 constexpr int kHighestDegree = 5;
 

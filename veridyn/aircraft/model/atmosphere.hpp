@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::aircraft {
 
 /// Standard gravity [m/s^2].
-inline constexpr double kStandardGravity = 9.80665;
+inline constexpr double kStandardGravity = kGravity;
 /// Sea-level density of the standard atmosphere [kg/m^3].
 inline constexpr double kSeaLevelDensity = 1.225;
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 using Terms = std::initializer_list<std::pair<std::string_view, double>>;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::string_view kPositiveMoments =
     "positive deflection gives positive moment (Cm_de > 0, Cl_da > 0, Cn_dr > 0, CY_dr < 0), as in last_letter";
 

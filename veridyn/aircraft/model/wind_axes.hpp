@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::aircraft {
 
 /// Inputs of the wind-axes force equations at one moment.
@@ -13,7 +15,7 @@ struct WindAxesInput {
   Scalar thrust{0.0};                 ///< along body x [N]
   Scalar dynamic_pressure_area{0.0};  ///< qbar S [N]
   double mass = 1.0;                  ///< [kg]
-  double gravity = 9.80665;           ///< [m/s^2]
+  double gravity = kGravity;          ///< [m/s^2]
 };
 
 /// Va', alpha', beta' [m/s^2, rad/s, rad/s].

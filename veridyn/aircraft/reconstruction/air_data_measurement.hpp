@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <type_traits>
 
 #include "veridyn/aircraft/reconstruction/model_based_filter.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
@@ -23,61 +25,32 @@ struct MeasurementContext {
   Controls<double> controls;            ///< for the accelerometer of the model-based filter
 };
 
+/// A sample ready to be entered: its innovation, row and variance.
+struct OfferedSample {
+  double nu = 0.0;
+  Prediction prediction;
+  double variance = 0.0;
+};
+
+/// What the sample `z` of a sensor with standard deviation `sigma` says at state `x`; nothing where it is not to be
+/// used there. The accelerometer's axes are measurements of the model-based filter only: for the other `forces` is
+/// null.
+[[nodiscard]] std::optional<OfferedSample> offered_sample(const AirDataMotion& motion, const ModelBasedMotion* forces,
+                                                          const AirDataState<double>& x, const MeasurementContext& c,
+                                                          Sensor which, double z, double sigma);
+
 /// Enters the sample `z` of a sensor with standard deviation `sigma` into `filter`. Returns whether it was offered to
 /// the filter at all; `seen` then receives its innovation.
 template <class Model>
 bool enter_measurement(estimation::ExtendedKalmanFilter<Model>& filter, const Model& model, const MeasurementContext& c,
                        Sensor which, double z, double sigma, estimation::InnovationMonitor& monitor,
                        estimation::SmootherTape<Model>* tape = nullptr, estimation::Innovation* seen = nullptr) {
-  const auto& x = filter.state();
-  Prediction<Model> p;
-  double variance = sigma * sigma;
-  bool angle = false;
-  switch (which) {
-    case kRoll:
-    case kPitch:
-    case kYaw: {
-      bool usable = false;
-      p = predict_euler_angle<Model>(x, which - kRoll, usable);
-      if (!usable) return false;
-      angle = true;
-      break;
-    }
-    case kVelNorth:
-    case kVelEast:
-    case kVelDown:
-      p = predict_ground_velocity<Model>(x, which - kVelNorth);
-      break;
-    case kPitot:
-      p = c.pitot_is_pressure ? predict_dynamic_pressure(model, x, c.air_density) : predict_airspeed(model, x);
-      break;
-    case kAlpha:
-    case kBeta: {
-      if (model.air_velocity(x).norm() < c.min_airspeed) return false;
-      const Eigen::Vector3d arm = Model::template rates<double>(x, c.gyro).cross(c.vane_position);
-      p = which == kAlpha ? predict_alpha(model, x, arm) : predict_beta(model, x, arm, c.beta_is_flank);
-      angle = true;
-      break;
-    }
-    case kAccelX:
-    case kAccelY:
-    case kAccelZ:
-      if constexpr (Model::kHasAerodynamics) {
-        if (model.air_velocity(x).norm() < c.min_airspeed) return false;
-        typename Model::Input u;
-        u.gyro = c.gyro;
-        u.controls = c.controls;
-        u.air_density = c.air_density;
-        double gyro_noise = 0.0;
-        p = predict_specific_force(model, x, u, which - kAccelX, c.gyro_sigma, gyro_noise);
-        variance += gyro_noise;
-        break;
-      } else {
-        return false;
-      }
-  }
-  const double nu = angle ? numerics::wrap_angle(z - p.value) : z - p.value;
-  static_cast<void>(filter.update(c.t, nu, p.H, variance, monitor, tape, seen));
+  const ModelBasedMotion* forces = nullptr;
+  if constexpr (std::is_base_of_v<ModelBasedMotion, Model>) forces = &model;
+  const std::optional<OfferedSample> sample = offered_sample(model, forces, filter.state(), c, which, z, sigma);
+  if (!sample) return false;
+  static_cast<void>(
+      filter.update(c.t, sample->nu, Model::row(sample->prediction), sample->variance, monitor, tape, seen));
   return true;
 }
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "veridyn/aircraft/simulation/dryden.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/simulation/dryden.hpp"
 
 namespace veridyn::aircraft {
 

@@ -17,7 +17,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-using internal::FlightRun;
 using internal::FlightStreams;
 using internal::kSensors;
 using internal::monitors_with;
@@ -77,15 +76,15 @@ Segment typical_part(const FlightStreams& s, std::span<const Segment> segments, 
 /// innovation on the gate, so that a spectrum does not win by refusing.
 double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const Segment& part,
                       const DrydenSettings& spectrum) {
-  using Model = AirDataModel<0, false>;
   const std::vector<double> no_output;
-  const RunSetting<Model> setting{
-      .streams = &s, .options = &o, .model = {spectrum, noise_of(s, o)}, .output_t = &no_output};
-  FlightRun<Model> run(setting, part, internal::start_of(setting, part), monitors_with(o.gate), 0);
-  while (run.advance(nullptr)) {
+  RunSetting setting{.streams = &s, .options = &o, .motion = {}, .output_t = &no_output};
+  setting.motion.spectrum = spectrum;
+  setting.motion.noise = noise_of(s, o);
+  const auto run = internal::model_free_engine(false)->innovation_run(setting, part, monitors_with(o.gate));
+  while (run->advance()) {
   }
   double sum = 0.0;
-  for (const auto& monitor : run.monitors()) {
+  for (const auto& monitor : run->monitors()) {
     const auto summary = monitor.summary();
     sum += summary.log_likelihood -
            0.5 * static_cast<double>(summary.rejected + summary.recovered) * o.gate.threshold * o.gate.threshold;

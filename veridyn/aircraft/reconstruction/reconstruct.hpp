@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/reconstruction/observability.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 #include "veridyn/aircraft/reconstruction/sensor_errors.hpp"
-#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/estimation/kalman/innovation.hpp"

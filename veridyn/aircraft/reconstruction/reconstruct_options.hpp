@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/reconstruction/air_data_filter.hpp"
+#include "veridyn/aircraft/simulation/dryden.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/kalman/innovation.hpp"
 #include "veridyn/estimation/kalman/innovation_guard.hpp"

@@ -6,18 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/aircraft/reconstruction/model_based_filter.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/reconstruction/filter_engine.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_columns.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
-#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/kalman/innovation.hpp"
 
 /// Inside of reconstruct.cpp: filters and smoothers over all segments of a recording.
 namespace veridyn::aircraft::internal {
 
-using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
-
+/// A view of what a reconstruction works on.
 struct SolveTask {
   const FlightStreams* streams;
   const ReconstructOptions* options;
@@ -52,6 +51,12 @@ struct Solution {
 
 [[nodiscard]] ModelError model_error_of(const Subject& subject, const ReconstructOptions& options);
 
+/// The filters' system as the task describes it.
+[[nodiscard]] ModelBasedMotion motion_of(const SolveTask& task);
+
+/// Filter and smoother of one kind over all segments; errors of the air data by likelihood (see
+/// `estimate_air_data_errors`), and what they leave uncertain added to the covariances.
+[[nodiscard]] Solution solve(const FilterEngine& engine, const SolveTask& task, Progress& progress);
 [[nodiscard]] Solution solve_model_free(const SolveTask& task, Progress& progress);
 [[nodiscard]] Solution solve_model_based(const SolveTask& task, Progress& progress);
 /// Filters as GuardedFilter decides; the smoothed estimate is the model-based smoother's but for the time within

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -17,7 +18,7 @@ constexpr double kSeaLevelPressure = 101325.0;  // Pa
 constexpr double kSeaLevelTemperature = 288.15;
 constexpr double kSeaLevelDensity = 1.225;
 constexpr double kLapse = 0.0065;
-constexpr double kPressureExponent = 9.80665 / (kGasConstant * kLapse);
+constexpr double kPressureExponent = kGravity / (kGasConstant * kLapse);
 
 double median_interval(std::span<const double> t) {
   std::vector<double> steps;

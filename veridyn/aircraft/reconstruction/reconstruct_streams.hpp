@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
-#include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
 #include "veridyn/core/recording.hpp"
 
 /// Inside of reconstruct.cpp: a recording's channels made ready for event-driven filtering.

@@ -5,12 +5,12 @@
 #include <limits>
 #include <map>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSettled = 0.05;
 
 /// Index of the phase that a time belongs to.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
@@ -15,7 +16,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGasConstant = 287.05287;  // of dry air [J/(kg K)], ISO 2533
 constexpr double kSignificance = 0.01;
 constexpr std::size_t kLeastPoints = 4;

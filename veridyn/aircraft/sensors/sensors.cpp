@@ -7,13 +7,12 @@
 #include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 void require_not_negative(const StudyTable& t, std::string_view key, double v) {
   if (!(v >= 0.0)) t.fail(key, fmt::format("= {:g} must be >= 0", v));

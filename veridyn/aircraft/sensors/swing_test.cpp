@@ -7,8 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/numerics/resample.hpp"
@@ -17,7 +17,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Inputs of an axis: mass, cradle mass, filar distance, length, cradle length, offset, frequency, cradle frequency.
 constexpr int kInputs = 8;
 

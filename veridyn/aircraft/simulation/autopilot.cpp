@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::aircraft {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// 1/b, or 0 for a control without effect.
 double inverse(double b) { return std::abs(b) > 1e-3 ? 1.0 / b : 0.0; }

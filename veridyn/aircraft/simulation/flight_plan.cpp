@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 
@@ -15,7 +16,6 @@ namespace veridyn::aircraft {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTurnAround = 2.0 * std::numbers::pi;
 constexpr double kPause = 2.0;  ///< between the surfaces of one doublet or 3-2-1-1 [s]
 

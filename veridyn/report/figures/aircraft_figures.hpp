@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {

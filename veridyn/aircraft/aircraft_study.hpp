@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/aircraft/identification/coefficient_uncertainty.hpp"
-#include "veridyn/aircraft/sensors/delays.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/other_estimators.hpp"
-#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
-#include "veridyn/aircraft/simulation/simulation.hpp"
 #include "veridyn/aircraft/identification/validation.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/sensors/delays.hpp"
+#include "veridyn/aircraft/simulation/simulation.hpp"
+#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
 
@@ -52,7 +52,7 @@ struct FlightStudy {
 
 /// Reads every table of the study and its recording.
 /// @throws InputError for anything that is wrong in either.
-[[nodiscard]] FlightStudy read_flight_study(const Study& study, Progress& progress);
+[[nodiscard]] FlightStudy read_study(const Study& study, Progress& progress);
 
 /// Everything that became of a flight.
 struct FlightAnalysis {
@@ -71,15 +71,14 @@ struct FlightAnalysis {
 
 /// Delays and state estimation only.
 /// @throws InputError when a channel that it needs is missing.
-[[nodiscard]] FlightAnalysis reconstruct_flight(FlightStudy& study, Progress& progress);
+[[nodiscard]] FlightAnalysis reconstruct(FlightStudy& study, Progress& progress);
 
 /// The whole way: delays, state estimation, segments, coefficients, validation on the hold-out, verdict.
 /// @throws InputError when a channel that it needs is missing, or the aircraft never flew.
-[[nodiscard]] FlightAnalysis identify_flight(FlightStudy& study, Progress& progress);
+[[nodiscard]] FlightAnalysis identify(FlightStudy& study, Progress& progress);
 
 /// An estimate against the flight of a study, none of which it has seen: coefficients and trajectory on every excited
 /// segment.
-[[nodiscard]] FlightAnalysis validate_estimate(FlightStudy& study, const estimation::Estimate& estimate,
-                                               Progress& progress);
+[[nodiscard]] FlightAnalysis validate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress);
 
 }  // namespace veridyn::aircraft

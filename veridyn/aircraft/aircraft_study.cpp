@@ -1,4 +1,4 @@
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
+#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -17,7 +18,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kGravity = 9.80665;
 /// Lift coefficient that few wings exceed: at 0.8 of the speed that it gives, nothing flies.
 constexpr double kHighLift = 1.2;
 
@@ -164,7 +164,7 @@ void judge(const FlightStudy& study, FlightAnalysis& analysis, std::span<const T
 
 }  // namespace
 
-FlightStudy read_flight_study(const Study& study, Progress& progress) {
+FlightStudy read_study(const Study& study, Progress& progress) {
   const StudyTable& root = study.root();
   FlightStudy result;
   result.name = study.name();
@@ -219,13 +219,13 @@ FlightStudy read_flight_study(const Study& study, Progress& progress) {
   return result;
 }
 
-FlightAnalysis reconstruct_flight(FlightStudy& study, Progress& progress) {
+FlightAnalysis reconstruct(FlightStudy& study, Progress& progress) {
   FlightAnalysis analysis;
   align_and_reconstruct(study, analysis, progress);
   return analysis;
 }
 
-FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
+FlightAnalysis identify(FlightStudy& study, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
   analysis.coefficients =
@@ -244,7 +244,7 @@ FlightAnalysis identify_flight(FlightStudy& study, Progress& progress) {
   return analysis;
 }
 
-FlightAnalysis validate_estimate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+FlightAnalysis validate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
   analysis.coefficients =

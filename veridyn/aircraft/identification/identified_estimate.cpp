@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::aircraft {
+
+using estimation::ParameterStatus;
+using estimation::RegressionEstimate;
+
+const char* to_string(CoefficientVerdict verdict) {
+  switch (verdict) {
+    case CoefficientVerdict::kIdentified:
+      return "identified";
+    case CoefficientVerdict::kNotExcited:
+      return "not excited";
+    case CoefficientVerdict::kRejected:
+      return "rejected";
+    case CoefficientVerdict::kSkipped:
+      break;
+  }
+  return "skipped";
+}
+
+std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results) {
+  std::vector<Coefficient> found;
+  for (const CoefficientResult& result : results) {
+    // Per unit inertia nothing can be flown.
+    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+      found.push_back(result.coefficient);
+  }
+  return found;
+}
+
+Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results) {
+  Subject identified = subject;
+  for (auto& coefficient : identified.model.coefficients) {
+    if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
+  }
+  for (const CoefficientResult& result : results) {
+    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+      identified.model.set(result.model);
+  }
+  return identified;
+}
+
+estimation::Estimate make_estimate(const Subject& subject, std::span<const CoefficientResult> results) {
+  estimation::Estimate estimate;
+  estimate.subject = subject.name;
+  std::vector<std::string> methods;
+  Eigen::Index total = 0;
+  const auto listed = [](const CoefficientResult& result) {
+    return result.chosen || result.verdict == CoefficientVerdict::kNotExcited;
+  };
+  for (const CoefficientResult& result : results) {
+    if (listed(result)) total += static_cast<Eigen::Index>(result.model.size());
+  }
+  estimate.covariance = Eigen::MatrixXd::Zero(total, total);
+  std::vector<std::pair<Eigen::Index, Eigen::MatrixXd>> shared;
+  Eigen::Index at = 0;
+  for (const CoefficientResult& result : results) {
+    const std::string& name = result.name;
+    if (!listed(result)) continue;
+    if (!result.chosen) {
+      // Nothing was estimated: the parameters are listed all the same, so that nobody takes silence for zero.
+      for (std::size_t i = 0; i < result.model.size(); ++i) {
+        const Term& term = result.model.terms[i];
+        estimate.parameters.push_back({regressed_parameter_name(result.coefficient, term, subject), kNaN, kNaN, kNaN,
+                                       kNaN, regressed_parameter_unit(result.coefficient, term, subject),
+                                       ParameterStatus::kNotExcited});
+        estimate.covariance(at, at) = kNaN;
+        ++at;
+      }
+      continue;
+    }
+    const RegressionEstimate& chosen = *result.chosen;
+    for (const auto& p : chosen.parameters) {
+      const bool out = result.verdict == CoefficientVerdict::kNotExcited;
+      estimate.parameters.push_back(
+          {p.name, p.value, p.sigma, p.low95, p.high95, p.unit, out ? ParameterStatus::kNotExcited : p.status});
+    }
+    estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
+    // Coefficients are estimated separately, but share the errors of mass, geometry and inertia.
+    shared.push_back({at, result.body_sensitivity});
+    for (const auto& [other, G] : shared) {
+      if (other == at || G.size() == 0 || result.body_sensitivity.size() == 0) continue;
+      const Eigen::MatrixXd cross = result.body_sensitivity * G.transpose();
+      estimate.covariance.block(at, other, cross.rows(), cross.cols()) = cross;
+      estimate.covariance.block(other, at, cross.cols(), cross.rows()) = cross.transpose();
+    }
+    at += chosen.theta.size();
+    estimate.fit[name + ".r2"] = result.identification_fit.r2;
+    estimate.fit[name + ".residual_sd"] = chosen.residual_sd;
+    estimate.fit[name + ".samples"] = static_cast<double>(chosen.rows);
+    estimate.fit[name + ".error_ratio"] = result.error_ratio;
+    estimate.fit[name + ".unmodelled_share"] = result.unmodelled_share;
+    const std::string method(estimation::to_string(chosen.method));
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+    if (result.holdout_fit.count > 0) {
+      estimate.validation[name] = {result.holdout_fit.mae, result.holdout_fit.rmse, result.holdout_fit.r2,
+                                   result.holdout_fit.theil, "1"};
+    }
+  }
+  estimate.method = fmt::format("{}", fmt::join(methods, ", "));
+  return estimate;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::aircraft {
+
+IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
+  IdentifyOptions options;
+  if (table.has("coefficients")) {
+    const std::vector<std::string> names(kCoefficientNames.begin(), kCoefficientNames.end());
+    for (const std::string& name : table.texts("coefficients")) {
+      const std::optional<Coefficient> c = find_coefficient(name);
+      if (!c) table.fail("coefficients", fmt::format("'{}' is not a coefficient{}", name, suggestion(name, names)));
+      options.coefficients.push_back(*c);
+    }
+  }
+  const std::vector<std::string> methods{"auto", "OLS", "TLS", "GTLS", "PCA-GTLS"};
+  options.method = table.choice_or("method", methods, options.method);
+  options.refit_significant = table.flag_or("refit_significant", options.refit_significant);
+  options.signal_to_noise = table.number_or("signal_to_noise", "1", options.signal_to_noise);
+  if (!(options.signal_to_noise >= 1.0 && options.signal_to_noise <= 10.0)) {
+    table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", options.signal_to_noise));
+  }
+  options.significance = table.number_or("significance", "1", options.significance);
+  if (!(options.significance > 0.0 && options.significance < 1.0)) {
+    table.fail("significance", fmt::format("= {} must be between 0 and 1", options.significance));
+  }
+  options.min_holdout_r2 = table.number_or("min_holdout_r2", "1", options.min_holdout_r2);
+  options.max_unmodelled = table.number_or("max_unmodelled", "1", options.max_unmodelled);
+  options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
+  const std::vector<std::string> structures{"given", "stepwise", "orthogonal"};
+  options.structure = table.choice_or("structure", structures, options.structure);
+  const StudyTable candidates = table.table_or_empty("candidates");
+  for (std::size_t i = 0; i < kCoefficients; ++i) {
+    if (!candidates.has(kCoefficientNames[i])) continue;
+    for (const std::string& text : candidates.texts(kCoefficientNames[i])) {
+      Term term = parse_term(text, candidates.place(kCoefficientNames[i]));
+      auto& terms = options.candidates[i];
+      if (std::find(terms.begin(), terms.end(), term) != terms.end())
+        candidates.fail(kCoefficientNames[i], fmt::format("names the term '{}' twice", text));
+      terms.push_back(std::move(term));
+    }
+  }
+  if (table.has("candidates") && options.structure == "given")
+    table.fail("candidates", "needs structure = \"stepwise\" or \"orthogonal\"");
+  options.output_error = table.flag_or("output_error", options.output_error);
+  options.output_error_gusts = table.flag_or("output_error_gusts", options.output_error_gusts);
+  options.output_error_biases = table.flag_or("output_error_biases", options.output_error_biases);
+  if (table.has("frequency_band")) {
+    const std::vector<double> band = table.numbers("frequency_band", "Hz");
+    if (band.size() != 2 || !(band[0] > 0.0) || !(band[1] > band[0]))
+      table.fail("frequency_band", "must be two frequencies, 0 < low < high, such as [\"0.1 Hz\", \"2 Hz\"]");
+    options.frequency_low_Hz = band[0];
+    options.frequency_high_Hz = band[1];
+  }
+  const long long replicates = table.integer_or("bootstrap", 0);
+  if (replicates != 0 && (replicates < 50 || replicates > 1000000))
+    table.fail("bootstrap", fmt::format("= {} must be 0 (none) or from 50 to 1000000 replicates", replicates));
+  options.bootstrap = static_cast<std::size_t>(replicates);
+  return options;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,52 @@
+#include "veridyn/aircraft/reconstruction/guarded_filter.hpp"
+
+#include <utility>
+
+namespace veridyn::aircraft {
+
+GuardedFilter::GuardedFilter(bool imu_errors, const ModelBasedMotion& motion, std::shared_ptr<const Subject> subject,
+                             const internal::Start& start, double t, const estimation::GuardOptions& guard,
+                             const estimation::InnovationGate& gate)
+    : subject_(std::move(subject)),
+      free_(internal::model_free_engine(imu_errors)->estimator(motion, start)),
+      based_(internal::model_based_engine(imu_errors)->estimator(motion, start)),
+      guard_(guard),
+      gate_(gate),
+      t_(t) {
+  based_->set_forces(subject_.get(), motion.error);
+  free_monitors_.fill(estimation::InnovationMonitor(gate));
+  restart_model_based();
+  guard_.restart(t, true);
+}
+
+void GuardedFilter::set_model(std::shared_ptr<const Subject> subject, const ModelError& error) {
+  subject_ = std::move(subject);
+  based_->set_forces(subject_.get(), error);
+  restart_model_based();
+  guard_.restart(t_, guard_.trusted());
+}
+
+void GuardedFilter::propagate(const AirDataInput& u, double dt) {
+  t_ += dt;
+  based_->propagate(u, dt);
+  free_->propagate(u, dt);
+}
+
+void GuardedFilter::measure(const internal::MeasurementContext& context, internal::Sensor which, double z,
+                            double sigma) {
+  static_cast<void>(free_->measure(context, which, z, sigma, free_monitors_[which], nullptr));
+  estimation::Innovation seen;
+  const bool offered = based_->measure(context, which, z, sigma, based_monitors_[which], &seen);
+  if (offered && which >= internal::kPitot) guard_.add(static_cast<std::size_t>(which), seen.nis());
+}
+
+void GuardedFilter::judge() {
+  if (guard_.advance(t_) && guard_.alarm()) restart_model_based();
+}
+
+void GuardedFilter::restart_model_based() {
+  based_->restart_from(*free_);
+  based_monitors_.fill(estimation::InnovationMonitor(gate_));
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <limits>
+#include <numbers>
+
+namespace veridyn {
+
+/// Standard gravity [m/s^2].
+inline constexpr double kGravity = 9.80665;
+/// One degree [rad].
+inline constexpr double kDegree = std::numbers::pi / 180.0;
+/// What is not known.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace veridyn
