@@ -16,6 +16,7 @@
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/drive_report.hpp"
+#include "veridyn/report/drive_tracking_report.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/vehicle/drive_study.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"

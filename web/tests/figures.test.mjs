@@ -235,5 +235,8 @@ describe('a figure', { skip }, () => {
     const { page, close } = await open_sections(one(time_series(x, [[{ name: 'a', y: x }]], { windows })));
     assert.equal(await page.locator('.windows .time-series').count(), 3);
     await close();
+    const phone = await open_sections(one(time_series(x, [[{ name: 'a', y: x }]], { windows })), { viewport: { width: 400, height: 800 } });
+    assert.equal(await phone.page.locator('.windows .time-series').count(), 7);
+    await phone.close();
   });
 });

@@ -3,8 +3,10 @@ import { format_ticks, nice_ticks } from '../numbers';
 import { lower_bound } from './gaps';
 import type { Range } from './ordinate';
 
-/** More windows in one row are slivers again. */
+/** More windows in one row are slivers again; on a phone sooner. */
 const kMostInRow = 6;
+const kMostOnPhone = 2;
+const kPhoneWidth = 640;
 /** Room between neighbours, as a share of the row. */
 const kBetween = 0.025;
 /** The least share of a row that a window takes, in shares of the average. */
@@ -123,7 +125,7 @@ let count = 0;
 /** The rows in which a figure's windows stand side by side. */
 export function window_rows(figure: TimeSeries): { figure: TimeSeries; axis: WindowAxis }[] {
   const windows = (figure.windows ?? []).filter((each) => each.to > each.from);
-  const rows = Math.ceil(windows.length / kMostInRow);
+  const rows = Math.ceil(windows.length / (innerWidth <= kPhoneWidth ? kMostOnPhone : kMostInRow));
   const per_row = Math.ceil(windows.length / Math.max(1, rows));
   return Array.from({ length: rows }, (_, row) => {
     const placed = place(windows.slice(row * per_row, (row + 1) * per_row));
