@@ -93,11 +93,12 @@ function draw_row(plot: IntervalPlot, row: Row, range: [number, number], width: 
     if (each.low !== null && each.high !== null) {
       const from = Math.max(left, x(each.low));
       const to = Math.min(right, x(each.high));
-      group.append(svg('line', { class: 'whisker', x1: from, x2: to, y1: y, y2: y }));
-      if (x(each.low) >= left) group.append(svg('line', { class: 'cap', x1: from, x2: from, y1: y - 4, y2: y + 4 }));
-      else group.append(svg('path', { class: 'arrow', d: `M${left + 5} ${y - 4}L${left} ${y}L${left + 5} ${y + 4}` }));
-      if (x(each.high) <= right) group.append(svg('line', { class: 'cap', x1: to, x2: to, y1: y - 4, y2: y + 4 }));
-      else group.append(svg('path', { class: 'arrow', d: `M${right - 5} ${y - 4}L${right} ${y}L${right - 5} ${y + 4}` }));
+      // An interval that lies outside entirely has its arrowhead alone.
+      if (to >= from) group.append(svg('line', { class: 'whisker', x1: from, x2: to, y1: y, y2: y }));
+      if (x(each.low) < left) group.append(svg('path', { class: 'arrow', d: `M${left + 5} ${y - 4}L${left} ${y}L${left + 5} ${y + 4}` }));
+      else if (from <= right) group.append(svg('line', { class: 'cap', x1: from, x2: from, y1: y - 4, y2: y + 4 }));
+      if (x(each.high) > right) group.append(svg('path', { class: 'arrow', d: `M${right - 5} ${y - 4}L${right} ${y}L${right - 5} ${y + 4}` }));
+      else if (to >= left) group.append(svg('line', { class: 'cap', x1: to, x2: to, y1: y - 4, y2: y + 4 }));
     }
     const at = x(each.value);
     if (at >= left && at <= right) group.append(marker(each.method, at, y));
