@@ -17,6 +17,7 @@
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
+#include "veridyn/report/drive_tracking_report.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 #include "veridyn/vehicle/track_drive.hpp"

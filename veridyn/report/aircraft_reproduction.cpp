@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> column(const Eigen::MatrixXd& matrix, Eigen::Index j) {
   return {matrix.col(j).data(), matrix.col(j).data() + matrix.rows()};

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <utility>
 
+#include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 
@@ -15,21 +17,7 @@ namespace {
 
 using namespace veridyn::vehicle;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStandardGravity = 9.80665;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-double truth_of(const DriveReportContext& context, const std::string& name) {
-  for (const auto& [key, value] : context.truth)
-    if (key == name) return value;
-  return kNaN;
-}
-
-std::vector<double> times(const std::vector<double>& values, double factor) {
-  std::vector<double> out(values);
-  for (double& v : out) v *= factor;
-  return out;
-}
 
 Verdict verdict(const VehicleAnalysis& a) {
   Verdict v;
@@ -71,24 +59,11 @@ Table parameter_table(const VehicleEstimate& estimate, const DriveReportContext&
               .caption =
                   "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
                   "bars where [identify.uncertainty] gives it.",
-              .columns = {{.name = "parameter", .align = Align::kLeft},
-                          {.name = "value"},
-                          {.name = "sigma", .digits = 2},
-                          {.name = "95 % from"},
-                          {.name = "to"},
-                          {.name = "unit", .align = Align::kLeft},
-                          {.name = "status"}}};
-  if (!context.truth.empty()) table.columns.push_back({.name = "truth"});
+              .columns = parameter_columns(!context.truth.empty())};
   for (const estimation::ParameterEstimate& p : estimate.parameters) {
-    const ReadableNumber value = readable(p.value, p.unit);
-    const double factor = p.value != 0.0 ? value.value / p.value : readable(1.0, p.unit).value;
-    const double sigma = p.sigma * factor;
-    const Status status = status_from_name(estimation::to_string(p.status));
-    Row row{.cells = {text_cell(p.name), measured_cell(value.value, sigma), number_cell(sigma),
-                      measured_cell(p.low95 * factor, sigma), measured_cell(p.high95 * factor, sigma),
-                      text_cell(value.unit), status_cell(status)},
-            .status = status};
-    if (!context.truth.empty()) row.cells.push_back(number_cell(truth_of(context, p.name) * factor));
+    const ReadableNumber unit = readable(1.0, p.unit);
+    Row row = parameter_row({p.name, p.value, p.sigma, p.low95, p.high95, p.unit, p.status}, unit.value, unit.unit);
+    if (!context.truth.empty()) row.cells.push_back(number_cell(context.true_value(p.name) * unit.value));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -114,10 +89,9 @@ IntervalPlot interval_plot(const VehicleIdentification& id, const DriveReportCon
       }
       factor = readable(1.0, p->unit).value;
       row.unit = readable(1.0, p->unit).unit;
-      row.estimates.push_back({p->value * factor, p->low95 * factor, p->high95 * factor,
-                               status_from_name(estimation::to_string(p->status))});
+      row.estimates.push_back({p->value * factor, p->low95 * factor, p->high95 * factor, status_of(p->status)});
     }
-    const double truth = truth_of(context, name);
+    const double truth = context.true_value(name);
     if (std::isfinite(truth)) row.reference = truth * factor;
     if (!row.estimates.empty()) plot.rows.push_back(std::move(row));
   }
@@ -129,10 +103,7 @@ Table check_table(const VehicleIdentification& id) {
       .title = "Checks",
       .columns = {
           {.name = "check", .align = Align::kLeft}, {.name = ""}, {.name = "what was seen", .align = Align::kLeft}}};
-  for (const estimation::HonestyCheck& c : id.checks) {
-    table.rows.push_back(
-        {.cells = {text_cell(c.name), status_cell(c.passed ? Status::kGood : Status::kBad), text_cell(c.text)}});
-  }
+  for (const estimation::HonestyCheck& c : id.checks) table.rows.push_back({.cells = check_cells(c, Status::kBad)});
   return table;
 }
 
@@ -154,64 +125,68 @@ Table fit_table(const DriveValidation& v, const std::string& title) {
   return table;
 }
 
-/// The drives of a prediction one after the other on the log's clock, parted by gaps.
+/// A quantity of all stretches of a prediction, one after the other, with a break between stretches.
+struct Stretches {
+  std::vector<double> time, measured, predicted, low, high;
+
+  void add(const std::vector<double>& stamps, const std::vector<double>& seen, const std::vector<double>& model,
+           const std::vector<double>& sigma, double factor) {
+    if (stamps.empty()) return;
+    const auto at = [](const std::vector<double>& values, std::size_t k) {
+      return k < values.size() ? values[k] : kNaN;
+    };
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      const double half = 1.96 * at(sigma, k);
+      append(stamps[k], factor * at(seen, k), factor * at(model, k), factor * (at(model, k) - half),
+             factor * (at(model, k) + half));
+    }
+    append(stamps.back() + 1e-6, kNaN, kNaN, kNaN, kNaN);
+  }
+
+  /// Without the lines that have no number.
+  [[nodiscard]] std::vector<Line> lines() const {
+    std::vector<Line> result;
+    if (any_finite(measured)) result.push_back({.name = "measured", .y = measured, .role = Role::kMeasured});
+    if (!any_finite(predicted)) return result;
+    result.push_back({.name = "predicted", .y = predicted});
+    if (any_finite(low)) result.back().band = Band{low, high};
+    return result;
+  }
+
+ private:
+  void append(double t, double seen, double model, double from, double to) {
+    time.push_back(t);
+    measured.push_back(seen);
+    predicted.push_back(model);
+    low.push_back(from);
+    high.push_back(to);
+  }
+};
+
+/// The drives of a prediction side by side, each with its own time.
 TimeSeries prediction_figure(const DriveValidation& v, const std::string& title) {
   TimeSeries figure{.title = title,
                     .caption =
                         "Simulated from measured steering and speed; only the lateral velocity and yaw rate at the "
                         "beginning of each stretch were fitted. Bands are 95 %, from the parameters alone."};
-  std::vector<double> steer, r, r_hat, r_low, r_high, a, a_hat, a_low, a_high, lateral, lateral_hat;
-  const auto add = [](std::vector<double>& to, const std::vector<double>& from, std::size_t n, double factor) {
-    for (std::size_t k = 0; k < n; ++k) to.push_back(k < from.size() ? factor * from[k] : kNaN);
-  };
-  const auto add_band = [](std::vector<double>& low, std::vector<double>& high, const std::vector<double>& middle,
-                           const std::vector<double>& sigma, std::size_t n, double factor) {
-    for (std::size_t k = 0; k < n; ++k) {
-      const bool known = k < middle.size() && k < sigma.size();
-      low.push_back(known ? factor * (middle[k] - 1.96 * sigma[k]) : kNaN);
-      high.push_back(known ? factor * (middle[k] + 1.96 * sigma[k]) : kNaN);
-    }
-  };
+  const std::vector<double> none;
+  Stretches steer, yaw_rate, acceleration, lateral;
   for (const PredictedStretch& d : v.stretches) {
-    if (d.time.empty()) continue;
-    const std::size_t n = d.time.size();
-    figure.samples.insert(figure.samples.end(), d.time.begin(), d.time.end());
-    add(steer, d.steer, n, 1.0 / kDegree);
-    add(r, d.yaw_rate, n, 1.0 / kDegree);
-    add(r_hat, d.yaw_rate_predicted, n, 1.0 / kDegree);
-    add_band(r_low, r_high, d.yaw_rate_predicted, d.yaw_rate_sigma, n, 1.0 / kDegree);
-    add(a, d.accel_y, n, 1.0);
-    add(a_hat, d.accel_y_predicted, n, 1.0);
-    add_band(a_low, a_high, d.accel_y_predicted, d.accel_y_sigma, n, 1.0);
-    add(lateral, d.lateral_velocity, n, 1.0);
-    add(lateral_hat, d.lateral_velocity_predicted, n, 1.0);
-    // A break in the lines between stretches.
-    figure.samples.push_back(d.time.back() + 1e-6);
-    for (std::vector<double>* values :
-         {&steer, &r, &r_hat, &r_low, &r_high, &a, &a_hat, &a_low, &a_high, &lateral, &lateral_hat})
-      values->push_back(kNaN);
+    steer.add(d.time, d.steer, none, none, 1.0 / kDegree);
+    yaw_rate.add(d.time, d.yaw_rate, d.yaw_rate_predicted, d.yaw_rate_sigma, 1.0 / kDegree);
+    acceleration.add(d.time, d.accel_y, d.accel_y_predicted, d.accel_y_sigma, 1.0);
+    lateral.add(d.time, d.lateral_velocity, d.lateral_velocity_predicted, none, 1.0);
+    if (d.time.size() > 1) figure.windows.push_back({.from = d.time.front(), .to = d.time.back()});
   }
-  figure.panels.push_back({.label = "steer angle",
-                           .unit = "deg",
-                           .lines = {{.name = "measured", .y = steer, .role = Role::kMeasured}},
-                           .height = 90});
-  figure.panels.push_back({.label = "yaw rate",
-                           .unit = "deg/s",
-                           .lines = {{.name = "measured", .y = r, .role = Role::kMeasured},
-                                     {.name = "predicted", .y = r_hat, .band = Band{r_low, r_high}}}});
-  const auto known = [](double value) { return std::isfinite(value); };
-  if (std::any_of(a.begin(), a.end(), known) || std::any_of(a_hat.begin(), a_hat.end(), known)) {
-    figure.panels.push_back({.label = "lateral acceleration",
-                             .unit = "m/s^2",
-                             .lines = {{.name = "measured", .y = a, .role = Role::kMeasured},
-                                       {.name = "predicted", .y = a_hat, .band = Band{a_low, a_high}}}});
-  }
-  Panel v_panel{.label = "lateral velocity", .unit = "m/s"};
-  if (std::any_of(lateral.begin(), lateral.end(), known))
-    v_panel.lines.push_back({.name = "measured", .y = lateral, .role = Role::kMeasured});
-  if (std::any_of(lateral_hat.begin(), lateral_hat.end(), known))
-    v_panel.lines.push_back({.name = "predicted", .y = lateral_hat});
-  if (!v_panel.lines.empty()) figure.panels.push_back(std::move(v_panel));
+  figure.samples = steer.time;
+  const auto add = [&](const char* label, const char* unit, const Stretches& stretches, int height) {
+    Panel panel{.label = label, .unit = unit, .lines = stretches.lines(), .height = height};
+    if (!panel.lines.empty()) figure.panels.push_back(std::move(panel));
+  };
+  add("steer angle", "deg", steer, 90);
+  add("yaw rate", "deg/s", yaw_rate, 150);
+  add("lateral acceleration", "m/s^2", acceleration, 150);
+  add("lateral velocity", "m/s", lateral, 150);
   return figure;
 }
 
@@ -256,7 +231,7 @@ Cornering cornering(const VehicleAnalysis& a, const VehicleParameters<double>& p
 
 Section cornering_section(const VehicleAnalysis& a, const VehicleParameters<double>& p) {
   const Cornering c = cornering(a, p);
-  Section section{.title = "How it was driven"};
+  Section section{.title = "How it was driven", .folded = true};
   section.blocks.emplace_back(XYPlot{.title = "Understeer diagram",
                                      .caption = "Steer beyond the Ackermann angle L r/u over lateral acceleration: in "
                                                 "steady cornering its slope is the understeer gradient (ISO 4138).",
@@ -280,9 +255,7 @@ Section cornering_section(const VehicleAnalysis& a, const VehicleParameters<doub
                                                   return line;
                                                 }()},
                                      .height = 320});
-  const bool has_ax =
-      std::any_of(c.longitudinal.begin(), c.longitudinal.end(), [](double v) { return std::isfinite(v); });
-  if (has_ax) {
+  if (any_finite(c.longitudinal)) {
     section.blocks.emplace_back(XYPlot{.title = "g-g diagram",
                                        .x = {"lateral acceleration", "g"},
                                        .y = {"longitudinal acceleration", "g"},
@@ -312,7 +285,7 @@ TimeSeries signal_figure(const VehicleAnalysis& a) {
     figure.panels.push_back(
         {.label = label,
          .unit = unit,
-         .lines = {{.name = "measured", .y = times(a.signals[signal].value, factor), .role = Role::kMeasured}},
+         .lines = {{.name = "measured", .y = scaled(a.signals[signal].value, factor), .role = Role::kMeasured}},
          .height = 100});
   }
   for (const TimeSpan& s : a.segments.identification)
@@ -335,163 +308,90 @@ Table origin_table(const VehicleStudy& study) {
   return table;
 }
 
+Section parameters_section(const VehicleIdentification& id, const DriveReportContext& context) {
+  Section section{.title = "Parameters"};
+  if (const VehicleEstimate* best = id.best()) section.blocks.emplace_back(parameter_table(*best, context));
+  IntervalPlot plot = interval_plot(id, context);
+  if (plot.methods.size() > 1) section.blocks.emplace_back(std::move(plot));
+  for (const VehicleEstimate& e : id.estimates) {
+    if (!e.usable)
+      section.blocks.emplace_back(Paragraph{fmt::format("{}: {}", to_string(e.method), e.message), Tone::kNote});
+  }
+  if (!id.checks.empty()) section.blocks.emplace_back(check_table(id));
+  return section;
+}
+
+Section validation_section(const DriveValidation& validation) {
+  Section section{.title = "Validation on data not seen"};
+  section.blocks.emplace_back(fit_table(validation, "Prediction of the hold-out"));
+  section.blocks.emplace_back(prediction_figure(validation, "Measured and predicted, hold-out"));
+  XYPlot path = path_plot(validation);
+  if (!path.series.empty()) section.blocks.emplace_back(std::move(path));
+  return section;
+}
+
+Section fit_section(const DriveValidation& fit) {
+  Section section{.title = "Fit", .folded = true};
+  section.blocks.emplace_back(fit_table(fit, "On the data of the identification"));
+  section.blocks.emplace_back(prediction_figure(fit, "Measured and predicted, identification"));
+  return section;
+}
+
+Section response_section(const VehicleParameters<double>& p, double speed) {
+  Section section{.title = "Frequency response", .folded = true};
+  section.blocks.emplace_back(
+      Paragraph{fmt::format("Of the identified linear bicycle at the drive's mean speed of {:.3g} m/s.", speed)});
+  const std::vector<NamedBicycle> bicycles{
+      {"identified", LinearBicycle<double>{p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, speed}}};
+  for (Block& block : frequency_response_figures(bicycles)) section.blocks.push_back(std::move(block));
+  return section;
+}
+
+Section data_section(const VehicleStudy& study, const VehicleAnalysis& analysis) {
+  Section section{.title = "Data", .folded = true};
+  section.blocks.emplace_back(signal_figure(analysis));
+  section.blocks.emplace_back(origin_table(study));
+  for (const auto& notes : {study.notes, study.log.mapped.notes, analysis.signals.notes})
+    if (!notes.empty()) section.blocks.emplace_back(List{notes, Tone::kNote});
+  return section;
+}
+
 }  // namespace
+
+double DriveReportContext::true_value(std::string_view name) const {
+  for (const auto& [key, value] : truth)
+    if (key == name) return value;
+  return kNaN;
+}
+
+std::optional<double> response_speed(std::span<const double> speed) {
+  for (const double least : {3.0, 0.1}) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const double u : speed) {
+      if (std::isfinite(u) && u > least) sum += u, ++count;
+    }
+    if (count > 0) return sum / static_cast<double>(count);
+  }
+  return std::nullopt;
+}
 
 Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis, const DriveReportContext& context) {
   const VehicleIdentification& id = analysis.identification;
-  Document document;
-  document.title = study.name;
-  document.subtitle =
-      context.validation_only ? "An estimate tried on a drive that it has not seen" : study.subject_name;
+  Document document = started_document(
+      study.name, context.validation_only ? "An estimate tried on a drive that it has not seen" : study.subject_name,
+      context.program);
   document.verdict = verdict(analysis);
   document.facts = facts(study, analysis);
-  document.generator = "Made with " + context.program;
-
-  Section parameters{.title = "Parameters"};
-  if (const VehicleEstimate* best = id.best()) parameters.blocks.emplace_back(parameter_table(*best, context));
-  IntervalPlot plot = interval_plot(id, context);
-  if (plot.methods.size() > 1) parameters.blocks.emplace_back(std::move(plot));
-  for (const VehicleEstimate& e : id.estimates) {
-    if (!e.usable)
-      parameters.blocks.emplace_back(Paragraph{fmt::format("{}: {}", to_string(e.method), e.message), Tone::kNote});
-  }
-  if (!id.checks.empty()) parameters.blocks.emplace_back(check_table(id));
-  document.sections.push_back(std::move(parameters));
-
-  if (!id.validation.stretches.empty()) {
-    Section validation{.title = "Validation on data not seen"};
-    validation.blocks.emplace_back(fit_table(id.validation, "Prediction of the hold-out"));
-    validation.blocks.emplace_back(prediction_figure(id.validation, "Measured and predicted, hold-out"));
-    XYPlot path = path_plot(id.validation);
-    if (!path.series.empty()) validation.blocks.emplace_back(std::move(path));
-    document.sections.push_back(std::move(validation));
-  }
-  if (!id.fit.stretches.empty()) {
-    Section fit{.title = "Fit", .folded = true};
-    fit.blocks.emplace_back(fit_table(id.fit, "On the data of the identification"));
-    fit.blocks.emplace_back(prediction_figure(id.fit, "Measured and predicted, identification"));
-    document.sections.push_back(std::move(fit));
-  }
+  document.sections.push_back(parameters_section(id, context));
+  if (!id.validation.stretches.empty()) document.sections.push_back(validation_section(id.validation));
+  if (!id.fit.stretches.empty()) document.sections.push_back(fit_section(id.fit));
   const VehicleParameters<double>& p = id.best() != nullptr ? id.identified : study.vehicle;
   document.sections.push_back(cornering_section(analysis, p));
-  if (id.best() != nullptr) {
-    double speed = 0.0;
-    std::size_t n = 0;
-    for (const double u : analysis.signals[DriveSignal::kSpeed].value) {
-      if (std::isfinite(u) && u > 3.0) speed += u, ++n;
-    }
-    speed = n > 0 ? speed / static_cast<double>(n) : 20.0;
-    Section response{.title = "Frequency response"};
-    response.blocks.emplace_back(
-        Paragraph{fmt::format("Of the identified linear bicycle at the drive's mean speed of {:.3g} m/s.", speed)});
-    const std::vector<NamedBicycle> bicycles{
-        {"identified", LinearBicycle<double>{p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, speed}}};
-    for (Block& block : frequency_response_figures(bicycles)) response.blocks.push_back(std::move(block));
-    document.sections.push_back(std::move(response));
-  }
-  Section data{.title = "Data"};
-  data.blocks.emplace_back(signal_figure(analysis));
-  data.blocks.emplace_back(origin_table(study));
-  for (const auto& notes : {study.notes, study.log.mapped.notes, analysis.signals.notes})
-    if (!notes.empty()) data.blocks.emplace_back(List{notes, Tone::kNote});
-  document.sections.push_back(std::move(data));
-  if (!id.warnings.empty())
-    document.sections.push_back({.title = "Warnings", .blocks = {List{id.warnings, Tone::kWarning}}});
-  return document;
-}
-
-Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& drive,
-                               const DriveReportContext& context) {
-  Document document;
-  document.title = study.name;
-  document.subtitle = "Cornering stiffness followed on line";
-  document.generator = "Made with " + context.program;
-  const estimation::Estimate estimate = drive.estimate();
-  document.facts = {{"Vehicle", study.subject_name}, {"Log", study.log.mapped.recording.source}};
-  const DriveTracker* tracker = drive.tracker();
-  document.verdict.headline = estimate.verdict;
-  if (tracker == nullptr) {
-    document.verdict.level = Level::kBad;
-    return document;
-  }
-  const auto& changes = tracker->changes();
-  document.verdict.level = changes.empty() ? Level::kGood : Level::kCaution;
-  document.verdict.word = changes.empty() ? "No change" : "Changed";
-  document.facts.push_back({"Rows", fmt::format("{} at {:g} Hz", tracker->rows(), tracker->row_rate_Hz())});
-  document.facts.push_back({"Latency", fmt::format("{:.2f} s", tracker->latency_s())});
-
-  Table table{.title = "Changes found",
-              .columns = {{.name = "what", .align = Align::kLeft},
-                          {.name = "detected", .unit = "s"},
-                          {.name = "began", .unit = "s"},
-                          {.name = "how", .align = Align::kLeft}}};
-  for (const DriveChange& c : changes) {
-    const bool mean = c.change.kind == estimation::ChangeKind::kMean;
-    table.rows.push_back({.cells = {text_cell(std::string(kTrackedAxleNames[static_cast<std::size_t>(c.axle)])),
-                                    number_cell(c.change.detected_s, 1), number_cell(c.change.began_s, 1),
-                                    text_cell(mean ? fmt::format("innovation moved by {:.1f} sigma", c.change.shift)
-                                                   : fmt::format("innovation grew {:.1f} times", c.change.shift))}});
-  }
-  Section found{.title = "Changes"};
-  if (changes.empty()) {
-    found.blocks.emplace_back(Paragraph{"None."});
-  } else {
-    found.blocks.emplace_back(std::move(table));
-  }
-  document.sections.push_back(std::move(found));
-
-  Section section{.title = "Over time"};
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const DriveTrackHistory& h = tracker->history(static_cast<TrackedAxle>(i));
-    if (h.time.empty()) continue;
-    const ReadableNumber unit = readable(1.0, std::string(kTrackedAxleUnits[i]));
-    TimeSeries figure{.title = fmt::format("{} over time", kTrackedAxleNames[i]),
-                      .caption = "Bands are 95 %. Grey: not excited, the last value is held.",
-                      .samples = h.time};
-    Line line{.name = "on line", .y = times(h.value, unit.value)};
-    // Wild values before there are data would hide everything else.
-    const double limit = 4.0 * std::max(std::abs(line.y.back()), 1e-12);
-    Band band;
-    for (std::size_t k = 0; k < h.time.size(); ++k) {
-      const double sigma = h.sigma[k] * unit.value;
-      const bool shown = std::isfinite(sigma) && std::abs(line.y[k]) <= limit;
-      if (!shown) line.y[k] = kNaN;
-      band.low.push_back(shown ? std::max(-limit, line.y[k] - 1.96 * sigma) : kNaN);
-      band.high.push_back(shown ? std::min(limit, line.y[k] + 1.96 * sigma) : kNaN);
-    }
-    line.band = std::move(band);
-    Panel value{.label = std::string(kTrackedAxleNames[i]), .unit = unit.unit, .lines = {std::move(line)}};
-    const double truth = truth_of(context, std::string(kTrackedAxleNames[i]));
-    if (std::isfinite(truth)) {
-      value.lines.push_back({.name = "truth at the start",
-                             .y = std::vector<double>(h.time.size(), truth * unit.value),
-                             .role = Role::kReference});
-    }
-    figure.panels.push_back(std::move(value));
-    figure.panels.push_back({.label = "suspicion (1: alarm)",
-                             .unit = "1",
-                             .lines = {{.name = "suspicion", .y = h.suspicion}},
-                             .height = 80});
-    bool open = false;
-    for (std::size_t k = 0; k < h.time.size(); ++k) {
-      if (h.held[k] && !open)
-        figure.spans.push_back({.from = h.time[k], .to = h.time[k], .label = "held", .tone = SpanTone::kMuted});
-      if (h.held[k]) figure.spans.back().to = h.time[k];
-      open = h.held[k];
-    }
-    for (const DriveChange& c : changes) {
-      if (static_cast<std::size_t>(c.axle) == i) {
-        figure.spans.push_back(
-            {.from = c.change.began_s, .to = c.change.detected_s, .label = "change", .tone = SpanTone::kBad});
-      }
-    }
-    section.blocks.emplace_back(std::move(figure));
-  }
-  document.sections.push_back(std::move(section));
-  if (!drive.notes().empty())
-    document.sections.push_back({.title = "Notes", .blocks = {List{drive.notes(), Tone::kNote}}});
-  if (!estimate.warnings.empty())
-    document.sections.push_back({.title = "Warnings", .blocks = {List{estimate.warnings, Tone::kWarning}}});
+  const std::optional<double> speed = response_speed(analysis.signals[DriveSignal::kSpeed].value);
+  if (id.best() != nullptr && speed) document.sections.push_back(response_section(p, *speed));
+  document.sections.push_back(data_section(study, analysis));
+  add_warnings(document, id.warnings);
   return document;
 }
 

@@ -1,30 +1,35 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "veridyn/report/document/document.hpp"
-#include "veridyn/vehicle/track_drive.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::report {
 
-/// What a drive report is to say beside the analysis.
+/// What a drive report is to say besides the analysis.
 struct DriveReportContext {
   std::string program;
   /// True values by parameter name, where the drive was simulated.
   std::vector<std::pair<std::string, double>> truth = {};
   bool validation_only = false;  ///< an estimate of other data was tried
+
+  /// NaN where it is not known.
+  [[nodiscard]] double true_value(std::string_view name) const;
 };
+
+/// The speed at which a drive's frequency response is shown [m/s]: the mean of what was driven faster than 3 m/s; of a
+/// slower drive the mean of what was moving (above 0.1 m/s); none when it stood or has no speed.
+[[nodiscard]] std::optional<double> response_speed(std::span<const double> speed);
 
 /// The report of `veridyn identify` (and `validate`) of a vehicle: verdict, parameters by method with intervals,
 /// measured and predicted motion on data not seen, path, g-g diagram, understeer diagram, frequency response.
 [[nodiscard]] Document drive_report(const vehicle::VehicleStudy& study, const vehicle::VehicleAnalysis& analysis,
                                     const DriveReportContext& context);
-
-/// The report of `veridyn track` of a vehicle.
-[[nodiscard]] Document drive_tracking_report(const vehicle::VehicleStudy& study, const vehicle::TrackedDrive& drive,
-                                             const DriveReportContext& context);
 
 }  // namespace veridyn::report

@@ -3,28 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
+
+#include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 constexpr const char* kSwingMethod =
     "Bifilar: I = m g d^2/(4 w^2 L). Pendulum: I = m g l/w^2 about the pivot. The cradle alone is taken off, and a "
     "pendulum's inertia moved to the aircraft's own centre of gravity (parallel axis). The air that swings with a "
     "light "
     "wing counts as inertia here: it is not taken off.";
-
-void add_warnings(Document& document, const std::vector<std::string>& warnings) {
-  if (warnings.empty()) return;
-  Section section{.title = "Warnings", .id = "warnings"};
-  section.blocks.emplace_back(List{.items = warnings, .tone = Tone::kWarning});
-  document.sections.push_back(std::move(section));
-}
 
 Table inertia_table(const SwingTestResult& result) {
   Table table{.title = "Moments of inertia",
@@ -105,57 +101,18 @@ TimeSeries decay_figure(const SwingRun& run) {
   return figure;
 }
 
-}  // namespace
+/// Radians are shown as degrees.
+struct ShownUnit {
+  double factor;
+  std::string name;
+};
 
-Document swing_test_report(const SwingTest& test, const SwingTestResult& result, const std::string& program) {
-  Document document;
-  document.title = fmt::format("{}: inertia from swing tests", test.name);
-  document.subtitle = "Bifilar suspension and compound pendulum";
-  document.generator = fmt::format("Made with {}", program);
-  const auto good = std::count_if(result.axes.begin(), result.axes.end(),
-                                  [](const AxisInertia& i) { return i.verdict == InertiaVerdict::kDetermined; });
-  const auto all = static_cast<std::ptrdiff_t>(result.axes.size());
-  document.verdict.level = good == all ? Level::kGood : good == 0 ? Level::kBad : Level::kCaution;
-  document.verdict.word = good == all ? "Determined" : good == 0 ? "Not determined" : "Partly determined";
-  document.verdict.headline = result.estimate.verdict + ".";
-  for (const AxisInertia& i : result.axes) document.verdict.lines.push_back(i.reason);
-  document.facts = {
-      {"Mass", fmt::format("{:g} kg", test.mass)},
-      {"Cradle", fmt::format("{:g} kg", test.cradle_mass)},
-      {"Standard errors", fmt::format("{:g} g, {:g} mm between the lines, {:g} mm of lengths", 1e3 * test.sigma_mass,
-                                      1e3 * test.sigma_filar_distance, 1e3 * test.sigma_length)},
-      {"Draws", std::to_string(test.draws)}};
-  Section results{.title = "Moments of inertia", .id = "inertia"};
-  results.blocks.emplace_back(inertia_table(result));
-  Paragraph method;
-  method.text = kSwingMethod;
-  results.blocks.emplace_back(std::move(method));
-  document.sections.push_back(std::move(results));
-  Section runs{.title = "Runs", .id = "runs"};
-  runs.blocks.emplace_back(run_table(result));
-  for (const AxisInertia& i : result.axes) {
-    for (const SwingRun& run : i.runs) runs.blocks.emplace_back(decay_figure(run));
-  }
-  document.sections.push_back(std::move(runs));
-  add_warnings(document, result.warnings);
-  return document;
+ShownUnit shown_unit_of(const SensorFit& fit) {
+  if (fit.unit == "rad") return {1.0 / kDegree, "deg"};
+  return {1.0, fit.unit};
 }
 
-Document calibration_report(const CalibrationStudy& study, const CalibrationResult& result,
-                            const std::string& program) {
-  Document document;
-  document.title = fmt::format("{}: calibration of air-data sensors", study.name);
-  document.subtitle = "From wind-tunnel points";
-  document.generator = fmt::format("Made with {}", program);
-  const bool failed =
-      std::any_of(result.sensors.begin(), result.sensors.end(), [](const auto& f) { return !f.usable; });
-  const bool clean = result.estimate.warnings.empty();
-  document.verdict.level = failed ? Level::kBad : clean ? Level::kGood : Level::kCaution;
-  document.verdict.word = failed ? "Failed" : clean ? "Calibrated" : "With reservations";
-  document.verdict.headline = result.estimate.verdict + ".";
-  document.verdict.lines = result.estimate.warnings;
-  document.facts = {{"Points", study.file.filename().string()}};
-  Section results{.title = "Calibration", .id = "calibration"};
+Table calibration_table() {
   Table table{.title = "Scale and bias",
               .caption =
                   "raw = bias + scale true. rms, worst: of corrected readings against the reference. Hysteresis: mean "
@@ -175,49 +132,107 @@ Document calibration_report(const CalibrationStudy& study, const CalibrationResu
                           {.name = "Bend", .digits = 2},
                           {.name = "Bend p", .digits = 2},
                           {.name = "Unit"}}};
-  Section figures{.title = "Points", .id = "points"};
-  for (const SensorFit& fit : result.sensors) {
-    const SensorCalibration& c = fit.calibration;
-    const bool angle = fit.unit == "rad";
-    const double unit = angle ? 1.0 / kDegree : 1.0;
-    const std::string name = angle ? "deg" : fit.unit;
-    const double sigma_scale = std::sqrt(c.covariance(0, 0)), sigma_bias = unit * std::sqrt(c.covariance(1, 1));
-    table.rows.push_back(
-        {.cells = {text_cell(c.channel), text_cell(fit.method), number_cell(static_cast<double>(fit.raw.size()), 0),
-                   measured_cell(c.scale, sigma_scale), measured_cell(sigma_scale, sigma_scale),
-                   measured_cell(unit * c.bias, sigma_bias), measured_cell(sigma_bias, sigma_bias),
-                   number_cell(unit * fit.rms), number_cell(unit * fit.worst), number_cell(fit.whiteness.p_value),
-                   number_cell(unit * fit.hysteresis), number_cell(unit * fit.bend), number_cell(fit.quadratic_p),
-                   text_cell(name)},
-         .status = !fit.usable            ? Status::kBad
-                   : fit.findings.empty() ? Status::kGood
-                                          : Status::kCaution});
-    XYPlot points{.title = fmt::format("{}: reading against reference", c.channel),
-                  .x = {.label = "reference", .unit = name},
-                  .y = {.label = "raw", .unit = name}};
-    XYPlot left{.title = fmt::format("{}: residual", c.channel),
+  return table;
+}
+
+Row calibration_row(const SensorFit& fit) {
+  const SensorCalibration& c = fit.calibration;
+  const auto [unit, name] = shown_unit_of(fit);
+  const double sigma_scale = std::sqrt(c.covariance(0, 0)), sigma_bias = unit * std::sqrt(c.covariance(1, 1));
+  return {.cells = {text_cell(c.channel), text_cell(fit.method), number_cell(static_cast<double>(fit.raw.size()), 0),
+                    measured_cell(c.scale, sigma_scale), measured_cell(sigma_scale, sigma_scale),
+                    measured_cell(unit * c.bias, sigma_bias), measured_cell(sigma_bias, sigma_bias),
+                    number_cell(unit * fit.rms), number_cell(unit * fit.worst), number_cell(fit.whiteness.p_value),
+                    number_cell(unit * fit.hysteresis), number_cell(unit * fit.bend), number_cell(fit.quadratic_p),
+                    text_cell(name)},
+          .status = !fit.usable            ? Status::kBad
+                    : fit.findings.empty() ? Status::kGood
+                                           : Status::kCaution};
+}
+
+/// Readings with their line, and what it leaves.
+std::array<XYPlot, 2> calibration_plots(const SensorFit& fit) {
+  const SensorCalibration& c = fit.calibration;
+  const auto [unit, name] = shown_unit_of(fit);
+  XYPlot points{.title = fmt::format("{}: reading against reference", c.channel),
                 .x = {.label = "reference", .unit = name},
-                .y = {.label = "corrected less reference", .unit = name}};
-    XYSeries raw{.name = "points"}, line{.name = "fit", .style = Style::kLine};
-    XYSeries rising{.name = "rising"}, falling{.name = "falling", .role = Role::kMeasured};
-    for (std::size_t i = 0; i < fit.raw.size(); ++i) {
-      raw.x.push_back(unit * fit.reference[i]);
-      raw.y.push_back(unit * fit.raw[i]);
-      XYSeries& side = fit.direction[i] < 0 ? falling : rising;
-      side.x.push_back(unit * fit.reference[i]);
-      side.y.push_back(unit * fit.residual[i]);
-    }
-    const auto [low, high] = std::minmax_element(fit.reference.begin(), fit.reference.end());
-    for (const double x : {*low, *high}) {
-      line.x.push_back(unit * x);
-      line.y.push_back(unit * (c.bias + c.scale * x));
-    }
-    points.series = {std::move(raw), std::move(line)};
-    left.series = {std::move(rising)};
-    if (!falling.x.empty()) left.series.push_back(std::move(falling));
-    left.guides.push_back({.direction = Guide::Direction::kHorizontal, .value = 0.0});
-    figures.blocks.emplace_back(std::move(points));
-    figures.blocks.emplace_back(std::move(left));
+                .y = {.label = "raw", .unit = name}};
+  XYPlot left{.title = fmt::format("{}: residual", c.channel),
+              .x = {.label = "reference", .unit = name},
+              .y = {.label = "corrected less reference", .unit = name}};
+  XYSeries raw{.name = "points"}, line{.name = "fit", .style = Style::kLine};
+  XYSeries rising{.name = "rising"}, falling{.name = "falling", .role = Role::kMeasured};
+  for (std::size_t i = 0; i < fit.raw.size(); ++i) {
+    raw.x.push_back(unit * fit.reference[i]);
+    raw.y.push_back(unit * fit.raw[i]);
+    XYSeries& side = fit.direction[i] < 0 ? falling : rising;
+    side.x.push_back(unit * fit.reference[i]);
+    side.y.push_back(unit * fit.residual[i]);
+  }
+  const auto [low, high] = std::minmax_element(fit.reference.begin(), fit.reference.end());
+  for (const double x : {*low, *high}) {
+    line.x.push_back(unit * x);
+    line.y.push_back(unit * (c.bias + c.scale * x));
+  }
+  points.series = {std::move(raw), std::move(line)};
+  left.series = {std::move(rising)};
+  if (!falling.x.empty()) left.series.push_back(std::move(falling));
+  left.guides.push_back({.direction = Guide::Direction::kHorizontal, .value = 0.0});
+  return {std::move(points), std::move(left)};
+}
+
+}  // namespace
+
+Document swing_test_report(const SwingTest& test, const SwingTestResult& result, const std::string& program) {
+  Document document = started_document(fmt::format("{}: inertia from swing tests", test.name),
+                                       "Bifilar suspension and compound pendulum", program);
+  const auto good = std::count_if(result.axes.begin(), result.axes.end(),
+                                  [](const AxisInertia& i) { return i.verdict == InertiaVerdict::kDetermined; });
+  const auto all = static_cast<std::ptrdiff_t>(result.axes.size());
+  document.verdict.level = good == all ? Level::kGood : good == 0 ? Level::kBad : Level::kCaution;
+  document.verdict.word = good == all ? "Determined" : good == 0 ? "Not determined" : "Partly determined";
+  document.verdict.headline = result.estimate.verdict + ".";
+  for (const AxisInertia& i : result.axes) document.verdict.lines.push_back(i.reason);
+  document.facts = {
+      {"Mass", fmt::format("{:g} kg", test.mass)},
+      {"Cradle", fmt::format("{:g} kg", test.cradle_mass)},
+      {"Standard errors", fmt::format("{:g} g, {:g} mm between the lines, {:g} mm of lengths", 1e3 * test.sigma_mass,
+                                      1e3 * test.sigma_filar_distance, 1e3 * test.sigma_length)},
+      {"Draws", std::to_string(test.draws)}};
+  Section results{.title = "Moments of inertia", .id = "inertia"};
+  results.blocks.emplace_back(inertia_table(result));
+  Paragraph method;
+  method.text = kSwingMethod;
+  results.blocks.emplace_back(std::move(method));
+  document.sections.push_back(std::move(results));
+  Section runs{.title = "Runs", .id = "runs", .folded = true};
+  runs.blocks.emplace_back(run_table(result));
+  for (const AxisInertia& i : result.axes) {
+    for (const SwingRun& run : i.runs) runs.blocks.emplace_back(decay_figure(run));
+  }
+  document.sections.push_back(std::move(runs));
+  add_warnings(document, result.warnings);
+  return document;
+}
+
+Document calibration_report(const CalibrationStudy& study, const CalibrationResult& result,
+                            const std::string& program) {
+  Document document = started_document(fmt::format("{}: calibration of air-data sensors", study.name),
+                                       "From wind-tunnel points", program);
+  const bool failed =
+      std::any_of(result.sensors.begin(), result.sensors.end(), [](const auto& f) { return !f.usable; });
+  const bool clean = result.estimate.warnings.empty();
+  document.verdict.level = failed ? Level::kBad : clean ? Level::kGood : Level::kCaution;
+  document.verdict.word = failed ? "Failed" : clean ? "Calibrated" : "With reservations";
+  document.verdict.headline = result.estimate.verdict + ".";
+  document.verdict.lines = result.estimate.warnings;
+  document.facts = {{"Points", study.file.filename().string()}};
+  Section results{.title = "Calibration", .id = "calibration"};
+  Table table = calibration_table();
+  Section figures{.title = "Points", .id = "points", .folded = true};
+  for (const SensorFit& fit : result.sensors) {
+    table.rows.push_back(calibration_row(fit));
+    for (XYPlot& plot : calibration_plots(fit)) figures.blocks.emplace_back(std::move(plot));
   }
   results.blocks.emplace_back(std::move(table));
   document.sections.push_back(std::move(results));

@@ -5,17 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/skeleton_figure.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::muscle;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// More lines than this in one panel say nothing: the strongest muscles, the coordinates that move most.
 constexpr std::size_t kMostLines = 12;
 
@@ -372,17 +372,11 @@ std::vector<std::string> notes(const Shown& shown) {
 
 Document muscle_report(const MuscleStudy& study, const MuscleResult& result, const std::string& program) {
   const Shown shown = choose(study, result);
-  Document document;
-  document.title = study.title;
-  document.subtitle = fmt::format("Musculoskeletal model {}: {}", shown.model.name, method_name(study.method));
-  document.generator = fmt::format("Made with {}", program);
+  Document document = started_document(
+      study.title, fmt::format("Musculoskeletal model {}: {}", shown.model.name, method_name(study.method)), program);
   document.verdict = verdict(shown);
   document.facts = facts(shown);
-  if (!result.warnings.empty()) {
-    Section section{.title = "Warnings", .id = "warnings"};
-    section.blocks.emplace_back(List{.items = result.warnings, .tone = Tone::kWarning});
-    document.sections.push_back(std::move(section));
-  }
+  add_warnings(document, result.warnings);
   Section motion{.title = "Motion", .id = "motion"};
   for (XYPlot& plot : skeleton_figure(study, result)) motion.blocks.emplace_back(std::move(plot));
   if (!shown.coordinates.empty()) motion.blocks.emplace_back(motion_figure(shown));
@@ -397,12 +391,7 @@ Document muscle_report(const MuscleStudy& study, const MuscleResult& result, con
     if (!result.trajectory.events.empty()) muscles.blocks.emplace_back(event_table(shown));
     document.sections.push_back(std::move(muscles));
   }
-  const std::vector<std::string> said = notes(shown);
-  if (!said.empty()) {
-    Section section{.title = "Notes", .id = "notes"};
-    section.blocks.emplace_back(List{.items = said, .tone = Tone::kNote});
-    document.sections.push_back(std::move(section));
-  }
+  add_notes(document, notes(shown));
   if (!shown.model.credits.empty()) {
     Section section{.title = "Credits of the model", .id = "credits", .folded = true};
     section.blocks.emplace_back(Paragraph{.text = shown.model.credits});

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 
+#include "veridyn/report/parts/remarks.hpp"
+
 namespace veridyn::report {
 namespace {
 
 Section section_of(const ReproducedRow& row) {
-  Section section{.title = row.title};
+  // What failed is open.
+  Section section{.title = row.title, .folded = row.passed()};
   if (!row.finding.empty()) section.blocks.push_back(Paragraph{.text = "Published: " + row.finding});
   section.blocks.push_back(Paragraph{.text = "Ours: " + row.ours, .tone = Tone::kNote});
   Table checks{.title = "What must be seen",
@@ -31,10 +34,7 @@ bool ReproducedRow::passed() const {
 
 Document reproduction_report(const std::string& domain, std::span<const ReproducedRow> rows,
                              const std::string& program) {
-  Document document;
-  document.title = "Published results, reproduced";
-  document.subtitle = domain;
-  document.generator = "Made with " + program;
+  Document document = started_document("Published results, reproduced", domain, program);
   const auto passed = std::count_if(rows.begin(), rows.end(), [](const ReproducedRow& r) { return r.passed(); });
   const auto all = static_cast<std::ptrdiff_t>(rows.size());
   document.verdict.level = passed == all ? Level::kGood : Level::kBad;

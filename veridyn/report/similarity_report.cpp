@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/report/figures/vehicle_figures.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 
 namespace veridyn::report {
@@ -157,20 +158,18 @@ std::vector<Section> overlay_sections(const ScaleStudy& study, const ScaleAnalys
     }
   }
   std::vector<Section> sections;
-  sections.push_back({.title = "Path", .blocks = {path_figure(drives), g_g_figure(drives, gravity)}});
-  sections.push_back({.title = "Motion", .blocks = {motion_figure(drives)}});
-  sections.push_back({.title = "Tyres", .blocks = {tyre_figure(drives)}});
+  sections.push_back({.title = "Path", .blocks = {path_figure(drives), g_g_figure(drives, gravity)}, .folded = true});
+  sections.push_back({.title = "Motion", .blocks = {motion_figure(drives)}, .folded = true});
+  sections.push_back({.title = "Tyres", .blocks = {tyre_figure(drives)}, .folded = true});
   TimeSeries ride = ride_figure(drives, loads);
-  if (!ride.panels.empty()) sections.push_back({.title = "Body and wheels", .blocks = {std::move(ride)}});
+  if (!ride.panels.empty())
+    sections.push_back({.title = "Body and wheels", .blocks = {std::move(ride)}, .folded = true});
   return sections;
 }
 
 Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysis, const std::string& program) {
   const SimilarityReport& r = analysis.judged();
-  Document document;
-  document.title = study.simulation.title;
-  document.subtitle = study.simulation.vehicle.description;
-  document.generator = "Made with " + program;
+  Document document = started_document(study.simulation.title, study.simulation.vehicle.description, program);
   const bool similar = r.similar_without_gravity();
   document.verdict.level = r.similar() ? Level::kGood : similar ? Level::kCaution : Level::kBad;
   document.verdict.word = r.similar() ? "Similar" : similar ? "Similar but for gravity" : "Not similar";
@@ -188,7 +187,7 @@ Document similarity_report(const ScaleStudy& study, const ScaleAnalysis& analysi
                     {"Manoeuvre", std::string(to_string(study.simulation.manoeuvre.kind))},
                     {"Drive model", std::string(to_string(study.simulation.model))}};
   document.sections.push_back(group_section(analysis));
-  Section numbers{.title = "Scaled vehicle", .blocks = {scaled_table(study, analysis)}};
+  Section numbers{.title = "Scaled vehicle", .blocks = {scaled_table(study, analysis)}, .folded = true};
   if (!analysis.scaled.chosen.empty()) numbers.blocks.emplace_back(List{analysis.scaled.chosen, Tone::kNote});
   document.sections.push_back(std::move(numbers));
   if (!analysis.runs.empty() && analysis.prototype.size() > 1) {

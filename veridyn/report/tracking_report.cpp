@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
+#include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The true value of a parameter at each moment, where the flight was simulated; empty otherwise.
 std::vector<double> true_values(const FlightStudy& study, Coefficient c, const Term& term,
@@ -32,16 +33,9 @@ std::vector<double> true_values(const FlightStudy& study, Coefficient c, const T
 }
 
 std::vector<Span> poorly_excited(const TrackHistory& h, std::size_t parameters) {
-  std::vector<Span> spans;
-  bool open = false;
-  for (std::size_t k = 0; k < h.time.size(); ++k) {
-    const bool poor = h.excited[k] < static_cast<int>(parameters);
-    if (poor && !open)
-      spans.push_back({.from = h.time[k], .to = h.time[k], .label = "not all excited", .tone = SpanTone::kMuted});
-    if (poor) spans.back().to = h.time[k];
-    open = poor;
-  }
-  return spans;
+  std::vector<bool> poor;
+  for (const int excited : h.excited) poor.push_back(excited < static_cast<int>(parameters));
+  return spans_where(h.time, poor, "not all excited", SpanTone::kMuted);
 }
 
 TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
@@ -54,22 +48,11 @@ TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
   figure.samples = h.time;
   for (std::size_t i = 0; i < c.model.size(); ++i) {
     Panel panel{.label = c.tracker->names()[i], .unit = c.model.terms[i].parameter_unit(), .height = 110};
-    Line line{.name = "on line", .y = h.value[i]};
     std::vector<double> truth = true_values(study, c.model.coefficient, c.model.terms[i], h.time);
     // Wild values before there are data, and while no linear model holds, would hide everything else.
     double largest = std::max(std::abs(h.value[i].back()), 1e-3);
     for (const double v : truth) largest = std::max(largest, std::abs(v));
-    const double limit = 4.0 * largest;
-    Band band;
-    for (std::size_t k = 0; k < h.time.size(); ++k) {
-      const double sigma = h.sigma[i][k];
-      const bool shown = std::isfinite(sigma) && std::abs(line.y[k]) <= limit;
-      if (!shown) line.y[k] = kNaN;
-      band.low.push_back(shown ? std::max(-limit, line.y[k] - 1.96 * sigma) : kNaN);
-      band.high.push_back(shown ? std::min(limit, line.y[k] + 1.96 * sigma) : kNaN);
-    }
-    line.band = std::move(band);
-    panel.lines.push_back(std::move(line));
+    panel.lines.push_back(followed_line(h.value[i], h.sigma[i], largest));
     if (!truth.empty()) panel.lines.push_back({.name = "truth", .y = std::move(truth), .role = Role::kReference});
     figure.panels.push_back(std::move(panel));
   }
@@ -91,24 +74,13 @@ TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
 
 Table parameter_table(const FlightStudy& study, const FlightTracker& tracker) {
   Table table{.title = "Parameters as they stand at the end",
-              .columns = {{.name = "parameter", .align = Align::kLeft},
-                          {.name = "value"},
-                          {.name = "sigma", .digits = 2},
-                          {.name = "95 % from"},
-                          {.name = "to"},
-                          {.name = "unit", .align = Align::kLeft},
-                          {.name = "status"}}};
-  if (study.true_subject) table.columns.push_back({.name = "truth"});
+              .columns = parameter_columns(study.true_subject.has_value())};
   const estimation::Estimate estimate = tracker.estimate();
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     if (!c.tracker) continue;
     for (std::size_t i = 0; i < c.model.size(); ++i) {
       const estimation::EstimatedParameter* p = estimate.find(c.tracker->names()[i]);
-      const Status status = status_from_name(estimation::to_string(p->status));
-      Row row{.cells = {text_cell(p->name), measured_cell(p->value, p->sigma), number_cell(p->sigma),
-                        measured_cell(p->low95, p->sigma), measured_cell(p->high95, p->sigma), text_cell(p->unit),
-                        status_cell(status)},
-              .status = status};
+      Row row = parameter_row(*p, 1.0, p->unit);
       if (study.true_subject) {
         const auto truth =
             true_values(study, c.model.coefficient, c.model.terms[i], {c.tracker->history().time.back()});
@@ -121,18 +93,9 @@ Table parameter_table(const FlightStudy& study, const FlightTracker& tracker) {
 }
 
 Table change_table(const FlightTracker& tracker) {
-  Table table{.title = "Changes found",
-              .columns = {{.name = "coefficient", .align = Align::kLeft},
-                          {.name = "detected", .unit = "s"},
-                          {.name = "began", .unit = "s"},
-                          {.name = "what", .align = Align::kLeft}}};
-  for (const FlightChange& c : tracker.changes()) {
-    const bool mean = c.change.kind == estimation::ChangeKind::kMean;
-    table.rows.push_back({.cells = {text_cell(std::string(name_of(c.coefficient))), number_cell(c.change.detected_s, 1),
-                                    number_cell(c.change.began_s, 1),
-                                    text_cell(mean ? fmt::format("innovation moved by {:.1f} sigma", c.change.shift)
-                                                   : fmt::format("innovation grew {:.1f} times", c.change.shift))}});
-  }
+  Table table{.title = "Changes found", .columns = change_columns("coefficient", "what")};
+  for (const FlightChange& c : tracker.changes())
+    table.rows.push_back(change_row(std::string(name_of(c.coefficient)), c.change));
   return table;
 }
 
@@ -142,10 +105,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
   const FlightTracker& tracker = flight.tracker();
   const estimation::Estimate estimate = tracker.estimate();
   const TrackOptions& options = tracker.options();
-  Document document;
-  document.title = study.subject.name;
-  document.subtitle = "followed on line";
-  document.generator = "Made with " + program;
+  Document document = started_document(study.subject.name, "followed on line", program);
   const std::size_t changes = tracker.changes().size();
   document.verdict.level = changes == 0 ? Level::kGood : Level::kCaution;
   document.verdict.word = changes == 0 ? "No change" : "The aircraft changed";
@@ -179,7 +139,9 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
   document.sections.push_back({.title = "Parameters", .blocks = {parameter_table(study, tracker)}});
   if (changes > 0) document.sections.push_back({.title = "Changes", .blocks = {change_table(tracker)}});
   for (const TrackedCoefficient& c : tracker.coefficients()) {
-    Section section{.title = std::string(name_of(c.model.coefficient))};
+    // Where something changed, one looks first.
+    Section section{.title = std::string(name_of(c.model.coefficient)),
+                    .folded = !c.tracker || c.tracker->changes().empty()};
     if (!c.tracker) {
       section.blocks.push_back(
           Paragraph{.text = c.obstacle.empty() ? "Not long enough in the air." : c.obstacle, .tone = Tone::kWarning});
@@ -197,9 +159,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
   std::vector<std::string> warnings = estimate.warnings;
   warnings.insert(warnings.end(), flight.notes().begin(), flight.notes().end());
   warnings.insert(warnings.end(), study.mapped.notes.begin(), study.mapped.notes.end());
-  if (!warnings.empty())
-    document.sections.push_back(
-        {.title = "Notes", .blocks = {List{.items = std::move(warnings), .tone = Tone::kNote}}});
+  add_notes(document, warnings);
   return document;
 }
 

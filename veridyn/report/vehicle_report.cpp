@@ -8,14 +8,15 @@
 #include <complex>
 #include <numbers>
 
+#include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/vehicle_figures.hpp"
+#include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::vehicle;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStandardGravity = 9.80665;
 
 std::vector<Fact> facts(const SimulationStudy& study, const SimulationRun& run) {
@@ -203,12 +204,9 @@ std::vector<Block> frequency_response_figures(std::span<const NamedBicycle> bicy
 }
 
 Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, const std::string& program) {
-  Document document;
-  document.title = study.title;
-  document.subtitle = study.vehicle.description;
+  Document document = started_document(study.title, study.vehicle.description, program);
   document.verdict = verdict(study, run);
   document.facts = facts(study, run);
-  document.generator = "Made with " + program;
   const VehicleTrajectory& t = run.trajectory;
   const std::array drives{ShownDrive{.name = "drive", .trajectory = &t}};
 
@@ -230,13 +228,14 @@ Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, 
     path.blocks.emplace_back(g_g_figure(drives, study.four_wheel.gravity));
     document.sections.push_back(std::move(path));
     document.sections.push_back({.title = "Time histories", .blocks = {motion_figure(drives)}});
-    document.sections.push_back({.title = "Tyres", .blocks = {tyre_figure(drives)}});
+    document.sections.push_back({.title = "Tyres", .blocks = {tyre_figure(drives)}, .folded = true});
     TimeSeries ride = ride_figure(drives);
-    if (!ride.panels.empty()) document.sections.push_back({.title = "Body and wheels", .blocks = {std::move(ride)}});
+    if (!ride.panels.empty())
+      document.sections.push_back({.title = "Body and wheels", .blocks = {std::move(ride)}, .folded = true});
   }
   if (!run.metrics.empty()) document.sections.push_back({.title = "Metrics", .blocks = {metric_table(run.metrics)}});
 
-  Section linear{.title = "Linear analysis"};
+  Section linear{.title = "Linear analysis", .folded = true};
   linear.blocks.emplace_back(characteristic_table(run.characteristics));
   linear.blocks.emplace_back(mode_table("Eigenvalues of the bicycle", run.modes));
   if (!run.vehicle_modes.empty())
@@ -252,8 +251,7 @@ Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, 
     numbers.blocks.emplace_back(List{study.vehicle.assumed});
   }
   document.sections.push_back(std::move(numbers));
-  if (!study.vehicle.warnings.empty())
-    document.sections.push_back({.title = "Warnings", .blocks = {List{study.vehicle.warnings, Tone::kWarning}}});
+  add_warnings(document, study.vehicle.warnings);
   return document;
 }
 

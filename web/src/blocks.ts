@@ -2,7 +2,8 @@ import type { Block, Document, Fact, Section, Verdict } from './document';
 import { h, icon } from './dom';
 import { draw_interval_plot } from './plots/interval_plot';
 import { draw_matrix } from './plots/matrix';
-import { draw_time_series } from './plots/time_series';
+import { save_buttons } from './plots/save';
+import { draw_time_series, type DrawnFigure } from './plots/time_series';
 import { draw_xy_plot } from './plots/xy_plot';
 import { copy_button, draw_table } from './table';
 
@@ -46,6 +47,11 @@ function figure(kind: string, block: Captioned, content: HTMLElement, tools?: HT
   return h('figure', { class: kind, 'aria-label': block.title || undefined }, head, content, caption);
 }
 
+/** A figure that can be saved as a picture. */
+function picture_figure(kind: string, block: Captioned, drawn: DrawnFigure): HTMLElement {
+  return figure(kind, block, drawn.element, save_buttons(block.title, drawn.picture));
+}
+
 function draw_block(block: Block): HTMLElement {
   switch (block.kind) {
     case 'paragraph':
@@ -57,13 +63,13 @@ function draw_block(block: Block): HTMLElement {
     case 'table':
       return figure(block.rows.length > 16 ? 'table' : 'table short', block, draw_table(block), copy_button(block));
     case 'time_series':
-      return figure('series', block, draw_time_series(block));
+      return picture_figure('series', block, draw_time_series(block));
     case 'xy':
-      return figure('xy-figure', block, draw_xy_plot(block));
+      return picture_figure('xy-figure', block, draw_xy_plot(block));
     case 'intervals':
-      return figure('intervals-figure', block, draw_interval_plot(block));
+      return picture_figure('intervals-figure', block, draw_interval_plot(block));
     case 'matrix':
-      return figure('matrix-figure', block, draw_matrix(block));
+      return picture_figure('matrix-figure', block, draw_matrix(block));
   }
 }
 
@@ -85,10 +91,18 @@ function draw_blocks(blocks: Block[]): HTMLElement[] {
   return elements;
 }
 
+/** "2 tables, 1 figure": what a folded section holds. */
+function summary_of(blocks: Block[]): string {
+  const tables = blocks.filter((block) => block.kind === 'table').length;
+  const figures = blocks.filter((block) => ['time_series', 'xy', 'intervals', 'matrix'].includes(block.kind)).length;
+  const counted = (count: number, word: string) => (count === 0 ? [] : [`${count} ${word}${count === 1 ? '' : 's'}`]);
+  return [...counted(tables, 'table'), ...counted(figures, 'figure')].join(', ');
+}
+
+/** A section that folds: open at first unless the report folds it. */
 export function draw_section(section: Section): HTMLElement {
-  const content = draw_blocks(section.blocks);
-  if (!section.folded) return h('section', { id: section.id }, h('h2', {}, section.title), ...content);
-  return h('section', { id: section.id }, h('details', {}, h('summary', {}, h('h2', {}, section.title)), ...content));
+  const summary = h('summary', {}, h('h2', {}, section.title), h('span', { class: 'inside' }, summary_of(section.blocks)));
+  return h('section', { id: section.id }, h('details', { class: 'section', open: !section.folded }, summary, ...draw_blocks(section.blocks)));
 }
 
 export function draw_contents(report: Document): HTMLElement {

@@ -91,6 +91,12 @@ export interface Span {
   tone: 'primary' | 'secondary' | 'muted' | 'bad';
 }
 
+/** A piece of the abscissa; a figure with windows shows these alone, side by side. */
+export interface Window {
+  from: number;
+  to: number;
+}
+
 export interface TimeSeries {
   kind: 'time_series';
   title: string;
@@ -101,6 +107,7 @@ export interface TimeSeries {
   xs: number[][];
   panels: Panel[];
   spans: Span[];
+  windows?: Window[];
 }
 
 export interface XYSeries {

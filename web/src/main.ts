@@ -4,6 +4,7 @@ import './style.css';
 import type { Document } from './document';
 import { draw_contents, draw_facts, draw_section, draw_verdict } from './blocks';
 import { h, icon } from './dom';
+import { expand_button, follow_links, unfold_for_print } from './folding';
 import { fit_all } from './plots/frame';
 import { any_zoomed, on_zoom_change, reset_zoom } from './plots/zoom';
 import { on_theme_change, set_printing, theme, toggle_theme } from './theme';
@@ -25,7 +26,7 @@ function theme_button(): HTMLElement {
 }
 
 function zoom_button(): HTMLElement {
-  const button = h('button', { type: 'button', class: 'reset-zoom', id: 'reset-zoom', hidden: true, click: reset_zoom }, 'Show all time');
+  const button = h('button', { type: 'button', class: 'reset-zoom', id: 'reset-zoom', hidden: true, click: reset_zoom }, 'Show everything');
   on_zoom_change(() => {
     button.hidden = !any_zoomed();
   });
@@ -48,16 +49,15 @@ function follow_reading(sections: HTMLElement[], contents: HTMLElement): void {
 
 /** On paper: light colours, the width of the page, everything unfolded. */
 function follow_printing(): void {
-  let unfolded: HTMLDetailsElement[] = [];
+  let fold = () => {};
   const begin = () => {
-    unfolded = [...document.querySelectorAll<HTMLDetailsElement>('details:not([open])')];
-    for (const details of unfolded) details.open = true;
+    fold = unfold_for_print();
     set_printing(true);
     fit_all();
   };
   const end = () => {
-    for (const details of unfolded) details.open = false;
-    unfolded = [];
+    fold();
+    fold = () => {};
     set_printing(false);
     fit_all();
   };
@@ -69,7 +69,7 @@ function draw(report: Document, root: HTMLElement): void {
   const contents = draw_contents(report);
   const sections = report.sections.map(draw_section);
   root.replaceChildren(
-    h('header', { class: 'top' }, h('span', { class: 'brand' }, 'Veridyn'), h('span', { class: 'where' }, report.title), theme_button()),
+    h('header', { class: 'top' }, h('span', { class: 'brand' }, 'Veridyn'), h('span', { class: 'where' }, report.title), expand_button(), theme_button()),
     h(
       'div',
       { class: 'page' },
@@ -89,6 +89,7 @@ function draw(report: Document, root: HTMLElement): void {
   root.classList.add('live');
   follow_reading(sections, contents);
   follow_printing();
+  follow_links();
 }
 
 const source = document.getElementById('veridyn-document');

@@ -1,64 +1,13 @@
 // The sample report (tests/report/sample_report.cpp) in headless Chromium, opened from its file as a user would.
 import assert from 'node:assert/strict';
-import { existsSync, statSync } from 'node:fs';
-import { resolve } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { statSync } from 'node:fs';
+import { describe, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
-
-const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const sample = resolve(process.env.VERIDYN_SAMPLE_REPORT ?? 'sample_report.html');
-const missing = !existsSync(executablePath)
-  ? `no Chromium at ${executablePath}`
-  : !existsSync(sample)
-    ? `no sample report at ${sample}: run veridyn_sample_report and set VERIDYN_SAMPLE_REPORT`
-    : false;
-if (missing) console.log(missing);
-// A missing browser is a reason to skip, a missing report is a failure.
-const skip = missing && missing.startsWith('no Chromium') ? missing : false;
+import { sample, skip, with_browser } from './page.mjs';
 
 describe('the report', { skip }, () => {
-  let browser;
-
-  before(async () => {
-    browser = await chromium.launch({
-      executablePath,
-      args: [
-        '--no-sandbox',
-        '--disable-gpu',
-        '--disable-quic',
-        '--no-first-run',
-        '--disable-background-networking',
-        '--disable-component-update',
-        '--disable-sync',
-      ],
-    });
-  });
-
-  after(() => browser?.close());
-
-  // Every page of every test is watched: nothing on the console, no request but for the file itself.
-  async function open(options = {}) {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, colorScheme: 'light', ...options });
-    const page = await context.newPage();
-    const complaints = [];
-    page.on('console', (message) => complaints.push(`${message.type()}: ${message.text()}`));
-    page.on('pageerror', (error) => complaints.push(`error: ${error.message}`));
-    page.on('request', (request) => {
-      const url = request.url();
-      if (!url.startsWith('data:') && url !== pathToFileURL(sample).href) complaints.push(`request: ${url}`);
-    });
-    await page.goto(pathToFileURL(sample).href);
-    await page.waitForSelector('#report.live');
-    await page.waitForFunction(() => [...document.querySelectorAll('.plot')].every((host) => host.querySelector('canvas')));
-    return {
-      page,
-      close: async () => {
-        assert.deepEqual(complaints, []);
-        await context.close();
-      },
-    };
-  }
+  const tester = with_browser();
+  const open = (options) => tester.open(options);
 
   const ranges = (page, axis) =>
     page.evaluate(
@@ -223,7 +172,7 @@ describe('the report', { skip }, () => {
   for (const width of [360, 768]) {
     test(`does not scroll sideways at ${width} px`, async () => {
       const { page, close } = await open({ viewport: { width, height: 740 } });
-      await page.locator('summary').click();
+      await page.locator('#expand-all').click();
       const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
       assert.equal(window, width);
       assert.ok(content <= width, `${content} px wide`);
@@ -262,7 +211,7 @@ describe('the report', { skip }, () => {
     await page.evaluate(() => {
       window.seen = null;
       addEventListener('beforeprint', () => {
-        window.seen = { theme: document.documentElement.dataset.theme, open: document.querySelector('details').open };
+        window.seen = { theme: document.documentElement.dataset.theme, open: [...document.querySelectorAll('details')].every((each) => each.open) };
       });
     });
     const pdf = await page.pdf({ format: 'A4', printBackground: true });
@@ -270,7 +219,7 @@ describe('the report', { skip }, () => {
     assert.ok(pdf.toString('latin1').match(/\/Type\s*\/Page\b/g).length >= 4);
     assert.deepEqual(await page.evaluate(() => window.seen), { theme: 'light', open: true });
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
-    assert.equal(await page.evaluate(() => document.querySelector('details').open), false);
+    assert.equal(await page.evaluate(() => [...document.querySelectorAll('details')].every((each) => each.open)), false);
     await close();
   });
 
@@ -283,7 +232,7 @@ describe('the report', { skip }, () => {
   });
 
   test('says verdict and tables without a script', async () => {
-    const context = await browser.newContext({ javaScriptEnabled: false });
+    const context = await tester.browser.newContext({ javaScriptEnabled: false });
     const page = await context.newPage();
     await page.goto(pathToFileURL(sample).href);
     assert.equal(await page.locator('.verdict h2').innerText(), 'The pitch model is good to fly with; the yaw model is not.');

@@ -39,6 +39,7 @@ TEST(CheckDeathTest, NamesWhatDoesNotFit) {
   EXPECT_DEATH(check({.sections = {{.blocks = {TimeSeries{.samples = {0, 1},
                                                           .panels = {{.lines = {{.name = "a", .y = {1}}}}}}}}}}),
                "line.y.size");
+  EXPECT_DEATH(check({.sections = {{.blocks = {TimeSeries{.windows = {{0, 10}, {5, 20}}}}}}}), "windows");
 }
 
 }  // namespace

@@ -42,6 +42,13 @@ TEST(ToJson, HoldsEveryKindOfBlock) {
   }
 }
 
+TEST(ToJson, HoldsTheWindowsOfAFigure) {
+  const json figure = first_block(TimeSeries{.windows = {{.from = 1.0, .to = 2.5}, {.from = 9.0, .to = 10.0}}});
+  ASSERT_EQ(figure["windows"].size(), 2U);
+  EXPECT_EQ(figure["windows"][0]["from"], 1.0);
+  EXPECT_EQ(figure["windows"][0]["to"], 2.5);
+}
+
 TEST(ToJson, CannotEndTheScriptElementThatItStandsIn) {
   const std::string text = to_json({.title = kHostileText, .sections = {{.title = kHostileText}}});
   for (const char c : {'<', '>', '&'}) EXPECT_EQ(text.find(c), std::string::npos);

@@ -53,6 +53,10 @@ void check_block(const TimeSeries& figure) {
       }
     }
   }
+  for (std::size_t k = 0; k < figure.windows.size(); ++k) {
+    VERIDYN_ASSERT(figure.windows[k].to > figure.windows[k].from);
+    VERIDYN_ASSERT(k == 0 || figure.windows[k].from >= figure.windows[k - 1].to);
+  }
 }
 
 void check_block(const XYPlot& plot) {
@@ -137,7 +141,7 @@ void check(const Document& document) {
 
 std::vector<std::string> section_ids(const Document& document) {
   // Names of elements that the page has already.
-  std::set<std::string> taken = {"report", "veridyn-document", "theme", "reset-zoom"};
+  std::set<std::string> taken = {"report", "veridyn-document", "theme", "reset-zoom", "expand-all"};
   std::vector<std::string> ids;
   for (const Section& section : document.sections) {
     const std::string base = slug(section.id.empty() ? section.title : section.id);

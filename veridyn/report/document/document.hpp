@@ -17,7 +17,7 @@ namespace veridyn::report {
 enum class Status {
   kNone,           ///< no badge
   kIdentified,     ///< trust it
-  kInsignificant,  ///< not told apart from zero
+  kInsignificant,  ///< not distinguishable from zero
   kNotExcited,     ///< the data hold nothing about it
   kRejected,       ///< estimated, but wrong by some check
   kFixed,          ///< given, not estimated
@@ -171,6 +171,12 @@ struct Span {
   SpanTone tone = SpanTone::kPrimary;
 };
 
+/// A piece of the abscissa.
+struct Window {
+  double from = 0.0;
+  double to = 0.0;  ///< after `from`
+};
+
 /// Panels stacked over one abscissa. Figures of equal `axis` zoom together and share the cursor.
 struct TimeSeries {
   std::string title = {};
@@ -180,6 +186,9 @@ struct TimeSeries {
   std::vector<Panel> panels = {};
   std::vector<Span> spans = {};
   std::string axis = "time";
+  /// When not empty, these alone are shown, side by side, each with its own part of the width: short stretches of a long
+  /// recording would else be slivers. Increasing and apart from each other.
+  std::vector<Window> windows = {};
 };
 
 struct XYSeries {

@@ -178,6 +178,8 @@ json block_json(const TimeSeries& figure, const JsonOptions& options) {
     spans.push_back(
         {{"from", number(span.from)}, {"to", number(span.to)}, {"label", span.label}, {"tone", name_of(span.tone)}});
   }
+  json windows = json::array();
+  for (const Window& window : figure.windows) windows.push_back({{"from", window.from}, {"to", window.to}});
   return {{"kind", "time_series"},
           {"title", figure.title},
           {"caption", figure.caption},
@@ -186,7 +188,8 @@ json block_json(const TimeSeries& figure, const JsonOptions& options) {
           {"x", quantity_json(figure.x)},
           {"xs", abscissae.list()},
           {"panels", std::move(panels)},
-          {"spans", std::move(spans)}};
+          {"spans", std::move(spans)},
+          {"windows", std::move(windows)}};
 }
 
 json block_json(const XYPlot& plot, const JsonOptions& options) {

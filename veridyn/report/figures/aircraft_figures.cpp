@@ -4,25 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
+#include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {
 namespace {
 
 using namespace veridyn::aircraft;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kBand95 = 1.959963984540054;
-
-std::vector<double> scaled(const std::vector<double>& values, double factor) {
-  std::vector<double> result = values;
-  for (double& v : result) v *= factor;
-  return result;
-}
 
 Line estimate_line(const Recording& recording, const std::string& channel, const char* label, double factor) {
   Line line{.name = label};
@@ -93,6 +84,11 @@ double rms_error(const Recording& estimate, const Recording& truth, const char* 
     ++count;
   }
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNaN;
+}
+
+bool same_windows(const std::vector<Window>& a, const std::vector<Window>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Window& i, const Window& j) { return i.from == j.from && i.to == j.to; });
 }
 
 /// Errors of the state estimates of a simulated flight beside what the sensors allow at best.
@@ -182,7 +178,7 @@ Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis)
 }
 
 Section coefficient_series_section(const FlightAnalysis& analysis) {
-  Section section{.title = "Coefficients over time", .id = "series"};
+  Section section{.title = "Coefficients over time", .id = "series", .folded = true};
   for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
     TimeSeries figure{.title = axis == Axis::kLongitudinal ? "Longitudinal coefficients" : "Lateral coefficients",
                       .caption =
@@ -205,17 +201,22 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
 std::vector<TimeSeries> validation_figures(const Validation& validation) {
   std::vector<TimeSeries> figures;
   if (!validation.available()) return figures;
-  TimeSeries figure{
-      .title = "Flown by the model on unseen data",
-      .caption = fmt::format("Started anew every {:.1f} s from the reconstructed state.", validation.period_s)};
   for (const PredictedQuantity& q : validation.quantities) {
+    const std::vector<Window> windows = windows_of(q.time);
+    // Longitudinal and lateral quantities are held out at different times.
+    const bool other = figures.empty() || !same_windows(figures.back().windows, windows);
+    if (other) {
+      figures.push_back(
+          {.title = "Flown by the model on unseen data",
+           .caption = fmt::format("Started anew every {:.1f} s from the reconstructed state.", validation.period_s),
+           .windows = windows});
+    }
     const double factor = q.unit == "deg" ? 1.0 / kDegree : 1.0;
     Panel panel{.label = q.name, .unit = q.unit};
     panel.lines.push_back({.name = "measured", .y = scaled(q.measured, factor), .x = q.time, .role = Role::kMeasured});
     panel.lines.push_back({.name = "model", .y = scaled(q.predicted, factor), .x = q.time});
-    figure.panels.push_back(std::move(panel));
+    figures.back().panels.push_back(std::move(panel));
   }
-  figures.push_back(std::move(figure));
   return figures;
 }
 

@@ -7,14 +7,14 @@
 
 namespace veridyn::report {
 
-/// Airspeed, alpha, beta and wind with 95 % bands beside what was measured (and the truth of a simulated flight), and
+/// Airspeed, alpha, beta and wind with 95 % bands over what was measured (and the truth of a simulated flight), and
 /// the inputs, with the segments shaded; how far from the information bound, where the truth is known.
 [[nodiscard]] Section flight_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
 
 /// Measured and modelled coefficients over time.
 [[nodiscard]] Section coefficient_series_section(const aircraft::FlightAnalysis& analysis);
 
-/// Predicted against measured airspeed, alpha and beta.
+/// Predicted against measured airspeed, alpha and beta, the stretches held out side by side.
 [[nodiscard]] std::vector<TimeSeries> validation_figures(const aircraft::Validation& validation);
 
 [[nodiscard]] XYPlot residual_autocorrelation_plot(const aircraft::CoefficientResult& result);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -12,12 +13,9 @@ using vehicle::kWheels;
 using vehicle::PerWheel;
 using vehicle::VehicleTrajectory;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-std::vector<double> scaled(const std::vector<double>& values, double factor, double less = 0.0) {
-  std::vector<double> out(values.size());
-  std::transform(values.begin(), values.end(), out.begin(), [&](double v) { return factor * (v - less); });
-  return out;
+std::vector<double> shifted(std::vector<double> values, double less) {
+  for (double& value : values) value -= less;
+  return values;
 }
 
 /// All zero: a quantity that this drive does not have, such as longitudinal forces at constant speed.
@@ -54,7 +52,7 @@ class Panels {
         if (values[w].empty() || idle(values[w]) || (alike && w % 2 == 1)) continue;
         const std::string wheel = alike ? (w == 0 ? "front" : "rear") : std::string(kWheelNames[w]);
         const std::string name = drives_.size() > 1 ? drive.name + " " + wheel : wheel;
-        panel.lines.push_back(line(drive, name, scaled(values[w], factor, less.empty() ? 0.0 : less[d][w])));
+        panel.lines.push_back(line(drive, name, scaled(shifted(values[w], less.empty() ? 0.0 : less[d][w]), factor)));
       }
     }
     keep(std::move(panel));

@@ -82,14 +82,60 @@ on_theme_change(() => {
   for (const each of mounted) each.plot.redraw(false, true);
 });
 
-/** Room for the labels of an ordinate: every pixel counts on a phone. */
-export function y_axis_size(width: number): number {
-  return width < 420 ? 44 : 54;
+/** Room beside the labels of an ordinate: tick, gap and a pixel for rounding [CSS px]. */
+const kOrdinateMargin = 13;
+const kLeastOrdinate = 34;
+
+const measuring = document.createElement('canvas').getContext('2d');
+
+export function text_width(text: string): number {
+  if (!measuring) return 7 * text.length;
+  measuring.font = kFont;
+  return measuring.measureText(text).width;
 }
 
-/** An axis in the page's style; `labels` false keeps grid lines only. */
-export function axis(side: 'x' | 'y', options: { size: number; labels?: boolean }): uPlot.Axis {
+/** The width of the ordinates of one figure: as wide as the longest label of its panels, which thus stay in line. */
+export class OrdinateWidth {
+  private readonly wanted = new Map<uPlot, number>();
+  private shared = kLeastOrdinate;
+
+  constructor(
+    private readonly on_change: (width: number) => void,
+    /** Never narrower again: for plots whose range depends on the width. */
+    private readonly only_grows = false,
+  ) {}
+
+  get width(): number {
+    return this.shared;
+  }
+
+  readonly size = (plot: uPlot, labels: string[] | null): number => {
+    if (labels === null) return this.shared;
+    const longest = labels.reduce((most, label) => Math.max(most, text_width(label ?? '')), 0);
+    this.wanted.set(plot, Math.max(kLeastOrdinate, Math.ceil(longest) + kOrdinateMargin));
+    const most = Math.max(...this.wanted.values(), this.only_grows ? this.shared : 0);
+    if (most !== this.shared) {
+      this.shared = most;
+      // Later: a plot that is being laid out takes no other layout.
+      queueMicrotask(() => {
+        for (const other of this.wanted.keys()) if (other !== plot) other.redraw(true, true);
+        this.on_change(this.shared);
+      });
+    }
+    return this.shared;
+  };
+}
+
+interface AxisOptions {
+  size: uPlot.Axis['size'];
+  labels?: boolean;
+  ticks?: (plot: uPlot, low: number, high: number) => { positions: number[]; labels: string[] };
+}
+
+/** An axis in the page's style; `labels` false keeps grid lines only, `ticks` puts them where it likes. */
+export function axis(side: 'x' | 'y', options: AxisOptions): uPlot.Axis {
   const labels = options.labels ?? true;
+  const { ticks } = options;
   return {
     side: side === 'x' ? 2 : 3,
     size: options.size,
@@ -99,7 +145,13 @@ export function axis(side: 'x' | 'y', options: { size: number; labels?: boolean 
     stroke: () => palette().soft_ink,
     grid: { stroke: () => palette().grid, width: 1 },
     ticks: { show: labels, stroke: () => palette().grid, width: 1, size: 5 },
-    values: (_plot, ticks, _axis, _space, step) => (labels ? format_ticks(ticks, step) : ticks.map(() => '')),
+    ...(ticks ? { splits: (plot, _axis, low, high) => ticks(plot, low, high).positions } : {}),
+    values: (plot, positions, _axis, _space, step) => {
+      if (!labels) return positions.map(() => '');
+      if (!ticks) return format_ticks(positions, step);
+      const { min, max } = plot.scales.x ?? {};
+      return ticks(plot, min ?? 0, max ?? 1).labels;
+    },
   };
 }
 

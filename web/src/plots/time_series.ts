@@ -1,93 +1,31 @@
-import type { Band, Line, Panel, Samples, TimeSeries } from '../document';
+import type { Band, Panel, TimeSeries } from '../document';
 import { h } from '../dom';
 import { format_number, with_unit } from '../numbers';
 import { palette } from '../theme';
-import { axis, clipped, Looks, mount, translucent, uPlot, y_axis_size, type LineLook } from './frame';
-import { follow_touch, zoom_group, type ZoomGroup } from './zoom';
+import { axis, clipped, Looks, mount, OrdinateWidth, translucent, uPlot } from './frame';
+import { lower_bound, median_spacing, sample_at, with_gaps } from './gaps';
+import { legend_entry, range_button, SeriesSwitch } from './legend';
+import { ordinate_of, type Drawn, type Ordinate } from './ordinate';
+import { stacked, time_series_picture, type PanelPicture } from './picture';
+import { window_rows, type WindowAxis } from './windows';
+import { follow_touch, zoom_group, type PanelView, type ZoomGroup } from './zoom';
 
 // In a joined table, a gap of one line stays a gap where only other lines have samples (uPlot's JoinNullMode.Expand).
 const kExpand = 2 as uPlot.JoinNullMode;
+/** A selection thinner than this in one direction zooms in the other only [CSS px]. */
+const kThinSelection = 30;
 
-interface Drawn {
-  line: Line;
-  x: number[];
-  band?: Band & { at: number[] };
-  look: LineLook;
-}
-
-/** Index of the first abscissa not below `value`. */
-function lower_bound(x: number[], value: number): number {
-  let low = 0;
-  let high = x.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if ((x[middle] as number) < value) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
-function nearest(x: number[], value: number): number {
-  const after = lower_bound(x, value);
-  if (after === 0) return 0;
-  if (after === x.length) return after - 1;
-  return value - (x[after - 1] as number) < (x[after] as number) - value ? after - 1 : after;
-}
-
-function extremes(x: number[], values: Samples[], from: number, to: number): [number, number] {
-  let low = Infinity;
-  let high = -Infinity;
-  // One sample more on either side: lines enter and leave the window.
-  const first = Math.max(0, lower_bound(x, from) - 1);
-  const last = Math.min(x.length, lower_bound(x, to) + 1);
-  for (const series of values) {
-    for (let k = first; k < last; ++k) {
-      const value = series[k];
-      if (value === null || value === undefined) continue;
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
-  }
-  return [low, high];
-}
-
-/** Half the median width of a band in a window: what is typical, whatever the first seconds of a filter look like. */
-function typical_half_width(band: Band & { at: number[] }, from: number, to: number): number {
-  const widths: number[] = [];
-  for (let k = lower_bound(band.at, from); k < band.at.length && (band.at[k] as number) <= to; ++k) {
-    const low = band.low[k];
-    const high = band.high[k];
-    if (low !== null && low !== undefined && high !== null && high !== undefined) widths.push((high - low) / 2);
-  }
-  widths.sort((a, b) => a - b);
-  return widths[widths.length >> 1] ?? 0;
-}
-
-/** Range of the ordinate for what is in sight: the lines entirely, the bands unless they would flatten the lines. */
-function y_range(drawn: Drawn[], from: number, to: number): [number, number] {
-  let low = Infinity;
-  let high = -Infinity;
-  for (const { line, x } of drawn) {
-    const [a, b] = extremes(x, [line.y], from, to);
-    low = Math.min(low, a);
-    high = Math.max(high, b);
-  }
-  let band_low = Infinity;
-  let band_high = -Infinity;
-  let typical = 0;
-  for (const { band } of drawn) {
-    if (!band) continue;
-    const [a, b] = extremes(band.at, [band.low, band.high], from, to);
-    band_low = Math.min(band_low, a);
-    band_high = Math.max(band_high, b);
-    typical = Math.max(typical, typical_half_width(band, from, to));
-  }
-  if (!(low <= high)) [low, high] = band_low <= band_high ? [band_low, band_high] : [0, 1];
-  const allowed = Math.max(0.6 * (high - low), 3 * typical);
-  const bottom = Math.max(Math.min(low, band_low), low - allowed);
-  const top = Math.min(Math.max(high, band_high), high + allowed);
-  const margin = top > bottom ? 0.06 * (top - bottom) : Math.max(1e-3, 0.05 * Math.abs(top));
-  return [bottom - margin, top + margin];
+/** What the panels of a figure share. */
+interface Shared {
+  figure: TimeSeries;
+  looks: Looks;
+  group: ZoomGroup;
+  ordinates: OrdinateWidth;
+  shown: SeriesSwitch;
+  clock: HTMLElement;
+  windows: WindowAxis | null;
+  /** How each panel looks now, for its picture. */
+  pictures: (() => PanelPicture)[];
 }
 
 function draw_spans(plot: uPlot, figure: TimeSeries, with_labels: boolean): void {
@@ -107,6 +45,18 @@ function draw_spans(plot: uPlot, figure: TimeSeries, with_labels: boolean): void
       context.textAlign = 'left';
       const pad = 5 * uPlot.pxRatio;
       if (context.measureText(span.label).width + 2 * pad < right - left) context.fillText(span.label, left + pad, bbox.top + pad);
+    }
+  });
+}
+
+/** The seams between windows of a broken abscissa. */
+function draw_breaks(plot: uPlot, windows: WindowAxis): void {
+  clipped(plot, (context) => {
+    const { bbox } = plot;
+    context.fillStyle = palette().grid;
+    for (const [from, to] of windows.breaks()) {
+      const left = plot.valToPos(from, 'x', true);
+      context.fillRect(left, bbox.top, plot.valToPos(to, 'x', true) - left, bbox.height);
     }
   });
 }
@@ -139,124 +89,183 @@ function draw_band(plot: uPlot, band: Band & { at: number[] }, colour: string): 
   });
 }
 
-function swatch(look: LineLook, style: Line['style'], has_band: boolean): HTMLElement {
-  const index = Math.max(-1, palette().lines.indexOf(look.colour(palette())));
-  const name = index >= 0 ? `--line-${index + 1}` : look.dash.length > 0 ? '--reference' : '--measured';
-  const kind = style === 'markers' ? 'dots' : look.dash.length > 0 ? 'dashed' : 'solid';
-  return h('span', { class: `swatch ${kind}${has_band ? ' banded' : ''}`, style: `--colour: var(${name})`, 'aria-hidden': 'true' });
+/** Arrowheads along the edge beyond which a line goes on. */
+function draw_beyond(plot: uPlot, { line, x, look }: Drawn): void {
+  const low = plot.scales.y?.min ?? 0;
+  const high = plot.scales.y?.max ?? 1;
+  const ratio = uPlot.pxRatio;
+  clipped(plot, (context) => {
+    const { bbox } = plot;
+    context.fillStyle = look.colour(palette());
+    for (let left = bbox.left + 12 * ratio; left < bbox.left + bbox.width; left += 28 * ratio) {
+      const value = line.y[Math.min(x.length - 1, lower_bound(x, plot.posToVal(left, 'x', true)))];
+      if (value === null || value === undefined || (value >= low && value <= high)) continue;
+      const edge = value > high ? bbox.top + ratio : bbox.top + bbox.height - ratio;
+      const inside = edge + (value > high ? 7 : -7) * ratio;
+      context.beginPath();
+      context.moveTo(left, edge);
+      context.lineTo(left - 4 * ratio, inside);
+      context.lineTo(left + 4 * ratio, inside);
+      context.fill();
+    }
+  });
 }
 
-function draw_panel(figure: TimeSeries, panel: Panel, looks: Looks, group: ZoomGroup, last: boolean, first: boolean, clock: HTMLElement): HTMLElement {
-  const drawn: Drawn[] = panel.lines.map((line) => {
-    const entry: Drawn = { line, x: figure.xs[line.x] ?? [], look: looks.of(line.name, line.role) };
+/** The lines of a panel with their abscissae. */
+function drawn_lines({ figure, looks }: Shared, panel: Panel): Drawn[] {
+  return panel.lines.map((line) => {
+    const x = figure.xs[line.x] ?? [];
+    const entry: Drawn = { line, x, spacing: median_spacing(x), look: looks.of(line.name, line.role) };
     if (line.band) entry.band = { ...line.band, at: figure.xs[line.band.x] ?? [] };
     return entry;
   });
+}
+
+/** All lines over one sequence of abscissae, as uPlot takes them. */
+function table_of(drawn: Drawn[]): uPlot.AlignedData {
+  if (drawn.every(({ x }) => x === drawn[0]?.x)) return [drawn[0]?.x ?? [], ...drawn.map(({ line }) => line.y)] as uPlot.AlignedData;
+  const tables = drawn.map(({ line, x }) => [x, line.y] as uPlot.AlignedData);
+  return uPlot.join(tables, tables.map(() => [kExpand, kExpand]));
+}
+
+/** "12.3 ± 0.4"; a dash where there is no sample. */
+function reading({ line, x, spacing, band }: Drawn, at: number): string {
+  const index = sample_at(x, line.y, at, spacing);
+  const value = index === null ? null : line.y[index];
+  if (!band || index === null) return format_number(value);
+  const k = sample_at(band.at, band.low, at, median_spacing(band.at));
+  const low = k === null ? null : band.low[k];
+  const high = k === null ? null : band.high[k];
+  if (low === null || low === undefined || high === null || high === undefined) return format_number(value);
+  return `${format_number(value)} ± ${format_number((high - low) / 2, 2)}`;
+}
+
+function series_options({ line, look }: Drawn): uPlot.Series {
+  return {
+    label: line.name,
+    stroke: () => look.colour(palette()),
+    width: look.width,
+    dash: look.dash,
+    ...(line.style === 'markers' ? { paths: () => null } : {}),
+    points: { show: line.style === 'markers', size: 4.5, width: 0, fill: () => look.colour(palette()) },
+  };
+}
+
+/** The sample of a joined table that the cursor marks on a line: none in a gap. */
+function marked_sample(drawn: Drawn[]): (plot: uPlot, series: number, closest: number, at: number) => number | null {
+  return (plot, series, closest, at) => {
+    const each = drawn[series - 1];
+    if (!each) return closest;
+    const index = sample_at(each.x, each.line.y, at, each.spacing);
+    return index === null ? null : lower_bound(plot.data[0] as number[], each.x[index] as number);
+  };
+}
+
+/** Zooms to what was selected in a plot: in time together with the other plots, upwards this panel alone. */
+function zoom_selection(plot: uPlot, group: ZoomGroup, view: PanelView): void {
+  const { left, top, width, height } = plot.select;
+  // The selection shows in all linked plots; only the one under the pointer zooms.
+  if (group.grasped === plot && width > 4 && height > 4) {
+    const { clientWidth, clientHeight } = plot.over;
+    if (height < clientHeight - 1) view.y = [plot.posToVal(top + height, 'y'), plot.posToVal(top, 'y')];
+    if (width < clientWidth - 1) group.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x'));
+    else group.refresh(plot);
+  }
+  plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+}
+
+function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean): HTMLElement {
+  const { figure, group, ordinates, shown, clock, windows } = shared;
+  const drawn = drawn_lines(shared, panel);
+  const view: PanelView = { y: null };
+  let plot: uPlot | null = null;
+  let ordinate: Ordinate = { range: [0, 1], off_scale: new Set() };
   const values = drawn.map(() => h('span', { class: 'value' }));
-  const legend = h(
-    'ul',
-    { class: 'legend' },
-    ...drawn.map((each, k) =>
-      h(
-        'li',
-        {},
-        swatch(each.look, each.line.style, each.band !== undefined),
-        h('span', { class: 'name' }, each.line.name),
-        values[k],
-      ),
-    ),
-  );
+  const visible = () => drawn.filter(({ line }) => shown.shows(line.name, line.role));
+  const range = range_button(() => plot && group.refresh(plot));
+  const entries = drawn.map((each, k) => legend_entry(each.line, each.look, each.line.style, each.band !== undefined, shown, values[k] as HTMLElement));
   const host = h('div', { class: 'plot' });
-  const element = h('div', { class: 'panel' }, h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(panel.label, panel.unit)), legend), host);
+  const element = h(
+    'div',
+    { class: 'panel' },
+    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(panel.label, panel.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map((each) => each.element))),
+    host,
+  );
 
   const read = (at: number | null) => {
-    drawn.forEach(({ line, x, band }, k) => {
-      const node = values[k] as HTMLElement;
-      let text = '';
-      if (at !== null && x.length > 0) {
-        const index = nearest(x, at);
-        const value = line.y[index];
-        text = format_number(value);
-        if (band && value !== null && value !== undefined) {
-          const other = nearest(band.at, at);
-          const low = band.low[other];
-          const high = band.high[other];
-          if (low !== null && low !== undefined && high !== null && high !== undefined) text += ` ± ${format_number((high - low) / 2, 2)}`;
-        }
-      }
-      node.textContent = text;
+    const moment = at === null || !windows ? at : windows.moment(at);
+    drawn.forEach((each, k) => {
+      const seen = at !== null && each.x.length > 0 && shown.shows(each.line.name, each.line.role);
+      (values[k] as HTMLElement).textContent = seen ? reading(each, at) : '';
     });
-    clock.textContent = at === null ? '' : `${figure.x.label} ${format_number(at, 6)} ${figure.x.unit}`;
+    clock.textContent = moment === null ? '' : `${figure.x.label} ${format_number(moment, 6)} ${figure.x.unit}`;
   };
-
-  queueMicrotask(() => {
-    const tables = drawn.map(({ line, x }) => [x, line.y] as uPlot.AlignedData);
-    const same = drawn.every(({ x }) => x === drawn[0]?.x);
-    const data = same
-      ? ([drawn[0]?.x ?? [], ...drawn.map(({ line }) => line.y)] as uPlot.AlignedData)
-      : uPlot.join(tables, tables.map(() => [kExpand, kExpand]));
-    const options = (width: number, height: number): uPlot.Options => ({
-      width,
-      height,
-      legend: { show: false },
-      padding: [6, 10, last ? 0 : 4, 0],
-      scales: {
-        x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
-        y: { range: () => y_range(drawn, ...group.window) },
-      },
-      axes: [axis('x', { size: last ? 26 : 4, labels: last }), axis('y', { size: y_axis_size(width) })],
-      series: [
-        {},
-        ...drawn.map(
-          ({ line, look }): uPlot.Series => ({
-            label: line.name,
-            stroke: () => look.colour(palette()),
-            width: look.width,
-            dash: look.dash,
-            ...(line.style === 'markers' ? { paths: () => null } : {}),
-            points: { show: line.style === 'markers', size: 4.5, width: 0, fill: () => look.colour(palette()) },
-          }),
-        ),
-      ],
-      cursor: {
-        y: false,
-        points: { size: 6, width: 0 },
-        drag: { x: true, y: false, setScale: false },
-        sync: { key: `time/${figure.axis}`, setSeries: false, scales: ['x', null] },
-        bind: {
-          dblclick: () => () => {
-            group.reset();
-            return null;
-          },
+  const y_range = (): [number, number] => {
+    ordinate = ordinate_of(visible(), ...group.window, range.pressed());
+    return view.y ?? ordinate.range;
+  };
+  const options = (width: number, height: number): uPlot.Options => ({
+    width,
+    height,
+    legend: { show: false },
+    padding: [6, 10, last ? 0 : 4, 0],
+    scales: {
+      x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
+      y: { range: y_range },
+    },
+    axes: [
+      axis('x', { size: last ? 26 : 4, labels: last, ...(windows ? { ticks: (each, low, high) => windows.ticks(low, high, each.bbox.width / uPlot.pxRatio, 70) } : {}) }),
+      axis('y', { size: ordinates.size }),
+    ],
+    series: [{}, ...drawn.map(series_options)],
+    cursor: {
+      y: false,
+      points: { size: 6, width: 0 },
+      dataIdx: marked_sample(drawn) as unknown as uPlot.Cursor.DataIdxRefiner,
+      drag: { x: true, y: true, uni: kThinSelection, setScale: false },
+      sync: { key: `time/${figure.axis}`, setSeries: false, scales: ['x', null] },
+      bind: {
+        dblclick: () => () => {
+          group.reset();
+          return null;
         },
       },
-      hooks: {
-        drawAxes: [
-          (plot) => {
-            draw_spans(plot, figure, first);
-            for (const { band, look } of drawn) if (band) draw_band(plot, band, look.colour(palette()));
-          },
-        ],
-        setSelect: [
-          (plot) => {
-            const { left, width: selected } = plot.select;
-            // The selection shows in all linked plots; only the one under the pointer zooms.
-            if (group.grasped === plot && selected > 4) group.zoom(plot.posToVal(left, 'x'), plot.posToVal(left + selected, 'x'));
-            plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-          },
-        ],
-        setCursor: [
-          (plot) => {
-            const left = plot.cursor.left ?? -1;
-            read(left >= 0 ? plot.posToVal(left, 'x') : null);
-          },
-        ],
-      },
-    });
-    const plot = mount(host, () => panel.height + (last ? 22 : 0), (width, height) => new uPlot(options(width, height), data, host));
-    group.add(plot);
-    follow_touch(plot);
-    (host as HTMLElement & { uplot?: uPlot }).uplot = plot;
+    },
+    hooks: {
+      drawAxes: [
+        (each) => {
+          if (windows) draw_breaks(each, windows);
+          draw_spans(each, figure, first);
+          for (const { band, look } of visible()) if (band) draw_band(each, band, look.colour(palette()));
+        },
+      ],
+      draw: [
+        (each) => {
+          for (const line of ordinate.off_scale) draw_beyond(each, line);
+          entries.forEach((entry, k) => entry.mark(ordinate.off_scale.has(drawn[k] as Drawn)));
+          range.offer(ordinate.off_scale.size > 0);
+        },
+      ],
+      setSelect: [(each) => zoom_selection(each, group, view)],
+      setCursor: [
+        (each) => {
+          const left = each.cursor.left ?? -1;
+          read(left >= 0 ? each.posToVal(left, 'x') : null);
+        },
+      ],
+    },
+  });
+  shown.on_change(() => {
+    plot?.batch(() => drawn.forEach(({ line }, k) => plot?.setSeries(k + 1, { show: shown.shows(line.name, line.role) })));
+    read(null);
+  });
+  shared.pictures.push(() => ({ panel, drawn: visible(), y: view.y ?? ordinate.range }));
+  queueMicrotask(() => {
+    const made = mount(host, () => panel.height + (last ? 22 : 0), (width, height) => new uPlot(options(width, height), table_of(drawn), host));
+    plot = made;
+    group.add(made, view);
+    follow_touch(made);
+    (host as HTMLElement & { uplot?: uPlot }).uplot = made;
   });
   return element;
 }
@@ -272,19 +281,37 @@ function span_key(figure: TimeSeries): HTMLElement | null {
   );
 }
 
-/** Panels above each other over one abscissa, with uncertainty bands, shaded spans, and zoom linked through the page. */
-export function draw_time_series(figure: TimeSeries): HTMLElement {
+/** A figure on the page, and how it looks now as a picture. */
+export interface DrawnFigure {
+  element: HTMLElement;
+  picture: () => SVGSVGElement;
+}
+
+/** One row of panels over one abscissa. */
+function draw_row(figure: TimeSeries, looks: Looks, shown: SeriesSwitch, windows: WindowAxis | null): DrawnFigure {
   const group = zoom_group(figure.axis);
   for (const x of figure.xs) if (x.length > 0) group.extend(x[0] as number, x[x.length - 1] as number);
   for (const span of figure.spans) group.extend(span.from, span.to);
-  const looks = new Looks();
   const clock = h('span', { class: 'clock' });
-  return h(
-    'div',
-    { class: figure.panels.length > 3 ? 'time-series tall' : 'time-series', 'data-axis': figure.axis },
-    ...figure.panels.map((panel, k) => draw_panel(figure, panel, looks, group, k === figure.panels.length - 1, k === 0, clock)),
-    h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), span_key(figure), clock),
+  const element = h('div', { class: figure.panels.length > 3 ? 'time-series tall' : 'time-series', 'data-axis': figure.axis });
+  const ordinates = new OrdinateWidth((width) => element.style.setProperty('--ordinate', `${width}px`));
+  const shared: Shared = { figure, looks, group, ordinates, shown, clock, windows, pictures: [] };
+  element.append(
+    ...figure.panels.map((panel, k) => draw_panel(shared, panel, k === 0, k === figure.panels.length - 1)),
+    h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), span_key(figure) ?? '', clock),
   );
+  return { element, picture: () => time_series_picture(figure, shared.pictures.map((each) => each()), group.window, windows) };
 }
 
-export { swatch };
+/**
+ * Panels above each other over one abscissa, with uncertainty bands, shaded spans, and zoom linked through the page. A
+ * figure with windows shows these side by side.
+ */
+export function draw_time_series(given: TimeSeries): DrawnFigure {
+  const figure = with_gaps(given);
+  const looks = new Looks();
+  const shown = new SeriesSwitch();
+  if ((figure.windows ?? []).length === 0) return draw_row(figure, looks, shown, null);
+  const rows = window_rows(figure).map((row) => draw_row(row.figure, looks, shown, row.axis));
+  return { element: h('div', { class: 'windows' }, ...rows.map((row) => row.element)), picture: () => stacked(rows.map((row) => row.picture())) };
+}

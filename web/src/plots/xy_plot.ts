@@ -2,27 +2,30 @@ import type { XYPlot, XYSeries } from '../document';
 import { h } from '../dom';
 import { format_number, with_unit } from '../numbers';
 import { palette } from '../theme';
-import { axis, clipped, Looks, mount, translucent, uPlot, y_axis_size, type LineLook } from './frame';
-import { swatch } from './time_series';
-
-type Range = [number, number];
+import { axis, clipped, Looks, mount, OrdinateWidth, translucent, uPlot, type LineLook } from './frame';
+import { legend_entry, range_button, SeriesSwitch } from './legend';
+import { kept_range, stretching, union_of, type Range } from './ordinate';
+import { xy_picture } from './picture';
+import type { DrawnFigure } from './time_series';
+import { add_zoomable, follow_touch, zoom_changed } from './zoom';
 
 /** Room around the plotting area [CSS px]. */
 const kTopPadding = 8;
 const kRightPadding = 12;
 const kAbscissaSize = 26;
 
-function span_of(values: (number | null)[][]): Range {
+/** A selection thinner than this in one direction zooms in the other only [CSS px]. */
+const kThinSelection = 30;
+
+function span_of(values: (number | null)[]): Range {
   let low = Infinity;
   let high = -Infinity;
-  for (const series of values) {
-    for (const value of series) {
-      if (value === null) continue;
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
+  for (const value of values) {
+    if (value === null) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
   }
-  return low <= high ? [low, high] : [0, 1];
+  return [low, high];
 }
 
 function padded([low, high]: Range, share: number): Range {
@@ -119,10 +122,10 @@ function draw_guides(plot: uPlot, figure: XYPlot): void {
 }
 
 /** The point nearest to the pointer, within 24 px. */
-function find_point(plot: uPlot, figure: XYPlot, left: number, top: number): { series: XYSeries; k: number } | null {
+function find_point(plot: uPlot, visible: XYSeries[], left: number, top: number): { series: XYSeries; k: number } | null {
   let best: { series: XYSeries; k: number } | null = null;
   let distance = 24 * 24;
-  for (const series of figure.series) {
+  for (const series of visible) {
     for (let k = 0; k < series.x.length; ++k) {
       const x = series.x[k];
       const y = series.y[k];
@@ -137,97 +140,165 @@ function find_point(plot: uPlot, figure: XYPlot, left: number, top: number): { s
   return best;
 }
 
+interface Full {
+  x: Range;
+  y: Range;
+  off_scale: Set<XYSeries>;
+}
+
+/** The ranges that show everything but series that would flatten all others, unless `everything` is to be seen. */
+function full_ranges(figure: XYPlot, visible: XYSeries[], everything: boolean): Full {
+  const measured = visible.map((each) => each.role === 'measured');
+  const none = visible.map(() => false);
+  const xs = visible.map((each) => span_of(each.x));
+  const ys = visible.map((each) => span_of(each.y));
+  const wide = everything ? none : stretching(xs, measured);
+  const tall = everything ? none : stretching(ys, measured);
+  const leaves = none.map((_, k) => (wide[k] ?? false) || (tall[k] ?? false));
+  const with_guides = (range: Range, direction: 'horizontal' | 'vertical'): Range => {
+    const all = union_of([range, span_of(figure.guides.filter((each) => each.direction === direction).map((each) => each.value))]);
+    return all[0] <= all[1] ? all : [0, 1];
+  };
+  let x = with_guides(kept_range(xs, leaves), 'vertical');
+  let y = with_guides(kept_range(ys, leaves), 'horizontal');
+  if (visible.some((each) => each.style === 'stems')) y = [Math.min(0, y[0]), Math.max(0, y[1])];
+  if (figure.equal_axes) x = y = union_of([x, y]);
+  return { x: padded(x, 0.04), y: padded(y, 0.07), off_scale: new Set(visible.filter((_, k) => leaves[k])) };
+}
+
 /** Markers, lines and stems over a free abscissa. */
-export function draw_xy_plot(figure: XYPlot): HTMLElement {
+export function draw_xy_plot(figure: XYPlot): DrawnFigure {
   const looks = new Looks();
-  const look = figure.series.map((series) => looks.of(series.name, series.role));
-  let x_range = span_of([...figure.series.map((each) => each.x), figure.guides.filter((each) => each.direction === 'vertical').map((each) => each.value)]);
-  let y_range = span_of([...figure.series.map((each) => each.y), figure.guides.filter((each) => each.direction === 'horizontal').map((each) => each.value)]);
-  if (figure.series.some((each) => each.style === 'stems')) y_range = [Math.min(0, y_range[0]), Math.max(0, y_range[1])];
-  if (figure.equal_axes) x_range = y_range = [Math.min(x_range[0], y_range[0]), Math.max(x_range[1], y_range[1])];
-  const x_full = padded(x_range, 0.04);
-  const y_full = padded(y_range, 0.07);
+  const look = new Map(figure.series.map((series) => [series, looks.of(series.name, series.role)]));
+  const shown = new SeriesSwitch();
+  const visible = () => figure.series.filter((each) => shown.shows(each.name, each.role));
+  const readout = h('span', { class: 'clock' });
+  const host = h('div', { class: 'plot' });
+  const element = h('div', { class: 'xy' });
+  let plot: uPlot | null = null;
+  let zoomed: { x: Range; y: Range } | null = null;
+  const range = range_button(() => refresh());
+  let full = full_ranges(figure, visible(), false);
+  const ordinates = new OrdinateWidth((width) => {
+    element.style.setProperty('--ordinate', `${width}px`);
+    apply();
+  }, true);
 
   // One length of a unit for both axes: the range that has more room is made longer.
   const scaled = (plot_width: number, plot_height: number): [Range, Range] => {
-    if (!figure.equal_scale) return [x_full, y_full];
-    const width = Math.max(1, plot_width - y_axis_size(plot_width) - kRightPadding);
+    const { x, y } = zoomed ?? full;
+    if (!figure.equal_scale) return [x, y];
+    const width = Math.max(1, plot_width - ordinates.width - kRightPadding);
     const height = Math.max(1, plot_height - kAbscissaSize - kTopPadding);
-    const unit = Math.max((x_full[1] - x_full[0]) / width, (y_full[1] - y_full[0]) / height);
-    return [stretched(x_full, unit * width), stretched(y_full, unit * height)];
+    const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
+    return [stretched(x, unit * width), stretched(y, unit * height)];
   };
-
-  const readout = h('span', { class: 'clock' });
-  const host = h('div', { class: 'plot' });
-  queueMicrotask(() => {
-    const plot = mount(host, () => figure.height, (width, height) =>
-      new uPlot(
-        {
-          width,
-          height,
-          legend: { show: false },
-          padding: [kTopPadding, kRightPadding, 0, 0],
-          scales: {
-            // The plot does not know its size yet when it asks for the first time.
-            x: { time: false, range: (each) => scaled(each.width || width, each.height || height)[0] },
-            y: { range: (each) => scaled(each.width || width, each.height || height)[1] },
-          },
-          axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: y_axis_size(width) })],
-          series: [{}, { stroke: 'transparent', points: { show: false } }],
-          cursor: { drag: { x: false, y: false }, points: { show: false }, bind: { dblclick: () => () => null } },
-          hooks: {
-            draw: [
-              (each) => {
-                draw_guides(each, figure);
-                figure.series.forEach((series, k) => draw_series(each, series, look[k] as LineLook));
-              },
-            ],
-            setSize: [
-              (each) => {
-                if (!figure.equal_scale) return;
-                // Later: a plot that is being laid out takes no scales.
-                queueMicrotask(() => {
-                  const [x, y] = scaled(each.width, each.height);
-                  if (each.scales.x?.min === x[0] && each.scales.y?.min === y[0]) return;
-                  each.batch(() => {
-                    each.setScale('x', { min: x[0], max: x[1] });
-                    each.setScale('y', { min: y[0], max: y[1] });
-                  });
-                });
-              },
-            ],
-            setCursor: [
-              (each) => {
-                const { left = -1, top = -1 } = each.cursor;
-                const found = left >= 0 ? find_point(each, figure, left, top) : null;
-                readout.textContent = found ? `${found.series.name}: ${format_number(found.series.x[found.k])}, ${format_number(found.series.y[found.k])}` : '';
-              },
-            ],
-          },
-        },
-        [x_full, y_full],
-        host,
-      ),
-    );
-    plot.over.style.touchAction = 'pan-y';
-    (host as HTMLElement & { uplot?: uPlot }).uplot = plot;
+  // Later: a plot that is being laid out takes no scales.
+  const apply = () =>
+    queueMicrotask(() => {
+      if (!plot) return;
+      const each = plot;
+      const [x, y] = scaled(each.width, each.height);
+      if (each.scales.x?.min === x[0] && each.scales.x?.max === x[1] && each.scales.y?.min === y[0] && each.scales.y?.max === y[1]) return each.redraw(false);
+      each.batch(() => {
+        each.setScale('x', { min: x[0], max: x[1] });
+        each.setScale('y', { min: y[0], max: y[1] });
+      });
+    });
+  const names = new Set<string>();
+  const entries = figure.series.flatMap((series) => {
+    // Series of one name are one entry: the stretches of a drive, say.
+    if (names.has(`${series.role}/${series.name}`)) return [];
+    names.add(`${series.role}/${series.name}`);
+    return [{ series, entry: legend_entry(series, look.get(series) as LineLook, series.style === 'line' ? 'line' : 'markers', false, shown) }];
   });
-  return h(
-    'div',
-    { class: 'xy' },
-    h(
-      'div',
-      { class: 'panel-head' },
-      h('span', { class: 'panel-label' }, with_unit(figure.y.label, figure.y.unit)),
-      h(
-        'ul',
-        { class: 'legend' },
-        ...figure.series.map((series, k) =>
-          h('li', {}, swatch(look[k] as LineLook, series.style === 'line' ? 'line' : 'markers', false), h('span', { class: 'name' }, series.name)),
-        ),
-      ),
-    ),
+  const refresh = () => {
+    full = full_ranges(figure, visible(), range.pressed());
+    const gone = [...full.off_scale].map((each) => `${each.role}/${each.name}`);
+    for (const { series, entry } of entries) entry.mark(gone.includes(`${series.role}/${series.name}`));
+    range.offer(gone.length > 0);
+    apply();
+  };
+  const set_zoom = (to: { x: Range; y: Range } | null) => {
+    zoomed = to;
+    apply();
+    zoom_changed();
+  };
+  add_zoomable({
+    get is_zoomed() {
+      return zoomed !== null;
+    },
+    reset: () => set_zoom(null),
+  });
+  shown.on_change(refresh);
+
+  const options = (width: number, height: number): uPlot.Options => ({
+    width,
+    height,
+    legend: { show: false },
+    padding: [kTopPadding, kRightPadding, 0, 0],
+    scales: {
+      // The plot does not know its size yet when it asks for the first time.
+      x: { time: false, range: (each) => scaled(each.width || width, each.height || height)[0] },
+      y: { range: (each) => scaled(each.width || width, each.height || height)[1] },
+    },
+    axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: ordinates.size })],
+    series: [{}, { stroke: 'transparent', points: { show: false } }],
+    cursor: {
+      drag: { x: true, y: true, uni: kThinSelection, setScale: false },
+      points: { show: false },
+      bind: {
+        dblclick: () => () => {
+          set_zoom(null);
+          return null;
+        },
+      },
+    },
+    hooks: {
+      draw: [
+        (each) => {
+          draw_guides(each, figure);
+          for (const series of visible()) draw_series(each, series, look.get(series) as LineLook);
+        },
+      ],
+      setSize: [() => apply()],
+      setSelect: [
+        (each) => {
+          const { left, top, width: wide, height: tall } = each.select;
+          if (wide > 4 && tall > 4) {
+            set_zoom({
+              x: [each.posToVal(left, 'x'), each.posToVal(left + wide, 'x')],
+              y: [each.posToVal(top + tall, 'y'), each.posToVal(top, 'y')],
+            });
+          }
+          each.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+        },
+      ],
+      setCursor: [
+        (each) => {
+          const { left = -1, top = -1 } = each.cursor;
+          const found = left >= 0 ? find_point(each, visible(), left, top) : null;
+          readout.textContent = found ? `${found.series.name}: ${format_number(found.series.x[found.k])}, ${format_number(found.series.y[found.k])}` : '';
+        },
+      ],
+    },
+  });
+  queueMicrotask(() => {
+    const made = mount(host, () => figure.height, (width, height) => new uPlot(options(width, height), [full.x, full.y], host));
+    plot = made;
+    follow_touch(made);
+    (host as HTMLElement & { uplot?: uPlot }).uplot = made;
+    refresh();
+  });
+  element.append(
+    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(figure.y.label, figure.y.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map(({ entry }) => entry.element))),
     host,
     h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), readout),
   );
+  const picture = () => {
+    const [x, y] = plot ? scaled(plot.width, plot.height) : [full.x, full.y];
+    const shape = plot ? plot.bbox.height / Math.max(1, plot.bbox.width) : 0.5;
+    return xy_picture(figure, visible().map((series) => ({ series, look: look.get(series) as LineLook })), x, y, shape);
+  };
+  return { element, picture };
 }

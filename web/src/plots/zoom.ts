@@ -1,8 +1,19 @@
 import type uPlot from 'uplot';
 
+/** Something that can be zoomed and shown entirely again. */
+export interface Zoomable {
+  readonly is_zoomed: boolean;
+  reset(): void;
+}
+
+/** The ordinate that a reader has chosen for a panel; null: that of what is in sight. */
+export interface PanelView {
+  y: [number, number] | null;
+}
+
 /** All plots over the same abscissa (by name), zoomed together: what happened at that moment in everything else? */
-export class ZoomGroup {
-  private readonly plots: uPlot[] = [];
+export class ZoomGroup implements Zoomable {
+  private readonly plots = new Map<uPlot, PanelView>();
   private low = Infinity;
   private high = -Infinity;
   private zoomed = false;
@@ -16,7 +27,7 @@ export class ZoomGroup {
   ) {}
 
   get is_zoomed(): boolean {
-    return this.zoomed;
+    return this.zoomed || [...this.plots.values()].some((view) => view.y !== null);
   }
 
   /** The range that shows everything. */
@@ -29,8 +40,8 @@ export class ZoomGroup {
     return this.low < this.high ? [this.low, this.high] : [this.low - 0.5, this.low + 0.5];
   }
 
-  add(plot: uPlot): void {
-    this.plots.push(plot);
+  add(plot: uPlot, view: PanelView): void {
+    this.plots.set(plot, view);
     plot.over.addEventListener('mousedown', () => (this.grasped = plot), true);
   }
 
@@ -43,8 +54,16 @@ export class ZoomGroup {
     this.apply(min, max);
   }
 
+  /** Takes over an ordinate that a plot's view has been given. */
+  refresh(plot: uPlot): void {
+    const [min, max] = this.window;
+    plot.setScale('x', { min, max });
+    this.on_change();
+  }
+
   reset(): void {
     this.zoomed = false;
+    for (const view of this.plots.values()) view.y = null;
     this.apply(...this.full());
   }
 
@@ -55,30 +74,37 @@ export class ZoomGroup {
 
   private apply(min: number, max: number): void {
     this.shown = [min, max];
-    for (const plot of this.plots) plot.setScale('x', { min, max });
+    for (const plot of this.plots.keys()) plot.setScale('x', { min, max });
     this.on_change();
   }
 }
 
 const groups = new Map<string, ZoomGroup>();
+const zoomables = new Set<Zoomable>();
 const watchers = new Set<() => void>();
 
-function changed(): void {
+/** Tells that something was zoomed or shown entirely. */
+export function zoom_changed(): void {
   for (const watcher of watchers) watcher();
 }
 
 export function zoom_group(key: string): ZoomGroup {
-  const found = groups.get(key) ?? new ZoomGroup(key, changed);
+  const found = groups.get(key) ?? new ZoomGroup(key, zoom_changed);
   groups.set(key, found);
+  zoomables.add(found);
   return found;
 }
 
+export function add_zoomable(each: Zoomable): void {
+  zoomables.add(each);
+}
+
 export function any_zoomed(): boolean {
-  return [...groups.values()].some((group) => group.is_zoomed);
+  return [...zoomables].some((each) => each.is_zoomed);
 }
 
 export function reset_zoom(): void {
-  for (const group of groups.values()) if (group.is_zoomed) group.reset();
+  for (const each of zoomables) if (each.is_zoomed) each.reset();
 }
 
 export function on_zoom_change(watcher: () => void): void {

@@ -1,0 +1,42 @@
+#include "veridyn/report/parts/estimate_tables.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "veridyn/report/document/number_format.hpp"
+
+namespace veridyn::report {
+namespace {
+
+TEST(ParameterRow, ShowsTheParameterInTheUnitOfTheReader) {
+  const estimation::EstimatedParameter p{
+      "bias", 0.02, 0.001, 0.018, 0.022, "rad", estimation::ParameterStatus::kIdentified};
+  const Row row = parameter_row(p, 100.0, "crad");
+  const std::vector<Column> columns = parameter_columns(false);
+  ASSERT_EQ(row.cells.size(), columns.size());
+  std::vector<std::string> texts;
+  for (std::size_t k = 0; k < columns.size(); ++k) texts.push_back(cell_text(row.cells[k], columns[k]));
+  EXPECT_THAT(texts, testing::ElementsAre("bias", "2.00", "0.10", "1.80", "2.20", "crad", "identified"));
+  EXPECT_EQ(row.status, Status::kIdentified);
+}
+
+TEST(ParameterColumns, HaveTheTruthOnlyWhereItIsKnown) {
+  EXPECT_EQ(parameter_columns(true).size(), parameter_columns(false).size() + 1);
+  EXPECT_EQ(parameter_columns(true).back().name, "truth");
+}
+
+TEST(CheckCells, MarkAFailureAsAsked) {
+  EXPECT_EQ(check_cells({.name = "a", .passed = false}, Status::kCaution)[1].status, Status::kCaution);
+  EXPECT_EQ(check_cells({.name = "a", .passed = true}, Status::kCaution)[1].status, Status::kGood);
+}
+
+TEST(ChangeRow, TellsAMovedMeanFromGrownNoise) {
+  const estimation::Change moved{estimation::ChangeKind::kMean, 12.0, 10.5, 3.14};
+  const estimation::Change grown{estimation::ChangeKind::kSpread, 12.0, 10.5, 3.14};
+  EXPECT_EQ(change_words(moved), "innovation moved by 3.1 sigma");
+  EXPECT_EQ(change_words(grown), "innovation grew 3.1 times");
+  EXPECT_EQ(change_row("C_f", moved).cells.size(), change_columns("what", "how").size());
+}
+
+}  // namespace
+}  // namespace veridyn::report

@@ -1,0 +1,90 @@
+#include "veridyn/report/drive_tracking_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/remarks.hpp"
+#include "veridyn/report/vehicle_report.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::vehicle;
+
+std::string name_of(TrackedAxle axle) { return std::string(kTrackedAxleNames[static_cast<std::size_t>(axle)]); }
+
+TimeSeries axle_figure(const DriveTracker& tracker, TrackedAxle axle, const DriveReportContext& context) {
+  const DriveTrackHistory& h = tracker.history(axle);
+  const std::string name = name_of(axle);
+  const ReadableNumber unit = readable(1.0, std::string(kTrackedAxleUnits[static_cast<std::size_t>(axle)]));
+  TimeSeries figure{.title = fmt::format("{} over time", name),
+                    .caption = "Bands are 95 %. Grey: not excited, the last value is held.",
+                    .samples = h.time};
+  Panel value{.label = name, .unit = unit.unit};
+  const std::vector<double> shown = scaled(h.value, unit.value);
+  value.lines.push_back(followed_line(shown, scaled(h.sigma, unit.value), std::max(std::abs(shown.back()), 1e-12)));
+  const double truth = context.true_value(name);
+  if (std::isfinite(truth)) {
+    value.lines.push_back({.name = "truth at the start",
+                           .y = std::vector<double>(h.time.size(), truth * unit.value),
+                           .role = Role::kReference});
+  }
+  figure.panels.push_back(std::move(value));
+  figure.panels.push_back(
+      {.label = "suspicion (1: alarm)", .unit = "1", .lines = {{.name = "suspicion", .y = h.suspicion}}, .height = 80});
+  figure.spans = spans_where(h.time, h.held, "held", SpanTone::kMuted);
+  for (const DriveChange& c : tracker.changes()) {
+    if (c.axle == axle) {
+      figure.spans.push_back(
+          {.from = c.change.began_s, .to = c.change.detected_s, .label = "change", .tone = SpanTone::kBad});
+    }
+  }
+  return figure;
+}
+
+}  // namespace
+
+Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& drive,
+                               const DriveReportContext& context) {
+  Document document = started_document(study.name, "Cornering stiffness followed on line", context.program);
+  const estimation::Estimate estimate = drive.estimate();
+  document.facts = {{"Vehicle", study.subject_name}, {"Log", study.log.mapped.recording.source}};
+  const DriveTracker* tracker = drive.tracker();
+  document.verdict.headline = estimate.verdict;
+  if (tracker == nullptr) {
+    document.verdict.level = Level::kBad;
+    return document;
+  }
+  const auto& changes = tracker->changes();
+  document.verdict.level = changes.empty() ? Level::kGood : Level::kCaution;
+  document.verdict.word = changes.empty() ? "No change" : "Changed";
+  document.facts.push_back({"Rows", fmt::format("{} at {:g} Hz", tracker->rows(), tracker->row_rate_Hz())});
+  document.facts.push_back({"Latency", fmt::format("{:.2f} s", tracker->latency_s())});
+
+  Table table{.title = "Changes found", .columns = change_columns("what", "how")};
+  for (const DriveChange& c : changes) table.rows.push_back(change_row(name_of(c.axle), c.change));
+  Section found{.title = "Changes"};
+  if (changes.empty()) {
+    found.blocks.emplace_back(Paragraph{"None."});
+  } else {
+    found.blocks.emplace_back(std::move(table));
+  }
+  document.sections.push_back(std::move(found));
+
+  Section section{.title = "Over time"};
+  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
+    const auto axle = static_cast<TrackedAxle>(i);
+    if (!tracker->history(axle).time.empty()) section.blocks.emplace_back(axle_figure(*tracker, axle, context));
+  }
+  document.sections.push_back(std::move(section));
+  add_notes(document, drive.notes());
+  add_warnings(document, estimate.warnings);
+  return document;
+}
+
+}  // namespace veridyn::report

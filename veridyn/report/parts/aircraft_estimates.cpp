@@ -1,0 +1,315 @@
+#include "veridyn/report/parts/aircraft_estimates.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::aircraft;
+using estimation::RegressionEstimate;
+
+std::vector<Column> estimate_columns(std::vector<Column> names, Column last) {
+  for (const char* name : {"Value", "Sigma"}) names.push_back({.name = name});
+  for (const char* name : {"95 % low", "95 % high"}) names.push_back({.name = name, .group = "interval"});
+  names.push_back({.name = "Unit"});
+  names.push_back(std::move(last));
+  return names;
+}
+
+/// A row of these columns: what names an estimate, its numbers with the interval, and one more number.
+template <typename AnyEstimate>
+Row estimate_row(std::vector<Cell> names, const AnyEstimate& e, Cell last) {
+  Row row{.cells = std::move(names)};
+  for (Cell& cell : interval_cells(e.value, e.sigma, e.low95, e.high95)) row.cells.push_back(std::move(cell));
+  row.cells.push_back(text_cell(e.unit));
+  row.cells.push_back(std::move(last));
+  return row;
+}
+
+std::vector<const CoefficientResult*> identified_of(const FlightAnalysis& analysis) {
+  std::vector<const CoefficientResult*> found;
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (identified(r)) found.push_back(&r);
+  }
+  return found;
+}
+
+Table parameter_table(const FlightStudy& study, std::span<const CoefficientResult* const> results) {
+  Table table{.title = "Parameters",
+              .caption =
+                  "95 % intervals from the covariance that allows for coloured residuals. A parameter whose interval "
+                  "holds zero is "
+                  "marked insignificant, not set to zero.",
+              .columns = estimate_columns({{.name = "Parameter"}, {.name = "Status"}}, {.name = "t", .digits = 3})};
+  if (study.true_subject) table.columns.insert(table.columns.begin() + 6, {.name = "Truth"});
+  for (const CoefficientResult* r : results) {
+    for (std::size_t i = 0; i < r->chosen->parameters.size(); ++i) {
+      const auto& p = r->chosen->parameters[i];
+      Row row = estimate_row({text_cell(p.name), status_cell(status_of(p.status))}, p, number_cell(p.t));
+      row.status = status_of(p.status);
+      if (study.true_subject) {
+        const CoefficientModel* truth = study.true_subject->model.find(r->coefficient);
+        const std::optional<double> value = truth ? truth->value_of(r->model.terms[i].expression) : std::nullopt;
+        row.cells.insert(row.cells.begin() + 6, measured_cell(value.value_or(kNaN), p.sigma));
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+IntervalPlot interval_plot(const FlightStudy& study, const CoefficientResult& r) {
+  IntervalPlot plot{.title = fmt::format("{}: estimates of all methods", r.name), .reference_name = "truth"};
+  for (const RegressionEstimate& e : r.comparison.estimates) plot.methods.emplace_back(estimation::to_string(e.method));
+  for (std::size_t i = 0; i < r.model.size(); ++i) {
+    IntervalRow row{.name = regressed_parameter_name(r.coefficient, r.model.terms[i], study.subject),
+                    .unit = regressed_parameter_unit(r.coefficient, r.model.terms[i], study.subject)};
+    for (const RegressionEstimate& e : r.comparison.estimates) {
+      if (e.usable()) {
+        const auto& p = e.parameters[i];
+        row.estimates.push_back({p.value, p.low95, p.high95, status_of(p.status)});
+      } else {
+        row.estimates.push_back({kNaN, kNaN, kNaN, Status::kNone});
+      }
+    }
+    if (study.true_subject) {
+      if (const CoefficientModel* truth = study.true_subject->model.find(r.coefficient)) {
+        row.reference = truth->value_of(r.model.terms[i].expression);
+      }
+    }
+    plot.rows.push_back(std::move(row));
+  }
+  return plot;
+}
+
+Table comparison_table(const FlightAnalysis& analysis) {
+  Table table{.title = "Comparison",
+              .columns = estimate_columns({{.name = "Parameter"}, {.name = "Method"}, {.name = "Status"}},
+                                          {.name = "Apart", .unit = "sigma", .digits = 2})};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.chosen) continue;
+    for (const auto& p : r.chosen->parameters) {
+      table.rows.push_back(
+          estimate_row({text_cell(p.name), text_cell(std::string(estimation::to_string(r.chosen->method))),
+                        status_cell(status_of(p.status))},
+                       p, number_cell(kNaN)));
+      for (const OtherParameter& other : analysis.others.parameters) {
+        const estimation::MethodEstimate& e = other.estimate;
+        if (e.parameter != p.name) continue;
+        const bool contradicts = std::abs(other.apart_sigma) > 3.0;
+        table.rows.push_back(estimate_row({text_cell(""), text_cell(e.method), status_cell(status_of(e.status))}, e,
+                                          number_cell(other.apart_sigma)));
+        if (contradicts) table.rows.back().status = Status::kCaution;
+      }
+    }
+  }
+  return table;
+}
+
+Table output_table(const AxisOutputError& run) {
+  Table outputs{.title = fmt::format("Output error, {}: outputs", to_string(run.axis)),
+                .caption =
+                    "Noise: estimated standard deviation of the residual. Lag 1: its autocorrelation at one "
+                    "sample, 0 when white; the error bars are corrected for it.",
+                .columns = {{.name = "Output"},
+                            {.name = "Noise", .digits = 3},
+                            {.name = "Unit"},
+                            {.name = "R2", .digits = 3},
+                            {.name = "Theil", .digits = 3},
+                            {.name = "Lag 1", .digits = 3}}};
+  for (const estimation::OutputFit& o : run.estimate.outputs) {
+    outputs.rows.push_back({.cells = {text_cell(o.name), number_cell(o.noise_sd), text_cell(o.unit),
+                                      number_cell(o.fit.r2), number_cell(o.fit.theil), number_cell(o.lag1)}});
+  }
+  return outputs;
+}
+
+}  // namespace
+
+Status status_of(CoefficientVerdict verdict) {
+  switch (verdict) {
+    case CoefficientVerdict::kIdentified:
+      return Status::kIdentified;
+    case CoefficientVerdict::kNotExcited:
+      return Status::kNotExcited;
+    case CoefficientVerdict::kRejected:
+      return Status::kRejected;
+    case CoefficientVerdict::kSkipped:
+      break;
+  }
+  return Status::kNone;
+}
+
+std::string_view meaning(Coefficient c) {
+  switch (c) {
+    case Coefficient::kCL:
+      return "lift";
+    case Coefficient::kCD:
+      return "drag";
+    case Coefficient::kCY:
+      return "side force";
+    case Coefficient::kCl:
+      return "rolling moment";
+    case Coefficient::kCm:
+      return "pitching moment";
+    case Coefficient::kCn:
+      return "yawing moment";
+  }
+  return "";
+}
+
+bool identified(const CoefficientResult& r) { return r.chosen && r.verdict == CoefficientVerdict::kIdentified; }
+
+Section coefficients_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Coefficients", .id = "coefficients"};
+  Table table{
+      .title = "Verdict per coefficient",
+      .caption =
+          "Explained: share of the coefficient's variance on the hold-out that the model accounts for (R squared). "
+          "Theil: inequality coefficient, 0 perfect, below 0.3 good. Equation error: residual variance over what "
+          "sensor "
+          "noise alone would leave; 1 when the model is complete.",
+      .columns = {{.name = "Coefficient"},
+                  {.name = "Verdict"},
+                  {.name = "Method"},
+                  {.name = "identification", .unit = "%", .group = "explained"},
+                  {.name = "hold-out", .unit = "%", .group = "explained"},
+                  {.name = "Theil"},
+                  {.name = "Equation error", .digits = 3}}};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    const bool has = r.chosen.has_value();
+    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", r.name, meaning(r.coefficient))),
+                                    status_cell(status_of(r.verdict), to_string(r.verdict)),
+                                    text_cell(has ? std::string(estimation::to_string(r.chosen->method)) : ""),
+                                    number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
+                                    number_cell(r.holdout_fit.count > 0 ? 100.0 * r.holdout_fit.r2 : kNaN, 1),
+                                    number_cell(r.holdout_fit.count > 0 ? r.holdout_fit.theil : kNaN, 3),
+                                    number_cell(has ? r.error_ratio : kNaN)},
+                          .status = status_of(r.verdict)});
+  }
+  section.blocks.emplace_back(std::move(table));
+  List reasons;
+  for (const CoefficientResult& r : analysis.coefficients) reasons.items.push_back(r.reason);
+  section.blocks.emplace_back(std::move(reasons));
+  return section;
+}
+
+Section parameters_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Parameters", .id = "parameters"};
+  const std::vector<const CoefficientResult*> usable = identified_of(analysis);
+  if (usable.empty()) {
+    section.blocks.emplace_back(
+        Paragraph{"No coefficient was identified, so there is no table of derivatives.", Tone::kNote});
+  } else {
+    section.blocks.emplace_back(parameter_table(study, usable));
+  }
+  return section;
+}
+
+Section methods_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Estimates of all methods", .id = "methods", .folded = true};
+  for (const CoefficientResult* r : identified_of(analysis)) section.blocks.emplace_back(interval_plot(study, *r));
+  return section;
+}
+
+Section other_estimators_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Other estimators", .id = "other-estimators", .folded = true};
+  const OtherEstimators& others = analysis.others;
+  if (others.empty()) return section;
+  section.blocks.emplace_back(Paragraph{
+      "The same parameters on the same identification segments by other principles. Apart: difference to the "
+      "recommended regression in units of the two standard errors together; both use the same data, so more than 3 is "
+      "a "
+      "contradiction and less than 1 is common. Output error knows turbulence only as far as the reconstruction found "
+      "the gust; the frequency domain is biased by noise of the regressors as ordinary least squares is."});
+  Table table = comparison_table(analysis);
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  for (const AxisOutputError& run : others.output_error) {
+    if (run.attempted && run.estimate.usable()) section.blocks.emplace_back(output_table(run));
+  }
+  section.blocks.emplace_back(List{.items = others.notes});
+  return section;
+}
+
+Section structure_section(const FlightAnalysis& analysis) {
+  Section section{.title = "Choice of terms", .id = "structure", .folded = true};
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (!r.structure) continue;
+    Table table{.title = fmt::format("{}: history", name_of(r.coefficient)),
+                .caption = r.structure->text,
+                .columns = {{.name = "Action"},
+                            {.name = "Term"},
+                            {.name = "Terms"},
+                            {.name = "F", .digits = 3},
+                            {.name = "R2", .unit = "%", .digits = 4},
+                            {.name = "Change", .unit = "%", .digits = 3},
+                            {.name = "PRESS", .digits = 4},
+                            {.name = "PSE", .digits = 4},
+                            {.name = "Why not"}}};
+    for (const estimation::StructureStep& s : r.structure->history) {
+      table.rows.push_back(
+          {.cells = {text_cell(std::string(estimation::to_string(s.action))), text_cell(s.term),
+                     number_cell(static_cast<double>(s.terms), 0), number_cell(s.term.empty() ? kNaN : s.F),
+                     number_cell(100.0 * s.r2), number_cell(100.0 * s.r2_change), number_cell(s.press),
+                     number_cell(s.pse), text_cell(s.reason)}});
+    }
+    section.blocks.emplace_back(std::move(table));
+  }
+  return section;
+}
+
+Section rejected_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Rejected estimates (do not use)", .id = "rejected", .folded = true};
+  section.blocks.emplace_back(
+      Paragraph{"For those who want to see what went wrong. These numbers are not the aircraft's.", Tone::kWarning});
+  std::size_t count = 0;
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.verdict != CoefficientVerdict::kRejected || !r.chosen) continue;
+    section.blocks.emplace_back(Paragraph{r.reason});
+    section.blocks.emplace_back(interval_plot(study, r));
+    ++count;
+  }
+  if (count == 0) section.blocks.clear();
+  return section;
+}
+
+Section uncertainty_section(const UncertaintyReport& report) {
+  Section section{.title = "Uncertainty of the measured coefficients", .id = "uncertainty", .folded = true};
+  Table table{
+      .title = "Error of one measured coefficient",
+      .caption =
+          "Propagation of distributions (JCGM 101): 95 % of the errors lie between low and high; sigma is the larger "
+          "end over 1.96. Beside it the linear law of propagation, apart for what differs from sample to sample "
+          "(sensors) and what all samples share (mass, geometry, inertia: subject.sigma). Range: standard deviation of "
+          "the coefficient itself over the operating range.",
+      .columns = {{.name = "Coefficient"},
+                  {.name = "sigma", .group = "Monte Carlo"},
+                  {.name = "95 % low", .group = "Monte Carlo"},
+                  {.name = "95 % high", .group = "Monte Carlo"},
+                  {.name = "mean", .digits = 2, .group = "Monte Carlo"},
+                  {.name = "sigma", .group = "linear"},
+                  {.name = "of sensors", .group = "linear"},
+                  {.name = "of the aircraft's constants", .group = "linear"},
+                  {.name = "Range", .digits = 3}}};
+  for (const CoefficientUncertainty& c : report.coefficients) {
+    const double sigma = c.error.sigma;
+    table.rows.push_back(
+        {.cells = {text_cell(std::string(name_of(c.coefficient))), measured_cell(sigma, sigma),
+                   measured_cell(c.error.low, sigma), measured_cell(c.error.high, sigma), number_cell(c.error.mean),
+                   measured_cell(c.sigma_linear, sigma), measured_cell(c.sigma_sensors, sigma),
+                   measured_cell(c.sigma_body, sigma), number_cell(c.range)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  section.blocks.emplace_back(Paragraph{report.text + "."});
+  return section;
+}
+
+}  // namespace veridyn::report

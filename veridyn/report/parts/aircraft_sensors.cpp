@@ -1,0 +1,165 @@
+#include "veridyn/report/parts/aircraft_sensors.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "veridyn/report/figures/curves.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::aircraft;
+
+Status status_of(Observability observability) {
+  return observability == Observability::kObservable ? Status::kGood
+         : observability == Observability::kWeak     ? Status::kCaution
+                                                     : Status::kBad;
+}
+
+Table sensor_error_table(const Reconstruction& rec) {
+  Table table{.title = "Errors of the sensors and of the model",
+              .caption =
+                  "What was to be estimated: how much of it this flight determines, and with what it is entangled. "
+                  "Information: share of the precision that the flight adds to what was assumed beforehand.",
+              .columns = {{.name = "Error"},
+                          {.name = "Value", .digits = 3},
+                          {.name = "Sigma", .digits = 2},
+                          {.name = "Assumed beforehand", .digits = 3},
+                          {.name = "Unit"},
+                          {.name = "Information", .unit = "%", .digits = 3},
+                          {.name = "Most correlated with"},
+                          {.name = "Correlation", .digits = 2},
+                          {.name = "Verdict"}}};
+  for (const SensorErrorReport& e : rec.sensor_errors) {
+    const Status status = status_of(e.observability);
+    const std::string unit = shown_unit(e.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(e.name), number_cell(aircraft::shown(e.value, e.unit)),
+                   number_cell(aircraft::shown(e.sigma, e.unit)), number_cell(aircraft::shown(e.prior_sigma, e.unit)),
+                   text_cell(unit.empty() ? unit : unit.substr(1)), number_cell(100.0 * e.information),
+                   text_cell(e.correlated_with), number_cell(e.correlation),
+                   status_cell(status, to_string(e.observability))}});
+  }
+  return table;
+}
+
+/// Error over signal variance, the source's figure, as numbers.
+Table comparison_table(const Reconstruction& rec) {
+  Table table{.title = "Model-free against model-based filter",
+              .caption =
+                  "Root mean square errors against the truth of the simulated flight, the information bound of a "
+                  "filter that knows the aircraft, and the share of the signal's variance that is error.",
+              .columns = {{.name = "Quantity"},
+                          {.name = "Unit"},
+                          {.name = "Model-free filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Model-based filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Bound, filter", .digits = 3},
+                          {.name = "smoother", .digits = 3},
+                          {.name = "Error/signal, model-free", .unit = "%", .digits = 3},
+                          {.name = "model-based", .unit = "%", .digits = 3}}};
+  for (const FilterError& e : rec.comparison) {
+    const auto value = [&](double v) { return number_cell(v > 0.0 ? aircraft::shown(v, e.unit) : std::nan("")); };
+    const auto share = [&](double rms) { return number_cell(100.0 * std::pow(rms / e.signal_sd, 2)); };
+    const std::string unit = shown_unit(e.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)), value(e.model_free.filter_rms),
+                   value(e.model_free.smoother_rms), value(e.model_based.filter_rms), value(e.model_based.smoother_rms),
+                   value(e.model_based.filter_bound), value(e.model_based.smoother_bound),
+                   share(e.model_free.smoother_rms), share(e.model_based.smoother_rms)}});
+  }
+  return table;
+}
+
+Table channel_table(const FlightStudy& study) {
+  Table channels{
+      .title = "Channels",
+      .columns = {
+          {.name = "Channel"}, {.name = "From"}, {.name = "Rate", .unit = "Hz", .digits = 3}, {.name = "Note"}}};
+  for (const ChannelOrigin& o : study.mapped.origins) {
+    channels.rows.push_back(
+        {.cells = {text_cell(o.channel), text_cell(o.source), number_cell(o.rate_Hz), text_cell(o.note)}});
+  }
+  return channels;
+}
+
+Table delay_table(const FlightAnalysis& analysis) {
+  Table delays{.title = "Delays",
+               .caption = "Positive: the sensor reports late.",
+               .columns = {{.name = "Group"},
+                           {.name = "Compared with"},
+                           {.name = "Delay", .unit = "ms"},
+                           {.name = "Sigma", .unit = "ms"},
+                           {.name = "Correlation", .digits = 2},
+                           {.name = "Result"}}};
+  for (const DelayReport& d : analysis.delays) {
+    delays.rows.push_back({.cells = {text_cell(d.group), text_cell(d.reference), number_cell(1e3 * d.delay_s, 1),
+                                     number_cell(1e3 * d.sigma_s, 1), number_cell(d.correlation), text_cell(d.text)}});
+  }
+  return delays;
+}
+
+Table innovation_table(const Reconstruction& rec) {
+  Table sensors{.title = "Innovations",
+                .caption =
+                    "NIS: mean square of the innovations in units of what the filter expected; 1 when the assumed "
+                    "noise is right, above when "
+                    "the sensor is worse than assumed. Lag 1: autocorrelation, 0 when white.",
+                .columns = {{.name = "Sensor"},
+                            {.name = "Assumed sigma", .digits = 3},
+                            {.name = "Unit"},
+                            {.name = "Samples"},
+                            {.name = "Refused"},
+                            {.name = "NIS", .digits = 3},
+                            {.name = "Lag 1", .digits = 2}}};
+  for (const SensorReport& s : rec.sensors) {
+    const double scale = s.unit == "rad" ? 1.0 / kDegree : 1.0;
+    sensors.rows.push_back(
+        {.cells = {text_cell(s.channel), number_cell(s.sigma * scale), text_cell(s.unit == "rad" ? "deg" : s.unit),
+                   number_cell(static_cast<double>(s.innovations.count), 0),
+                   number_cell(static_cast<double>(s.innovations.rejected), 0), number_cell(s.innovations.nis),
+                   number_cell(s.innovations.lag1)}});
+  }
+  return sensors;
+}
+
+Table quantity_table(const Reconstruction& rec) {
+  Table quantities{.title = "What the sensors can tell",
+                   .columns = {{.name = "Quantity"},
+                               {.name = "Sigma", .digits = 3},
+                               {.name = "Assumed beforehand", .digits = 3},
+                               {.name = "Unit"},
+                               {.name = "Verdict"},
+                               {.name = "In words"}}};
+  for (const QuantityReport& q : rec.quantities) {
+    const double scale = q.unit == "rad" ? 1.0 / kDegree : 1.0;
+    const Status status = status_of(q.observability);
+    quantities.rows.push_back(
+        {.cells = {text_cell(q.quantity), number_cell(q.sigma * scale), number_cell(q.prior_sigma * scale),
+                   text_cell(q.unit == "rad" ? "deg" : q.unit), status_cell(status, to_string(q.observability)),
+                   text_cell(q.statement)}});
+  }
+  return quantities;
+}
+
+}  // namespace
+
+Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+  Section section{.title = "Sensors and state estimation", .id = "sensors", .folded = true};
+  const Reconstruction& rec = analysis.reconstruction;
+  FactList facts{{{"Filter", to_string(rec.filter)},
+                  {"Turbulence assumed", rec.turbulence_origin},
+                  {"Air density from", rec.density_origin}}};
+  if (rec.guard) facts.facts.push_back({"Guard", rec.guard->statement});
+  section.blocks.emplace_back(std::move(facts));
+  section.blocks.emplace_back(channel_table(study));
+  if (!analysis.delays.empty()) section.blocks.emplace_back(delay_table(analysis));
+  section.blocks.emplace_back(innovation_table(rec));
+  section.blocks.emplace_back(quantity_table(rec));
+  if (!rec.sensor_errors.empty()) section.blocks.emplace_back(sensor_error_table(rec));
+  if (!rec.comparison.empty()) section.blocks.emplace_back(comparison_table(rec));
+  return section;
+}
+
+}  // namespace veridyn::report

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/report/document/document.hpp"
+
+namespace veridyn::report {
+
+/// The sensors of a flight and what they determine: channels, delays, innovations, observability, sensor errors, and
+/// the comparison with a filter that knows the aircraft.
+[[nodiscard]] Section sensors_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
+
+}  // namespace veridyn::report

@@ -1,0 +1,57 @@
+#include "veridyn/report/parts/estimate_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace veridyn::report {
+
+Status status_of(estimation::ParameterStatus status) { return status_from_name(estimation::to_string(status)); }
+
+std::vector<Cell> interval_cells(double value, double sigma, double low95, double high95) {
+  return {measured_cell(value, sigma), measured_cell(sigma, sigma), measured_cell(low95, sigma),
+          measured_cell(high95, sigma)};
+}
+
+std::vector<Column> parameter_columns(bool with_truth) {
+  std::vector<Column> columns{{.name = "parameter", .align = Align::kLeft},
+                              {.name = "value"},
+                              {.name = "sigma", .digits = 2},
+                              {.name = "95 % from"},
+                              {.name = "to"},
+                              {.name = "unit", .align = Align::kLeft},
+                              {.name = "status"}};
+  if (with_truth) columns.push_back({.name = "truth"});
+  return columns;
+}
+
+Row parameter_row(const estimation::EstimatedParameter& p, double factor, std::string unit) {
+  const double sigma = p.sigma * factor;
+  return {.cells = {text_cell(p.name), measured_cell(p.value * factor, sigma), number_cell(sigma),
+                    measured_cell(p.low95 * factor, sigma), measured_cell(p.high95 * factor, sigma),
+                    text_cell(std::move(unit)), status_cell(status_of(p.status))},
+          .status = status_of(p.status)};
+}
+
+std::vector<Cell> check_cells(const estimation::HonestyCheck& check, Status failed) {
+  return {text_cell(check.name), status_cell(check.passed ? Status::kGood : failed), text_cell(check.text)};
+}
+
+std::string change_words(const estimation::Change& change) {
+  return change.kind == estimation::ChangeKind::kMean ? fmt::format("innovation moved by {:.1f} sigma", change.shift)
+                                                      : fmt::format("innovation grew {:.1f} times", change.shift);
+}
+
+Row change_row(std::string what, const estimation::Change& change) {
+  return {.cells = {text_cell(std::move(what)), number_cell(change.detected_s, 1), number_cell(change.began_s, 1),
+                    text_cell(change_words(change))}};
+}
+
+std::vector<Column> change_columns(std::string what, std::string noticed) {
+  return {{.name = std::move(what), .align = Align::kLeft},
+          {.name = "detected", .unit = "s"},
+          {.name = "began", .unit = "s"},
+          {.name = std::move(noticed), .align = Align::kLeft}};
+}
+
+}  // namespace veridyn::report

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/recursive/change_detection.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/report/document/document.hpp"
+
+/// Estimates, checks, fits and changes as tables: the same rows for every domain.
+namespace veridyn::report {
+
+[[nodiscard]] Status status_of(estimation::ParameterStatus status);
+
+/// Value, sigma and both ends of the 95 % interval, with as many decimals as sigma deserves.
+[[nodiscard]] std::vector<Cell> interval_cells(double value, double sigma, double low95, double high95);
+
+/// The columns "parameter, value, sigma, 95 % from, to, unit, status", and "truth" where it is known.
+[[nodiscard]] std::vector<Column> parameter_columns(bool with_truth);
+
+/// A row of these columns without the truth. @param factor from the estimate's unit to `unit`
+[[nodiscard]] Row parameter_row(const estimation::EstimatedParameter& parameter, double factor, std::string unit);
+
+/// "0.42" of what passed or failed and why. @param failed  how a failed check is marked
+[[nodiscard]] std::vector<Cell> check_cells(const estimation::HonestyCheck& check, Status failed);
+
+/// "innovation moved by 3.1 sigma": what was noticed.
+[[nodiscard]] std::string change_words(const estimation::Change& change);
+
+/// What changed, when it was detected and when it began, and what was noticed.
+[[nodiscard]] Row change_row(std::string what, const estimation::Change& change);
+
+/// The columns of `change_row`.
+[[nodiscard]] std::vector<Column> change_columns(std::string what, std::string noticed);
+
+}  // namespace veridyn::report
