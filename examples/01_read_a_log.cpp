@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "veridyn/core/recording.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/io/tables/csv.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
-#include "veridyn/report/ground_report.hpp"
 #include "veridyn/report/document/html.hpp"
+#include "veridyn/report/ground_report.hpp"
 
 namespace veridyn::app {
 namespace {

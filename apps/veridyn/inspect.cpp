@@ -62,7 +62,7 @@ int inspect(const Options& options) {
   // Frames tell vehicles from aircraft.
   const bool vehicle = recording.frame == Frame::kFlu;
   const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
-                                             : aircraft::map_channels(recording, StudyTable("data.map"), {});
+                                                    : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
 
   nlohmann::ordered_json summary;

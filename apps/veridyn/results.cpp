@@ -10,8 +10,8 @@
 
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/aircraft_report.hpp"
 #include "veridyn/report/document/html.hpp"
 

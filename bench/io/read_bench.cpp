@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tests/support/synthetic_logs.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
 namespace {

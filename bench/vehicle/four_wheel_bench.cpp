@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tests/support/folders.hpp"
 #include "veridyn/core/progress.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
-#include "tests/support/folders.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "tests/vehicle/tyre/small_tir.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/road/iso8608_road.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"

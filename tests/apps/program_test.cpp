@@ -9,10 +9,10 @@
 #include <string>
 #include <thread>
 
-#include "veridyn/core/files.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/files.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn {
 namespace {

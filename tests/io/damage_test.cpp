@@ -3,10 +3,10 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
-#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 #include "veridyn/io/matlab/mat.hpp"
+#include "veridyn/io/tables/csv.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
 namespace veridyn::io {

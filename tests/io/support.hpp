@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/io/log/log.hpp"
 
 namespace veridyn::testing {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/folders.hpp"
 #include "tests/io/support.hpp"
+#include "tests/support/folders.hpp"
 
 namespace veridyn::recording {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/random.hpp"
-#include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
-#include "veridyn/vehicle/simulation/drive_sensors.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
+#include "veridyn/vehicle/simulation/drive_sensors.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle::testing {
 
@@ -108,6 +108,8 @@ inline DriveSensorSet perfect_sensors() {
   return set;
 }
 
-inline recording::MappedRecording mapped(const Recording& recording) { return map_drive_channels(recording, StudyTable()); }
+inline recording::MappedRecording mapped(const Recording& recording) {
+  return map_drive_channels(recording, StudyTable());
+}
 
 }  // namespace veridyn::vehicle::testing

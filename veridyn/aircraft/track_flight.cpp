@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "veridyn/aircraft/tracking/direct_air_data.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/aircraft/tracking/direct_air_data.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/recording/study_data.hpp"

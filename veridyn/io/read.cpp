@@ -10,8 +10,8 @@
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
-#include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/opensim/storage.hpp"
+#include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
 namespace veridyn::io {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 

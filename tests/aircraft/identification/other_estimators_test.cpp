@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/identification/output_error_model.hpp"
+#include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "veridyn/aircraft/simulation/flight_plan.hpp"
 #include "veridyn/aircraft/sensors/servo.hpp"
+#include "veridyn/aircraft/simulation/flight_plan.hpp"
 
 namespace veridyn::aircraft {
 namespace {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <map>
 
-#include "veridyn/aircraft/model/subject.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tests/io/support.hpp"
-#include "veridyn/io/read.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/io/read.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::io {

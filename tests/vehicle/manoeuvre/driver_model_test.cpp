@@ -8,14 +8,14 @@
 #include <numbers>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
-#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
+#include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {

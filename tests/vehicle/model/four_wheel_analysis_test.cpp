@@ -9,9 +9,9 @@
 #include <numbers>
 
 #include "tests/vehicle/cars.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -14,6 +14,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "tests/support/folders.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -21,7 +22,6 @@
 #include "veridyn/vehicle/road/iso8608_road.hpp"
 #include "veridyn/vehicle/road/obstacle_road.hpp"
 #include "veridyn/vehicle/road/profile_road.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/vehicle/road/road_study.hpp"
 
 namespace veridyn::vehicle {

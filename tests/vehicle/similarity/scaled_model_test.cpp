@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "tests/vehicle/cars.hpp"
-#include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
+#include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/similarity/scaled_drive.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"

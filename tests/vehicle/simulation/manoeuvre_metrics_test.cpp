@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "tests/support/counting_new.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -13,9 +13,9 @@
 #include "tests/vehicle/cars.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
 namespace {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/vehicle/tyre/small_tir.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <set>
 
+#include "tests/support/folders.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/io/tables/table.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {

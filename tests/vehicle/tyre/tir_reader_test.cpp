@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <numbers>
 
+#include "tests/support/folders.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/error.hpp"
-#include "tests/support/folders.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/aircraft/reproduction/experiment.hpp"
+#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 
 namespace veridyn::aircraft {
 

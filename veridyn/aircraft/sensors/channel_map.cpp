@@ -88,7 +88,8 @@ void MapBuilder::apply(std::span<const ChannelRule> rules) {
     const Channel* raw = alive(rule.source);
     if (raw == nullptr) continue;
     put(rule.channel, standard(rule.channel).unit, raw->time,
-        recording::in_si(*raw, 0.0, raw->unit.same_dimension(Unit{}) ? rule.scale : 1.0, rule.unit), rule.source, rule.note);
+        recording::in_si(*raw, 0.0, raw->unit.same_dimension(Unit{}) ? rule.scale : 1.0, rule.unit), rule.source,
+        rule.note);
   }
 }
 

@@ -11,8 +11,8 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/estimation/uncertainty/damped_cosine.hpp"
 #include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/uncertainty/damped_cosine.hpp"
 #include "veridyn/estimation/uncertainty/monte_carlo.hpp"
 
 namespace veridyn::aircraft {

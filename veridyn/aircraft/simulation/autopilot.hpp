@@ -1,8 +1,8 @@
 #pragma once
 
-#include "veridyn/aircraft/simulation/flight_plan.hpp"
-#include "veridyn/aircraft/sensors/flight_truth.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
+#include "veridyn/aircraft/sensors/flight_truth.hpp"
+#include "veridyn/aircraft/simulation/flight_plan.hpp"
 
 namespace veridyn::aircraft {
 

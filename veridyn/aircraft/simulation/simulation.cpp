@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "veridyn/aircraft/simulation/autopilot.hpp"
 #include "veridyn/aircraft/sensors/servo.hpp"
+#include "veridyn/aircraft/simulation/autopilot.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/ode.hpp"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/aircraft/sensors/sensors.hpp"
 #include "veridyn/aircraft/simulation/dryden.hpp"
 #include "veridyn/aircraft/simulation/flight_plan.hpp"
-#include "veridyn/aircraft/sensors/sensors.hpp"
-#include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/simulation/wind.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"

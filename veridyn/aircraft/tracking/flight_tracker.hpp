@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/aircraft/identification/flight_signals.hpp"
+#include "veridyn/aircraft/tracking/coefficient_tracker.hpp"
 #include "veridyn/estimation/estimate.hpp"
 
 namespace veridyn::aircraft {

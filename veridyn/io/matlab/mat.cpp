@@ -9,8 +9,8 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
-#include "veridyn/io/matlab/mat_value.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
+#include "veridyn/io/matlab/mat_value.hpp"
 
 namespace veridyn::io {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
-#include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
+#include "veridyn/io/tables/npy.hpp"
 
 namespace veridyn::io {
 namespace {

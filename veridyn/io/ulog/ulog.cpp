@@ -10,8 +10,8 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
-#include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
+#include "veridyn/io/ulog/px4_units.hpp"
 #include "veridyn/io/ulog/ulog_format.hpp"
 
 namespace veridyn::io {

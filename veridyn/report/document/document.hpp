@@ -186,8 +186,8 @@ struct TimeSeries {
   std::vector<Panel> panels = {};
   std::vector<Span> spans = {};
   std::string axis = "time";
-  /// When not empty, these alone are shown, side by side, each with its own part of the width: short stretches of a long
-  /// recording would else be slivers. Increasing and apart from each other.
+  /// When not empty, these alone are shown, side by side, each with its own part of the width: short stretches of a
+  /// long recording would else be slivers. Increasing and apart from each other.
   std::vector<Window> windows = {};
 };
 

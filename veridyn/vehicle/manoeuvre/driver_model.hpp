@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "veridyn/vehicle/model/bicycle_analysis.hpp"
-#include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/manoeuvre/path.hpp"
 #include "veridyn/vehicle/manoeuvre/piecewise_linear.hpp"
+#include "veridyn/vehicle/model/bicycle_analysis.hpp"
+#include "veridyn/vehicle/model/driver.hpp"
 
 namespace veridyn::vehicle {
 

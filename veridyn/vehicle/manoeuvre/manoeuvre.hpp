@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
 #include "veridyn/vehicle/manoeuvre/path.hpp"
 #include "veridyn/vehicle/manoeuvre/piecewise_linear.hpp"
+#include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "veridyn/vehicle/tyre/tyre.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/tyre/tyre.hpp"
 
 namespace veridyn::vehicle {
 

@@ -10,10 +10,10 @@
 #include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
 #include "veridyn/vehicle/model/trigonometry.hpp"
-#include "veridyn/vehicle/tyre/tyre.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/model/wheel_arrays.hpp"
 #include "veridyn/vehicle/model/wheels.hpp"
+#include "veridyn/vehicle/tyre/tyre.hpp"
 
 namespace veridyn::vehicle {
 

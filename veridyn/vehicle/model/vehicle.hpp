@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/model/four_wheel_model.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/magic_formula.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
-#include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "veridyn/vehicle/model/driver.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
 #include "veridyn/vehicle/road/road.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
-#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::vehicle {
 

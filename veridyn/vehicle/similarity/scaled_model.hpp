@@ -1,10 +1,10 @@
 #pragma once
 
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/similarity/similarity.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/magic_formula.hpp"
-#include "veridyn/vehicle/similarity/similarity.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {

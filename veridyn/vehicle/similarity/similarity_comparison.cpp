@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/magic_formula.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
 

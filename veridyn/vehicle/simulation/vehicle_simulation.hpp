@@ -6,8 +6,8 @@
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/four_wheel_model.hpp"
-#include "veridyn/vehicle/road/road.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
+#include "veridyn/vehicle/road/road.hpp"
 
 namespace veridyn::vehicle {
 

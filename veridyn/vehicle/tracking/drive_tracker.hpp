@@ -9,8 +9,8 @@
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/recursive/regression_tracker.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
-#include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
