@@ -56,7 +56,7 @@ struct Case {
 class StaticOptimizationReference : public testing::TestWithParam<Case> {};
 
 TEST_P(StaticOptimizationReference, ControlsAreThoseOfOpenSim) {
-  const std::filesystem::path osim = test::shared_folder() / "data/opensim/arm26.osim";
+  const std::filesystem::path osim = veridyn::test::shared_folder() / "data/opensim/arm26.osim";
   const test::ReferenceTable t = test::read_reference(std::string("opensim/") + GetParam().file);
   if (t.rows.empty() || !std::filesystem::exists(osim)) GTEST_SKIP() << "no " << GetParam().file << " or arm26.osim";
   Motion motion(read_osim(osim), WrapMode::kAsOpenSim), taut(read_osim(osim), WrapMode::kTaut);
