@@ -1,4 +1,5 @@
 // Static optimisation of a minimum-jerk elbow motion of arm26 against OpenSim 4.5.2.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
