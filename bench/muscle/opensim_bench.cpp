@@ -20,7 +20,7 @@
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = test::shared_folder();
+const std::filesystem::path kShared = veridyn::test::shared_folder();
 constexpr std::size_t kMuscles = 6;
 
 std::unique_ptr<MusculoskeletalSystem> arm(benchmark::State& state, const char* file, PathSource paths) {

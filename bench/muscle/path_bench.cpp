@@ -46,7 +46,7 @@ struct Case {
 
 std::unique_ptr<Case> load(const std::string& name) {
   if (name == "arm") return std::make_unique<Case>(load_model("arm").model());
-  const std::filesystem::path file = test::shared_folder() / "data/opensim" / (name + ".osim");
+  const std::filesystem::path file = veridyn::test::shared_folder() / "data/opensim" / (name + ".osim");
   if (!std::filesystem::exists(file)) return nullptr;
   return std::make_unique<Case>(read_osim(file));
 }

@@ -21,7 +21,7 @@ double ReferenceTable::number(std::size_t row, const std::string& name) const { 
 
 ReferenceTable read_reference(const std::string& path) {
   ReferenceTable table;
-  std::ifstream file(fmt::format("{}/reference/{}", test::shared_folder().string(), path));
+  std::ifstream file(fmt::format("{}/reference/{}", veridyn::test::shared_folder().string(), path));
   const auto split = [](const std::string& line) {
     std::vector<std::string> cells;
     std::stringstream stream(line);

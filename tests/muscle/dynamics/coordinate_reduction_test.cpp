@@ -297,7 +297,7 @@ TEST(CoordinateReduction, NamesContradictions) {
 
 // Every model in circulation that we have must be simulated in its default pose.
 TEST(ReducedDynamics, RunsEveryModelOfOpenSimThatWeHave) {
-  const std::filesystem::path folder = test::shared_folder().string() + "/data/opensim";
+  const std::filesystem::path folder = veridyn::test::shared_folder().string() + "/data/opensim";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   int models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -49,7 +49,7 @@ class OpenSimInverseDynamics : public testing::TestWithParam<const char*> {};
 // OpenSim 4.5.2's InverseDynamicsSolver in 20 random states.
 TEST_P(OpenSimInverseDynamics, IsOurs) {
   const std::string name = GetParam();
-  const std::string file = fmt::format("{}/data/opensim/{}.osim", test::shared_folder().string(), name);
+  const std::string file = fmt::format("{}/data/opensim/{}.osim", veridyn::test::shared_folder().string(), name);
   const test::ReferenceTable table = test::read_reference(fmt::format("opensim/g_{}_inverse_dynamics.csv", name));
   if (table.rows.empty() || !std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << " or its reference";
   const Model model = read_osim(file);
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Models, OpenSimInverseDynamics, testing::Values("arm26"
 // A flexion of the elbow with minimum jerk, sampled every 5 ms.
 TEST(InverseDynamics, OfAnElbowFlexionIsOpenSims) {
   const test::ReferenceTable table = test::read_reference("opensim/d_arm26_inverse_dynamics.csv");
-  if (table.rows.empty()) GTEST_SKIP() << "no reference/opensim under " << test::shared_folder().string();
+  if (table.rows.empty()) GTEST_SKIP() << "no reference/opensim under " << veridyn::test::shared_folder().string();
   const Model model = test::arm26_skeleton();
   const Mechanism mechanism(model);
   const auto rows = static_cast<Eigen::Index>(table.rows.size());

@@ -206,7 +206,7 @@ class OpenSimBodies : public testing::TestWithParam<const char*> {};
 
 TEST_P(OpenSimBodies, HaveOurPosesAndVelocities) {
   const std::string name = GetParam();
-  const std::string file = fmt::format("{}/data/opensim/{}.osim", test::shared_folder().string(), name);
+  const std::string file = fmt::format("{}/data/opensim/{}.osim", veridyn::test::shared_folder().string(), name);
   const test::ReferenceTable states = test::read_reference(fmt::format("opensim/g_{}_inverse_dynamics.csv", name));
   const test::ReferenceTable bodies = test::read_reference(fmt::format("opensim/g_{}_bodies.csv", name));
   if (states.rows.empty() || bodies.rows.empty() || !std::filesystem::exists(file)) {

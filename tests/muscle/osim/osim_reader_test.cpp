@@ -20,7 +20,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::filesystem::path kModels = test::shared_folder() / "data/opensim";
+const std::filesystem::path kModels = veridyn::test::shared_folder() / "data/opensim";
 
 #define SKIP_WITHOUT_MODELS() \
   if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "the OpenSim models of ../shared/data are not here"

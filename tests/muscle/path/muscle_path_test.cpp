@@ -20,7 +20,7 @@
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = test::shared_folder();
+const std::filesystem::path kShared = veridyn::test::shared_folder();
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 #define SKIP_WITHOUT_REFERENCE()                               \

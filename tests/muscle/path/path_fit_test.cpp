@@ -59,7 +59,7 @@ TEST(FittedPaths, OfTheBuiltInArmKeepTheirTolerance) {
 }
 
 TEST(FittedPaths, OfArm26KeepTheirTolerance) {
-  const std::filesystem::path file = test::shared_folder() / "data/opensim/arm26.osim";
+  const std::filesystem::path file = veridyn::test::shared_folder() / "data/opensim/arm26.osim";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the OpenSim models of ../shared/data are not here";
   const Fit fit(read_osim(file));
   for (const PathFitError& e : fit.fitted.errors()) {
@@ -82,7 +82,7 @@ TEST(FittedPaths, MomentArmsAreTheDerivativesOfTheFittedLengths) {
       const Jet q[2] = {Jet(a, 0), Jet(b, 1)};
       fit.fitted.evaluate(q, length.data(), gradient.data());
       std::vector<Eigen::Vector2d> left(6);
-      for (std::size_t m = 0; m < 6; ++m) left[m] = length[m].v;
+      for (std::size_t m = 0; m < 6; ++m) left[m] = length[m].v.head<2>();
       for (std::size_t k = 0; k < gradient.size(); ++k) {
         const auto pair = fit.fitted.pairs()[k];
         left[static_cast<std::size_t>(pair.muscle)][pair.coordinate] -= gradient[k].a;

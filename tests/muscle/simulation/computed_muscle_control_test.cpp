@@ -20,7 +20,7 @@
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = test::shared_folder();
+const std::filesystem::path kShared = veridyn::test::shared_folder();
 
 #define SKIP_WITHOUT_REFERENCE()                               \
   if (!std::filesystem::exists(kShared / "reference/opensim")) \

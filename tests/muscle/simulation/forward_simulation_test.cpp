@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 constexpr double kDegree = std::numbers::pi / 180.0;
-const std::filesystem::path kShared = test::shared_folder();
+const std::filesystem::path kShared = veridyn::test::shared_folder();
 
 Drive constant_drive(std::size_t muscles, double excitation) {
   return {ControlSignals(std::vector<double>(muscles, excitation)), {}};

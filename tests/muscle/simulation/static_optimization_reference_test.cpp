@@ -1,4 +1,5 @@
 // Static optimisation of a minimum-jerk elbow motion of arm26 against OpenSim 4.5.2.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -56,7 +57,7 @@ struct Case {
 class StaticOptimizationReference : public testing::TestWithParam<Case> {};
 
 TEST_P(StaticOptimizationReference, ControlsAreThoseOfOpenSim) {
-  const std::filesystem::path osim = test::shared_folder() / "data/opensim/arm26.osim";
+  const std::filesystem::path osim = veridyn::test::shared_folder() / "data/opensim/arm26.osim";
   const test::ReferenceTable t = test::read_reference(std::string("opensim/") + GetParam().file);
   if (t.rows.empty() || !std::filesystem::exists(osim)) GTEST_SKIP() << "no " << GetParam().file << " or arm26.osim";
   Motion motion(read_osim(osim), WrapMode::kAsOpenSim), taut(read_osim(osim), WrapMode::kTaut);
