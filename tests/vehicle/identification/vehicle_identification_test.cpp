@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "simulated_drive.hpp"
+#include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulated_drive.hpp"
+#include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
 
