@@ -34,17 +34,17 @@ target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsani
 # Headers that nearly every source needs, precompiled once for the library and once for the tests. They must be built with the
 # flags of those who use them: GCC takes the level of optimisation from the precompiled header, whatever the command line says,
 # so sources with a level of their own do without it (veridyn_optimise).
-# veridyn_precompiled(TARGET LIBRARIES lib ... HEADERS <a.hpp> ...)
+# veridyn_precompiled(TARGET [POSITION_INDEPENDENT] LIBRARIES lib ... HEADERS <a.hpp> ...)
 function(veridyn_precompiled target)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "POSITION_INDEPENDENT" "" "LIBRARIES;HEADERS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp CONTENT "")
   add_library(${target} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp)
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${ARG_POSITION_INDEPENDENT})
   target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} Eigen3::Eigen fmt::fmt)
   target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
 endfunction()
 veridyn_precompiled(
-  veridyn_library_headers
+  veridyn_library_headers POSITION_INDEPENDENT
   LIBRARIES veridyn_build
   HEADERS <fmt/format.h> <fmt/ranges.h> <Eigen/Dense> <algorithm> <filesystem> <functional> <map> <memory> <optional> <string> <vector>)
 
@@ -99,7 +99,7 @@ endfunction()
 
 # veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
 # One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
-# label NAME.
+# label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs.
 function(veridyn_module_tests name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
@@ -111,5 +111,6 @@ function(veridyn_module_tests name)
   endif()
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  gtest_discover_tests(${target} TEST_FILTER -*Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 endfunction()

@@ -76,20 +76,24 @@ void add_command(CLI::App& parent, const Command& command, Chosen& chosen) {
   app->callback([&command, arguments, &chosen] { chosen = {&command, arguments}; });
 }
 
-/// Refuses a missing or unknown command, naming those that there are.
+/// Refuses a missing or unknown command, naming those that there are. `before`: the words read already.
 void check_command(std::span<const Command> commands, std::span<const char* const> words, const std::string& before) {
   const std::string word = words.empty() ? "" : words.front();
-  if (word.starts_with("-")) return;
+  if (word == "--help" || word == "-h" || word == "--version") return;
   std::vector<std::string> names;
   for (const Command& command : commands) {
     if (command.name == word) {
-      if (!command.commands.empty()) check_command(command.commands, words.subspan(1), before + " " + word);
+      if (!command.commands.empty()) check_command(command.commands, words.subspan(1), before + word + " ");
       return;
     }
     names.push_back(command.name);
   }
-  if (word.empty()) throw InputError(before, fmt::format("a command is missing{}", suggestion("", names)));
-  throw InputError(before, fmt::format("there is no command '{}'{}", word, suggestion(word, names)));
+  if (word.empty())
+    throw InputError(before.empty() ? "command line" : before.substr(0, before.size() - 1),
+                     fmt::format("a command is missing{}", suggestion("", names)));
+  if (word.starts_with("-"))
+    throw InputError(before + word, "is no option here; options of a command stand after its name");
+  throw InputError(before + word, fmt::format("there is no such command{}", suggestion(word, names)));
 }
 
 int fail(const std::string& message, int exit_code) {
@@ -106,7 +110,7 @@ int parse_and_run(std::span<const Command> commands, int argc, const char* const
   program.failure_message(CLI::FailureMessage::simple);
   Chosen chosen;
   for (const Command& command : commands) add_command(program, command, chosen);
-  check_command(commands, {argv + 1, argv + std::max(1, argc)}, "veridyn");
+  check_command(commands, {argv + 1, argv + std::max(1, argc)}, "");
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

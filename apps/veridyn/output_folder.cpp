@@ -63,6 +63,19 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
   write_file(staged(name), content, (path_ / name).string());
 }
 
+void OutputFolder::write(const std::string& name, const std::function<void(const fs::path&)>& writer) {
+  const fs::path file = staged(name);
+  try {
+    writer(file);
+  } catch (const std::runtime_error& error) {
+    std::string text = error.what();
+    const std::string hidden = staging_.string();
+    if (const std::size_t at = text.find(hidden); at != std::string::npos)
+      text.replace(at, hidden.size(), path_.string());
+    throw std::runtime_error(text);
+  }
+}
+
 fs::path OutputFolder::current(const fs::path& file) const {
   for (const std::string& name : files_) {
     if (file == path_ / name) return staging_ / name;

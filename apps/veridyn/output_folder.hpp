@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,9 @@ class OutputFolder {
 
   /// Writes one file. @throws std::runtime_error when the disk is full, InputError when the folder went away.
   void write(const std::string& name, std::string_view content);
-  /// Where to write a file that `write` cannot: its path until it is published.
-  [[nodiscard]] std::filesystem::path staged(const std::string& name);
+  /// Lets `writer` write a file at the path that it is given; errors name the path that the file will have.
+  /// @throws std::runtime_error when it cannot be written.
+  void write(const std::string& name, const std::function<void(const std::filesystem::path&)>& writer);
 
   /// Writes run.json, prints the summary (`--json`), then moves all files to their names and removes the results of the
   /// run before that this one did not write (`files_of_earlier_run`) and did not read. Call it once, at the end.
@@ -41,6 +43,8 @@ class OutputFolder {
   void publish();
 
  private:
+  /// Where a new file of this run is until it is published.
+  [[nodiscard]] std::filesystem::path staged(const std::string& name);
   /// Refuses a folder in the place of a file before the first file is moved.
   void check_names() const;
   /// Where a file of this run is until it is published; any other path as it is.

@@ -24,9 +24,11 @@ using namespace veridyn::muscle;
 void write_results(OutputFolder& folder, const MuscleStudy& study, const MuscleResult& result) {
   folder.write("motion.csv", io::to_csv(motion_table(study, result)));
   folder.write("muscles.csv", io::to_csv(muscle_table(study, result)));
-  io::write_storage(state_storage(study, result), folder.staged("states.sto"));
-  if (const auto controls = control_storage(study, result)) io::write_storage(*controls, folder.staged("controls.sto"));
-  study.file->write(study.written, folder.staged("model.osim"));
+  using Path = std::filesystem::path;
+  folder.write("states.sto", [&](const Path& path) { io::write_storage(state_storage(study, result), path); });
+  if (const auto controls = control_storage(study, result))
+    folder.write("controls.sto", [&](const Path& path) { io::write_storage(*controls, path); });
+  folder.write("model.osim", [&](const Path& path) { study.file->write(study.written, path); });
   folder.write("report.html", report::to_html(report::muscle_report(study, result, program_name())));
 }
 

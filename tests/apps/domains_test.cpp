@@ -29,15 +29,19 @@ class Table : public ProgramTest, public testing::WithParamInterface<Cell> {
     if (domain == "muscle") return file("muscle.toml", "[subject]\nmodel = \"arm\"\n[motion]\nduration = 0.02\n");
     return test::source_folder().string() + "/examples/studies/" + domain + "/study.toml";
   }
-  /// An estimate that names parameters of both aircraft and vehicles.
+  /// An estimate of what a validation needs.
   [[nodiscard]] std::string estimate(const std::string& domain) const {
-    const std::string name = domain == "vehicle" ? "C_f" : "CL_alpha";
-    const std::string value = domain == "vehicle" ? "110000" : "4.5";
-    return file("estimate.json", "{\"subject\": \"x\", \"method\": \"OLS\", \"parameters\": [{\"name\": \"" + name +
-                                     "\", \"value\": " + value +
-                                     ", \"sigma\": 0.1, \"low95\": 1, \"high95\": 9, "
-                                     "\"unit\": \"1/rad\", \"status\": \"identified\"}], \"covariance\": [[0.01]], "
-                                     "\"verdict\": \"\", \"warnings\": []}");
+    const auto parameter = [](const std::string& name, const std::string& value) {
+      return "{\"name\": \"" + name + "\", \"value\": " + value +
+             ", \"sigma\": 0.1, \"low95\": 1, \"high95\": 9, \"unit\": \"1\", \"status\": \"identified\"}";
+    };
+    const bool vehicle = domain == "vehicle";
+    const std::string parameters =
+        vehicle ? parameter("C_f", "1e5") + ", " + parameter("C_r", "1e5") + ", " + parameter("I_z", "2500")
+                : parameter("CL_alpha", "4.5");
+    return file("estimate.json", "{\"subject\": \"x\", \"method\": \"OLS\", \"parameters\": [" + parameters +
+                                     "], \"covariance\": " + (vehicle ? "[[1,0,0],[0,1,0],[0,0,1]]" : "[[1]]") +
+                                     ", \"verdict\": \"\", \"warnings\": []}");
   }
 };
 

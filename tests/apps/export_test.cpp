@@ -27,24 +27,27 @@ class Export : public ProgramTest {
 };
 
 TEST_F(Export, RefusesAParameterThatTheModelDoesNotHave) {
-  expect_refusal(with({parameter("CL_alpha", 4.5), parameter("CL_alhpa", 4.5)}),
+  expect_refusal(with(nlohmann::json::array({parameter("CL_alpha", 4.5), parameter("CL_alhpa", 4.5)})),
                  "e.json: parameter 'CL_alhpa' is not in the study's model (did you mean 'CL_alpha'?)");
 }
 
 TEST_F(Export, RefusesAUsableParameterWithoutAValue) {
-  expect_refusal(with({parameter("CL_alpha", nullptr)}),
+  expect_refusal(with(nlohmann::json::array({parameter("CL_alpha", nullptr)})),
                  "e.json: parameter 'CL_alpha': has no value, but status identified");
-  expect_refusal(with({parameter("CL_alpha", nullptr, "insignificant")}), "has no value, but status insignificant");
+  expect_refusal(with(nlohmann::json::array({parameter("CL_alpha", nullptr, "insignificant")})),
+                 "has no value, but status insignificant");
 }
 
 TEST_F(Export, RefusesANegativeErrorBar) {
   nlohmann::json wrong = parameter("CL_alpha", 4.5);
   wrong["sigma"] = -1;
-  expect_refusal(with({wrong}), "e.json: parameter 'CL_alpha': sigma is -1; must be >= 0");
+  expect_refusal(with(nlohmann::json::array({wrong})), "e.json: parameter 'CL_alpha': sigma is -1; must be >= 0");
 }
 
 TEST_F(Export, MakesUnknownWhatWasNotIdentified) {
-  ASSERT_EQ(run(with({parameter("CL_alpha", 4.5), parameter("CD_0", nullptr, "rejected")})).exit_code, 0);
+  ASSERT_EQ(
+      run(with(nlohmann::json::array({parameter("CL_alpha", 4.5), parameter("CD_0", nullptr, "rejected")}))).exit_code,
+      0);
   const auto model = nlohmann::json::parse(read_file(in_out("model.json")));
   ASSERT_EQ(model["coefficients"]["CL"].size(), 1u);
   EXPECT_EQ(model["coefficients"]["CL"][0]["value"], 4.5);

@@ -25,11 +25,11 @@ class OutputFolder : public ProgramTest {
 TEST_F(OutputFolder, IsCheckedBeforeAnyComputation) {
   const std::string examples = test::source_folder().string() + "/examples/studies/";
   const std::string flight =
-      file("flight.toml", "[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 80000\nairspeed = 20\n");
-  const std::string drive = file("drive.toml",
-                                 "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\n"
-                                 "manoeuvre = \"random steer\"\namplitude = \"2 deg\"\nduration = 20000\n"
-                                 "length = 20000\n[scale]\nlength_ratio = 0.2\n");
+      file("flight.toml", "[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = 3000\nairspeed = 20\n");
+  const std::string drive =
+      file("drive.toml",
+           "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\n"
+           "manoeuvre = \"step steer\"\namplitude = \"2 deg\"\nduration = 3000\n[scale]\nlength_ratio = 0.2\n");
   const std::string arm = file("arm.toml", "[subject]\nmodel = \"arm\"\n[motion]\nduration = 500\n");
   const std::string estimate = " --estimate missing.json";
   file("out", "a file stands in the way");
