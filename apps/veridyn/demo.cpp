@@ -1,25 +1,14 @@
-// veridyn demo: the whole way on a built-in aircraft and a simulated flight, a car and its scaled model, and an arm
+// veridyn demo: the full pipeline on a built-in aircraft and a simulated flight, a car and its scaled model, and an arm
 // that lifts a weight; needs no file.
-#include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include "apps/veridyn/drive.hpp"
-#include "apps/veridyn/results.hpp"
-#include "apps/veridyn/scale.hpp"
-#include "apps/veridyn/simulate_muscle.hpp"
-#include "veridyn/aircraft/aircraft_study.hpp"
-#include "veridyn/core/files.hpp"
-#include "veridyn/core/progress.hpp"
+#include "apps/veridyn/domains.hpp"
 
 namespace veridyn::app {
 namespace {
 
 constexpr const char* kDemoStudy =
     R"(# The study of `veridyn demo`: a built-in aircraft flown in turbulence with the reference sensors, then identified from
-# what they recorded. The truth is known, so the report shows it beside every estimate.
+# what they recorded. The truth is known, so the report shows it alongside every estimate.
 title = "demo"
 seed = 1
 
@@ -62,17 +51,6 @@ start = 0.05
 duration = 1
 )";
 
-int muscle_demo(const CommonOptions& options) {
-  CommonOptions own = options;
-  own.out = (std::filesystem::path(options.out) / "muscle").string();
-  own.json = false;  // the summary is the aircraft's
-  make_folder(own.out);
-  const std::string path = (std::filesystem::path(own.out) / "study.toml").string();
-  write_file(path, kMuscleDemo);
-  // Overrides are meant for the aircraft's study.
-  return simulate_muscle(Study::load(path), path, own, "demo");
-}
-
 constexpr const char* kVehicleDemo =
     R"(# The vehicle's part of `veridyn demo`: the reference car is driven with random steering, then found again from what
 # production-car sensors recorded; and compared with its published model of one fifth the size.
@@ -101,53 +79,38 @@ speed = "4 m/s"
 builtin = "reference_1to5"
 )";
 
-int vehicle_demo(const CommonOptions& options) {
-  CommonOptions own = options;
-  own.out = (std::filesystem::path(options.out) / "vehicle").string();
-  own.json = false;  // the summary is the aircraft's
-  make_folder(own.out);
-  const std::string path = (std::filesystem::path(own.out) / "study.toml").string();
-  write_file(path, kVehicleDemo);
-  const int exit_code = identify_vehicle(Study::load(path), path, own, "demo");
-  if (exit_code != kDone) return exit_code;
-  own.out = (std::filesystem::path(own.out) / "scale").string();
-  return scale_vehicle(Study::load(path), path, own, "demo");
+/// Runs a study of the demo, which is written alongside its results in `folder` of --out.
+StudyRun part(const Arguments& arguments, const std::string& folder, const char* text) {
+  StudyRun run = parse_study("demo", (std::filesystem::path(arguments.common.out) / folder / "study.toml").string(),
+                             text, arguments);
+  run.own_text = text;
+  run.arguments.common.out = run.path.parent_path().string();
+  return run;
 }
 
-int aircraft_demo(const CommonOptions& options) {
-  const std::filesystem::path folder = std::filesystem::path(options.out) / "aircraft";
-  make_folder(folder);
-  write_file(folder / "study.toml", kDemoStudy);
-  const Study study = load_study((folder / "study.toml").string(), options);
-  TerminalProgress progress(options.quiet);
-  aircraft::FlightStudy flight = aircraft::read_study(study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
-  if (analysis.interrupted) {
-    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
-    return kFailed;
-  }
-  progress.stage("writing the results");
-  write_identification(folder, flight, analysis,
-                       {"demo", study.name(), study.to_toml(), flight.seed, {folder / "study.toml"}}, options);
-  tell_identification(analysis, folder, options);
-  print_summary(summary_of(analysis, folder), options);
-  return kDone;
-}
-
-int demo(const CommonOptions& options) {
-  int exit_code = aircraft_demo(options);
-  if (exit_code == kDone) exit_code = vehicle_demo(options);
-  return exit_code == kDone ? muscle_demo(options) : exit_code;
+int demo(const Arguments& arguments) {
+  if (const int code = identify_aircraft(part(arguments, "aircraft", kDemoStudy)); code != kDone) return code;
+  // The overrides are meant for the aircraft's study, and the summary is the aircraft's.
+  Arguments own = arguments;
+  own.common.overrides.clear();
+  own.common.seed.reset();
+  own.common.json = false;
+  if (const int code = identify_vehicle(part(own, "vehicle", kVehicleDemo)); code != kDone) return code;
+  StudyRun scale = part(own, "vehicle", kVehicleDemo);
+  scale.own_text.clear();
+  scale.arguments.common.out += "/scale";
+  if (const int code = scale_vehicle(scale); code != kDone) return code;
+  return simulate_muscle(part(own, "muscle", kMuscleDemo));
 }
 
 }  // namespace
 
-void add_demo(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<CommonOptions>();
-  CLI::App* verb =
-      program.add_subcommand("demo", "complete runs on a built-in aircraft, a car and an arm; needs no input");
-  add_common(*verb, *options, "out/demo", "veridyn demo --seed 3");
-  verb->callback([options, &exit_code] { exit_code = demo(*options); });
+Command demo_command() {
+  return {.name = "demo",
+          .summary = "complete runs on a built-in aircraft, a car and an arm; needs no input",
+          .default_out = "out/demo",
+          .example = "veridyn demo --seed 3",
+          .run = demo};
 }
 
 }  // namespace veridyn::app

@@ -1,27 +1,20 @@
 // veridyn export STUDY: the subject's model for other programs: JSON, TOML, CSV, JSBSim.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/veridyn/output.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/study_tables.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
-#include "veridyn/core/files.hpp"
+#include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
 namespace {
-
-struct Options {
-  std::string study;
-  std::string estimate;
-  std::string format = "all";
-  CommonOptions common;
-};
 
 std::string model_csv(const aircraft::Subject& subject) {
   std::string text = "coefficient,term,name,unit,value\n";
@@ -37,52 +30,48 @@ std::string model_csv(const aircraft::Subject& subject) {
   return text;
 }
 
-int export_model(const Options& options) {
-  const Study study = load_study(options.study, options.common);
-  // Of a whole study only the subject matters here; the other tables are for other verbs to check.
-  const StudyTable table = study.root().table("subject");
-  aircraft::Subject subject = aircraft::read_subject(table);
-  table.finish();
+}  // namespace
+
+int export_aircraft(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  const StudyTable& root = run.study.root();
+  aircraft::Subject subject = aircraft::read_subject(root.table("subject"));
+  check_flight_tables(root);
+  if (root.has("flight")) static_cast<void>(aircraft::read_simulation(root));
+  root.finish();
+  const std::string& file = run.arguments.text("--estimate");
   std::optional<estimation::Estimate> estimate;
-  if (!options.estimate.empty()) {
-    estimate = io::read_estimate(options.estimate);
-    subject = aircraft::estimated_subject(subject, *estimate, options.estimate);
+  if (!file.empty()) {
+    estimate = io::read_estimate(file);
+    subject = aircraft::estimated_subject(subject, *estimate, file);
   }
-  const auto wanted = [&](const char* format) { return options.format == "all" || options.format == format; };
-  // Everything is composed before the first file is written.
-  std::vector<std::pair<const char*, std::string>> files;
-  if (wanted("json")) files.emplace_back("model.json", aircraft::to_json(subject, estimate ? &*estimate : nullptr));
-  if (wanted("toml")) files.emplace_back("subject.toml", aircraft::write_subject_toml(subject));
-  if (wanted("csv")) files.emplace_back("model.csv", model_csv(subject));
-  if (wanted("jsbsim")) files.emplace_back("jsbsim.xml", aircraft::write_jsbsim(subject));
-  const std::filesystem::path folder = options.common.out;
-  make_folder(folder);
-  nlohmann::ordered_json summary = {{"folder", folder.string()}, {"files", nlohmann::ordered_json::array()}};
-  for (const auto& [name, text] : files) {
-    write_file(folder / name, text);
-    summary["files"].push_back(name);
-    tell(options.common, fmt::format("wrote {}", (folder / name).string()));
-  }
-  RunRecord run{"export", study.name(), study.to_toml(), 0, {options.study}};
-  if (estimate) run.inputs.emplace_back(options.estimate);
-  write_run_record(folder, run, options.common);
-  print_summary(summary, options.common);
+  const std::string& format = run.arguments.text("--format");
+  const auto desired = [&](const char* name) { return format == "all" || format == name; };
+  if (desired("json")) folder.write("model.json", aircraft::to_json(subject, estimate ? &*estimate : nullptr));
+  if (desired("toml")) folder.write("subject.toml", aircraft::write_subject_toml(subject));
+  if (desired("csv")) folder.write("model.csv", model_csv(subject));
+  if (desired("jsbsim")) folder.write("jsbsim.xml", aircraft::write_jsbsim(subject));
+  const std::vector<std::string> files = folder.files();
+  RunRecord record = run.record(0);
+  if (estimate) record.inputs.emplace_back(file);
+  folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
+  for (const std::string& name : files)
+    print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
   return kDone;
 }
 
-}  // namespace
-
-void add_export(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand("export", "the model for other programs: JSON, TOML, CSV, JSBSim XML");
-  verb->add_option("STUDY", options->study, "study, or the subject.toml of an identification")->required();
-  verb->add_option("--estimate", options->estimate, "take the parameters from this estimate.json")->type_name("FILE");
-  verb->add_option("--format", options->format, "what to write")
-      ->check(CLI::IsMember({"all", "json", "toml", "csv", "jsbsim"}))
-      ->capture_default_str();
-  add_common(*verb, options->common, "out/export",
-             "veridyn export study.toml --estimate out/identify/estimate.json --format jsbsim");
-  verb->callback([options, &exit_code] { exit_code = export_model(*options); });
+Command export_command() {
+  return {.name = "export",
+          .summary = "the model for other programs: JSON, TOML, CSV, JSBSim XML",
+          .arguments = {{.name = "STUDY", .help = "study, or the subject.toml of an identification", .required = true},
+                        {.name = "--estimate", .help = "take the parameters from this estimate.json", .type = "FILE"},
+                        {.name = "--format",
+                         .help = "what to write",
+                         .value = "all",
+                         .choices = {"all", "json", "toml", "csv", "jsbsim"}}},
+          .default_out = "out/export",
+          .example = "veridyn export study.toml --estimate out/identify/estimate.json --format jsbsim",
+          .run = [](const Arguments& arguments) { return run_on_study("export", arguments); }};
 }
 
 }  // namespace veridyn::app

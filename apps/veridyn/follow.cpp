@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/veridyn/output.hpp"
+#include "apps/veridyn/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 
@@ -32,6 +32,10 @@ std::uintmax_t size_of(const std::vector<std::filesystem::path>& files) {
 
 }  // namespace
 
+FollowOptions FollowOptions::of(const Arguments& arguments) {
+  return {.idle_s = arguments.number("--idle"), .interval_s = arguments.number("--interval")};
+}
+
 std::vector<std::filesystem::path> followed_files(const StudyTable& root) {
   if (!root.has("data")) root.fail("data", "is missing: --live follows the recording that it names");
   const StudyTable data = root.table("data");
@@ -45,8 +49,8 @@ void follow_files(const std::vector<std::filesystem::path>& files, const FollowO
   std::string obstacle;
   double pause_s = follow.interval_s;
   Clock::time_point grown = Clock::now();
-  tell(options, fmt::format("following {}; ends {:g} s after the last new data, or with Ctrl-C", files.front().string(),
-                            follow.idle_s));
+  print_line(options, fmt::format("following {}; ends {:g} s after the last new data, or with Ctrl-C",
+                                  files.front().string(), follow.idle_s));
   while (true) {
     const bool stop = signals.interrupted();
     const std::uintmax_t size = size_of(files);
@@ -62,7 +66,7 @@ void follow_files(const std::vector<std::filesystem::path>& files, const FollowO
       } catch (const InputError& error) {
         // The head of a log may hold too little yet; what is wrong for good is still wrong at the end.
         if (finished) throw;
-        if (obstacle != error.what()) tell(options, fmt::format("waiting: {}", error.what()));
+        if (obstacle != error.what()) print_line(options, fmt::format("waiting: {}", error.what()));
         obstacle = error.what();
       }
       // A long log takes longer to read: never more than a third of the time.

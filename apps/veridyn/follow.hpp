@@ -4,7 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "apps/veridyn/options.hpp"
+#include "apps/veridyn/command.hpp"
+#include "veridyn/core/study.hpp"
 
 namespace veridyn::app {
 
@@ -12,10 +13,12 @@ namespace veridyn::app {
 struct FollowOptions {
   double idle_s = 15.0;     ///< --idle: end this long after the last new data
   double interval_s = 1.0;  ///< --interval: look for new data this often
+
+  [[nodiscard]] static FollowOptions of(const Arguments& arguments);
 };
 
 /// Calls `advance(finished)` whenever the files have grown, and a last time with true when nothing came for long or
-/// Ctrl-C was pressed. What `advance` cannot read yet (InputError) is told and tried again; at the end it is thrown.
+/// Ctrl-C was pressed. What `advance` cannot read yet (InputError) is printed and tried again; at the end it is thrown.
 void follow_files(const std::vector<std::filesystem::path>& files, const FollowOptions& follow,
                   const CommonOptions& options, const std::function<void(bool finished)>& advance);
 

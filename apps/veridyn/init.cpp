@@ -1,26 +1,17 @@
 // veridyn init aircraft|vehicle|swing-test|calibration|muscle: a commented study file to start from.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 
+#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/ground_templates.hpp"
 #include "apps/veridyn/muscle_template.hpp"
-#include "apps/veridyn/options.hpp"
-#include "apps/veridyn/output.hpp"
 #include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn::app {
 namespace {
-
-struct Options {
-  std::string log;  ///< or model: the file that the study is about
-  bool force = false;
-  CommonOptions common;
-};
 
 constexpr const char* kAircraftStudy = R"toml(# A study of one flight: who flew, what was recorded, what to find out.
 #   veridyn inspect flight.bin          what the log holds and how it would be mapped
@@ -104,17 +95,17 @@ file = @LOG@
 # method = "auto"                # "OLS", "TLS", "GTLS", "PCA-GTLS"
 # refit_significant = false      # once more with the significant parameters only
 # structure = "given"            # "stepwise", "orthogonal": choose the terms among [identify.candidates]
-# output_error = false           # beside regression: output-error maximum likelihood
+# output_error = false           # alongside regression: output-error maximum likelihood
 # output_error_gusts = true      # its simulation is driven by the reconstructed gust; false: the air is calm
-# frequency_band = ["0.1 Hz", "2 Hz"]   # beside regression: equation error in the frequency domain
-# bootstrap = 0                  # beside regression: replicates of a block bootstrap, such as 500
+# frequency_band = ["0.1 Hz", "2 Hz"]   # alongside regression: equation error in the frequency domain
+# bootstrap = 0                  # alongside regression: replicates of a block bootstrap, such as 500
 
 [uncertainty]
 # draws = 100000                 # of the Monte Carlo on the measured coefficients
 # sigma = { thrust = "0.5 N" }   # error of a signal, where the log cannot tell
 
 [validate]
-# period = "5 s"                 # the model is started anew this often
+# period = "5 s"                 # the model is started again this often
 
 # `veridyn track study.toml` follows the parameters on line, replayed or live (docs/tracking.md).
 [track]
@@ -145,78 +136,94 @@ std::string filled(std::string text, const std::string& mark, const std::string&
   return text.replace(text.find(mark), mark.size(), with);
 }
 
-std::filesystem::path folder_of(const Options& options) {
-  return options.common.out.empty() ? "." : options.common.out;
+std::filesystem::path folder_of(const Arguments& arguments) {
+  return arguments.common.out.empty() ? "." : arguments.common.out;
 }
 
-void write_study(const Options& options, const std::string& text, const std::string& to_do,
-                 const std::string& verb = "identify") {
-  const std::filesystem::path folder = folder_of(options);
+int write_study(const Arguments& arguments, const std::string& text, const std::string& to_do,
+                const std::string& command = "identify") {
+  const std::filesystem::path folder = folder_of(arguments);
   make_folder(folder);
   const std::filesystem::path path = folder / "study.toml";
-  if (std::filesystem::exists(path) && !options.force) {
+  if (std::filesystem::exists(path) && !arguments.flag("--force")) {
     throw InputError(path.string(), "is there already; --force replaces it");
   }
   write_file(path, text);
-  tell(options.common, fmt::format("wrote {}: {}, then `veridyn {} {}`", path.string(), to_do, verb, path.string()));
+  print_line(arguments.common,
+             fmt::format("wrote {}: {}, then `veridyn {} {}`", path.string(), to_do, command, path.string()));
+  return kDone;
+}
+
+/// The file that a study is about, named from the study's folder.
+std::string quoted_argument(const Arguments& arguments, const char* name) {
+  return quoted_path(arguments.text(name), folder_of(arguments));
+}
+
+int init_aircraft(const Arguments& arguments) {
+  return write_study(arguments, filled(kAircraftStudy, "@LOG@", quoted_argument(arguments, "--log")),
+                     "fill in the subject");
+}
+
+int init_vehicle(const Arguments& arguments) {
+  const bool log = !arguments.text("--log").empty();
+  const std::string data = log ? filled(kDriveLog, "@LOG@", quoted_argument(arguments, "--log")) : kNoDriveLog;
+  return write_study(arguments, filled(kVehicleStudy, "@DATA@", data), "fill in the vehicle",
+                     log ? "identify" : "simulate");
+}
+
+int init_muscle(const Arguments& arguments) {
+  return write_study(arguments, filled(kMuscleStudy, "@MODEL@", quoted_argument(arguments, "--model")),
+                     "choose method and motion", "simulate");
+}
+
+const Argument kForce = {.name = "--force", .help = "replace an existing study.toml", .value = false};
+
+Command init_ground(const std::string& name, const std::string& summary, const char* text) {
+  return {
+      .name = name,
+      .summary = summary,
+      .arguments = {kForce},
+      .default_out = ".",
+      .example = fmt::format("veridyn init {} --out bench", name),
+      .run = [text](const Arguments& arguments) { return write_study(arguments, text, "fill in what you measured"); }};
 }
 
 }  // namespace
 
-void add_init(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand("init", "write a commented study file to start from");
-  const auto add_ground = [&](const std::string& name, const std::string& help, const char* text) {
-    auto ground = std::make_shared<Options>();
-    CLI::App* kind = verb->add_subcommand(name, help);
-    kind->add_flag("--force", ground->force, "replace an existing study.toml");
-    add_common(*kind, ground->common, ".", fmt::format("veridyn init {} --out bench", name));
-    kind->callback([ground, text, &exit_code] {
-      write_study(*ground, text, "fill in what you measured");
-      exit_code = kDone;
-    });
-  };
-  add_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy);
-  add_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy);
-  auto muscle = std::make_shared<Options>();
-  CLI::App* model = verb->add_subcommand("muscle", "study of a musculoskeletal model: study.toml in --out");
-  muscle->log = "arm";
-  model->add_option("--model", muscle->log, "OpenSim model (.osim), or a built-in one: arm")
-      ->capture_default_str()
-      ->type_name("FILE");
-  model->add_flag("--force", muscle->force, "replace an existing study.toml");
-  add_common(*model, muscle->common, ".", "veridyn init muscle --model arm26.osim --out my_arm");
-  model->callback([muscle, &exit_code] {
-    write_study(*muscle, filled(kMuscleStudy, "@MODEL@", quoted_path(muscle->log, folder_of(*muscle))),
-                "choose method and motion", "simulate");
-    exit_code = kDone;
-  });
-  auto car = std::make_shared<Options>();
-  CLI::App* vehicle = verb->add_subcommand("vehicle", "study of a road vehicle: study.toml in --out");
-  vehicle->add_option("--log", car->log, "a drive log that the study is about; none: the drive is simulated")
-      ->type_name("FILE");
-  vehicle->add_flag("--force", car->force, "replace an existing study.toml");
-  add_common(*vehicle, car->common, ".", "veridyn init vehicle --log drive.csv --out my_car");
-  vehicle->callback([car, &exit_code] {
-    const std::string data =
-        car->log.empty() ? kNoDriveLog : filled(kDriveLog, "@LOG@", quoted_path(car->log, folder_of(*car)));
-    write_study(*car, filled(kVehicleStudy, "@DATA@", data), "fill in the vehicle",
-                car->log.empty() ? "simulate" : "identify");
-    exit_code = kDone;
-  });
-  CLI::App* aircraft = verb->add_subcommand("aircraft", "study of an aircraft: study.toml in --out");
-  verb->require_subcommand(1);
-  aircraft->add_option("--log", options->log, "the log that the study is about")
-      ->default_str("flight.bin")
-      ->type_name("FILE");
-  options->log = "flight.bin";
-  aircraft->add_flag("--force", options->force, "replace an existing study.toml");
-  add_common(*aircraft, options->common, ".", "veridyn init aircraft --log flight.bin --out my_aircraft");
-  aircraft->callback([options, &exit_code] {
-    write_study(*options, filled(kAircraftStudy, "@LOG@", quoted_path(options->log, folder_of(*options))),
-                "fill in the subject");
-    exit_code = kDone;
-  });
+Command init_command() {
+  return {
+      .name = "init",
+      .summary = "write a commented study file to start from",
+      .commands = {
+          init_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy),
+          init_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy),
+          {.name = "muscle",
+           .summary = "study of a musculoskeletal model: study.toml in --out",
+           .arguments = {{.name = "--model",
+                          .help = "OpenSim model (.osim), or a built-in one: arm",
+                          .value = "arm",
+                          .type = "FILE"},
+                         kForce},
+           .default_out = ".",
+           .example = "veridyn init muscle --model arm26.osim --out my_arm",
+           .run = init_muscle},
+          {.name = "vehicle",
+           .summary = "study of a road vehicle: study.toml in --out",
+           .arguments = {{.name = "--log",
+                          .help = "a drive log that the study is about; none: the drive is simulated",
+                          .type = "FILE"},
+                         kForce},
+           .default_out = ".",
+           .example = "veridyn init vehicle --log drive.csv --out my_car",
+           .run = init_vehicle},
+          {.name = "aircraft",
+           .summary = "study of an aircraft: study.toml in --out",
+           .arguments =
+               {{.name = "--log", .help = "the log that the study is about", .value = "flight.bin", .type = "FILE"},
+                kForce},
+           .default_out = ".",
+           .example = "veridyn init aircraft --log flight.bin --out my_aircraft",
+           .run = init_aircraft}}};
 }
 
 }  // namespace veridyn::app

@@ -1,14 +1,10 @@
 // veridyn inspect FILE: what a log holds, or a model.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
 
+#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/inspect_model.hpp"
-#include "apps/veridyn/options.hpp"
-#include "apps/veridyn/output.hpp"
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
@@ -16,16 +12,6 @@
 
 namespace veridyn::app {
 namespace {
-
-struct Options {
-  std::string file;
-  bool all = false;
-  bool events = false;
-  bool parameters = false;
-  std::string pose;
-  bool as_opensim = false;
-  CommonOptions common;
-};
 
 struct Range {
   double low = NAN;
@@ -52,9 +38,11 @@ double gap_time(const Channel& channel) {
   return total;
 }
 
-int inspect(const Options& options) {
-  if (is_model(options.file)) return inspect_model(options.file, options.pose, options.as_opensim, options.common);
-  io::Log log = io::read_log(options.file);
+int inspect(const Arguments& arguments) {
+  const std::string& file = arguments.text("FILE");
+  const std::string& pose = arguments.text("--pose");
+  if (is_model(file)) return inspect_model(file, pose, arguments.flag("--as-opensim"), arguments.common);
+  io::Log log = io::read_log(file);
   const std::string format = log.format;
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
@@ -65,16 +53,15 @@ int inspect(const Options& options) {
                                                     : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
 
-  nlohmann::ordered_json summary;
-  summary["file"] = options.file;
+  Summary summary;
+  summary["file"] = file;
   summary["format"] = format;
-  summary["span"] = {span.begin, span.end};
+  summary["span"] = Summary::array({span.begin, span.end});
   summary["bytes_lost"] = damage.bytes_lost;
   summary["records_lost"] = damage.records_lost;
-  summary["channels"] = nlohmann::ordered_json::array();
-  std::string text =
-      fmt::format("{}: {}, {} kinds of message, {} channels, {:.3f} s to {:.3f} s ({:.1f} s)\n", options.file, format,
-                  topics, recording.channels().size(), span.begin, span.end, span.duration());
+  summary["channels"] = Summary::array();
+  std::string text = fmt::format("{}: {}, {} kinds of message, {} channels, {:.3f} s to {:.3f} s ({:.1f} s)\n", file,
+                                 format, topics, recording.channels().size(), span.begin, span.end, span.duration());
   if (damage.any()) {
     text += fmt::format("lost: {} bytes, {} records, {} dropouts of {:.3f} s in all\n", damage.bytes_lost,
                         damage.records_lost, damage.dropouts, damage.dropout_s);
@@ -89,19 +76,19 @@ int inspect(const Options& options) {
   for (const Channel& channel : recording.channels()) {
     const Range range = range_of(channel);
     const auto gaps = channel.gaps();
-    summary["channels"].push_back({{"name", channel.name},
-                                   {"unit", channel.unit.name},
-                                   {"recorded_unit", channel.recorded_unit},
-                                   {"samples", channel.size()},
-                                   {"rate_Hz", channel.rate_Hz()},
-                                   {"gaps", gaps.size()},
-                                   {"missing", range.missing}});
+    summary["channels"].push_back(Summary::object({{"name", channel.name},
+                                                   {"unit", channel.unit.name},
+                                                   {"recorded_unit", channel.recorded_unit},
+                                                   {"samples", channel.size()},
+                                                   {"rate_Hz", channel.rate_Hz()},
+                                                   {"gaps", gaps.size()},
+                                                   {"missing", range.missing}}));
     text +=
         fmt::format("{:<44} {:<8} {:>8} {:>9.2f} {:>5} {:>7.2f} {:>8}  {}\n", channel.name, channel.unit.name,
                     channel.size(), channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
                     std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numbers");
   }
-  summary["mapping"] = nlohmann::ordered_json::object();
+  summary["mapping"] = Summary::object();
   if (!mapped.origins.empty()) {
     text += fmt::format("\nfor {} study ({} log):\n", vehicle ? "a vehicle" : "an aircraft", mapped.log_kind);
     for (const recording::ChannelOrigin& origin : mapped.origins) {
@@ -111,45 +98,44 @@ int inspect(const Options& options) {
     }
   }
   for (const std::string& note : mapped.notes) text += fmt::format("  note: {}\n", note);
-  if (options.events) {
+  if (arguments.flag("--events")) {
     text += "\nevents:\n";
     for (const Event& event : recording.events)
       text += fmt::format("  {:12.3f} s  {:<10} {}\n", event.time, event.kind, event.text);
   }
-  if (options.parameters) {
+  if (arguments.flag("--parameters")) {
     text += "\nparameters:\n";
     for (const auto& [name, value] : recording.parameters) text += fmt::format("  {:<24} {}\n", name, value);
   }
-  if (options.common.json) {
-    print_summary(summary, options.common);
+  if (arguments.common.json) {
+    print_summary(summary, arguments.common);
   } else {
-    fmt::print("{}", text);
+    print_text(text);
   }
   return kDone;
 }
 
 }  // namespace
 
-void add_inspect(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand(
-      "inspect", "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles");
-  verb->add_option("FILE", options->file,
-                   "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV, a folder of NumPy "
-                   "arrays; OpenSim model .osim, or the "
-                   "built-in model 'arm'")
-      ->required();
-  verb->add_flag("--events", options->events, "list flight modes and messages");
-  verb->add_flag("--parameters", options->parameters, "list the autopilot's parameters");
-  verb->add_option(
-      "--pose", options->pose,
-      "of a model: print muscle lengths, moment arms and generalised forces as CSV, for the poses of a .csv, "
-      ".mot or .sto file or for one pose 'elbow_flexion=90 deg,...'");
-  verb->add_flag("--as-opensim", options->as_opensim, "with --pose: wrap paths as OpenSim does, jumps included");
-  add_common(*verb, options->common, "",
-             "veridyn inspect flight.bin\n  veridyn inspect arm26.osim\n  veridyn inspect arm --pose "
-             "\"elbow_flexion=90 deg\"");
-  verb->callback([options, &exit_code] { exit_code = inspect(*options); });
+Command inspect_command() {
+  return {
+      .name = "inspect",
+      .summary = "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles",
+      .arguments =
+          {{.name = "FILE",
+            .help = "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV, a folder of NumPy "
+                    "arrays; OpenSim model .osim, or the built-in model 'arm'",
+            .required = true},
+           {.name = "--events", .help = "list flight modes and messages", .value = false},
+           {.name = "--parameters", .help = "list the autopilot's parameters", .value = false},
+           {.name = "--pose",
+            .help = "of a model: print muscle lengths, moment arms and generalised forces as CSV, for the poses of "
+                    "a .csv, .mot or .sto file or for one pose 'elbow_flexion=90 deg,...'"},
+           {.name = "--as-opensim", .help = "with --pose: wrap paths as OpenSim does, jumps included", .value = false}},
+      .example =
+          "veridyn inspect flight.bin\n  veridyn inspect arm26.osim\n  veridyn inspect arm --pose "
+          "\"elbow_flexion=90 deg\"",
+      .run = inspect};
 }
 
 }  // namespace veridyn::app

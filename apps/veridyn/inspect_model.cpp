@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <optional>
 
-#include "apps/veridyn/output.hpp"
-#include "veridyn/core/files.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/output_folder.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
 
@@ -148,36 +148,36 @@ std::string describe(const std::string& file, const Model& model) {
   return text;
 }
 
-nlohmann::ordered_json summary_of(const std::string& file, const Model& model) {
-  nlohmann::ordered_json s;
+Summary summary_of(const std::string& file, const Model& model) {
+  Summary s;
   s["file"] = file;
   s["name"] = model.name;
   s["format"] = model.version;
-  s["bodies"] = nlohmann::ordered_json::array();
+  s["bodies"] = Summary::array();
   for (std::size_t i = 1; i < model.bodies.size(); ++i)
-    s["bodies"].push_back({{"name", model.bodies[i].name}, {"mass", model.bodies[i].mass}});
-  s["coordinates"] = nlohmann::ordered_json::array();
+    s["bodies"].push_back(Summary::object({{"name", model.bodies[i].name}, {"mass", model.bodies[i].mass}}));
+  s["coordinates"] = Summary::array();
   for (const Coordinate& c : model.coordinates) {
-    s["coordinates"].push_back({{"name", c.name},
-                                {"unit", c.unit()},
-                                {"low", c.low},
-                                {"high", c.high},
-                                {"default", c.default_value},
-                                {"locked", c.locked}});
+    s["coordinates"].push_back(Summary::object({{"name", c.name},
+                                                {"unit", c.unit()},
+                                                {"low", c.low},
+                                                {"high", c.high},
+                                                {"default", c.default_value},
+                                                {"locked", c.locked}}));
   }
-  s["muscles"] = nlohmann::ordered_json::array();
+  s["muscles"] = Summary::array();
   for (const Muscle& muscle : model.muscles) {
     const MusculotendonParameters<double>& m = muscle.parameters.musculotendon;
-    s["muscles"].push_back({{"name", muscle.name()},
-                            {"type", type_name(muscle.parameters)},
-                            {"max_isometric_force", m.max_isometric_force},
-                            {"optimal_fiber_length", m.optimal_fiber_length},
-                            {"tendon_slack_length", m.tendon_slack_length},
-                            {"pennation_angle_at_optimal", m.pennation_angle_at_optimal}});
+    s["muscles"].push_back(Summary::object({{"name", muscle.name()},
+                                            {"type", type_name(muscle.parameters)},
+                                            {"max_isometric_force", m.max_isometric_force},
+                                            {"optimal_fiber_length", m.optimal_fiber_length},
+                                            {"tendon_slack_length", m.tendon_slack_length},
+                                            {"pennation_angle_at_optimal", m.pennation_angle_at_optimal}}));
   }
-  s["unsupported"] = nlohmann::ordered_json::array();
+  s["unsupported"] = Summary::array();
   for (const UnsupportedElement& u : model.unsupported)
-    s["unsupported"].push_back({{"element", u.element}, {"name", u.name}});
+    s["unsupported"].push_back(Summary::object({{"element", u.element}, {"name", u.name}}));
   s["warnings"] = model.warnings;
   return s;
 }
@@ -193,25 +193,28 @@ bool is_model(const std::string& file) {
 }
 
 int inspect_model(const std::string& file, const std::string& pose, bool as_opensim, const CommonOptions& options) {
+  // Made first, so that a wrong --out is refused before anything is computed.
+  std::optional<OutputFolder> folder;
+  if (!pose.empty() && !options.out.empty()) folder.emplace(options.out);
   const OsimFile osim = load_model(file);
   if (!pose.empty()) {
-    // Poses ask for geometry and inertia only: forces that are not understood do not matter here.
+    // Poses need geometry and inertia only: forces that are not understood do not matter here.
     const MusculoskeletalSystem system(
         osim.model(), {.paths = as_opensim ? PathSource::kAsOpenSim : PathSource::kExact, .without_unsupported = true});
     const std::string csv = pose_csv(system, read_poses(system.model(), pose));
-    if (options.out.empty()) {
-      fmt::print("{}", csv);
+    if (folder) {
+      folder->write("poses.csv", csv);
+      folder->publish();
+      print_line(options, fmt::format("wrote {}", (folder->path() / "poses.csv").string()));
     } else {
-      make_folder(options.out);
-      write_file(std::filesystem::path(options.out) / "poses.csv", csv);
-      tell(options, fmt::format("wrote {}", (std::filesystem::path(options.out) / "poses.csv").string()));
+      print_text(csv);
     }
     return kDone;
   }
   if (options.json) {
     print_summary(summary_of(file, osim.model()), options);
   } else {
-    fmt::print("{}", describe(file, osim.model()));
+    print_text(describe(file, osim.model()));
   }
   return kDone;
 }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/veridyn/options.hpp"
+#include "apps/veridyn/command.hpp"
 
 namespace veridyn::app {
 

@@ -1,14 +1,13 @@
-// veridyn reproduce aircraft|vehicle: published results beside ours, one study a row.
+// veridyn reproduce aircraft|vehicle: published results alongside ours, one study per row.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "apps/veridyn/output.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/reproduce_studies.hpp"
+#include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/reproduction/reproduction.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -22,34 +21,30 @@
 namespace veridyn::app {
 namespace {
 
-struct Options {
-  std::vector<std::string> only;
-  std::string studies;
-  CommonOptions common;
-};
-
 struct NamedStudy {
   std::string name;
   std::string text;
 };
 
 /// The studies built into the program, or those of a folder.
-std::vector<NamedStudy> studies_of(const Options& options, std::span<const EmbeddedText> embedded) {
+std::vector<NamedStudy> studies_of(const Arguments& arguments, std::span<const EmbeddedText> embedded) {
+  const std::string& folder = arguments.text("--studies");
+  const std::vector<std::string>& only = arguments.texts("--only");
   std::vector<NamedStudy> studies;
-  if (options.studies.empty()) {
+  if (folder.empty()) {
     for (const EmbeddedText& study : embedded) studies.push_back({std::string(study.name), std::string(study.text)});
   } else {
     std::vector<std::filesystem::path> paths;
-    for (const auto& entry : std::filesystem::directory_iterator(options.studies)) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
       if (entry.path().extension() == ".toml") paths.push_back(entry.path());
     }
     std::sort(paths.begin(), paths.end());
     for (const auto& path : paths) studies.push_back({path.stem().string(), read_file(path)});
-    if (studies.empty()) throw InputError(options.studies, "holds no study (*.toml)");
+    if (studies.empty()) throw InputError(folder, "holds no study (*.toml)");
   }
-  if (options.only.empty()) return studies;
+  if (only.empty()) return studies;
   std::vector<NamedStudy> chosen;
-  for (const std::string& name : options.only) {
+  for (const std::string& name : only) {
     const std::size_t before = chosen.size();
     for (const NamedStudy& study : studies) {
       if (study.name.find(name) != std::string::npos) chosen.push_back(study);
@@ -63,43 +58,40 @@ std::vector<NamedStudy> studies_of(const Options& options, std::span<const Embed
   return chosen;
 }
 
-/// Runs every study by `run` (nothing: interrupted), tells what was seen and writes the report.
-template <typename Run>
-int reproduce(const Options& options, const std::string& domain, std::span<const EmbeddedText> embedded,
-              const Run& run) {
-  numerics::set_default_threads(options.common.threads);
-  std::vector<std::string> overrides = options.common.overrides;
-  if (options.common.seed) overrides.push_back(fmt::format("seed={}", *options.common.seed));
-  const std::vector<NamedStudy> studies = studies_of(options, embedded);
-  TerminalProgress progress(options.common.quiet);
+using Run = std::optional<report::ReproducedRow> (*)(const StudyTable& root, Progress& progress);
+
+/// Runs every study by `run` (nothing: interrupted), prints the rows and writes the report.
+int reproduce(const Arguments& arguments, const std::string& domain, std::span<const EmbeddedText> embedded, Run run) {
+  const CommonOptions& options = arguments.common;
+  numerics::set_default_threads(options.threads);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  const std::vector<NamedStudy> studies = studies_of(arguments, embedded);
+  OutputFolder folder(options.out);
+  TerminalProgress progress(options.quiet);
   std::vector<report::ReproducedRow> rows;
-  nlohmann::ordered_json summary = {{"rows", nlohmann::ordered_json::array()}};
+  Summary summary;
+  summary["rows"] = Summary::array();
   std::string run_toml;
   for (const NamedStudy& named : studies) {
     const Study study = Study::parse(named.text, named.name + ".toml", {}, overrides);
     run_toml += fmt::format("# {}\n{}\n", named.name, study.to_toml());
     const std::optional<report::ReproducedRow> row = run(study.root(), progress);
-    if (!row) {
-      fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
-      return kFailed;
-    }
-    tell(options.common, fmt::format("{:<4} {}", row->passed() ? "ok" : "NO", row->title));
-    nlohmann::ordered_json json = {{"row", named.name}, {"title", row->title}, {"passed", row->passed()}};
+    if (!row) throw Interrupted();
+    print_line(options, fmt::format("{:<4} {}", row->passed() ? "ok" : "NO", row->title));
+    Summary json = Summary::object({{"row", named.name}, {"title", row->title}, {"passed", row->passed()}});
     for (const Check& check : row->checks) {
-      tell(options.common, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
-      json["checks"].push_back({{"passed", check.passed}, {"text", check.text}});
+      print_line(options, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
+      json["checks"].push_back(Summary::object({{"passed", check.passed}, {"text", check.text}}));
     }
     summary["rows"].push_back(std::move(json));
     rows.push_back(*row);
   }
-  const std::filesystem::path folder = options.common.out;
-  make_folder(folder);
-  report::write_html(report::reproduction_report(domain, rows, "veridyn " VERIDYN_VERSION), folder / "report.html");
-  summary["folder"] = folder.string();
-  write_file(folder / "reproduction.json", summary.dump(2) + "\n");
-  write_run_record(folder, {"reproduce", domain, run_toml, options.common.seed.value_or(0), {}}, options.common);
-  tell(options.common, fmt::format("report: {}", (folder / "report.html").string()));
-  print_summary(summary, options.common);
+  folder.write("report.html", report::to_html(report::reproduction_report(domain, rows, program_name())));
+  summary["folder"] = folder.path().string();
+  folder.write("reproduction.json", summary.to_json() + "\n");
+  folder.publish({"reproduce", domain, run_toml, options.seed.value_or(0), {}}, options, summary);
+  print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
   return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.passed(); }) ? kDone : kFailed;
 }
 
@@ -116,25 +108,32 @@ std::optional<report::ReproducedRow> run_vehicle(const StudyTable& root, Progres
   return report::reproduced_row(row);
 }
 
+Command reproduce_domain(const std::string& domain, const std::string& summary, const std::string& example,
+                         std::span<const EmbeddedText> (*studies)(), Run run) {
+  return {.name = domain,
+          .summary = summary,
+          .arguments = {{.name = "--only",
+                         .help = "rows whose name holds this text (repeatable)",
+                         .value = std::vector<std::string>(),
+                         .type = "TEXT"},
+                        {.name = "--studies",
+                         .help = "folder of studies to run instead of the built-in ones",
+                         .type = "DIR",
+                         .folder = true}},
+          .default_out = "out/reproduce",
+          .example = fmt::format("veridyn reproduce {} --only {}", domain, example),
+          .run = [=](const Arguments& arguments) { return reproduce(arguments, domain, studies(), run); }};
+}
+
 }  // namespace
 
-void add_reproduce(CLI::App& program, int& exit_code) {
-  CLI::App* verb = program.add_subcommand("reproduce", "published results beside ours, in one report");
-  verb->require_subcommand(1);
-  const auto add = [&](const std::string& domain, const std::string& help, const std::string& example, auto studies,
-                       auto run) {
-    auto options = std::make_shared<Options>();
-    CLI::App* kind = verb->add_subcommand(domain, help);
-    kind->add_option("--only", options->only, "rows whose name holds this text (repeatable)")->type_name("TEXT");
-    kind->add_option("--studies", options->studies, "folder of studies to run instead of the built-in ones")
-        ->check(CLI::ExistingDirectory)
-        ->type_name("DIR");
-    add_common(*kind, options->common, "out/reproduce", fmt::format("veridyn reproduce {} --only {}", domain, example));
-    kind->callback([=, &exit_code] { exit_code = reproduce(*options, domain, studies(), run); });
-  };
-  add("aircraft", "regression, total least squares, recursion, stall: eleven rows", "Cm_change", aircraft_studies,
-      run_aircraft);
-  add("vehicle", "a car and its model of one fifth the size: four rows", "bicycle", vehicle_studies, run_vehicle);
+Command reproduce_command() {
+  return {.name = "reproduce",
+          .summary = "published results alongside ours, in one report",
+          .commands = {reproduce_domain("aircraft", "regression, total least squares, recursion, stall: eleven rows",
+                                        "Cm_change", aircraft_studies, run_aircraft),
+                       reproduce_domain("vehicle", "a car and its model of one fifth the size: four rows", "bicycle",
+                                        vehicle_studies, run_vehicle)}};
 }
 
 }  // namespace veridyn::app

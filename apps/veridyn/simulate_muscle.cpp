@@ -1,14 +1,15 @@
 // veridyn simulate STUDY of a musculoskeletal model: forward and inverse dynamics, static optimization, computed muscle
 // control.
-#include "apps/veridyn/simulate_muscle.hpp"
-
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
 #include <numbers>
+#include <stdexcept>
 
-#include "apps/veridyn/output.hpp"
-#include "veridyn/core/files.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/version.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
@@ -20,27 +21,21 @@ namespace {
 
 using namespace veridyn::muscle;
 
-/// Writes the files; their names, for people.
-std::string write_results(const std::filesystem::path& folder, const MuscleStudy& study, const MuscleResult& result) {
-  make_folder(folder);
-  io::write_csv(motion_table(study, result), folder / "motion.csv");
-  io::write_csv(muscle_table(study, result), folder / "muscles.csv");
-  io::write_storage(state_storage(study, result), folder / "states.sto");
-  std::string names = "motion.csv, muscles.csv, states.sto";
-  if (const auto controls = control_storage(study, result)) {
-    io::write_storage(*controls, folder / "controls.sto");
-    names += ", controls.sto";
-  }
-  study.file->write(study.written, folder / "model.osim");
-  report::write_html(report::muscle_report(study, result, "veridyn " VERIDYN_VERSION), folder / "report.html");
-  return names + ", model.osim, report.html";
+void write_results(OutputFolder& folder, const MuscleStudy& study, const MuscleResult& result) {
+  folder.write("motion.csv", io::to_csv(motion_table(study, result)));
+  folder.write("muscles.csv", io::to_csv(muscle_table(study, result)));
+  using Path = std::filesystem::path;
+  folder.write("states.sto", [&](const Path& path) { io::write_storage(state_storage(study, result), path); });
+  if (const auto controls = control_storage(study, result))
+    folder.write("controls.sto", [&](const Path& path) { io::write_storage(*controls, path); });
+  folder.write("model.osim", [&](const Path& path) { study.file->write(study.written, path); });
+  folder.write("report.html", report::to_html(report::muscle_report(study, result, program_name())));
 }
 
-nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const MuscleStudy& study,
-                                  const MuscleResult& result) {
+Summary summary_of(const std::filesystem::path& folder, const MuscleStudy& study, const MuscleResult& result) {
   const Model& model = study.system->model();
   const MuscleTrajectory& t = result.trajectory;
-  nlohmann::ordered_json s;
+  Summary s;
   s["folder"] = folder.string();
   s["model"] = study.model_name;
   s["method"] = method_name(study.method);
@@ -50,28 +45,28 @@ nlohmann::ordered_json summary_of(const std::filesystem::path& folder, const Mus
   s["rows"] = t.time.size();
   s["steps"] = t.steps;
   s["evaluations"] = t.evaluations;
-  s["coordinates"] = nlohmann::ordered_json::object();
+  s["coordinates"] = Summary::object();
   for (std::size_t c = 0; c < model.coordinates.size() && t.q.rows() > 0; ++c) {
     const auto i = static_cast<Eigen::Index>(c);
-    nlohmann::ordered_json k = {{"unit", model.coordinates[c].unit()},
-                                {"begin", t.q(0, i)},
-                                {"end", t.q(t.q.rows() - 1, i)},
-                                {"low", t.q.col(i).minCoeff()},
-                                {"high", t.q.col(i).maxCoeff()}};
+    Summary k = Summary::object({{"unit", model.coordinates[c].unit()},
+                                 {"begin", t.q(0, i)},
+                                 {"end", t.q(t.q.rows() - 1, i)},
+                                 {"low", t.q.col(i).minCoeff()},
+                                 {"high", t.q.col(i).maxCoeff()}});
     if (study.method == MuscleMethod::kComputedMuscleControl) k["tracking_error"] = result.tracking_error(c);
     s["coordinates"][model.coordinates[c].name] = std::move(k);
   }
-  s["muscles"] = nlohmann::ordered_json::object();
+  s["muscles"] = Summary::object();
   for (std::size_t m = 0; m < model.muscles.size() && t.tendon_force.rows() > 0; ++m) {
     const auto i = static_cast<Eigen::Index>(m);
-    s["muscles"][model.muscles[m].name()] = {{"peak_force_N", t.tendon_force.col(i).maxCoeff()},
-                                             {"peak_activation", t.activation.col(i).maxCoeff()}};
+    s["muscles"][model.muscles[m].name()] = Summary::object(
+        {{"peak_force_N", t.tendon_force.col(i).maxCoeff()}, {"peak_activation", t.activation.col(i).maxCoeff()}});
   }
-  s["events"] = nlohmann::ordered_json::array();
+  s["events"] = Summary::array();
   for (const MuscleEvent& event : t.events) {
-    s["events"].push_back({{"time_s", event.time},
-                           {"muscle", model.muscles[static_cast<std::size_t>(event.muscle)].name()},
-                           {"what", event_text(event.kind)}});
+    s["events"].push_back(Summary::object({{"time_s", event.time},
+                                           {"muscle", model.muscles[static_cast<std::size_t>(event.muscle)].name()},
+                                           {"what", event_text(event.kind)}}));
   }
   s["warnings"] = result.warnings;
   s["notes"] = result.notes;
@@ -90,8 +85,8 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
     text += fmt::format("{}{} {:.4g} to {:.4g} {}", text.empty() ? "" : ", ", k.name, unit * t.q(0, c),
                         unit * t.q(t.q.rows() - 1, c), angle ? "deg" : "m");
     if (study.method == MuscleMethod::kComputedMuscleControl) {
-      text += fmt::format(" (within {:.2g} {} of the wish)", unit * result.tracking_error(static_cast<std::size_t>(c)),
-                          angle ? "deg" : "m");
+      text += fmt::format(" (within {:.2g} {} of the desired motion)",
+                          unit * result.tracking_error(static_cast<std::size_t>(c)), angle ? "deg" : "m");
     }
     if (text.size() > 400) {
       text += ", ...";
@@ -103,31 +98,30 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
 
 }  // namespace
 
-int simulate_muscle(const Study& study, const std::string& path, const CommonOptions& options,
-                    const std::string& verb) {
-  TerminalProgress progress(options.quiet);
-  const MuscleStudy muscles = read_study(study, progress);
+int simulate_muscle(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  const StudyTable& root = run.study.root();
+  const MuscleStudy muscles = read_muscle_study(root);
+  // Nothing here is random yet; the run record names the seed all the same.
+  const auto seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
+  root.finish();
+  TerminalProgress progress(run.options().quiet);
   const MuscleResult result = run_study(muscles, progress);
-  if (result.trajectory.end == SimulationEnd::kInterrupted) {
-    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
-    return kFailed;
-  }
-  const std::filesystem::path folder = options.out;
+  const MuscleTrajectory& t = result.trajectory;
+  if (t.end == SimulationEnd::kInterrupted) throw Interrupted();
   progress.stage("writing the results");
-  const std::string files = write_results(folder, muscles, result);
-  RunRecord run{verb, study.name(), study.to_toml(), 1, muscles.inputs};
-  run.inputs.emplace_back(path);
-  write_run_record(folder, run, options);
-  for (const std::string& warning : result.warnings) tell(options, "warning: " + warning);
-  print_summary(summary_of(folder, muscles, result), options);
+  write_results(folder, muscles, result);
+  const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
+  folder.publish(run.record(seed, muscles.inputs), run.options(), summary_of(folder.path(), muscles, result));
+  for (const std::string& warning : result.warnings) print_line(run.options(), "warning: " + warning);
   if (!result.usable()) {
-    fmt::print(stderr, "veridyn: {}; {} up to there {} in {}: {}\n", result.trajectory.message(),
-               result.trajectory.time.size() == 1 ? "the row" : fmt::format("{} rows", result.trajectory.time.size()),
-               result.trajectory.time.size() == 1 ? "is" : "are", folder.string(), files);
-    return kFailed;
+    const std::string rows =
+        t.time.size() == 1 ? "the row up to there is" : fmt::format("{} rows up to there are", t.time.size());
+    throw std::runtime_error(fmt::format("{}; {} in {}: {}", t.message(), rows, folder.path().string(), files));
   }
-  tell(options, fmt::format("{} of {}: {}", method_name(muscles.method), muscles.title, headline(muscles, result)));
-  tell(options, fmt::format("wrote {} in {}", files, folder.string()));
+  print_line(run.options(),
+             fmt::format("{} of {}: {}", method_name(muscles.method), muscles.title, headline(muscles, result)));
+  print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
   return kDone;
 }
 

@@ -2,37 +2,27 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <nlohmann/json.hpp>
 
-#include "apps/veridyn/drive.hpp"
-#include "apps/veridyn/output.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/follow.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
-#include "veridyn/core/error.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/tracking_report.hpp"
-#include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
 namespace {
 
 using namespace veridyn::aircraft;
 using Clock = std::chrono::steady_clock;
-
-struct Options {
-  std::string study;
-  bool live = false;
-  FollowOptions follow;
-  CommonOptions common;
-};
 
 std::string change_line(const FlightChange& c) {
   return fmt::format("{:9.1f} s  {} changed, began at about {:.1f} s", c.change.detected_s, name_of(c.coefficient),
@@ -84,92 +74,85 @@ class LiveView {
   Clock::time_point shown_ = Clock::time_point::min() + std::chrono::hours(1);
 };
 
-void write_results(const Options& options, const Study& study, const FlightStudy& flight_study,
-                   const TrackedFlight& flight) {
-  const std::filesystem::path folder = options.common.out;
-  make_folder(folder);
+void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
+                      const TrackedFlight& flight) {
   const FlightTracker& tracker = flight.tracker();
-  io::write_csv(history_recording(tracker), folder / "track.csv");
-  std::string changes = "coefficient,kind,detected[s],began[s],shift\n";
-  for (const FlightChange& c : tracker.changes()) {
-    changes += fmt::format("{},{},{},{},{}\n", name_of(c.coefficient),
-                           c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread", c.change.detected_s,
-                           c.change.began_s, c.change.shift);
-  }
-  write_file(folder / "changes.csv", changes);
   const estimation::Estimate estimate = tracker.estimate();
-  write_file(folder / "estimate.json", io::to_json(estimate));
-  report::write_html(report::tracking_report(flight_study, flight, "veridyn " VERIDYN_VERSION), folder / "report.html");
-  RunRecord run{"track", study.name(), study.to_toml(), flight_study.seed, flight_study.inputs};
-  run.inputs.emplace_back(options.study);
-  if (!flight_study.track.estimate_file.empty()) run.inputs.emplace_back(flight_study.track.estimate_file);
-  write_run_record(folder, run, options.common);
-  tell(options.common, estimate.verdict);
-  tell(options.common,
-       fmt::format("changes found: {}; report: {}", tracker.changes().size(), (folder / "report.html").string()));
-  nlohmann::ordered_json summary;
+  std::string changes = "coefficient,kind,detected[s],began[s],shift\n";
+  Summary summary;
   summary["verdict"] = estimate.verdict;
-  summary["folder"] = folder.string();
+  summary["folder"] = folder.path().string();
   summary["rows"] = tracker.rows();
-  summary["changes"] = nlohmann::ordered_json::array();
-  for (const FlightChange& c : tracker.changes())
-    summary["changes"].push_back({{"coefficient", name_of(c.coefficient)}, {"detected_s", c.change.detected_s}});
-  summary["warnings"] = estimate.warnings;
-  print_summary(summary, options.common);
-}
-
-int replay(const Options& options, const Study& study) {
-  TerminalProgress progress(options.common.quiet);
-  FlightStudy flight_study = read_study(study, progress);
-  const TrackingAnalysis analysis = track_flight(flight_study, progress);
-  if (analysis.interrupted) {
-    fmt::print(stderr, "veridyn: interrupted, nothing was written\n");
-    return kFailed;
+  summary["changes"] = Summary::array();
+  for (const FlightChange& c : tracker.changes()) {
+    const std::string_view name = name_of(c.coefficient);
+    changes += fmt::format("{},{},{},{},{}\n", name, c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread",
+                           c.change.detected_s, c.change.began_s, c.change.shift);
+    summary["changes"].push_back(Summary::object({{"coefficient", name}, {"detected_s", c.change.detected_s}}));
   }
-  for (const FlightChange& c : analysis.flight.tracker().changes()) tell(options.common, change_line(c));
-  if (!options.common.quiet) fmt::print(stderr, "{}", live_table(analysis.flight));
-  write_results(options, study, flight_study, analysis.flight);
-  return kDone;
+  summary["warnings"] = estimate.warnings;
+  folder.write("track.csv", io::to_csv(history_recording(tracker)));
+  folder.write("changes.csv", changes);
+  folder.write("estimate.json", io::to_json(estimate));
+  folder.write("report.html", report::to_html(report::tracking_report(study, flight, program_name())));
+  RunRecord record = run.record(study.seed, study.inputs);
+  if (!study.track.estimate_file.empty()) record.inputs.push_back(study.track.estimate_file);
+  folder.publish(record, run.options(), summary);
+  print_line(run.options(), estimate.verdict);
+  print_line(run.options(), fmt::format("changes found: {}; report: {}", tracker.changes().size(),
+                                        (folder.path() / "report.html").string()));
 }
 
-int follow(const Options& options, const Study& study) {
-  LiveView view(options.common);
-  std::optional<FlightStudy> flight_study;
+void replay(const StudyRun& run, OutputFolder& folder) {
+  TerminalProgress progress(run.options().quiet);
+  FlightStudy study = read_study(run.study, progress);
+  const TrackingAnalysis analysis = track_flight(study, progress);
+  if (analysis.interrupted) throw Interrupted();
+  for (const FlightChange& c : analysis.flight.tracker().changes()) print_line(run.options(), change_line(c));
+  if (!run.options().quiet) fmt::print(stderr, "{}", live_table(analysis.flight));
+  publish_tracking(run, folder, study, analysis.flight);
+}
+
+void follow(const StudyRun& run, OutputFolder& folder) {
+  LiveView view(run.options());
+  std::optional<FlightStudy> study;
   std::optional<TrackedFlight> flight;
-  follow_files(followed_files(study.root()), options.follow, options.common, [&](bool finished) {
+  follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
     Progress silent;
-    flight_study = read_study(study, silent);
-    if (!flight) flight.emplace(*flight_study);
-    view.show(*flight, flight->advance(flight_study->mapped, *flight_study, finished, silent));
+    study = read_study(run.study, silent);
+    if (!flight) flight.emplace(*study);
+    view.show(*flight, flight->advance(study->mapped, *study, finished, silent));
   });
-  write_results(options, study, *flight_study, *flight);
-  return kDone;
-}
-
-int track(const Options& options) {
-  const Study study = load_study(options.study, options.common);
-  if (vehicle::is_vehicle_study(study.root()))
-    return track_vehicle(study, options.study, options.live, options.follow, options.common);
-  return options.live ? follow(options, study) : replay(options, study);
+  publish_tracking(run, folder, *study, *flight);
 }
 
 }  // namespace
 
-void add_track(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  CLI::App* verb = program.add_subcommand("track", "recursive identification, replayed or live, with change detection");
-  verb->add_option("STUDY", options->study, "study file; its table [track] holds the options")->required();
-  verb->add_flag("--live", options->live, "follow the recording while it is being written");
-  verb->add_option("--idle", options->follow.idle_s, "with --live: end this long after the last new data")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  verb->add_option("--interval", options->follow.interval_s, "with --live: look for new data this often")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str()
-      ->type_name("SECONDS");
-  add_common(*verb, options->common, "out/track", "veridyn track study.toml --live --out out/today");
-  verb->callback([options, &exit_code] { exit_code = track(*options); });
+int track_aircraft(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  run.arguments.flag("--live") ? follow(run, folder) : replay(run, folder);
+  return kDone;
+}
+
+Command track_command() {
+  const FollowOptions follow;
+  return {.name = "track",
+          .summary = "recursive identification, replayed or live, with change detection",
+          .arguments = {{.name = "STUDY", .help = "study file; its table [track] holds the options", .required = true},
+                        {.name = "--live", .help = "follow the recording while it is being written", .value = false},
+                        {.name = "--idle",
+                         .help = "with --live: end this long after the last new data",
+                         .value = follow.idle_s,
+                         .type = "SECONDS",
+                         .positive = true},
+                        {.name = "--interval",
+                         .help = "with --live: look for new data this often",
+                         .value = follow.interval_s,
+                         .type = "SECONDS",
+                         .positive = true}},
+          .default_out = "out/track",
+          .example = "veridyn track study.toml --live --out out/today",
+          .run = [](const Arguments& arguments) { return run_on_study("track", arguments); }};
 }
 
 }  // namespace veridyn::app

@@ -13,7 +13,6 @@ using testing::HasSubstr;
 class MuscleProgram : public ProgramTest {
  protected:
   static constexpr const char* kSubject = "[subject]\nmodel = \"arm\"\n";
-  [[nodiscard]] std::string in_out(const std::string& name) const { return (folder_ / "out" / name).string(); }
 };
 
 TEST_F(MuscleProgram, SimulatesItsOwnTemplate) {
@@ -31,7 +30,7 @@ TEST_F(MuscleProgram, SimulatesItsOwnTemplate) {
   EXPECT_EQ(summary["rows"], 41);
   EXPECT_EQ(summary["muscles"].size(), 6u);
   // What it wrote it reads: the model, and the states and controls.
-  EXPECT_EQ(run("inspect " + in_out("model.osim")).exit_code, 0);
+  EXPECT_EQ(run("inspect " + in_out("model.osim").string()).exit_code, 0);
   const Recording motion = io::to_recording(io::read_csv_file(in_out("motion.csv")));
   EXPECT_TRUE(motion.has("elbow_flexion"));
 }
@@ -131,9 +130,19 @@ TEST_F(MuscleProgram, RefusesWrongStudies) {
                  "s.toml:4: motion.ratte: unknown key (did you mean 'rate'?)");
 }
 
+TEST_F(MuscleProgram, RecordsTheSeedOfTheStudy) {
+  const std::string motion = std::string(kSubject) + "[motion]\nduration = 0.01\n";
+  ASSERT_EQ(run("simulate " + file("s.toml", "seed = 42\n" + motion) + out()).exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_file(in_out("run.json")))["seed"], 42);
+  ASSERT_EQ(run("simulate " + file("s.toml", motion) + " --seed 7" + out()).exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_file(in_out("run.json")))["seed"], 7);
+}
+
 TEST_F(MuscleProgram, DoesNotIdentifyMusclesYetAndSaysSo) {
   expect_refusal("identify " + file("s.toml", std::string(kSubject) + "[motion]\n") + out(),
-                 "does not estimate yet; `veridyn simulate` runs the study");
+                 "identify is for aircraft, vehicles, swing tests and air-data calibrations; this study is of a "
+                 "musculoskeletal model; the parameters of muscles are not estimated yet: `veridyn simulate` runs the "
+                 "study");
   EXPECT_THAT(run("identify --help").text, HasSubstr("not there yet"));
   EXPECT_THAT(run("simulate --help").text, AllOf(HasSubstr("Aircraft"), HasSubstr("Muscles")));
 }

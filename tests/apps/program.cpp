@@ -7,15 +7,32 @@
 
 namespace veridyn {
 
-Outcome run(const std::string& arguments) {
+namespace {
+
+Outcome shell(const std::string& command) {
   Outcome outcome;
-  FILE* pipe = ::popen((std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = ::popen(command.c_str(), "r");
   std::array<char, 4096> block{};
   for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
     outcome.text.append(block.data(), n);
   const int status = ::pclose(pipe);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
+}
+
+}  // namespace
+
+Outcome run(const std::string& arguments) { return shell(std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1"); }
+
+Outcome run_in_shell(const std::string& before, const std::string& arguments) {
+  return shell("(" + before + "; " + std::string(VERIDYN_PROGRAM) + " " + arguments + ") 2>&1");
+}
+
+Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch) {
+  const std::string said = (scratch / "stderr.txt").string();
+  return shell(std::string(VERIDYN_PROGRAM) + " " + arguments + " >/dev/null 2>" + said + " & pid=$!; " +
+               "while [ ! -s " + said + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done; sleep 0.1; " +
+               "kill -INT $pid 2>/dev/null; wait $pid; code=$?; cat " + said + "; exit $code");
 }
 
 }  // namespace veridyn

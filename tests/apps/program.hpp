@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "veridyn/core/files.hpp"
 
@@ -18,6 +20,13 @@ struct Outcome {
 
 /// Runs the program with these arguments.
 [[nodiscard]] Outcome run(const std::string& arguments);
+
+/// The same after `before` ("ulimit -f 8") in the same shell.
+[[nodiscard]] Outcome run_in_shell(const std::string& before, const std::string& arguments);
+
+/// Runs the program, presses Ctrl-C as soon as it says on stderr what it is doing, and waits for its end. The text is
+/// what it said on stderr.
+[[nodiscard]] Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch);
 
 /// A scratch folder for each test, and what every refusal must look like.
 class ProgramTest : public testing::Test {
@@ -41,6 +50,17 @@ class ProgramTest : public testing::Test {
     EXPECT_THAT(outcome.text, testing::HasSubstr(message));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "estimate.json"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "report.html"));
+  }
+
+  [[nodiscard]] std::filesystem::path in_out(const std::string& name) const { return folder_ / "out" / name; }
+  /// Names in the folder of the results, sorted; none where there is no folder.
+  [[nodiscard]] std::vector<std::string> results() const {
+    std::vector<std::string> names;
+    if (!std::filesystem::exists(folder_ / "out")) return names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
   }
 
   std::filesystem::path folder_;

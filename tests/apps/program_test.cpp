@@ -49,8 +49,6 @@ TEST_F(Program, HelpsEveryVerbWithAnExample) {
   }
 }
 
-TEST_F(Program, RefusesAnUnknownVerb) { EXPECT_EQ(run("identifi x.toml").exit_code, 2); }
-
 TEST_F(Program, WritesAStudyThatItUnderstandsAndKeepsAnExistingOne) {
   const std::string in = " --quiet --out " + folder_.string();
   EXPECT_EQ(run("init aircraft --log missing.bin" + in).exit_code, 0);
@@ -232,16 +230,6 @@ TEST_F(Program, FindsACalmFlightNotExcited) {
   EXPECT_EQ(calm.exit_code, 0) << calm.text;
   const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
   EXPECT_THAT(estimate.verdict, HasSubstr("not excited: CL, CD, CY, Cl, Cm, Cn"));
-}
-
-TEST_F(Program, LeavesNothingBehindWhenItIsInterrupted) {
-  const std::string study = file("study.toml", kFlight);
-  const std::string command = "timeout -s INT 0.3 " + std::string(VERIDYN_PROGRAM) + " identify " + study +
-                              " --set flight.duration=3000 --quiet --out " + (folder_ / "out").string() + " 2>&1";
-  FILE* pipe = ::popen(command.c_str(), "r");
-  static_cast<void>(::pclose(pipe));
-  EXPECT_FALSE(fs::exists(folder_ / "out" / "estimate.json"));
-  EXPECT_FALSE(fs::exists(folder_ / "out" / "report.html"));
 }
 
 // The Thor flight is closed loop in strong wind, without manoeuvres made for identification: published derivatives are

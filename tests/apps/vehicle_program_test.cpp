@@ -16,7 +16,6 @@ class VehicleProgram : public ProgramTest {
   [[nodiscard]] static std::string study(const std::string& name) {
     return test::source_folder().string() + "/examples/studies/vehicle/" + name + ".toml";
   }
-  [[nodiscard]] std::filesystem::path in_out(const std::string& name) const { return folder_ / "out" / name; }
 
   /// A drive log of 30 s at 100 Hz, `row(t)` giving steer, speed, yaw_rate, accel_y; and a study of it.
   template <typename Row>

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
+
+#include <csignal>
 
 #include "veridyn/core/error.hpp"
 
@@ -58,6 +61,27 @@ TEST_F(Files, RefuseAFolderThatIsNotThereOrAFile) {
   fs::create_directory(folder_ / "d");
   EXPECT_THAT(message_of([&] { write_file(folder_ / "d", "1"); }), testing::HasSubstr("cannot be written"));
   EXPECT_EQ(read_file(folder_ / "x"), "old");
+}
+
+// A limit of size stands for the full disk: the choice of the file was not wrong.
+TEST_F(Files, AFullDiskIsNoWrongInput) {
+  EXPECT_EXIT(
+      {
+        std::signal(SIGXFSZ, SIG_IGN);
+        rlimit limit = {};
+        limit.rlim_cur = limit.rlim_max = 4096;
+        if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(9);
+        try {
+          write_file(folder_ / "x", std::string(100000, 'x'), "the file");
+        } catch (const InputError&) {
+          std::exit(2);
+        } catch (const std::runtime_error& error) {
+          const bool clean = fs::is_empty(folder_);
+          std::exit(clean && std::string(error.what()) == "the file: cannot be written: File too large" ? 0 : 3);
+        }
+        std::exit(4);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

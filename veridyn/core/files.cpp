@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <memory>
+#include <stdexcept>
 
 #include "veridyn/core/error.hpp"
 
@@ -33,27 +33,25 @@ std::string read_file(const fs::path& path) {
   return content;
 }
 
-void write_file(const fs::path& path, std::string_view content) {
+void write_file(const fs::path& path, std::string_view content, std::string_view shown) {
   const fs::path temporary = fmt::format("{}.{}.part", path.string(), ::getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    if (!file) throw InputError(path.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    if (!file) {
-      const std::string why = std::strerror(errno);
-      std::error_code ignored;
-      fs::remove(temporary, ignored);
-      throw InputError(path.string(), fmt::format("cannot be written: {}", why));
-    }
-  }
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) {
+  const auto fail = [&](int error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw InputError(path.string(), fmt::format("cannot be written: {}", error.message()));
-  }
+    const std::string name = shown.empty() ? path.string() : std::string(shown);
+    const std::string what = fmt::format("cannot be written: {}", std::strerror(error));
+    if (error == ENOSPC || error == EDQUOT || error == EFBIG || error == EIO)
+      throw std::runtime_error(fmt::format("{}: {}", name, what));
+    throw InputError(name, what);
+  };
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+  if (!file) fail(errno);
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.close();
+  if (!file) fail(errno);
+  std::error_code error;
+  fs::rename(temporary, path, error);
+  if (error) fail(error.value());
 }
 
 void make_folder(const fs::path& path) {

@@ -11,10 +11,11 @@ namespace veridyn {
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 /// Writes a file so that at every moment either the old or the whole new content stands under its name: a temporary
-/// file beside it, then a rename.
-/// @throws InputError when the folder is missing or not writable, or the disk is full; the old content is then
-/// untouched.
-void write_file(const std::filesystem::path& path, std::string_view content);
+/// file alongside it, then a rename. The old content is untouched when it throws.
+/// @param shown  what messages call the file; empty: its path
+/// @throws InputError when the folder is missing or not writable; std::runtime_error when the disk is full, a quota or
+/// limit of size is reached, or the device fails: the choice of the file was not wrong.
+void write_file(const std::filesystem::path& path, std::string_view content, std::string_view shown = {});
 
 /// Makes a folder with its parents.
 /// @throws InputError when something that is no folder stands in the way or it cannot be made.

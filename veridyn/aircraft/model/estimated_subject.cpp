@@ -1,10 +1,13 @@
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
 
@@ -20,7 +23,27 @@ CoefficientModel estimated_coefficient(const CoefficientModel& structure, const 
   return model;
 }
 
+namespace {
+
+/// Refuses an estimate with a parameter that no coefficient of the model has: leaving it out would change the model.
+void refuse_unknown(const AeroModel& model, const estimation::Estimate& estimate, const std::string& place) {
+  std::vector<std::string> known;
+  for (const auto& coefficient : model.coefficients) {
+    if (!coefficient) continue;
+    const std::vector<std::string> names = coefficient->parameter_names();
+    known.insert(known.end(), names.begin(), names.end());
+  }
+  for (const estimation::EstimatedParameter& p : estimate.parameters) {
+    if (std::find(known.begin(), known.end(), p.name) != known.end()) continue;
+    throw InputError(place,
+                     fmt::format("parameter '{}' is not in the study's model{}", p.name, suggestion(p.name, known)));
+  }
+}
+
+}  // namespace
+
 Subject estimated_subject(const Subject& subject, const estimation::Estimate& estimate, const std::string& place) {
+  refuse_unknown(subject.model, estimate, place);
   Subject result = subject;
   bool any = false;
   for (auto& coefficient : result.model.coefficients) {

@@ -14,7 +14,8 @@ namespace veridyn::aircraft {
 /// The subject with the estimate's model: each coefficient as `estimated_coefficient`; one of which the estimate holds
 /// nothing keeps its terms with unknown values, so that nothing can be simulated with what was not identified.
 /// @param place of the estimate in messages: its file
-/// @throws InputError when the estimate holds nothing that the subject's model names.
+/// @throws InputError when the estimate names a parameter that the subject's model does not have, or holds nothing
+/// usable of it.
 [[nodiscard]] Subject estimated_subject(const Subject& subject, const estimation::Estimate& estimate,
                                         const std::string& place);
 

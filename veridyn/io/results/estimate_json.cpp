@@ -48,6 +48,16 @@ ParameterStatus read_status(const std::string& text, const std::string& place) {
       place, fmt::format("status '{}' is not one of identified, insignificant, not_excited, rejected, fixed", text));
 }
 
+/// A usable parameter has a value, and no error bar is negative. What was rejected or not excited may have neither.
+void check_parameter(const EstimatedParameter& p, const std::string& file) {
+  const bool usable = p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kInsignificant ||
+                      p.status == ParameterStatus::kFixed;
+  const std::string place = fmt::format("{}: parameter '{}'", file, p.name);
+  if (usable && !std::isfinite(p.value))
+    throw InputError(place, fmt::format("has no value, but status {}", estimation::to_string(p.status)));
+  if (p.sigma < 0.0) throw InputError(place, fmt::format("sigma is {:g}; must be >= 0", p.sigma));
+}
+
 }  // namespace
 
 std::string to_json(const Estimate& estimate) {
@@ -120,6 +130,7 @@ Estimate read_estimate(const std::filesystem::path& path) {
                                    .high95 = read_number(require(p, "high95", place), place + ".high95"),
                                    .unit = read_text(p, "unit", place),
                                    .status = read_status(read_text(p, "status", place), place)});
+    check_parameter(estimate.parameters.back(), name);
   }
   const auto n = static_cast<Eigen::Index>(estimate.parameters.size());
   estimate.covariance = Eigen::MatrixXd::Zero(n, n);

@@ -11,7 +11,8 @@ namespace veridyn::io {
 [[nodiscard]] std::string to_json(const estimation::Estimate& estimate);
 
 /// Reads `estimate.json`.
-/// @throws InputError naming the file and the key that is missing or of the wrong kind.
+/// @throws InputError naming the file and the key that is missing or of the wrong kind, or the parameter that is usable
+/// by its status but has no value, or whose sigma is negative.
 [[nodiscard]] estimation::Estimate read_estimate(const std::filesystem::path& path);
 
 }  // namespace veridyn::io

@@ -1,16 +1,15 @@
 // veridyn identify STUDY with [swing_test] or [calibration]: what is measured on the ground.
-#include "apps/veridyn/ground.hpp"
-
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/results.hpp"
+#include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -18,8 +17,6 @@
 
 namespace veridyn::app {
 namespace {
-
-constexpr const char* kProgram = "veridyn " VERIDYN_VERSION;
 
 /// What every one of these writes, whatever it identified.
 struct GroundResult {
@@ -31,30 +28,27 @@ struct GroundResult {
   std::uint64_t seed = 0;
 };
 
-void write(const GroundResult& result, const Study& study, const std::string& path, const CommonOptions& options) {
-  const std::filesystem::path folder = options.out;
-  make_folder(folder);
-  report::write_html(result.document, folder / "report.html");
-  for (const auto& [name, content] : result.files) write_file(folder / name, content);
-  write_file(folder / "parameters.csv", parameters_csv(result.estimate));
-  write_file(folder / "estimate.json", io::to_json(result.estimate));
-  RunRecord run{"identify", study.name(), study.to_toml(), result.seed, result.inputs};
-  run.inputs.emplace_back(path);
-  write_run_record(folder, run, options);
-  for (const std::string& line : result.lines) tell(options, line);
-  for (const std::string& warning : result.estimate.warnings) tell(options, "warning: " + warning);
-  tell(options, fmt::format("report: {}", (folder / "report.html").string()));
-  nlohmann::ordered_json summary;
-  summary["verdict"] = result.estimate.verdict;
+Summary summary_of(const estimation::Estimate& estimate, const std::filesystem::path& folder) {
+  Summary summary;
+  summary["verdict"] = estimate.verdict;
   summary["folder"] = folder.string();
-  for (const auto& p : result.estimate.parameters) {
-    summary["parameters"][p.name] = {{"value", p.value},
-                                     {"sigma", p.sigma},
-                                     {"unit", p.unit},
-                                     {"status", std::string(estimation::to_string(p.status))}};
+  for (const auto& p : estimate.parameters) {
+    summary["parameters"][p.name] = Summary::object(
+        {{"value", p.value}, {"sigma", p.sigma}, {"unit", p.unit}, {"status", estimation::to_string(p.status)}});
   }
-  summary["warnings"] = result.estimate.warnings;
-  print_summary(summary, options);
+  summary["warnings"] = estimate.warnings;
+  return summary;
+}
+
+void publish(const StudyRun& run, OutputFolder& folder, const GroundResult& result) {
+  folder.write("report.html", report::to_html(result.document));
+  for (const auto& [name, content] : result.files) folder.write(name, content);
+  folder.write("parameters.csv", parameters_csv(result.estimate));
+  folder.write("estimate.json", io::to_json(result.estimate));
+  folder.publish(run.record(result.seed, result.inputs), run.options(), summary_of(result.estimate, folder.path()));
+  for (const std::string& line : result.lines) print_line(run.options(), line);
+  for (const std::string& warning : result.estimate.warnings) print_line(run.options(), "warning: " + warning);
+  print_line(run.options(), fmt::format("report: {}", (folder.path() / "report.html").string()));
 }
 
 std::uint64_t seed_of(const Study& study) {
@@ -70,7 +64,7 @@ GroundResult swing_test(const Study& study, Progress& progress) {
   GroundResult result;
   result.seed = test.seed;
   result.estimate = analysis.estimate;
-  result.document = report::swing_test_report(test, analysis, kProgram);
+  result.document = report::swing_test_report(test, analysis, program_name());
   result.files.emplace_back("subject.toml", aircraft::inertia_toml(test, analysis));
   for (const aircraft::AxisInertia& i : analysis.axes) {
     result.lines.push_back(fmt::format(
@@ -89,7 +83,7 @@ GroundResult calibration(const Study& study, Progress& progress) {
   progress.stage("fitting the calibration");
   const aircraft::CalibrationResult analysis = aircraft::calibrate(points);
   result.estimate = analysis.estimate;
-  result.document = report::calibration_report(points, analysis, kProgram);
+  result.document = report::calibration_report(points, analysis, program_name());
   std::vector<aircraft::SensorCalibration> sensors;
   for (const aircraft::SensorFit& fit : analysis.sensors) {
     if (fit.usable) sensors.push_back(fit.calibration);
@@ -104,15 +98,19 @@ GroundResult calibration(const Study& study, Progress& progress) {
   return result;
 }
 
-}  // namespace
-
-bool is_ground_study(const Study& study) { return study.root().has("swing_test") || study.root().has("calibration"); }
-
-int identify_ground(const Study& study, const std::string& path, const CommonOptions& options) {
-  TerminalProgress progress(options.quiet);
-  write(study.root().has("swing_test") ? swing_test(study, progress) : calibration(study, progress), study, path,
-        options);
+template <typename Analyse>
+int identify_ground(const StudyRun& run, const Analyse& analyse) {
+  OutputFolder folder(run.options().out);
+  TerminalProgress progress(run.options().quiet);
+  const GroundResult result = analyse(run.study, progress);
+  if (progress.interrupted()) throw Interrupted();
+  publish(run, folder, result);
   return kDone;
 }
+
+}  // namespace
+
+int identify_swing_test(const StudyRun& run) { return identify_ground(run, swing_test); }
+int identify_calibration(const StudyRun& run) { return identify_ground(run, calibration); }
 
 }  // namespace veridyn::app

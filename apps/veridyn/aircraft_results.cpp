@@ -1,4 +1,4 @@
-#include "apps/veridyn/results.hpp"
+#include "apps/veridyn/aircraft_results.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <future>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/aircraft_report.hpp"
@@ -19,8 +19,6 @@ namespace veridyn::app {
 namespace {
 
 using namespace veridyn::aircraft;
-
-const report::AircraftReportContext kIdentifyContext{.program = "veridyn " VERIDYN_VERSION};
 
 /// Every method's figures for every parameter, the recommended regression first.
 std::string methods_csv(const FlightAnalysis& analysis) {
@@ -84,9 +82,9 @@ std::string filter_errors_csv(const Reconstruction& r) {
 }
 
 /// The tables of a reconstruction that there are.
-void write_filter_tables(const std::filesystem::path& folder, const Reconstruction& r) {
-  if (!r.sensor_errors.empty()) write_file(folder / "sensor_errors.csv", sensor_errors_csv(r));
-  if (!r.comparison.empty()) write_file(folder / "filter_errors.csv", filter_errors_csv(r));
+void write_filter_tables(OutputFolder& folder, const Reconstruction& r) {
+  if (!r.sensor_errors.empty()) folder.write("sensor_errors.csv", sensor_errors_csv(r));
+  if (!r.comparison.empty()) folder.write("filter_errors.csv", filter_errors_csv(r));
 }
 
 /// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
@@ -140,6 +138,63 @@ Recording validation_recording(const Validation& validation) {
   return recording;
 }
 
+void print_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
+                          const CommonOptions& options) {
+  print_line(options, analysis.segments.longitudinal.text);
+  print_line(options, analysis.segments.lateral.text);
+  for (const CoefficientResult& r : analysis.coefficients)
+    print_line(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
+  for (const CoefficientResult& r : analysis.coefficients) {
+    if (r.structure)
+      print_line(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));
+  }
+  for (const std::string& note : analysis.others.notes) print_line(options, fmt::format("  alongside    {}", note));
+  for (const PredictedQuantity& q : analysis.validation.quantities) {
+    print_line(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae,
+                                    q.unit, q.fit.r2, q.fit.theil));
+  }
+  print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
+}
+
+Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
+  Summary summary;
+  summary["verdict"] = analysis.estimate.verdict;
+  summary["folder"] = folder.string();
+  summary["coefficients"] = Summary::object();
+  for (const CoefficientResult& r : analysis.coefficients) {
+    summary["coefficients"][r.name] = Summary::object({{"verdict", to_string(r.verdict)}, {"reason", r.reason}});
+  }
+  summary["parameters"] = analysis.estimate.parameters.size();
+  summary["warnings"] = analysis.estimate.warnings;
+  return summary;
+}
+
+void write_identification(OutputFolder& folder, const FlightStudy& study, const FlightAnalysis& analysis,
+                          const std::string& command) {
+  report::AircraftReportContext context{.program = program_name()};
+  context.verb = command;
+  // The large texts are made side by side; an error in one is thrown by `get` once the others are done.
+  std::future<std::string> page = std::async(
+      std::launch::async, [&] { return report::to_html(report::identification_report(study, analysis, context)); });
+  std::future<std::string> flight = std::async(
+      std::launch::async, [&] { return io::to_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz)); });
+  folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
+  if (analysis.validation.available())
+    folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
+  folder.write("report.html", page.get());
+  folder.write("flight.csv", flight.get());
+  write_filter_tables(folder, analysis.reconstruction);
+  folder.write("parameters.csv", parameters_csv(analysis.estimate));
+  if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
+  if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
+  if (analysis.uncertainty.available()) folder.write("coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
+  folder.write("subject.toml", write_subject_toml(analysis.identified));
+  // JSBSim flies a complete model only; `veridyn export` says what is missing.
+  if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
+    folder.write("jsbsim.xml", write_jsbsim(analysis.identified));
+  folder.write("estimate.json", io::to_json(analysis.estimate));
+}
+
 }  // namespace
 
 std::string parameters_csv(const estimation::Estimate& estimate) {
@@ -151,75 +206,21 @@ std::string parameters_csv(const estimation::Estimate& estimate) {
   return text;
 }
 
-void write_identification(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
-                          const RunRecord& run, const CommonOptions& options) {
-  make_folder(folder);
-  report::AircraftReportContext context = kIdentifyContext;
-  context.verb = run.verb;
-  // The large files are written side by side; an error in one is thrown by `get` once the others are done.
-  std::future<void> page = std::async(std::launch::async, [&] {
-    report::write_html(report::identification_report(study, analysis, context), folder / "report.html");
-  });
-  std::future<void> flight = std::async(std::launch::async, [&] {
-    io::write_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz), folder / "flight.csv");
-  });
-  io::write_csv(coefficient_recording(analysis), folder / "coefficients.csv");
-  if (analysis.validation.available())
-    io::write_csv(validation_recording(analysis.validation), folder / "validation.csv");
-  page.get();
-  flight.get();
+void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const FlightAnalysis& analysis) {
+  folder.write("report.html",
+               report::to_html(report::reconstruction_report(study, analysis, {.program = program_name()})));
+  folder.write("flight.csv", io::to_csv(analysis.reconstruction.smoothed));
+  folder.write("filter.csv", io::to_csv(analysis.reconstruction.filtered));
   write_filter_tables(folder, analysis.reconstruction);
-  write_file(folder / "parameters.csv", parameters_csv(analysis.estimate));
-  if (!analysis.others.empty()) write_file(folder / "methods.csv", methods_csv(analysis));
-  if (searched_structure(analysis)) write_file(folder / "structure.csv", structure_csv(analysis));
-  if (analysis.uncertainty.available())
-    write_file(folder / "coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
-  write_file(folder / "subject.toml", write_subject_toml(analysis.identified));
-  // JSBSim flies a complete model only; `veridyn export` says what is missing.
-  if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
-    write_file(folder / "jsbsim.xml", write_jsbsim(analysis.identified));
-  write_file(folder / "estimate.json", io::to_json(analysis.estimate));
-  write_run_record(folder, run, options);
 }
 
-void write_reconstruction(const std::filesystem::path& folder, const FlightStudy& study, const FlightAnalysis& analysis,
-                          const RunRecord& run, const CommonOptions& options) {
-  make_folder(folder);
-  report::write_html(report::reconstruction_report(study, analysis, kIdentifyContext), folder / "report.html");
-  io::write_csv(analysis.reconstruction.smoothed, folder / "flight.csv");
-  io::write_csv(analysis.reconstruction.filtered, folder / "filter.csv");
-  write_filter_tables(folder, analysis.reconstruction);
-  write_run_record(folder, run, options);
-}
-
-void tell_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
-                         const CommonOptions& options) {
-  tell(options, analysis.segments.longitudinal.text);
-  tell(options, analysis.segments.lateral.text);
-  for (const CoefficientResult& r : analysis.coefficients)
-    tell(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
-  for (const CoefficientResult& r : analysis.coefficients) {
-    if (r.structure) tell(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));
-  }
-  for (const std::string& note : analysis.others.notes) tell(options, fmt::format("  beside       {}", note));
-  for (const PredictedQuantity& q : analysis.validation.quantities) {
-    tell(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae, q.unit,
-                              q.fit.r2, q.fit.theil));
-  }
-  tell(options, fmt::format("report: {}", (folder / "report.html").string()));
-}
-
-nlohmann::ordered_json summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
-  nlohmann::ordered_json summary;
-  summary["verdict"] = analysis.estimate.verdict;
-  summary["folder"] = folder.string();
-  summary["coefficients"] = nlohmann::ordered_json::object();
-  for (const CoefficientResult& r : analysis.coefficients) {
-    summary["coefficients"][r.name] = {{"verdict", to_string(r.verdict)}, {"reason", r.reason}};
-  }
-  summary["parameters"] = analysis.estimate.parameters.size();
-  summary["warnings"] = analysis.estimate.warnings;
-  return summary;
+void publish_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
+                            const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
+  write_identification(folder, study, analysis, run.command);
+  RunRecord record = run.record(study.seed, study.inputs);
+  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
+  folder.publish(record, run.options(), summary_of(analysis, folder.path()));
+  print_identification(analysis, folder.path(), run.options());
 }
 
 }  // namespace veridyn::app

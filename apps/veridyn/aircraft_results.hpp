@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
+
+namespace veridyn::app {
+
+/// Writes, publishes and prints an identification or validation: estimate.json, subject.toml, parameters.csv,
+/// flight.csv, coefficients.csv, validation.csv, report.html, run.json; jsbsim.xml where every coefficient was
+/// identified.
+/// @param more_inputs of the run record, beyond the study and what it names
+void publish_identification(const StudyRun& run, OutputFolder& folder, const aircraft::FlightStudy& study,
+                            const aircraft::FlightAnalysis& analysis,
+                            const std::vector<std::filesystem::path>& more_inputs = {});
+
+/// The files of a reconstruction: flight.csv (smoother), filter.csv, report.html.
+void write_reconstruction(OutputFolder& folder, const aircraft::FlightStudy& study,
+                          const aircraft::FlightAnalysis& analysis);
+
+/// Parameters as a table: name, value, sigma, low95, high95, unit, status.
+[[nodiscard]] std::string parameters_csv(const estimation::Estimate& estimate);
+
+}  // namespace veridyn::app

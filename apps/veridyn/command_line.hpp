@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "apps/veridyn/command.hpp"
+
+namespace veridyn::app {
+
+/// Parses the command line, runs the chosen command and reports how it ended, one line on stderr where it failed.
+/// @returns the exit code: 0 done, 1 failed or interrupted, 2 wrong input.
+[[nodiscard]] int run_program(std::span<const Command> commands, int argc, const char* const* argv);
+
+}  // namespace veridyn::app

@@ -1,0 +1,26 @@
+#include "apps/veridyn/console.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace veridyn::app {
+
+void print_line(const CommonOptions& options, const std::string& line) {
+  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void print_text(std::string_view text) {
+  const std::size_t written = std::fwrite(text.data(), 1, text.size(), stdout);
+  if (written == text.size() && std::fflush(stdout) == 0) return;
+  throw std::runtime_error(fmt::format("stdout: cannot be written: {}", std::strerror(errno)));
+}
+
+void print_summary(const Summary& summary, const CommonOptions& options) {
+  if (options.json) print_text(summary.to_json() + "\n");
+}
+
+}  // namespace veridyn::app

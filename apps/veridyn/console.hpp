@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/summary.hpp"
+
+namespace veridyn::app {
+
+/// A line for people on stderr, unless quiet.
+void print_line(const CommonOptions& options, const std::string& line);
+
+/// Text on stdout, flushed. @throws std::runtime_error when it cannot be written.
+void print_text(std::string_view text);
+
+/// The summary on stdout when `--json` was given. @throws std::runtime_error when it cannot be written.
+void print_summary(const Summary& summary, const CommonOptions& options);
+
+}  // namespace veridyn::app

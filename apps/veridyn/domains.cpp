@@ -1,0 +1,137 @@
+// Which domain a study is of, and what each command does for it.
+#include "apps/veridyn/domains.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/vehicle/model/vehicle.hpp"
+
+namespace veridyn::app {
+namespace {
+
+/// What a command does for a domain: `run`, or nothing, and what is possible instead.
+struct Cell {
+  constexpr Cell(int (*action)(const StudyRun&)) : run(action) {}  // NOLINT(google-explicit-constructor)
+  constexpr Cell(const char* possible) : instead(possible) {}      // NOLINT(google-explicit-constructor)
+  int (*run)(const StudyRun&) = nullptr;
+  const char* instead = "";
+};
+
+struct Row {
+  std::string_view command;
+  std::array<Cell, kDomains> cells;  ///< in the order of `Domain`
+};
+
+constexpr const char* kIdentifiesIt = "`veridyn identify` analyses it";
+constexpr const char* kIdentifiesDrive = "`veridyn identify` prepares the signals of a drive itself";
+constexpr const char* kMovesMuscles = "`veridyn simulate` runs it";
+
+constexpr std::array kTable = {
+    // aircraft, vehicle, muscle, swing test, calibration
+    Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt}},
+    Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
+    Row{"identify",
+        {identify_aircraft, identify_vehicle,
+         "the parameters of muscles are not estimated yet: `veridyn simulate` runs the study, [subject.parameters] "
+         "sets parameters by hand",
+         identify_swing_test, identify_calibration}},
+    Row{"validate",
+        {validate_aircraft, validate_vehicle,
+         "there is no estimate of muscles yet: `veridyn simulate` runs the study with the parameters of "
+         "[subject.parameters]",
+         "`veridyn identify` says in its report how well each swing is described",
+         "`veridyn identify` writes the residuals of each point"}},
+    Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
+    Row{"export",
+        {export_aircraft, "`veridyn simulate` and `veridyn identify` write the vehicle to subject.toml",
+         "`veridyn simulate` writes the model to model.osim", "`veridyn identify` writes the inertia to subject.toml",
+         "`veridyn identify` writes calibration.toml"}},
+    Row{"scale",
+        {"the model of an aircraft is dimensionless already: `veridyn export` writes it", scale_vehicle, kMovesMuscles,
+         kIdentifiesIt, kIdentifiesIt}},
+};
+
+constexpr auto kCommands = [] {
+  std::array<std::string_view, kTable.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kTable[i].command;
+  return names;
+}();
+
+struct Names {
+  const char* one;   ///< "a study of an aircraft"
+  const char* many;  ///< "identify is for aircraft"
+};
+constexpr std::array<Names, kDomains> kNames = {Names{"an aircraft", "aircraft"}, Names{"a vehicle", "vehicles"},
+                                                Names{"a musculoskeletal model", "musculoskeletal models"},
+                                                Names{"a swing test", "swing tests"},
+                                                Names{"an air-data calibration", "air-data calibrations"}};
+
+/// "aircraft", "aircraft and vehicles", "aircraft, vehicles and swing tests".
+std::string domains_with(const Row& row) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kDomains; ++i) {
+    if (row.cells[i].run != nullptr) names.emplace_back(kNames[i].many);
+  }
+  std::string text = names.front();
+  for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+}  // namespace
+
+Domain domain_of(const Study& study) {
+  const StudyTable& root = study.root();
+  // Not `has`: a key that was asked for counts as known, and these are known in some domains only.
+  const std::vector<std::string> tables = root.keys();
+  const auto named = [&](const char* key) { return std::find(tables.begin(), tables.end(), key) != tables.end(); };
+  if (named("swing_test")) return Domain::kSwingTest;
+  if (named("calibration")) return Domain::kCalibration;
+  if (vehicle::is_vehicle_study(root)) return Domain::kVehicle;
+  if (muscle::is_muscle_study(root)) return Domain::kMuscle;
+  if (root.is_table("subject")) {
+    const StudyTable subject = root.table("subject");
+    const std::vector<std::string> kinds = {"vehicle"};
+    if (subject.is_text("kind"))
+      subject.fail("kind", fmt::format("there is no kind '{}'{}; studies of aircraft have none", subject.text("kind"),
+                                       suggestion(subject.text("kind"), kinds)));
+    if (named("drive")) subject.fail("kind", "is missing: a study with [drive] is of a vehicle, kind = \"vehicle\"");
+    if (named("motion"))
+      subject.fail("model", "is missing: a study with [motion] is of a musculoskeletal model, such as model = \"arm\"");
+  }
+  return Domain::kAircraft;
+}
+
+RunRecord StudyRun::record(std::uint64_t seed, std::vector<std::filesystem::path> inputs) const {
+  inputs.push_back(path);
+  return {command, study.name(), study.to_toml(), seed, std::move(inputs), own_text};
+}
+
+StudyRun parse_study(std::string command, const std::filesystem::path& path, std::string_view text,
+                     const Arguments& arguments) {
+  numerics::set_default_threads(arguments.common.threads);
+  std::vector<std::string> overrides = arguments.common.overrides;
+  if (arguments.common.seed) overrides.push_back(fmt::format("seed={}", *arguments.common.seed));
+  return {std::move(command), path, Study::parse(text, path.string(), path.parent_path(), overrides), arguments};
+}
+
+int run_on_study(std::string_view command, const Arguments& arguments) {
+  const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
+  const std::string& path = arguments.text("STUDY");
+  const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
+  const auto domain = static_cast<std::size_t>(domain_of(run.study));
+  const Cell& cell = row.cells[domain];
+  if (cell.run != nullptr) return cell.run(run);
+  throw InputError(run.study.name(), fmt::format("{} is for {}; this study is of {}; {}", command, domains_with(row),
+                                                 kNames[domain].one, cell.instead));
+}
+
+std::span<const std::string_view> study_commands() { return kCommands; }
+
+}  // namespace veridyn::app

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/run_record.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::app {
+
+/// What a study is of.
+enum class Domain {
+  kAircraft,     ///< a flight: the rest
+  kVehicle,      ///< a drive: [subject] with kind = "vehicle"
+  kMuscle,       ///< a musculoskeletal model: [subject] with `model`
+  kSwingTest,    ///< inertia on the ground: [swing_test]
+  kCalibration,  ///< air data in a wind tunnel: [calibration]
+};
+inline constexpr int kDomains = 5;
+
+/// Decides which domain a study is of.
+/// @throws InputError for a `kind` of subject that there is not, and for a [drive] or [motion] whose [subject] does not
+/// say that it is of a vehicle or a musculoskeletal model.
+[[nodiscard]] Domain domain_of(const Study& study);
+
+/// A command at work on a study.
+struct StudyRun {
+  std::string command;         ///< as run.json names it
+  std::filesystem::path path;  ///< of the study
+  Study study;
+  Arguments arguments;
+  std::string own_text = {};  ///< of a study that comes with the program and is written with its results
+
+  [[nodiscard]] const CommonOptions& options() const { return arguments.common; }
+  /// What run.json says of this run; `inputs` are the files read beyond the study, which is added.
+  [[nodiscard]] RunRecord record(std::uint64_t seed, std::vector<std::filesystem::path> inputs = {}) const;
+};
+
+/// A study with the overrides of `--set` and the seed of `--seed`; sets the threads to use.
+[[nodiscard]] StudyRun parse_study(std::string command, const std::filesystem::path& path, std::string_view text,
+                                   const Arguments& arguments);
+
+/// Runs a command on its study: what it does for the study's domain, by the table domain x command.
+/// @throws InputError when it does not apply to that domain: for which it does, and what is possible instead.
+int run_on_study(std::string_view command, const Arguments& arguments);
+
+/// Names of the commands in the table.
+[[nodiscard]] std::span<const std::string_view> study_commands();
+
+// The cells of the table, each in the file of its command.
+int simulate_aircraft(const StudyRun& run);
+int simulate_vehicle(const StudyRun& run);
+int simulate_muscle(const StudyRun& run);
+int reconstruct_aircraft(const StudyRun& run);
+int identify_aircraft(const StudyRun& run);
+int identify_vehicle(const StudyRun& run);
+int identify_swing_test(const StudyRun& run);
+int identify_calibration(const StudyRun& run);
+int validate_aircraft(const StudyRun& run);
+int validate_vehicle(const StudyRun& run);
+int track_aircraft(const StudyRun& run);
+int track_vehicle(const StudyRun& run);
+int export_aircraft(const StudyRun& run);
+int scale_vehicle(const StudyRun& run);
+
+}  // namespace veridyn::app

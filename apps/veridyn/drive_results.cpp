@@ -1,0 +1,159 @@
+// What the commands on a vehicle's drive share: preparing the drive, writing and printing its analysis.
+#include "apps/veridyn/drive_results.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/core/progress.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/drive_report.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
+#include "veridyn/vehicle/simulation/trajectory_table.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::vehicle;
+
+std::vector<std::pair<std::string, double>> truth_of(const Vehicle& vehicle, double gravity) {
+  VehicleParameters<double> p = vehicle.parameters;
+  const auto [C_f, C_r] = cornering_stiffnesses(vehicle, gravity);
+  p.C_f = C_f;
+  p.C_r = C_r;
+  std::vector<std::pair<std::string, double>> truth{
+      {"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}, {"understeer_gradient", understeer_gradient(p)}};
+  if (std::isfinite(p.mu)) truth.emplace_back("mu", p.mu);
+  return truth;
+}
+
+/// Every method's figures, the chosen one first.
+std::string methods_csv(const VehicleIdentification& id) {
+  std::string text = "parameter,method,value,sigma,low95,high95,unit\n";
+  const auto lines = [&](const VehicleEstimate& e) {
+    if (!e.usable) return;
+    for (const estimation::ParameterEstimate& p : e.parameters)
+      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, to_string(e.method), p.value, p.sigma, p.low95, p.high95, p.unit);
+  };
+  if (id.best() != nullptr) lines(*id.best());
+  for (const VehicleEstimate& e : id.estimates)
+    if (&e != id.best()) lines(e);
+  return text;
+}
+
+/// Measured and predicted motion on the hold-out.
+std::string prediction_csv(const DriveValidation& v) {
+  std::string text =
+      "time[s],stretch,steer[rad],speed[m/s],yaw_rate[rad/s],yaw_rate_predicted[rad/s],accel_y[m/s^2],"
+      "accel_y_predicted[m/s^2],lateral_velocity_predicted[m/s]\n";
+  const auto cell = [](const std::vector<double>& values, std::size_t k) {
+    return k < values.size() && std::isfinite(values[k]) ? fmt::format("{:.9g}", values[k]) : std::string();
+  };
+  for (std::size_t d = 0; d < v.stretches.size(); ++d) {
+    const PredictedStretch& drive = v.stretches[d];
+    for (std::size_t k = 0; k < drive.time.size(); ++k) {
+      text += fmt::format("{:.9g},{},{},{},{},{},{},{},{}\n", drive.time[k], d + 1, cell(drive.steer, k),
+                          cell(drive.speed, k), cell(drive.yaw_rate, k), cell(drive.yaw_rate_predicted, k),
+                          cell(drive.accel_y, k), cell(drive.accel_y_predicted, k),
+                          cell(drive.lateral_velocity_predicted, k));
+    }
+  }
+  return text;
+}
+
+void write_results(OutputFolder& folder, const PreparedDrive& drive, const VehicleAnalysis& analysis,
+                   bool validation_only) {
+  const VehicleIdentification& id = analysis.identification;
+  folder.write("estimate.json", io::to_json(analysis.estimate));
+  folder.write("parameters.csv", parameters_csv(analysis.estimate));
+  folder.write("methods.csv", methods_csv(id));
+  folder.write("validation.csv", prediction_csv(id.validation));
+  if (drive.run) {
+    folder.write("truth.csv", io::to_csv(to_recording(drive.run->trajectory)));
+    folder.write("recording.csv", io::to_csv(*drive.run->measured));
+  }
+  if (!validation_only && id.best() != nullptr) {
+    Vehicle identified;
+    identified.name = drive.study.subject_name;
+    identified.parameters = id.identified;
+    folder.write("subject.toml", write_vehicle_toml(identified));
+  }
+  report::DriveReportContext context{.program = program_name(), .truth = drive.truth};
+  context.validation_only = validation_only;
+  folder.write("report.html", report::to_html(report::drive_report(drive.study, analysis, context)));
+}
+
+void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder, const CommonOptions& options) {
+  const VehicleIdentification& id = analysis.identification;
+  if (const VehicleEstimate* best = id.best()) {
+    for (const estimation::ParameterEstimate& p : best->parameters) {
+      print_line(options, fmt::format("  {:<20} {:>12.5g} +- {:<9.2g} {:<12} {}", p.name, p.value, p.sigma, p.unit,
+                                      estimation::to_string(p.status)));
+    }
+  }
+  for (const PredictedDriveQuantity& q : id.validation.quantities) {
+    print_line(options,
+               fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
+  }
+  for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
+  print_line(options, id.reason);
+  print_line(options, fmt::format("report: {}", (folder / "report.html").string()));
+}
+
+Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path& folder) {
+  Summary s;
+  s["folder"] = folder.string();
+  s["verdict"] = to_string(analysis.identification.verdict);
+  s["reason"] = analysis.identification.reason;
+  s["estimate"] = Summary::json(io::to_json(analysis.estimate));
+  return s;
+}
+
+}  // namespace
+
+PreparedDrive prepare_drive(const Study& study, Progress& progress) {
+  PreparedDrive drive;
+  if (study.root().has("data") && (study.root().table("data").has("file") || study.root().table("data").has("files") ||
+                                   study.root().table("data").has("runs"))) {
+    drive.study = read_study(study, progress);
+    for (const char* table : {"drive", "road", "sensors", "scale"}) static_cast<void>(study.root().has(table));
+    study.root().finish();
+    return drive;
+  }
+  if (!study.root().has("drive"))
+    study.root().fail("data", "is missing: the study names no recording, and no [drive] that could be simulated");
+  SimulationStudy vehicle = read_simulation_study(study.root());
+  if (!vehicle.sensors) vehicle.sensors = reference_drive_sensors();
+  progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
+  drive.run = run_simulation_study(vehicle, progress);
+  if (drive.run->trajectory.end == SimulationEnd::kInterrupted) throw Interrupted();
+  if (!drive.run->trajectory.usable()) throw std::runtime_error(drive.run->trajectory.message());
+  Recording measured = *drive.run->measured;
+  measured.source = "simulated drive";
+  drive.study = read_study(study, measured, progress);
+  drive.study.inputs = vehicle.inputs;
+  drive.truth = truth_of(vehicle.vehicle, vehicle.four_wheel.gravity);
+  static_cast<void>(study.root().has("scale"));
+  study.root().finish();
+  return drive;
+}
+
+void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive, const VehicleAnalysis& analysis,
+                   const std::vector<std::filesystem::path>& more_inputs) {
+  write_results(folder, drive, analysis, run.command == "validate");
+  RunRecord record = run.record(drive.study.seed, drive.study.inputs);
+  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
+  folder.publish(record, run.options(), summary_of(analysis, folder.path()));
+  print_analysis(analysis, folder.path(), run.options());
+}
+
+}  // namespace veridyn::app

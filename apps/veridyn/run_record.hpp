@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/veridyn/command.hpp"
+
+namespace veridyn::app {
+
+/// What a run was made from, for `run.json`: enough to repeat it.
+struct RunRecord {
+  std::string command;  ///< "identify"; key `verb` of run.json
+  std::string study_name;
+  std::string study_toml;  ///< after overrides
+  std::uint64_t seed = 0;
+  std::vector<std::filesystem::path> inputs;  ///< hashed
+  std::string own_study = {};                 ///< written as study.toml where not empty
+};
+
+/// An input of a run as run.json names it.
+struct HashedInput {
+  std::string name;
+  std::string sha1;
+};
+
+/// SHA-1 of a file in hexadecimal. @throws InputError when it cannot be read.
+[[nodiscard]] std::string sha1_of(const std::filesystem::path& path);
+
+/// The text of `run.json`: version, command, options, seed, inputs and the names of the files written.
+[[nodiscard]] std::string run_json(const RunRecord& run, const CommonOptions& options,
+                                   const std::vector<HashedInput>& inputs, const std::vector<std::string>& files);
+
+/// The results that the run before left in a folder: `files` of its run.json, or for the run of an earlier version the
+/// known results of its command that are there. Empty where the folder holds no run.json of this program. Only plain
+/// names: never a path to somewhere else, a folder, or `study.toml`.
+[[nodiscard]] std::vector<std::string> files_of_earlier_run(const std::filesystem::path& folder);
+
+}  // namespace veridyn::app

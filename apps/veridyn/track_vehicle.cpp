@@ -1,0 +1,102 @@
+// veridyn track STUDY of a vehicle's drive: cornering stiffnesses on line, replayed or live.
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/drive_results.hpp"
+#include "apps/veridyn/follow.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/drive_report.hpp"
+#include "veridyn/report/drive_tracking_report.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::vehicle;
+
+std::string change_line(const DriveChange& c) {
+  return fmt::format("{:9.1f} s  {} changed, began at about {:.1f} s", c.change.detected_s,
+                     kTrackedAxleNames[static_cast<std::size_t>(c.axle)], c.change.began_s);
+}
+
+std::string live_line(const TrackedDrive& drive) {
+  const DriveTracker* t = drive.tracker();
+  if (t == nullptr) return "waits for the drive to begin";
+  std::string text = fmt::format("{:9.1f} s ", t->last_time());
+  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
+    const auto axle = static_cast<TrackedAxle>(i);
+    text += fmt::format(" {} {:.4g} +- {:.2g}", kTrackedAxleNames[i], t->value(axle), t->sigma(axle));
+  }
+  return text;
+}
+
+void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
+                      const TrackedDrive& tracked) {
+  const estimation::Estimate estimate = tracked.estimate();
+  folder.write("estimate.json", io::to_json(estimate));
+  std::string changes = "what,kind,detected[s],began[s],shift\n";
+  std::size_t count = 0;
+  Summary summary;
+  summary["verdict"] = estimate.verdict;
+  summary["folder"] = folder.path().string();
+  summary["changes"] = Summary::array();
+  if (const DriveTracker* tracker = tracked.tracker()) {
+    folder.write("track.csv", io::to_csv(history_recording(*tracker)));
+    count = tracker->changes().size();
+    for (const DriveChange& c : tracker->changes()) {
+      const std::string_view name = kTrackedAxleNames[static_cast<std::size_t>(c.axle)];
+      changes +=
+          fmt::format("{},{},{},{},{}\n", name, c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread",
+                      c.change.detected_s, c.change.began_s, c.change.shift);
+      summary["changes"].push_back(Summary::object({{"what", name}, {"detected_s", c.change.detected_s}}));
+    }
+  }
+  summary["warnings"] = estimate.warnings;
+  folder.write("changes.csv", changes);
+  const report::DriveReportContext context{.program = program_name(), .truth = drive.truth};
+  folder.write("report.html", report::to_html(report::drive_tracking_report(drive.study, tracked, context)));
+  folder.publish(run.record(drive.study.seed, drive.study.inputs), run.options(), summary);
+  for (const std::string& warning : estimate.warnings) print_line(run.options(), "warning: " + warning);
+  print_line(run.options(), estimate.verdict);
+  print_line(run.options(),
+             fmt::format("changes found: {}; report: {}", count, (folder.path() / "report.html").string()));
+}
+
+void follow(const StudyRun& run, OutputFolder& folder) {
+  PreparedDrive drive;
+  std::optional<TrackedDrive> tracked;
+  follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
+    Progress silent;
+    drive.study = read_study(run.study, silent);
+    if (!tracked) tracked.emplace(drive.study);
+    for (const DriveChange& c : tracked->advance(drive.study.log.mapped, finished, silent))
+      print_line(run.options(), change_line(c));
+    print_line(run.options(), live_line(*tracked));
+  });
+  publish_tracking(run, folder, drive, *tracked);
+}
+
+}  // namespace
+
+int track_vehicle(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  if (run.arguments.flag("--live")) {
+    follow(run, folder);
+    return kDone;
+  }
+  TerminalProgress progress(run.options().quiet);
+  PreparedDrive drive = prepare_drive(run.study, progress);
+  const DriveTracking tracking = track_drive(drive.study, progress);
+  if (tracking.interrupted) throw Interrupted();
+  if (const DriveTracker* tracker = tracking.drive.tracker())
+    for (const DriveChange& c : tracker->changes()) print_line(run.options(), change_line(c));
+  print_line(run.options(), live_line(tracking.drive));
+  publish_tracking(run, folder, drive, tracking.drive);
+  return kDone;
+}
+
+}  // namespace veridyn::app
