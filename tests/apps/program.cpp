@@ -30,6 +30,7 @@ Outcome run_in_shell(const std::string& before, const std::string& arguments) {
 
 Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch) {
   const std::string said = (scratch / "stderr.txt").string();
+  std::filesystem::remove(said);  // of the run before
   return shell(std::string(VERIDYN_PROGRAM) + " " + arguments + " >/dev/null 2>" + said + " & pid=$!; " +
                "while [ ! -s " + said + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done; sleep 0.1; " +
                "kill -INT $pid 2>/dev/null; wait $pid; code=$?; cat " + said + "; exit $code");
