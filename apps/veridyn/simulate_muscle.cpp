@@ -100,12 +100,10 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
 
 int simulate_muscle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const StudyTable& root = run.study.root();
-  const MuscleStudy muscles = read_muscle_study(root);
-  // Nothing here is random yet; the run record names the seed all the same.
-  const auto seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
-  root.finish();
   TerminalProgress progress(run.options().quiet);
+  const MuscleStudy muscles = read_study(run.study, progress);
+  // Nothing here is random yet; the run record names the seed all the same.
+  const auto seed = static_cast<std::uint64_t>(run.study.root().integer_or("seed", 1));
   const MuscleResult result = run_study(muscles, progress);
   const MuscleTrajectory& t = result.trajectory;
   if (t.end == SimulationEnd::kInterrupted) throw Interrupted();
