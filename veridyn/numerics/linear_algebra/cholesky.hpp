@@ -29,6 +29,7 @@ class Cholesky {
 /// A^-1 B of a symmetric positive or negative semidefinite matrix by L D L' with pivoting: for matrices whose
 /// positive definiteness is in doubt.
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// The same for one right-hand side.
 [[nodiscard]] Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 /// x' A^-1 x, as above.

@@ -27,12 +27,12 @@ class HouseholderQr {
   Eigen::MatrixXd R_;
 };
 
-/// Q' B and the rank of A, by QR with column pivoting: pivots below `threshold` times the largest count as zero. The
-/// first `rank` rows of the result depend on A's unknowns, the others do not.
+/// What `eliminate` leaves: the first `rank` rows of `rest` depend on A's unknowns, the others do not.
 struct Eliminated {
   Eigen::MatrixXd rest;
   Eigen::Index rank = 0;
 };
+/// Q' B and the rank of A, by QR with column pivoting: pivots below `threshold` times the largest count as zero.
 [[nodiscard]] Eliminated eliminate(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double threshold);
 
 /// Least-squares solution of A x = b by QR with column pivoting.
@@ -42,10 +42,12 @@ struct Eliminated {
 /// Pivots below `threshold` times the largest count as zero; 0: the machine's precision times the size.
 [[nodiscard]] Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                                                      double threshold = 0.0);
+/// The same for one right-hand side, with the machine's precision as threshold.
 [[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 /// A^-1 B of a regular square matrix, by LU with partial pivoting.
 [[nodiscard]] Eigen::MatrixXd solve_linear(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// The same for one right-hand side.
 [[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace veridyn::numerics

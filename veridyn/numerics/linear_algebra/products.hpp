@@ -17,6 +17,7 @@ namespace veridyn::numerics {
                                      const Eigen::VectorXd& right);
 /// R^-1 B of an upper triangle.
 [[nodiscard]] Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& R, const Eigen::MatrixXd& B);
+/// The same for one right-hand side.
 [[nodiscard]] Eigen::VectorXd solve_upper(const Eigen::MatrixXd& R, const Eigen::VectorXd& b);
 
 }  // namespace veridyn::numerics
