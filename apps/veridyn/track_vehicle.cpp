@@ -90,7 +90,7 @@ int track_vehicle(const StudyRun& run) {
   }
   TerminalProgress progress(run.options().quiet);
   PreparedDrive drive = prepare_drive(run.study, progress);
-  const DriveTracking tracking = track_drive(drive.study, progress);
+  const DriveTracking tracking = vehicle::track(drive.study, progress);
   if (tracking.interrupted) throw Interrupted();
   if (const DriveTracker* tracker = tracking.drive.tracker())
     for (const DriveChange& c : tracker->changes()) print_line(run.options(), change_line(c));

@@ -85,7 +85,7 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   result.overloaded = std::move(found.overloaded);
   if (!result.overloaded.empty()) {
     result.warnings.push_back(
-        fmt::format("in {} of the windows, the first at {:g} s, the muscles could not make the wished acceleration and "
+        fmt::format("in {} of the windows, the first at {:g} s, the muscles could not make the desired acceleration and "
                     "the reserves did more than their force",
                     result.overloaded.size(), result.overloaded.front()));
   }

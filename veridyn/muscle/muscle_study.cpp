@@ -26,7 +26,7 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
     study.motion = make_motion(table, study.system->model(), options);
     study.inputs.push_back(path);
     for (const std::string& name : study.motion.beyond_range)
-      study.warnings.push_back(fmt::format("the wished '{}' leaves its range", name));
+      study.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
     for (const int c : study.system->reduction().driven()) {
       if (study.method == MuscleMethod::kComputedMuscleControl && study.motion.coordinate[static_cast<std::size_t>(c)])
         study.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
@@ -102,7 +102,7 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
   const bool forward = method == MuscleMethod::kForward;
   for (const char* key : {"file", "low_pass", "ramp"}) {
     if (motion.has(key) && forward) {
-      motion.fail(key, "is a wished motion, which method = \"forward\" has no use for; the other methods follow one");
+      motion.fail(key, "is a desired motion, which method = \"forward\" has no use for; the other methods follow one");
     }
   }
   for (const char* key : {"start_file", "excitation_file", "interpolation"}) {

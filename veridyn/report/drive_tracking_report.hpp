@@ -1,6 +1,7 @@
 #pragma once
 
 #include "veridyn/report/drive_report.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
 
 namespace veridyn::report {
 

@@ -170,7 +170,7 @@ Verdict verdict(const Shown& shown) {
       v.headline = fmt::format("{} muscles moved the model for {:g} s.", muscles, span);
       break;
     case MuscleMethod::kInverseDynamics:
-      v.headline = fmt::format("These forces make the wished motion of {:g} s.", span);
+      v.headline = fmt::format("These forces make the desired motion of {:g} s.", span);
       break;
     case MuscleMethod::kStaticOptimization:
       v.headline = result.overloaded.empty()
@@ -181,8 +181,8 @@ Verdict verdict(const Shown& shown) {
     case MuscleMethod::kComputedMuscleControl:
       v.headline =
           result.overloaded.empty()
-              ? fmt::format("{} muscles follow the wished motion of {:g} s.", muscles, span)
-              : fmt::format("{} muscles follow the wished motion of {:g} s with help of the reserves.", muscles, span);
+              ? fmt::format("{} muscles follow the desired motion of {:g} s.", muscles, span)
+              : fmt::format("{} muscles follow the desired motion of {:g} s with help of the reserves.", muscles, span);
       break;
   }
   if (!t.events.empty())

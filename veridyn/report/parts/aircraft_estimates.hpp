@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/report/document/document.hpp"
 
 /// What a flight's analysis says about coefficients and parameters, a section each. A section without blocks has

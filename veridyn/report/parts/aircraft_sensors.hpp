@@ -1,6 +1,6 @@
 #pragma once
 
-#include "veridyn/aircraft/flight_study.hpp"
+#include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/report/document/document.hpp"
 
 namespace veridyn::report {
