@@ -22,10 +22,14 @@ using namespace veridyn::aircraft;
 
 /// Every method's figures for every parameter, the recommended regression first.
 std::string methods_csv(const FlightAnalysis& analysis) {
-  std::string text = "parameter,method,value,sigma,low95,high95\n";
+  std::string text = "parameter,method,value,sigma,low95,high95,unit\n";
+  std::map<std::string, std::string, std::less<>> units;
+  for (const estimation::EstimatedParameter& p : analysis.estimate.parameters) units[p.name] = p.unit;
   const auto line = [&](std::string_view name, std::string_view method, double value, double sigma, double low,
                         double high) {
-    text += fmt::format("{},{},{},{},{},{}\n", name, method, value, sigma, low, high);
+    const auto unit = units.find(name);
+    text += fmt::format("{},{},{},{},{},{},{}\n", name, method, value, sigma, low, high,
+                        unit == units.end() ? "1" : unit->second);
   };
   for (const CoefficientResult& r : analysis.coefficients) {
     for (const estimation::RegressionEstimate& e : r.comparison.estimates) {

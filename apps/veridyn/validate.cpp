@@ -33,7 +33,7 @@ int validate_vehicle(const StudyRun& run) {
 
 Command validate_command() {
   return {.name = "validate",
-          .summary = "an estimate validated on a flight or drive that it has not seen",
+          .summary = "an estimate validated on held-out data: another flight or drive",
           .arguments =
               {{.name = "STUDY", .help = "study file of the other flight or drive", .required = true},
                {.name = "--estimate", .help = "estimate.json of an identification", .type = "FILE", .required = true}},

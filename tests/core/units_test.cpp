@@ -55,6 +55,7 @@ TEST(Units, NameTheirSiUnit) {
   EXPECT_EQ(parse_unit("1/deg").si_name(), "1/rad");
   EXPECT_EQ(parse_unit("lb ft^2").si_name(), "kg m^2");
   EXPECT_EQ(parse_unit("%").si_name(), "1");
+  EXPECT_EQ(parse_unit("lbf ft").si_name(), "N m") << "a moment is not named in joules";
 }
 
 TEST(Units, ParseWhatTheyPrint) {

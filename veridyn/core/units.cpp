@@ -168,7 +168,9 @@ std::string kind_of(const Unit& unit) {
 
 std::string Unit::si_name() const {
   static constexpr std::array<const char*, kDimensions> kBase{"m", "kg", "s", "K", "A", "rad"};
-  static const std::map<Dimension, std::string> derived{{kForce, "N"},        {kPressure, "Pa"}, {kEnergy, "J"},
+  // A moment and an energy have the same dimension; here it is nearly always a moment, and no one reads a moment in
+  // joules.
+  static const std::map<Dimension, std::string> derived{{kForce, "N"},        {kPressure, "Pa"}, {kEnergy, "N m"},
                                                         {kPower, "W"},        {kVoltage, "V"},   {kFrequency, "Hz"},
                                                         {kMagneticField, "T"}};
   if (const auto found = derived.find(dimension); found != derived.end()) return found->second;

@@ -42,7 +42,7 @@ Verdict verdict_of(const FlightAnalysis& analysis) {
     verdict.level = Level::kGood;
     verdict.word = "Identified";
     verdict.headline =
-        "All aerodynamic coefficients were identified and predict a part of the flight that they had not seen.";
+        "All aerodynamic coefficients were identified and predict held-out parts of the flight.";
   } else {
     verdict.level = Level::kCaution;
     verdict.word = "Partly identified";
@@ -58,7 +58,7 @@ Verdict verdict_of(const FlightAnalysis& analysis) {
   line("Not attempted", skipped);
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     verdict.lines.push_back(
-        fmt::format("Flown over unseen data for {:.0f} s at a time, the model misses {} by {:.2g} {} on average",
+        fmt::format("Flown over held-out data for {:.0f} s at a time, the model misses {} by {:.2g} {} on average",
                     analysis.validation.period_s, q.name == "airspeed" ? "airspeed" : q.name, q.fit.mae, q.unit));
   }
   return verdict;

@@ -379,7 +379,7 @@ std::optional<double> response_speed(std::span<const double> speed) {
 Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis, const DriveReportContext& context) {
   const VehicleIdentification& id = analysis.identification;
   Document document = started_document(
-      study.name, context.validation_only ? "An estimate tried on a drive that it has not seen" : study.subject_name,
+      study.name, context.validation_only ? "An estimate validated on a held-out drive" : study.subject_name,
       context.program);
   document.verdict = verdict(analysis);
   document.facts = facts(study, analysis);

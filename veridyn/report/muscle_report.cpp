@@ -158,7 +158,7 @@ Verdict verdict(const Shown& shown) {
     std::string line = fmt::format("{} goes from {:.3g} to {:.3g} {}", k.name, unit_of(k) * t.q(0, i),
                                    unit_of(k) * t.q(t.q.rows() - 1, i), unit_name(k));
     if (shown.study.method == MuscleMethod::kComputedMuscleControl) {
-      line += fmt::format(", at most {:.2g} {} from the wish", unit_of(k) * result.tracking_error(c), unit_name(k));
+      line += fmt::format(", at most {:.2g} {} from the desired motion", unit_of(k) * result.tracking_error(c), unit_name(k));
     }
     v.lines.push_back(line + ".");
     if (v.lines.size() >= 4) break;
@@ -195,13 +195,13 @@ TimeSeries motion_figure(const Shown& shown) {
   const MuscleTrajectory& t = shown.result.trajectory;
   TimeSeries figure{.title = "Motion", .samples = t.time};
   const bool wish = shown.study.method == MuscleMethod::kComputedMuscleControl;
-  if (wish) figure.caption = "Dashed: the wish.";
+  if (wish) figure.caption = "Dashed: the desired motion.";
   for (const std::size_t c : shown.coordinates) {
     const Coordinate& k = shown.model.coordinates[c];
     Panel panel{.label = k.name, .unit = unit_name(k)};
     if (wish)
       panel.lines.push_back(
-          {.name = "wish", .y = column(shown.result.wished, c, unit_of(k)), .role = Role::kReference});
+          {.name = "desired", .y = column(shown.result.wished, c, unit_of(k)), .role = Role::kReference});
     panel.lines.push_back({.name = "motion", .y = column(t.q, c, unit_of(k))});
     figure.panels.push_back(std::move(panel));
   }

@@ -41,7 +41,7 @@ Table group_table(const SimilarityReport& r, const std::string& title) {
 }
 
 Table gravity_table(const SimilarityReport& r) {
-  Table table{.title = "Gravity, apart",
+  Table table{.title = "Gravity, separately",
               .caption =
                   "No model of other size keeps this group at equal times unless gravity could be changed. A Froude "
                   "twin (speed by the square root of the length ratio) keeps it, at the cost of the time axis."};

@@ -99,7 +99,7 @@ Table mode_table(const std::string& title, const std::vector<AnyMode>& modes) {
   Table table{.title = title};
   constexpr bool kNamed = requires(const AnyMode& m) { m.name; };
   if constexpr (kNamed) {
-    table.caption = "Named after what has most of the kinetic energy, its share beside it.";
+    table.caption = "Named after what has most of the kinetic energy, its share alongside.";
     table.columns.push_back({.name = "mode", .align = Align::kLeft});
     table.columns.push_back({.name = "share", .unit = "%", .digits = 2});
   }

@@ -26,7 +26,7 @@ Numeral read_numeral(const StudyTable& table, const std::string& text) {
   try {
     n.value = std::stod(text, &end);
   } catch (const std::exception&) {
-    table.fail("value", "is no number with a unit");
+    table.fail("value", "is not a number with a unit");
   }
   const std::string digits = text.substr(0, end);
   const std::size_t point = digits.find('.');

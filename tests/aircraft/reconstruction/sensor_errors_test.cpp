@@ -34,7 +34,7 @@ TEST(SensorErrors, AreJudgedByWhatTheFlightAddsToThePrior) {
   EXPECT_NEAR(reports[0].information, 0.99, 1e-12);
   EXPECT_EQ(reports[0].correlated_with, "alpha_scale");
   EXPECT_NEAR(reports[0].correlation, 0.95, 1e-12);
-  EXPECT_THAT(reports[0].statement, HasSubstr("told apart from alpha_scale"));
+  EXPECT_THAT(reports[0].statement, HasSubstr("distinguishable from alpha_scale"));
   EXPECT_THAT(reports[2].statement, HasSubstr("kept at its prior"));
 }
 

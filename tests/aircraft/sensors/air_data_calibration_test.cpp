@@ -201,7 +201,7 @@ TEST_F(Calibration, RefusesBadFilesInOneLine) {
   EXPECT_THAT(fit("a[m],r[deg]\n1,2\n2,3\n3,4\n4,5\n", keys), HasSubstr("column 'a' is in [m], expected [rad]"));
   EXPECT_THAT(fit("a[deg],r[deg]\n1,2\n2,3\n", keys), HasSubstr("holds 2 points of alpha, 4 are needed"));
   EXPECT_THAT(fit("a[deg],r[deg]\n1,2\n1,3\n1,4\n1,5\n", keys), HasSubstr("the reference of alpha never changes"));
-  EXPECT_THAT(fit("a[deg],r[deg]\n1,2\n2,x\n", keys), HasSubstr("t.csv:3: column 'r': 'x' is no number"));
+  EXPECT_THAT(fit("a[deg],r[deg]\n1,2\n2,x\n", keys), HasSubstr("t.csv:3: column 'r': 'x' is not a number"));
   EXPECT_THAT(fit("a[deg],r[deg]\n1,2,3\n", keys), HasSubstr("t.csv:2: has 3 cells, the header 2"));
   EXPECT_THAT(fit("a[deg],a[deg]\n1,2\n", keys), HasSubstr("appears twice"));
   EXPECT_THAT(fit("", keys), HasSubstr("holds no rows"));

@@ -84,7 +84,7 @@ TEST(Csv, RefusesWithFileLineAndColumn) {
   EXPECT_EQ(refusal("time[s],a[1]\n0,1,7\n"), "a.csv:2: more cells than the 2 of the header");
   EXPECT_EQ(refusal("time[s],a[1],a[m]\n0,1,2\n"), "a.csv:1: column 'a' appears twice");
   EXPECT_EQ(refusal("time[s],,b[1]\n0,1,2\n"), "a.csv:1: column 2: has no name");
-  EXPECT_EQ(refusal("time[s]\n0\n"), "a.csv:1: there is no column beside the time");
+  EXPECT_EQ(refusal("time[s]\n0\n"), "a.csv:1: there is no column but the time");
   EXPECT_THAT(refusal("time[s],a[metre]\n0,1\n"), HasSubstr("a.csv:1: column 'a': unknown unit 'metre'"));
   EXPECT_THAT(refusal("time[m],a[1]\n0,1\n"), HasSubstr("a.csv:1: column 'time': unit 'm' is a length [m]"));
   EXPECT_EQ(refusal("# frame: up\ntime[s],a[1]\n"), "a.csv:1: frame is 'up', expected frd or flu");

@@ -20,7 +20,7 @@ namespace veridyn::muscle::test {
     for (std::size_t i = 0; i < 6; ++i) {
       const TransformAxis& axis = i < 3 ? j.rotation[i] : j.translation[i - 3];
       joint.axes[i] = {axis.axis, axis.coordinate, [f = axis.function](double x) {
-                         const FunctionValue<double> v = f.evaluate(x);
+                         const numerics::FunctionValue<double> v = f.evaluate(x);
                          return std::array<double, 3>{v.value, v.slope, v.curvature};
                        }};
     }

@@ -302,7 +302,7 @@ class CoefficientIdentification {
     if (result.per_unit_inertia)
       result.reason += "; per unit inertia, which is not given (inertial coupling of a flat body assumed)";
     if (!insignificant.empty())
-      result.reason += fmt::format("; not told apart from zero: {}", fmt::join(insignificant, ", "));
+      result.reason += fmt::format("; not distinguishable from zero: {}", fmt::join(insignificant, ", "));
     if (!unexcited.empty()) result.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
   }
 

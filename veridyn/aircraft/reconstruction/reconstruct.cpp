@@ -267,9 +267,9 @@ void report_guard(const internal::GuardTrace& trace, const std::vector<double>& 
   report.model_based_share = count > 0 ? static_cast<double>(used) / static_cast<double>(count) : 0.0;
   report.statement =
       report.falls == 0
-          ? std::string("the model-based filter was believed throughout")
+          ? std::string("the model-based filter was trusted throughout")
           : fmt::format(
-                "the model-based filter was believed {:.0f} % of the time; its innovations contradicted the "
+                "the model-based filter was trusted {:.0f} % of the time; its innovations contradicted the "
                 "model {} time{}, first at {:.1f} s",
                 100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
                 report.model_free.empty() ? 0.0 : report.model_free.front().begin);

@@ -72,7 +72,7 @@ std::vector<SensorErrorReport> judge_sensor_errors(const std::vector<SensorError
     constexpr double kEntangled = 0.9;
     if (std::abs(r.correlation) > kEntangled) {
       r.statement +=
-          fmt::format("; told apart from {} only poorly (correlation {:.2f})", r.correlated_with, r.correlation);
+          fmt::format("; distinguishable from {} only poorly (correlation {:.2f})", r.correlated_with, r.correlation);
     }
     reports.push_back(std::move(r));
   }

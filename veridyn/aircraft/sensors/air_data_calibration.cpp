@@ -279,7 +279,7 @@ CalibrationStudy CalibrationStudy::read(const StudyTable& table) {
     if (!(in.sigma_reference >= 0.0)) t.fail("sigma_reference", fmt::format("= {:g} must be >= 0", in.sigma_reference));
     if (!(in.sigma_raw >= 0.0)) t.fail("sigma_raw", fmt::format("= {:g} must be >= 0", in.sigma_raw));
     if (in.sigma_reference > 0.0 && !(in.sigma_raw > 0.0))
-      t.fail("sigma_reference", "needs sigma_raw beside it: total least squares goes by their ratio");
+      t.fail("sigma_reference", "needs sigma_raw alongside: total least squares goes by their ratio");
     study.sensors.push_back(std::move(in));
   }
   if (study.sensors.empty()) {

@@ -44,7 +44,7 @@ HonestyCheck residual_colour(const RegressionEstimate& estimate) {
   }
   check.text = check.passed ? "the residual is white"
                             : fmt::format(
-                                  "the residual is coloured (Durbin-Watson {:.2f}): white-noise error bars would be up "
+                                  "the residual is autocorrelated (Durbin-Watson {:.2f}): white-noise error bars would be up "
                                   "to {:.1f} times too small",
                                   check.value, std::max(1.0, worst));
   return check;
@@ -76,7 +76,7 @@ HonestyCheck error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& 
   check.passed = gtls.error_scale >= low && gtls.error_scale <= high;
   const double p = numerics::chi_square_upper_p(samples * gtls.error_scale, samples);
   check.text = fmt::format(
-      "residual variance is {:.3g} of what the assumed errors give (believed within {:.2g} to {:.3g}; {:.0f} effective "
+      "residual variance is {:.3g} of what the assumed errors give (trusted within {:.2g} to {:.3g}; {:.0f} effective "
       "samples, p = {:.2g})",
       check.value, low, high, samples, 2.0 * std::min(p, 1.0 - p));
   return check;

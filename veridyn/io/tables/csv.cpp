@@ -127,7 +127,7 @@ class CsvParser {
     time_ =
         internal::choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));
     if (headers_.size() < 2 && time_.column != TimeChoice::kNone)
-      throw InputError(place(header_line_), "there is no column beside the time");
+      throw InputError(place(header_line_), "there is no column but the time");
     columns_.resize(headers_.size());
   }
 

@@ -92,7 +92,7 @@ Table parse_table(std::string_view text, std::string source) {
         const char* last = cells[i].data() + cells[i].size();
         const auto [stop, error] = std::from_chars(cells[i].data(), last, value);
         if (error != std::errc() || stop != last)
-          throw InputError(place, fmt::format("column '{}': '{}' is no number", table.columns[i].name, cells[i]));
+          throw InputError(place, fmt::format("column '{}': '{}' is not a number", table.columns[i].name, cells[i]));
       }
       table.columns[i].value.push_back(recorded[i].to_si(value));
     }

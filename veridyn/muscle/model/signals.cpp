@@ -86,7 +86,7 @@ void check_finite(const SignalTable& table, std::size_t column) {
   const std::vector<double>& v = table.values[column];
   const auto bad = std::find_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); });
   if (bad == v.end()) return;
-  throw InputError(table.source, fmt::format("column '{}' has no number at {} s", table.names[column],
+  throw InputError(table.source, fmt::format("column '{}' has no value at {} s", table.names[column],
                                              table.time[static_cast<std::size_t>(bad - v.begin())]));
 }
 

@@ -207,8 +207,8 @@ std::vector<TimeSeries> validation_figures(const Validation& validation) {
     const bool other = figures.empty() || !same_windows(figures.back().windows, windows);
     if (other) {
       figures.push_back(
-          {.title = "Flown by the model on unseen data",
-           .caption = fmt::format("Started anew every {:.1f} s from the reconstructed state.", validation.period_s),
+          {.title = "Flown by the model on held-out data",
+           .caption = fmt::format("Started again every {:.1f} s from the reconstructed state.", validation.period_s),
            .windows = windows});
     }
     const double factor = q.unit == "deg" ? 1.0 / kDegree : 1.0;

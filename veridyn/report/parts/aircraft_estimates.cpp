@@ -45,7 +45,7 @@ std::vector<const CoefficientResult*> identified_of(const FlightAnalysis& analys
 Table parameter_table(const FlightStudy& study, std::span<const CoefficientResult* const> results) {
   Table table{.title = "Parameters",
               .caption =
-                  "95 % intervals from the covariance that allows for coloured residuals. A parameter whose interval "
+                  "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter whose interval "
                   "holds zero is "
                   "marked insignificant, not set to zero.",
               .columns = estimate_columns({{.name = "Parameter"}, {.name = "Status"}}, {.name = "t", .digits = 3})};
@@ -287,7 +287,7 @@ Section uncertainty_section(const UncertaintyReport& report) {
       .title = "Error of one measured coefficient",
       .caption =
           "Propagation of distributions (JCGM 101): 95 % of the errors lie between low and high; sigma is the larger "
-          "end over 1.96. Beside it the linear law of propagation, apart for what differs from sample to sample "
+          "end over 1.96. Alongside it the linear law of propagation, separately for what differs from sample to sample "
           "(sensors) and what all samples share (mass, geometry, inertia: subject.sigma). Range: standard deviation of "
           "the coefficient itself over the operating range.",
       .columns = {{.name = "Coefficient"},

@@ -89,7 +89,7 @@ Section residual_section(const FlightAnalysis& analysis) {
 }
 
 Section validation_section(const FlightAnalysis& analysis) {
-  Section section{.title = "Validation on unseen data", .id = "validation", .folded = true};
+  Section section{.title = "Validation on held-out data", .id = "validation", .folded = true};
   const Validation& v = analysis.validation;
   section.blocks.emplace_back(Paragraph{v.text, v.available() ? Tone::kPlain : Tone::kNote});
   Table table{

@@ -43,7 +43,7 @@ ResidualFinding check_residual(const PredictedDriveQuantity& q, double sensor_si
           ? fmt::format("the residual of {} is {} (correlation of neighbours {:.2f})", q.name,
                         q.lag1 > kColoured ? "no larger than sensors and noisy steering leave" : "white enough", q.lag1)
           : fmt::format(
-                "the residual of {} is coloured (correlation of neighbours {:.2f}, rms {:.3g} {} against "
+                "the residual of {} is autocorrelated (correlation of neighbours {:.2f}, rms {:.3g} {} against "
                 "{:.3g} of the sensor): something that moves this vehicle is not in the bicycle model",
                 q.name, q.lag1, q.fit.rmse, q.unit, sigma);
   return {{fmt::format("colour of {}", q.name), white, q.lag1, kColoured, std::move(text)},
@@ -144,7 +144,7 @@ std::optional<HonestyCheck> check_data_parts(const VehicleProblem& problem, cons
   if (other == nullptr || !other->usable) return std::nullopt;
   const double p = estimation::agreement_p(other->value - axle.value, other->covariance + axle.covariance);
   return by_p("agreement of data parts", p, problem.options.contradiction_level,
-              fmt::format("identification and hold-out data, estimated apart, agree (p = {:.2g})", p),
+              fmt::format("identification and hold-out data, estimated separately, agree (p = {:.2g})", p),
               fmt::format("estimates from two parts of the drive contradict each other beyond their error bars (p = "
                           "{:.1e}): the vehicle, the road or the range of motion is not the same in both",
                           p));
@@ -190,7 +190,7 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
   if (axle == nullptr || !axle->usable) return checks;
   const double p = axle->consistency_p;
   checks.consistency =
-      by_p("surplus equation", p, problem.options.contradiction_level,
+      by_p("consistency equation", p, problem.options.contradiction_level,
            fmt::format("the four coefficients of the regressions belong to one bicycle (p = {:.2g})", p),
            fmt::format("the four coefficients of the regressions belong to no bicycle (p = {:.1e}): the model is "
                        "incomplete for this vehicle, or a, b or a sensor's place is wrong",
