@@ -31,10 +31,10 @@ void SegmentOptions::read_keys(const StudyTable& table) {
   min_duration_s = table.positive_or("min_duration", "s", min_duration_s);
   holdout = table.number_or("holdout", "1", holdout);
   if (!(holdout >= 0.0 && holdout <= 0.8))
-    table.fail("holdout", fmt::format("= {:g} must be a share from 0 to 0.8", holdout));
+    table.fail("holdout", fmt::format("{:g} must be a share from 0 to 0.8", holdout));
   block_s = table.positive_or("block", "s", block_s);
   guard_s = table.number_or("guard", "s", guard_s);
-  if (!(guard_s >= 0.0)) table.fail("guard", fmt::format("= {:g} s must be >= 0", guard_s));
+  if (!(guard_s >= 0.0)) table.fail("guard", fmt::format("{:g} s must be >= 0", guard_s));
 }
 
 double total_s(std::span<const TimeSpan> spans) {
