@@ -18,12 +18,12 @@ namespace {
 
 /// "vehicle_attitude_0" -> "vehicle_attitude"; "sensor_baro_1" -> "sensor_baro[1]"; others as they are.
 std::string table_name(const std::filesystem::path& path) {
-  const std::string stem = path.stem().string();
+  std::string stem = path.stem().string();
   const std::size_t underscore = stem.rfind('_');
   if (underscore == std::string::npos || underscore + 2 != stem.size()) return stem;
   const char digit = stem.back();
   if (std::isdigit(static_cast<unsigned char>(digit)) == 0) return stem;
-  const std::string topic = stem.substr(0, underscore);
+  std::string topic = stem.substr(0, underscore);
   return digit == '0' ? topic : fmt::format("{}[{}]", topic, digit);
 }
 

@@ -159,7 +159,7 @@ class Builder {
       if (&item == time) continue;
       std::string label = item.name;
       if (const int copy = ++seen[label]; copy > 1) label += fmt::format("({})", copy);  // further struct elements
-      const std::string path = name.empty() ? label : name + "." + label;
+      const std::string path = name.empty() ? label : fmt::format("{}.{}", name, label);
       switch (item.kind) {
         case MatValue::Kind::kStruct:
           if (depth < 8) take_struct(item, path, depth + 1);
