@@ -14,11 +14,10 @@
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
-#include "veridyn/vehicle/simulation_study.hpp"
-#include "veridyn/vehicle/track_drive.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
+#include "veridyn/vehicle/track_drive.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -42,7 +41,8 @@ std::string methods_csv(const VehicleIdentification& id) {
   const auto lines = [&](const VehicleEstimate& e) {
     if (!e.usable) return;
     for (const estimation::ParameterEstimate& p : e.parameters)
-      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, to_string(e.method), p.value, p.sigma, p.low95, p.high95, p.unit);
+      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, to_string(e.method), p.value, p.sigma, p.low95, p.high95,
+                          p.unit);
   };
   if (id.best() != nullptr) lines(*id.best());
   for (const VehicleEstimate& e : id.estimates)
@@ -92,7 +92,8 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   folder.write("report.html", report::to_html(report::drive_report(drive.study, analysis, context)));
 }
 
-void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder, const CommonOptions& options) {
+void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder,
+                    const CommonOptions& options) {
   const VehicleIdentification& id = analysis.identification;
   if (const VehicleEstimate* best = id.best()) {
     for (const estimation::ParameterEstimate& p : best->parameters) {
@@ -147,8 +148,8 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   return drive;
 }
 
-void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive, const VehicleAnalysis& analysis,
-                   const std::vector<std::filesystem::path>& more_inputs) {
+void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
+                   const VehicleAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
   write_results(folder, drive, analysis, run.command == "validate");
   RunRecord record = run.record(drive.study.seed, drive.study.inputs);
   record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());

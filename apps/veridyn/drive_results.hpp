@@ -9,7 +9,6 @@
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "veridyn/core/progress.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
 #include "veridyn/vehicle/vehicle_study.hpp"
@@ -31,6 +30,7 @@ struct PreparedDrive {
 /// Writes, publishes and prints the identification or validation of a drive.
 /// @param more_inputs of the run record, beyond the study and what it names
 void publish_drive(const StudyRun& run, OutputFolder& folder, const PreparedDrive& drive,
-                   const vehicle::VehicleAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs = {});
+                   const vehicle::VehicleAnalysis& analysis,
+                   const std::vector<std::filesystem::path>& more_inputs = {});
 
 }  // namespace veridyn::app

@@ -79,7 +79,8 @@ int scale_vehicle(const StudyRun& run) {
   folder.write("prototype.csv", io::to_csv(to_recording(analysis.prototype)));
   folder.write("model.csv", io::to_csv(to_recording(analysis.runs.back().own)));
   folder.write("report.html", report::to_html(report::similarity_report(study, analysis, program_name())));
-  folder.publish(run.record(study.simulation.seed, study.simulation.inputs), run.options(), summary_of(folder.path(), analysis));
+  folder.publish(run.record(study.simulation.seed, study.simulation.inputs), run.options(),
+                 summary_of(folder.path(), analysis));
   const auto print = [&](const std::string& line) { print_line(run.options(), line); };
   for (const GroupComparison& g : r.mismatches())
     print(fmt::format("  {:<22} {:+.3g} %   {}", g.formula, g.mismatch_percent, g.affects));

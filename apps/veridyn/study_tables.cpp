@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "veridyn/aircraft/aircraft_study.hpp"
-#include "veridyn/vehicle/vehicle_study.hpp"
+#include "veridyn/vehicle/scale_study.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
-#include "veridyn/vehicle/scale_study.hpp"
+#include "veridyn/vehicle/vehicle_study.hpp"
 
 namespace veridyn::app {
 

@@ -84,10 +84,10 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   result.drive = std::move(found.drive);
   result.overloaded = std::move(found.overloaded);
   if (!result.overloaded.empty()) {
-    result.warnings.push_back(
-        fmt::format("in {} of the windows, the first at {:g} s, the muscles could not make the desired acceleration and "
-                    "the reserves did more than their force",
-                    result.overloaded.size(), result.overloaded.front()));
+    result.warnings.push_back(fmt::format(
+        "in {} of the windows, the first at {:g} s, the muscles could not make the desired acceleration and "
+        "the reserves did more than their force",
+        result.overloaded.size(), result.overloaded.front()));
   }
   return result;
 }

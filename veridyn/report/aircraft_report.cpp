@@ -41,8 +41,7 @@ Verdict verdict_of(const FlightAnalysis& analysis) {
   } else if (bad.empty() && calm.empty() && skipped.empty()) {
     verdict.level = Level::kGood;
     verdict.word = "Identified";
-    verdict.headline =
-        "All aerodynamic coefficients were identified and predict held-out parts of the flight.";
+    verdict.headline = "All aerodynamic coefficients were identified and predict held-out parts of the flight.";
   } else {
     verdict.level = Level::kCaution;
     verdict.word = "Partly identified";

@@ -158,7 +158,8 @@ Verdict verdict(const Shown& shown) {
     std::string line = fmt::format("{} goes from {:.3g} to {:.3g} {}", k.name, unit_of(k) * t.q(0, i),
                                    unit_of(k) * t.q(t.q.rows() - 1, i), unit_name(k));
     if (shown.study.method == MuscleMethod::kComputedMuscleControl) {
-      line += fmt::format(", at most {:.2g} {} from the desired motion", unit_of(k) * result.tracking_error(c), unit_name(k));
+      line += fmt::format(", at most {:.2g} {} from the desired motion", unit_of(k) * result.tracking_error(c),
+                          unit_name(k));
     }
     v.lines.push_back(line + ".");
     if (v.lines.size() >= 4) break;

@@ -42,11 +42,12 @@ HonestyCheck residual_colour(const RegressionEstimate& estimate) {
   for (const ParameterEstimate& p : estimate.parameters) {
     if (p.sigma_white > 0.0 && std::isfinite(p.sigma)) worst = std::max(worst, p.sigma / p.sigma_white);
   }
-  check.text = check.passed ? "the residual is white"
-                            : fmt::format(
-                                  "the residual is autocorrelated (Durbin-Watson {:.2f}): white-noise error bars would be up "
-                                  "to {:.1f} times too small",
-                                  check.value, std::max(1.0, worst));
+  check.text = check.passed
+                   ? "the residual is white"
+                   : fmt::format(
+                         "the residual is autocorrelated (Durbin-Watson {:.2f}): white-noise error bars would be up "
+                         "to {:.1f} times too small",
+                         check.value, std::max(1.0, worst));
   return check;
 }
 

@@ -43,12 +43,13 @@ std::vector<const CoefficientResult*> identified_of(const FlightAnalysis& analys
 }
 
 Table parameter_table(const FlightStudy& study, std::span<const CoefficientResult* const> results) {
-  Table table{.title = "Parameters",
-              .caption =
-                  "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter whose interval "
-                  "holds zero is "
-                  "marked insignificant, not set to zero.",
-              .columns = estimate_columns({{.name = "Parameter"}, {.name = "Status"}}, {.name = "t", .digits = 3})};
+  Table table{
+      .title = "Parameters",
+      .caption =
+          "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter whose interval "
+          "holds zero is "
+          "marked insignificant, not set to zero.",
+      .columns = estimate_columns({{.name = "Parameter"}, {.name = "Status"}}, {.name = "t", .digits = 3})};
   if (study.true_subject) table.columns.insert(table.columns.begin() + 6, {.name = "Truth"});
   for (const CoefficientResult* r : results) {
     for (std::size_t i = 0; i < r->chosen->parameters.size(); ++i) {
@@ -287,7 +288,8 @@ Section uncertainty_section(const UncertaintyReport& report) {
       .title = "Error of one measured coefficient",
       .caption =
           "Propagation of distributions (JCGM 101): 95 % of the errors lie between low and high; sigma is the larger "
-          "end over 1.96. Alongside it the linear law of propagation, separately for what differs from sample to sample "
+          "end over 1.96. Alongside it the linear law of propagation, separately for what differs from sample to "
+          "sample "
           "(sensors) and what all samples share (mass, geometry, inertia: subject.sigma). Range: standard deviation of "
           "the coefficient itself over the operating range.",
       .columns = {{.name = "Coefficient"},

@@ -138,7 +138,8 @@ class Preparation {
     if (const Channel* accel = find("accel_x")) put(DriveSignal::kAccelX, *accel, "accel_x");
     const Channel* accel = find("accel_y");
     if (accel == nullptr) {
-      out_.notes.emplace_back("without accel_y, the stiffnesses are distinguishable by the yaw rate only in transients");
+      out_.notes.emplace_back(
+          "without accel_y, the stiffnesses are distinguishable by the yaw rate only in transients");
       return;
     }
     GridSignal& signal = put(DriveSignal::kAccelY, *accel, "accel_y");

@@ -33,7 +33,8 @@ std::shared_ptr<const Road> read_obstacle(const StudyTable& road, Obstacle::Shap
 
 std::shared_ptr<const Road> read_random(const StudyTable& road, std::uint64_t seed) {
   Iso8608Options options;
-  if (road.has("class") && road.has("roughness")) road.fail("roughness", "is given as well as `class`: give one of them");
+  if (road.has("class") && road.has("roughness"))
+    road.fail("roughness", "is given as well as `class`: give one of them");
   if (road.has("roughness")) {
     options.roughness = road.positive("roughness", "m^3");
   } else {

@@ -80,18 +80,19 @@ std::vector<std::string> what_gravity_changes(const ScaleFactors& factors, const
                                               double weight_factor) {
   const double relative = gravity.model / gravity.prototype;
   return {
-      fmt::format("forces scale by {} but weight by {}: compared with the forces of the motion the model is {:.4g} times as "
-                  "heavy as the prototype",
-                  ratio_text(factors.force()), ratio_text(weight_factor), relative),
+      fmt::format(
+          "forces scale by {} but weight by {}: compared with the forces of the motion the model is {:.4g} times as "
+          "heavy as the prototype",
+          ratio_text(factors.force()), ratio_text(weight_factor), relative),
       fmt::format("lift-off and rollover come at {:.4g} times the lateral acceleration, in the prototype's scale",
                   relative),
       fmt::format(
           "the friction limit at equal mu lies at {:.4g} times the lateral acceleration, in the prototype's scale",
           relative),
-      fmt::format(
-          "static sinking of springs and tyres is {:.4g} times as large compared with the length of the vehicle; suspension "
-          "travel scales about another rest position",
-          relative),
+      fmt::format("static sinking of springs and tyres is {:.4g} times as large compared with the length of the "
+                  "vehicle; suspension "
+                  "travel scales about another rest position",
+                  relative),
       fmt::format(
           "tyres whose forces depend on the load work at loads {:.4g} times too large: their nominal load must scale "
           "with weight, not with force, to keep the static point",
