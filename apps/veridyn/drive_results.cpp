@@ -125,7 +125,7 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   PreparedDrive drive;
   if (study.root().has("data") && (study.root().table("data").has("file") || study.root().table("data").has("files") ||
                                    study.root().table("data").has("runs"))) {
-    drive.study = read_study(study, progress);
+    drive.study = vehicle::read_study(study, progress);
     for (const char* table : {"drive", "road", "sensors", "scale"}) static_cast<void>(study.root().has(table));
     study.root().finish();
     return drive;
@@ -140,7 +140,7 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   if (!drive.run->trajectory.usable()) throw std::runtime_error(drive.run->trajectory.message());
   Recording measured = *drive.run->measured;
   measured.source = "simulated drive";
-  drive.study = read_study(study, measured, progress);
+  drive.study = vehicle::read_study(study, measured, progress);
   drive.study.inputs = vehicle.inputs;
   drive.truth = truth_of(vehicle.vehicle, vehicle.four_wheel.gravity);
   static_cast<void>(study.root().has("scale"));

@@ -2,13 +2,12 @@
 // musculoskeletal models: simulate_vehicle.cpp, simulate_muscle.cpp.
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 
@@ -22,7 +21,7 @@ int simulate_aircraft(const StudyRun& run) {
   TerminalProgress progress(run.options().quiet);
   progress.stage(fmt::format("simulating {:.0f} s of {}", simulation.duration, simulation.subject.name));
   const aircraft::SimulatedFlight flight = aircraft::simulate(simulation, progress);
-  if (flight.end == aircraft::SimulationEnd::kInterrupted) throw Interrupted();
+  if (flight.end == SimulationEnd::kInterrupted) throw Interrupted();
   if (!flight.usable()) throw std::runtime_error(flight.message());
   folder.write("truth.csv", io::to_csv(flight.truth));
   folder.write("recording.csv", io::to_csv(flight.measured));
@@ -32,7 +31,6 @@ int simulate_aircraft(const StudyRun& run) {
   summary["duration_s"] = flight.end_time;
   summary["channels"] = flight.measured.names();
   folder.publish(run.record(simulation.seed), run.options(), summary);
-  constexpr double kDegree = std::numbers::pi / 180.0;
   print_line(run.options(),
              fmt::format("{:.0f} s flown, alpha from {:.1f} to {:.1f} deg with gusts; wrote {} and {}", flight.end_time,
                          flight.alpha_min / kDegree, flight.alpha_max / kDegree,

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <numbers>
 #include <stdexcept>
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
@@ -81,7 +81,7 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
   for (const int c : study.system->reduction().free()) {
     const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
     const bool angle = k.motion != CoordinateMotion::kTranslational;
-    const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
+    const double unit = angle ? 180.0 / kPi : 1.0;
     text += fmt::format("{}{} {:.4g} to {:.4g} {}", text.empty() ? "" : ", ", k.name, unit * t.q(0, c),
                         unit * t.q(t.q.rows() - 1, c), angle ? "deg" : "m");
     if (study.method == MuscleMethod::kComputedMuscleControl) {

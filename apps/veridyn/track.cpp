@@ -105,7 +105,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
 
 void replay(const StudyRun& run, OutputFolder& folder) {
   TerminalProgress progress(run.options().quiet);
-  FlightStudy study = read_study(run.study, progress);
+  FlightStudy study = aircraft::read_study(run.study, progress);
   const TrackingAnalysis analysis = track_flight(study, progress);
   if (analysis.interrupted) throw Interrupted();
   for (const FlightChange& c : analysis.flight.tracker().changes()) print_line(run.options(), change_line(c));
@@ -113,13 +113,13 @@ void replay(const StudyRun& run, OutputFolder& folder) {
   publish_tracking(run, folder, study, analysis.flight);
 }
 
-void follow(const StudyRun& run, OutputFolder& folder) {
+void follow_flight(const StudyRun& run, OutputFolder& folder) {
   LiveView view(run.options());
   std::optional<FlightStudy> study;
   std::optional<TrackedFlight> flight;
   follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
     Progress silent;
-    study = read_study(run.study, silent);
+    study = aircraft::read_study(run.study, silent);
     if (!flight) flight.emplace(*study);
     view.show(*flight, flight->advance(study->mapped, *study, finished, silent));
   });
@@ -130,7 +130,7 @@ void follow(const StudyRun& run, OutputFolder& folder) {
 
 int track_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  run.arguments.flag("--live") ? follow(run, folder) : replay(run, folder);
+  run.arguments.flag("--live") ? follow_flight(run, folder) : replay(run, folder);
   return kDone;
 }
 

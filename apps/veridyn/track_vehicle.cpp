@@ -66,12 +66,12 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
              fmt::format("changes found: {}; report: {}", count, (folder.path() / "report.html").string()));
 }
 
-void follow(const StudyRun& run, OutputFolder& folder) {
+void follow_drive(const StudyRun& run, OutputFolder& folder) {
   PreparedDrive drive;
   std::optional<TrackedDrive> tracked;
   follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
     Progress silent;
-    drive.study = read_study(run.study, silent);
+    drive.study = vehicle::read_study(run.study, silent);
     if (!tracked) tracked.emplace(drive.study);
     for (const DriveChange& c : tracked->advance(drive.study.log.mapped, finished, silent))
       print_line(run.options(), change_line(c));
@@ -85,7 +85,7 @@ void follow(const StudyRun& run, OutputFolder& folder) {
 int track_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   if (run.arguments.flag("--live")) {
-    follow(run, folder);
+    follow_drive(run, folder);
     return kDone;
   }
   TerminalProgress progress(run.options().quiet);

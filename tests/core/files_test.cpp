@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "tests/support/refusal.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn {
@@ -24,16 +25,6 @@ class Files : public testing::Test {
   fs::path folder_;
 };
 
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST_F(Files, ReadBackWhatWasWritten) {
   const std::string content("a\0b\n", 4);
   write_file(folder_ / "x", content);
@@ -48,18 +39,18 @@ TEST_F(Files, LeaveNothingBesideTheFile) {
 }
 
 TEST_F(Files, RefuseMissingFilesAndDirectories) {
-  EXPECT_EQ(message_of([&] { static_cast<void>(read_file("missing.bin")); }), "missing.bin: no such file");
-  EXPECT_EQ(message_of([&] { static_cast<void>(read_file(folder_)); }),
+  EXPECT_EQ(why([&] { static_cast<void>(read_file("missing.bin")); }), "missing.bin: no such file");
+  EXPECT_EQ(why([&] { static_cast<void>(read_file(folder_)); }),
             folder_.string() + ": is a directory, expected a file");
 }
 
 TEST_F(Files, RefuseAFolderThatIsNotThereOrAFile) {
-  EXPECT_THAT(message_of([&] { write_file(folder_ / "no" / "x", "1"); }),
+  EXPECT_THAT(why([&] { write_file(folder_ / "no" / "x", "1"); }),
               testing::HasSubstr("cannot be written: No such file"));
   write_file(folder_ / "x", "old");
-  EXPECT_THAT(message_of([&] { make_folder(folder_ / "x"); }), testing::HasSubstr("cannot be made a folder"));
+  EXPECT_THAT(why([&] { make_folder(folder_ / "x"); }), testing::HasSubstr("cannot be made a folder"));
   fs::create_directory(folder_ / "d");
-  EXPECT_THAT(message_of([&] { write_file(folder_ / "d", "1"); }), testing::HasSubstr("cannot be written"));
+  EXPECT_THAT(why([&] { write_file(folder_ / "d", "1"); }), testing::HasSubstr("cannot be written"));
   EXPECT_EQ(read_file(folder_ / "x"), "old");
 }
 

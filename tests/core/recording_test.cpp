@@ -3,27 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "tests/support/refusal.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Channel channel(std::string name, std::vector<double> times, std::vector<double> values) {
   return make_channel(std::move(name), "m/s", make_time_base(std::move(times)), std::move(values));
-}
-
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Channel, KnowsItsRateFromTheMedianInterval) {
@@ -53,29 +42,29 @@ TEST(Recording, NamesTheMissingChannelAndWhatThereIsInstead) {
   recording.source = "flight.csv";
   recording.add(channel("airspeed", {0, 1}, {1, 2}));
   recording.add(channel("gyro_x", {0, 1}, {1, 2}));
-  EXPECT_EQ(message_of([&] { static_cast<void>(recording.at("airspede")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(recording.at("airspede")); }),
             "flight.csv: no channel 'airspede' (did you mean 'airspeed'?)");
-  EXPECT_EQ(message_of([&] { static_cast<void>(recording.at("elevator")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(recording.at("elevator")); }),
             "flight.csv: no channel 'elevator' (known: airspeed, gyro_x)");
 }
 
 TEST(Recording, RefusesChannelsThatContradictThemselves) {
   Recording recording;
   recording.source = "flight.csv";
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(why([&] {
               recording.add(channel("v", {0, 2, 1}, {1, 2, 3}));
             }),
             "flight.csv: channel 'v': time goes backwards at sample 3: 1 s after 2 s");
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(why([&] {
               recording.add(channel("v", {0, kNaN}, {1, 2}));
             }),
             "flight.csv: channel 'v': time stamp 2 is nan");
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(why([&] {
               recording.add(channel("v", {0, 1}, {1}));
             }),
             "flight.csv: channel 'v': 2 time stamps for 1 values");
   recording.add(channel("v", {0}, {1}));
-  EXPECT_EQ(message_of([&] { recording.add(channel("v", {0}, {1})); }), "flight.csv: channel 'v' appears twice");
+  EXPECT_EQ(why([&] { recording.add(channel("v", {0}, {1})); }), "flight.csv: channel 'v' appears twice");
   EXPECT_EQ(recording.channels().size(), 1u);
 }
 

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "tests/support/refusal.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn {
@@ -15,16 +16,6 @@ using testing::HasSubstr;
 
 Study study(std::string_view text, std::vector<std::string> overrides = {}) {
   return Study::parse(text, "study.toml", "/data", overrides);
-}
-
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Study, ReadsNumbersInSiOrWithAnyUnitOfTheDimension) {
@@ -40,18 +31,17 @@ TEST(Study, NamesFileLineAndKeyOfAWrongValue) {
   const StudyTable root =
       study("a = 1\n\n[subject]\nmass = 0\nspan = \"2 kg\"\nname = 5\nchord = \"wide\"\nbad = nan\n").root();
   const StudyTable subject = root.table("subject");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.positive("mass", "kg")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(subject.positive("mass", "kg")); }),
             "study.toml:4: subject.mass: = 0 must be > 0");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("span", "m")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(subject.number("span", "m")); }),
             "study.toml:5: subject.span: unit 'kg' is a mass [kg], expected a length [m]");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.text("name")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(subject.text("name")); }),
             "study.toml:6: subject.name: is a whole number, expected a text in quotes");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("chord", "m")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(subject.number("chord", "m")); }),
             "study.toml:7: subject.chord: 'wide' is not a number with a unit, such as \"1.5 m\"");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("bad", "m")); }),
+  EXPECT_EQ(why([&] { static_cast<void>(subject.number("bad", "m")); }),
             "study.toml:8: subject.bad: is nan, expected a finite number [m]");
-  EXPECT_EQ(message_of([&] { static_cast<void>(subject.number("area", "m^2")); }),
-            "study.toml:3: subject.area: is missing");
+  EXPECT_EQ(why([&] { static_cast<void>(subject.number("area", "m^2")); }), "study.toml:3: subject.area: is missing");
 }
 
 TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
@@ -59,8 +49,7 @@ TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
   const StudyTable subject = misspelt.root().table("subject");
   static_cast<void>(subject.number("mass", "kg"));
   static_cast<void>(subject.number_or("span", "m", 1.0));
-  EXPECT_EQ(message_of([&] { misspelt.root().finish(); }),
-            "study.toml:3: subject.spann: unknown key (did you mean 'span'?)");
+  EXPECT_EQ(why([&] { misspelt.root().finish(); }), "study.toml:3: subject.spann: unknown key (did you mean 'span'?)");
 }
 
 TEST(Study, AcceptsKeysReadThroughAnyOpeningOfATable) {
@@ -86,8 +75,8 @@ TEST(Study, OverridesKeysFromTheCommandLine) {
   EXPECT_DOUBLE_EQ(changed.root().table("data").number("rate", "Hz"), 25.0);
   EXPECT_EQ(changed.root().table("data").text("file"), "log.bin");
   EXPECT_THAT(changed.root().table("new").table("table").numbers("key", "1"), ElementsAre(1.0, 2.0));
-  EXPECT_EQ(message_of([] { static_cast<void>(study("", {"rate"})); }), "--set rate: expected key=value");
-  EXPECT_EQ(message_of([] { static_cast<void>(study("a = 1", {"a.b=1"})); }), "--set a.b=1: 'a' is not a table");
+  EXPECT_EQ(why([] { static_cast<void>(study("", {"rate"})); }), "--set rate: expected key=value");
+  EXPECT_EQ(why([] { static_cast<void>(study("a = 1", {"a.b=1"})); }), "--set a.b=1: 'a' is not a table");
 }
 
 TEST(Study, TakesRelativeFilesFromItsFolder) {
@@ -97,10 +86,8 @@ TEST(Study, TakesRelativeFilesFromItsFolder) {
 }
 
 TEST(Study, SaysWhereTheTomlIsBroken) {
-  EXPECT_THAT(message_of([] { static_cast<void>(study("a = 1\nb = = 2\n")); }),
-              HasSubstr("study.toml:2:5: not TOML: "));
-  EXPECT_THAT(message_of([] { static_cast<void>(Study::load("missing.toml")); }),
-              HasSubstr("missing.toml: no such file"));
+  EXPECT_THAT(why([] { static_cast<void>(study("a = 1\nb = = 2\n")); }), HasSubstr("study.toml:2:5: not TOML: "));
+  EXPECT_THAT(why([] { static_cast<void>(Study::load("missing.toml")); }), HasSubstr("missing.toml: no such file"));
 }
 
 TEST(Study, ParsesWhatItPrints) {

@@ -6,7 +6,7 @@ namespace veridyn {
 namespace {
 
 TEST(Text, IsTrimmedAtItsEndsOnly) {
-  EXPECT_EQ(trimmed(" \ta b\r "), "a b");
+  EXPECT_EQ(trimmed(" \ta b\r\n "), "a b");
   EXPECT_EQ(trimmed(" \t\r"), "");
 }
 
@@ -18,6 +18,8 @@ TEST(Text, IsShownPrintableAndShort) {
 }
 
 TEST(Text, CapitalsAreThoseOfAscii) { EXPECT_EQ(upper("pac2002_\xc3\xa9"), "PAC2002_\xc3\xa9"); }
+
+TEST(Text, SmallLettersAreThoseOfAscii) { EXPECT_EQ(lower("PAC2002_\xc3\x89"), "pac2002_\xc3\x89"); }
 
 }  // namespace
 }  // namespace veridyn

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
@@ -17,8 +18,6 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 MuscleStudy read(const std::string& text, const std::filesystem::path& folder = {}) {
   const Study study = Study::parse(text, "s.toml", folder);

@@ -2,15 +2,15 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace {
 using namespace veridyn::numerics;
+using veridyn::kPi;
 
-constexpr double kPi = std::numbers::pi;
 constexpr LowPassDesign kDesign{.rate_Hz = 100.0, .pass_Hz = 10.0, .stop_Hz = 15.0, .attenuation_dB = 60.0};
 
 std::vector<double> white_noise(std::size_t count) {

@@ -2,15 +2,15 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace {
 using namespace veridyn::numerics;
+using veridyn::kPi;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double worst_sine_error(double step, Interpolation method) {

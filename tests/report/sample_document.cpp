@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using std::numbers::pi;
 
 struct Parameter {

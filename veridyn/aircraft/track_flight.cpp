@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/aircraft/tracking/direct_air_data.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/recording/study_data.hpp"
@@ -15,7 +15,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Seconds read again before the first new row: filters need some, the state estimate finds its wind in them.
 constexpr double kWarmSensors_s = 3.0;
 constexpr double kWarmFilter_s = 90.0;
@@ -90,7 +89,7 @@ Recording history_recording(const FlightTracker& tracker) {
     const auto add = [&](std::string channel, std::vector<double> values) {
       // Before an estimate is usable its error bar is infinite: an empty cell.
       for (double& v : values) {
-        if (std::isinf(v)) v = std::numeric_limits<double>::quiet_NaN();
+        if (std::isinf(v)) v = kNaN;
       }
       out.add(make_channel(std::move(channel), "1", time, std::move(values)));
     };

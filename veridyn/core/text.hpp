@@ -5,11 +5,13 @@
 
 namespace veridyn {
 
-/// Without blanks, tabulators and carriage returns at both ends.
+/// Without blanks, tabulators and line ends at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
 /// ASCII letters as capitals.
 [[nodiscard]] std::string upper(std::string_view text);
+/// ASCII letters as small letters.
+[[nodiscard]] std::string lower(std::string_view text);
 
 /// Bytes of a file for a message: at most 40, what is not printable as '?'.
 [[nodiscard]] std::string shown(std::string_view text);

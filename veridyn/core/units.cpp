@@ -5,9 +5,9 @@
 #include <cctype>
 #include <charconv>
 #include <map>
-#include <numbers>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 
@@ -42,8 +42,7 @@ struct NamedUnit {
 
 // Exact by definition (NIST SP 811) but for the rounding of double.
 const std::map<std::string, NamedUnit, std::less<>>& known_units() {
-  constexpr double kPi = std::numbers::pi;
-  constexpr double kPoundForce = 0.45359237 * 9.80665;
+  constexpr double kPoundForce = 0.45359237 * kGravity;
   static const std::map<std::string, NamedUnit, std::less<>> units{
       {"m", {kLength, 1.0}},
       {"km", {kLength, 1e3}},
@@ -77,8 +76,8 @@ const std::map<std::string, NamedUnit, std::less<>>& known_units() {
       {"kt", {kSpeed, 1852.0 / 3600.0}},
       {"mph", {kSpeed, 0.44704}},
       {"kph", {kSpeed, 1.0 / 3.6}},
-      {"g", {kAcceleration, 9.80665}},
-      {"g0", {kAcceleration, 9.80665}},
+      {"g", {kAcceleration, kGravity}},
+      {"g0", {kAcceleration, kGravity}},
       {"N", {kForce, 1.0}},
       {"kN", {kForce, 1e3}},
       {"lbf", {kForce, kPoundForce}},

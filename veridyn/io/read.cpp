@@ -6,6 +6,7 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash.hpp"
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
@@ -20,9 +21,7 @@ namespace {
 enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kCsv };
 
 Format by_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower(path.extension().string());
   if (extension == ".bin") return Format::kDataFlash;
   if (extension == ".log") return Format::kDataFlashText;
   if (extension == ".ulg" || extension == ".ulog") return Format::kULog;

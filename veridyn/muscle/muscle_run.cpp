@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
 
 namespace veridyn::muscle {
@@ -102,7 +102,7 @@ std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTraje
     for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
       if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
       const bool angle = k.unit() == "rad";
-      const double unit = angle ? 180.0 / std::numbers::pi : 1.0;
+      const double unit = angle ? 180.0 / kPi : 1.0;
       said.push_back(fmt::format(
           "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
           angle ? "deg" : "m", t.time[static_cast<std::size_t>(i)],

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle::internal {
@@ -76,7 +76,7 @@ void read_start_file(const StudyTable& motion, MuscleStudy& study) {
     const Coordinate& coordinate = model.coordinates[c];
     const auto i = static_cast<Eigen::Index>(c);
     const bool degrees = table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational;
-    const double unit = degrees ? std::numbers::pi / 180.0 : 1.0;
+    const double unit = degrees ? kDegree : 1.0;
     any = any || state_column(table, coordinate.name, "value") >= 0;
     study.start.q(i) = unit * value(coordinate.name, "value", study.start.q(i) / unit);
     study.start.qdot(i) = unit * value(coordinate.name, "speed", study.start.qdot(i) / unit);

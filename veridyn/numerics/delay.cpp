@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -57,8 +57,8 @@ double interpolated(const std::vector<double>& c, double position) {
   double sum = 0.0;
   for (std::ptrdiff_t j = centre_index - kSincHalfWidth + 1; j <= centre_index + kSincHalfWidth; ++j) {
     const double u = position - static_cast<double>(j);
-    const double taper = std::cos(0.5 * std::numbers::pi * u / static_cast<double>(kSincHalfWidth));
-    const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(std::numbers::pi * u) / (std::numbers::pi * u);
+    const double taper = std::cos(0.5 * kPi * u / static_cast<double>(kSincHalfWidth));
+    const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(kPi * u) / (kPi * u);
     sum += c[static_cast<std::size_t>(j)] * sinc * taper * taper;
   }
   return sum;

@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::numerics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = kNaN;
 
 // Modified Bessel function I0 by its series; the terms fall below rounding after about 50 for x <= 20.
 double bessel_i0(double x) {

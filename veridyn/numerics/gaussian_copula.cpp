@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
@@ -33,7 +34,7 @@ Eigen::VectorXd mean_ranks(const Eigen::VectorXd& x) {
 
 }  // namespace
 
-double normal_correlation_for_uniform(double rho) { return 2.0 * std::sin(std::numbers::pi * rho / 6.0); }
+double normal_correlation_for_uniform(double rho) { return 2.0 * std::sin(kPi * rho / 6.0); }
 
 NearestCorrelation nearest_correlation(const Eigen::MatrixXd& symmetric, double floor) {
   VERIDYN_ASSERT(symmetric.rows() == symmetric.cols() && floor >= 0.0);

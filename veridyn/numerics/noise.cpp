@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -46,8 +47,7 @@ NoiseEstimate measurement_noise(std::span<const double> x, double rate_Hz, doubl
   std::vector<double> taper(length);
   double taper_power = 0.0;
   for (std::size_t k = 0; k < length; ++k) {
-    taper[k] =
-        0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(length));
+    taper[k] = 0.5 - 0.5 * std::cos(2.0 * kPi * (static_cast<double>(k) + 0.5) / static_cast<double>(length));
     taper_power += taper[k] * taper[k];
   }
   // The two bins next to the cut and next to Nyquist would mix in what lies outside.

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -165,7 +165,7 @@ PiecewisePolynomial PiecewisePolynomial::held_pieces(std::span<const double> bre
   add(end, {value});
   f.breaks_.assign(breaks.begin(), breaks.end());
   // The end itself belongs to the last piece.
-  f.breaks_.push_back(std::nextafter(end, std::numeric_limits<double>::infinity()));
+  f.breaks_.push_back(std::nextafter(end, kInfinity));
   return f;
 }
 

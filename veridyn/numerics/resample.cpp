@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -14,7 +13,7 @@
 namespace veridyn::numerics {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = kNaN;
 
 struct Samples {
   std::vector<double> time;
@@ -28,7 +27,7 @@ Samples usable_samples(std::span<const double> time, std::span<const double> val
   Samples samples;
   samples.time.reserve(time.size());
   samples.value.reserve(time.size());
-  double previous = -std::numeric_limits<double>::infinity();
+  double previous = -kInfinity;
   double equal = 0.0;
   for (std::size_t k = 0; k < time.size(); ++k) {
     if (!std::isfinite(time[k]) || time[k] < previous) {
@@ -190,7 +189,7 @@ std::vector<double> decimate(std::span<const double> x, std::size_t factor) {
 }
 
 void unwrap_angles(std::span<double> angle) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kTurn = 2.0 * kPi;
   double previous = kNan;
   for (double& a : angle) {
     if (!std::isfinite(a)) continue;

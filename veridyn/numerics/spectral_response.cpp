@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unsupported/Eigen/FFT>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::numerics {
@@ -21,7 +21,7 @@ std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<cons
   std::vector<double> window(segment);
   double power = 0.0;
   for (std::size_t i = 0; i < segment; ++i) {
-    window[i] = 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(segment)));
+    window[i] = 0.5 * (1.0 - std::cos(2.0 * kPi * static_cast<double>(i) / static_cast<double>(segment)));
     power += window[i] * window[i];
   }
   const double scale = std::sqrt(2.0 / (rate_Hz * power));
@@ -87,8 +87,8 @@ std::vector<ResponseEstimate> spectral_response(std::span<const double> input, s
     if (!(xx > 0.0)) continue;
     ResponseEstimate one{.frequency_Hz = frequency, .response = xy / xx};
     one.coherence = yy > 0.0 ? std::min(1.0, std::norm(xy) / (xx * yy)) : 0.0;
-    one.sigma = one.coherence > 0.0 ? std::sqrt((1.0 - one.coherence) / (2.0 * independent * one.coherence))
-                                    : std::numeric_limits<double>::infinity();
+    one.sigma =
+        one.coherence > 0.0 ? std::sqrt((1.0 - one.coherence) / (2.0 * independent * one.coherence)) : kInfinity;
     list.push_back(one);
     density.push_back(xx);
   }

@@ -6,9 +6,9 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::numerics {
@@ -73,7 +73,7 @@ double student_t_quantile(double p, double dof) {
 }
 
 double student_t_two_sided_p(double t, double dof) {
-  if (std::isnan(t)) return std::numeric_limits<double>::quiet_NaN();
+  if (std::isnan(t)) return kNaN;
   if (std::isinf(t)) return 0.0;
   if (dof > kNormalDof) return std::erfc(std::abs(t) / std::sqrt(2.0));
   return 2.0 * boost::math::cdf(boost::math::complement(boost::math::students_t(dof), std::abs(t)));
@@ -206,7 +206,7 @@ FitMeasures fit_measures(std::span<const double> measured, std::span<const doubl
     model2 += model[k] * model[k];
   }
   if (fit.count == 0) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double nan = kNaN;
     return {nan, nan, nan, nan, nan, 0};
   }
   const auto n = static_cast<double>(fit.count);
@@ -219,7 +219,7 @@ FitMeasures fit_measures(std::span<const double> measured, std::span<const doubl
     if (!std::isfinite(measured[k]) || !std::isfinite(model[k])) continue;
     spread += (measured[k] - mean) * (measured[k] - mean);
   }
-  fit.r2 = spread > 0.0 ? 1.0 - error2 / spread : std::numeric_limits<double>::quiet_NaN();
+  fit.r2 = spread > 0.0 ? 1.0 - error2 / spread : kNaN;
   const double scale = std::sqrt(measured2 / n) + std::sqrt(model2 / n);
   fit.theil = scale > 0.0 ? fit.rmse / scale : 0.0;
   return fit;
@@ -227,7 +227,7 @@ FitMeasures fit_measures(std::span<const double> measured, std::span<const doubl
 
 double median(std::span<const double> x) {
   std::vector<double> v = finite_values(x);
-  if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (v.empty()) return kNaN;
   const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
   std::nth_element(v.begin(), middle, v.end());
   if (v.size() % 2 == 1) return *middle;

@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/delay.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 
 namespace veridyn::recording {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A shorter recording shows too little of any delay [s].
 constexpr double kShortest_s = 10.0;
 /// Rows that the search for an effect's delay looks at: five minutes at 100 Hz are plenty.
@@ -56,7 +55,7 @@ double share_explained(const std::vector<double>& z, const std::vector<double>& 
   }
   const double total = squares - sum * sum / std::max(1.0, count);
   if (!(count > 100.0) || !(total > 0.0)) return 0.0;
-  const Eigen::VectorXd theta = normal.completeOrthogonalDecomposition().solve(right);
+  const Eigen::VectorXd theta = numerics::shortest_least_squares(normal, right);
   return 1.0 - (squares - right.dot(theta)) / total;
 }
 

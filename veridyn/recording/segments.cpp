@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -88,7 +89,7 @@ std::vector<TimeSpan> within(std::span<const TimeSpan> a, std::span<const TimeSp
 }
 
 std::vector<double> activity(std::span<const double> x, std::size_t half) {
-  std::vector<double> result(x.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> result(x.size(), kNaN);
   const auto first = std::find_if(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
   if (first == x.end()) return result;
   // Running sums, about a global offset so that they do not cancel.

@@ -7,9 +7,9 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
 
@@ -143,8 +143,8 @@ Recording read_study_data(const StudyTable& data) {
   const bool bounded = data.has("from") || data.has("to");
   whole = without_missing(whole);
   if (!bounded) return whole;
-  const double from = data.number_or("from", "s", -std::numeric_limits<double>::infinity());
-  const double to = data.number_or("to", "s", std::numeric_limits<double>::infinity());
+  const double from = data.number_or("from", "s", -kInfinity);
+  const double to = data.number_or("to", "s", kInfinity);
   if (!(from < to)) data.fail("to", fmt::format("= {} s must be later than from = {} s", to, from));
   return cut(whole, {from, to});
 }

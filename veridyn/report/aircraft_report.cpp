@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"

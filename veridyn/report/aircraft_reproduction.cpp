@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -16,8 +17,6 @@ namespace veridyn::report {
 namespace {
 
 using namespace veridyn::vehicle;
-
-constexpr double kStandardGravity = 9.80665;
 
 Verdict verdict(const VehicleAnalysis& a) {
   Verdict v;
@@ -221,8 +220,8 @@ Cornering cornering(const VehicleAnalysis& a, const VehicleParameters<double>& p
     for (std::size_t k = begin; k < end; k += stride) {
       const double u = s[DriveSignal::kSpeed].value[k], r = s[DriveSignal::kYawRate].value[k];
       const double a_y = has_ay ? s[DriveSignal::kAccelY].value[k] : u * r;
-      c.lateral.push_back(a_y / kStandardGravity);
-      c.longitudinal.push_back(has_ax ? s[DriveSignal::kAccelX].value[k] / kStandardGravity : kNaN);
+      c.lateral.push_back(a_y / kGravity);
+      c.longitudinal.push_back(has_ax ? s[DriveSignal::kAccelX].value[k] / kGravity : kNaN);
       c.extra_steer.push_back(has_steer ? (s[DriveSignal::kSteer].value[k] - p.wheelbase() * r / u) / kDegree : kNaN);
     }
   }
@@ -246,7 +245,7 @@ Section cornering_section(const VehicleAnalysis& a, const VehicleParameters<doub
                                                 [&] {
                                                   XYSeries line{
                                                       .name = "identified", .style = Style::kLine, .width = 2.0};
-                                                  const double K = understeer_gradient(p) * kStandardGravity / kDegree;
+                                                  const double K = understeer_gradient(p) * kGravity / kDegree;
                                                   double most = 0.0;
                                                   for (const double x : c.lateral)
                                                     if (std::abs(x) > most) most = std::abs(x);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/skeleton_figure.hpp"
 #include "veridyn/report/parts/remarks.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
@@ -23,7 +24,7 @@ std::vector<double> true_values(const FlightStudy& study, Coefficient c, const T
   std::vector<double> values;
   for (const double t : time) {
     const AeroModel* model = &study.true_subject->model;
-    for (const ModelChange& change : study.true_changes) {
+    for (const aircraft::ModelChange& change : study.true_changes) {
       if (t >= change.time) model = &change.model;
     }
     const CoefficientModel* coefficient = model->find(c);

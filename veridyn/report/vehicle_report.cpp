@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/vehicle_figures.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -16,8 +16,6 @@ namespace veridyn::report {
 namespace {
 
 using namespace veridyn::vehicle;
-
-constexpr double kStandardGravity = 9.80665;
 
 std::vector<Fact> facts(const SimulationStudy& study, const SimulationRun& run) {
   const VehicleParameters<double>& p = study.vehicle.parameters;
@@ -31,7 +29,7 @@ std::vector<Fact> facts(const SimulationStudy& study, const SimulationRun& run) 
       {"Driven", fmt::format("{:.2f} s, {} samples", run.trajectory.end_time, run.trajectory.size())},
       {"Integration", fmt::format("Runge-Kutta, {:g} ms", 1e3 * study.simulation.step)}};
   if (study.four_wheel.convention == FourWheelConvention::kSource) list.push_back({"Convention", "of the source"});
-  if (study.four_wheel.gravity != kStandardGravity)
+  if (study.four_wheel.gravity != kGravity)
     list.push_back({"Gravity", fmt::format("{:g} m/s^2", study.four_wheel.gravity)});
   return list;
 }
@@ -40,7 +38,7 @@ Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   const VehicleTrajectory& t = run.trajectory;
   Verdict v;
   const bool clean = t.end == SimulationEnd::kCompleted && t.lift_offs.empty();
-  v.level = clean ? Level::kGood : t.end == SimulationEnd::kNotFinite ? Level::kBad : Level::kCaution;
+  v.level = clean ? Level::kGood : t.end == SimulationEnd::kDiverged ? Level::kBad : Level::kCaution;
   v.word = t.end == SimulationEnd::kCompleted ? "Driven" : "Ended early";
   std::string headline = t.message();
   headline[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(headline[0])));
@@ -48,15 +46,15 @@ Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   if (!t.lateral_acceleration.empty()) {
     const auto [low, high] = std::minmax_element(t.lateral_acceleration.begin(), t.lateral_acceleration.end());
     v.lines.push_back(fmt::format("Largest lateral acceleration {:.2f} m/s^2 ({:.2f} g).", std::max(-*low, *high),
-                                  std::max(-*low, *high) / kStandardGravity));
+                                  std::max(-*low, *high) / kGravity));
   }
   const BicycleCharacteristics<double>& c = run.characteristics;
   const double K = c.understeer_gradient;
   v.lines.push_back(std::isfinite(c.critical_speed)
-                        ? fmt::format("Oversteering: {:.3g} deg/g; unstable above {:.4g} m/s.",
-                                      K * kStandardGravity / kDegree, c.critical_speed)
+                        ? fmt::format("Oversteering: {:.3g} deg/g; unstable above {:.4g} m/s.", K * kGravity / kDegree,
+                                      c.critical_speed)
                         : fmt::format("Understeering: {:.3g} deg/g; characteristic speed {:.4g} m/s.",
-                                      K * kStandardGravity / kDegree, c.characteristic_speed));
+                                      K * kGravity / kDegree, c.characteristic_speed));
   if (!study.vehicle.assumed.empty())
     v.lines.push_back(
         fmt::format("{} numbers that this model does not need were assumed.", study.vehicle.assumed.size()));
@@ -128,14 +126,14 @@ Table mode_table(const std::string& title, const std::vector<AnyMode>& modes) {
 
 ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
   const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
-  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * std::numbers::pi), "Hz"};
+  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * kPi), "Hz"};
   static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
       {"rad", "deg", 1.0 / kDegree},
       {"rad/s", "deg/s", 1.0 / kDegree},
       {"rad/s^2", "deg/s^2", 1.0 / kDegree},
       {"s rad", "s deg", 1.0 / kDegree},
-      {"rad s^2/m", "deg/g", kStandardGravity / kDegree},
-      {"rad/(m/s^2)", "deg/g", kStandardGravity / kDegree},
+      {"rad s^2/m", "deg/g", kGravity / kDegree},
+      {"rad/(m/s^2)", "deg/g", kGravity / kDegree},
       {"m/s^2/rad", "m/s^2/deg", kDegree},
       {"m/(s^2 rad)", "m/s^2/deg", kDegree},
   }};

@@ -1,8 +1,8 @@
 #include "veridyn/vehicle/track_drive.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/numerics/filters.hpp"
@@ -12,7 +12,6 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Noise of the sensors is learned from the beginning of a drive [s].
 constexpr double kLearn_s = 20.0;
 /// Read again before the first new sample, for the interpolation [s].
@@ -122,7 +121,7 @@ Recording history_recording(const DriveTracker& tracker) {
     const TimeBase time = make_time_base(h.time);
     const auto add = [&](std::string channel, const std::string& of, std::vector<double> values) {
       for (double& v : values) {
-        if (std::isinf(v)) v = std::numeric_limits<double>::quiet_NaN();
+        if (std::isinf(v)) v = kNaN;
       }
       out.add(make_channel(std::move(channel), of, time, std::move(values)));
     };

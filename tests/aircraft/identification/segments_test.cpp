@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -14,7 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kStep = 0.02;
 
 /// 200 s: on the ground until 20 s; elevator doublets with a pitching answer at 60..90 s, aileron at 120..140 s; a

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include "tests/support/refusal.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -10,16 +11,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 AeroVariables<double> some_variables() {
   return {.alpha = 0.12,
@@ -79,9 +70,7 @@ TEST(Term, NamesItsParameterAsTheLiteratureDoes) {
 }
 
 TEST(Term, RefusesWhatItDoesNotKnowNamingTheNearest) {
-  const auto message = [](std::string_view t) {
-    return message_of([&] { static_cast<void>(parse_term(t, "s.toml:3")); });
-  };
+  const auto message = [](std::string_view t) { return why([&] { static_cast<void>(parse_term(t, "s.toml:3")); }); };
   EXPECT_EQ(message("alhpa"), "s.toml:3: term 'alhpa': unknown variable 'alhpa' (did you mean 'alpha'?)");
   EXPECT_THAT(message("alpha*"), HasSubstr("a factor is missing"));
   EXPECT_THAT(message(""), HasSubstr("an empty term"));
@@ -195,15 +184,15 @@ TEST(AeroModel, ReadsValuesAndStructureFromAStudyAndWritesThemBack) {
 }
 
 TEST(AeroModel, RefusesWrongModelsWithPlaceAndRule) {
-  EXPECT_EQ(message_of([] { read("[model]\nCL = [\"1\", \"alhpa\"]\n"); }),
+  EXPECT_EQ(why([] { read("[model]\nCL = [\"1\", \"alhpa\"]\n"); }),
             "s.toml:2: model.CL: term 'alhpa': unknown variable 'alhpa' (did you mean 'alpha'?)");
-  EXPECT_THAT(message_of([] { read("[model]\nCL = { alpha = 1, \"1*alpha\" = 2 }\n"); }), HasSubstr("is there twice"));
-  EXPECT_THAT(message_of([] { read("[model]\nCX = [\"1\"]\n"); }), HasSubstr("unknown coefficient"));
-  EXPECT_THAT(message_of([] { read("[model]\nCL = 3\n"); }), HasSubstr("neither a list of terms"));
-  EXPECT_THAT(message_of([] { read("[model]\nCL = []\n"); }), HasSubstr("has no terms"));
-  EXPECT_THAT(message_of([] { read("[model]\nCL = { alpha = \"wide\" }\n"); }), HasSubstr("model.CL.alpha"));
-  EXPECT_THAT(message_of([] { read("[model]\n[model.stall]\nM = -1\n"); }), HasSubstr("must be > 0"));
-  EXPECT_THAT(message_of([] { read("[model]\n[model.stall]\nshape = 1\n"); }), HasSubstr("shape"));
+  EXPECT_THAT(why([] { read("[model]\nCL = { alpha = 1, \"1*alpha\" = 2 }\n"); }), HasSubstr("is there twice"));
+  EXPECT_THAT(why([] { read("[model]\nCX = [\"1\"]\n"); }), HasSubstr("unknown coefficient"));
+  EXPECT_THAT(why([] { read("[model]\nCL = 3\n"); }), HasSubstr("neither a list of terms"));
+  EXPECT_THAT(why([] { read("[model]\nCL = []\n"); }), HasSubstr("has no terms"));
+  EXPECT_THAT(why([] { read("[model]\nCL = { alpha = \"wide\" }\n"); }), HasSubstr("model.CL.alpha"));
+  EXPECT_THAT(why([] { read("[model]\n[model.stall]\nM = -1\n"); }), HasSubstr("must be > 0"));
+  EXPECT_THAT(why([] { read("[model]\n[model.stall]\nshape = 1\n"); }), HasSubstr("shape"));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(StandardAtmosphere, MatchesThePublishedTable) {
 TEST(StandardAtmosphere, IsInHydrostaticEquilibriumInBothLayersAndContinuousBetweenThem) {
   for (const double h : {-2000.0, 0.0, 3000.0, 10500.0, 11500.0, 18000.0}) {
     const double slope = (standard_atmosphere(h + 1.0).pressure - standard_atmosphere(h - 1.0).pressure) / 2.0;
-    EXPECT_NEAR(slope / (-standard_atmosphere(h).density * kStandardGravity), 1.0, 1e-6) << h;
+    EXPECT_NEAR(slope / (-standard_atmosphere(h).density * kGravity), 1.0, 1e-6) << h;
   }
   EXPECT_NEAR(standard_atmosphere(11000.0 - 1e-6).pressure, standard_atmosphere(11000.0).pressure, 1e-4);
 }

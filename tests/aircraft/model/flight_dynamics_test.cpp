@@ -59,7 +59,7 @@ State fly_free(double duration, int steps) {
   State x = tumbling();
   const double h = duration / steps;
   const auto rate = [](double, const State& s) {
-    return rigid_body_rate<double>(s, kBody, Vector3d::Zero(), Vector3d::Zero(), kStandardGravity);
+    return rigid_body_rate<double>(s, kBody, Vector3d::Zero(), Vector3d::Zero(), kGravity);
   };
   for (int i = 0; i < steps; ++i) {
     x = numerics::runge_kutta_4_step(rate, i * h, x, h);
@@ -83,7 +83,7 @@ TEST(RigidBody, FallsOnAParabola) {
   const State b = fly_free(3.0, 100);
   EXPECT_NEAR(b(0), 30.0, 1e-11);
   EXPECT_NEAR(b(1), 9.0, 1e-11);
-  EXPECT_NEAR(b(2), -60.0 + 0.5 * kStandardGravity * 9.0, 1e-11);
+  EXPECT_NEAR(b(2), -60.0 + 0.5 * kGravity * 9.0, 1e-11);
 }
 
 TEST(RigidBody, ConvergesWithTheFourthPowerOfTheStep) {
@@ -107,8 +107,8 @@ TEST(FlightDynamics, TheWindAxesEquationsAgreeWithTheBodyAxesDynamics) {
     const AeroLoads<double> loads = aero_loads<double>(s, v, omega, some_controls(), 1.2);
 
     // Exact body-axes dynamics, then air data of v + t v' by automatic differentiation.
-    const Vector3d acceleration = loads.force / s.mass - omega.cross(v) +
-                                  numerics::R_body_from_ned(phi, theta, 0.3) * Vector3d(0, 0, kStandardGravity);
+    const Vector3d acceleration =
+        loads.force / s.mass - omega.cross(v) + numerics::R_body_from_ned(phi, theta, 0.3) * Vector3d(0, 0, kGravity);
     Eigen::Matrix<Jet, 3, 1> moving;
     for (int k = 0; k < 3; ++k) {
       moving(k) = Jet(v(k));
@@ -128,7 +128,7 @@ TEST(FlightDynamics, TheWindAxesEquationsAgreeWithTheBodyAxesDynamics) {
     in.thrust = loads.propulsion.thrust;
     in.dynamic_pressure_area = loads.dynamic_pressure * s.wing_area;
     in.mass = s.mass;
-    in.gravity = kStandardGravity;
+    in.gravity = kGravity;
     const WindAxesRate<double> rate = wind_axes_rate(Va, alpha, beta, in);
     EXPECT_NEAR(rate.Va, expected.Va.v[0], 1e-12 * (1 + std::abs(rate.Va)));
     EXPECT_NEAR(rate.alpha, expected.alpha.v[0], 1e-12);

@@ -214,25 +214,24 @@ TEST(Jsbsim, BothModelsFlyTheSameTenSeconds) {
     if (!s.inertia || !s.model.unknown_parameters().empty()) continue;
     JsbsimAircraft file(write_jsbsim(s));
     const MassProperties ours(s.mass, s.inertia->matrix()), theirs = file.mass();
-    using State = RigidBodyState<double>;
     const auto controls = [&](double t) {
       Controls<double> c{0.03 * std::sin(2.0 * t), 0.02 * std::sin(3.0 * t), 0.03 * std::cos(1.5 * t),
                          0.5 + 0.3 * std::sin(0.7 * t), 0.0};
       c.rotor_speed = s.propulsion.steady_rotor_speed(c.throttle);
       return c;
     };
-    const auto rate_of_file = [&](double t, const State& x) {
+    const auto rate_of_file = [&](double t, const RigidBodyState<double>& x) {
       const Eigen::Vector3d v_r = R_body_from_ned(x) * x.segment<3>(3);
       const Controls<double> c = controls(t);
       const JsbsimAircraft::Loads l = file.loads(v_r, x.tail<3>(), c, 1.2, c.throttle);
       return rigid_body_rate<double>(x, theirs, l.force, l.moment, 9.80665);
     };
-    const auto rate_of_subject = [&](double t, const State& x) {
+    const auto rate_of_subject = [&](double t, const RigidBodyState<double>& x) {
       return aircraft_rate<double>(s, ours, x, controls(t), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 1.2,
                                    9.80665);
     };
     const auto fly = [](const auto& rate) {
-      State x = State::Zero();
+      RigidBodyState<double> x = RigidBodyState<double>::Zero();
       x(2) = -200.0, x(3) = 20.0, x(5) = 0.5, x(9) = 1.0;
       const double h = 0.01;
       for (int i = 0; i < 1000; ++i) {
@@ -241,7 +240,7 @@ TEST(Jsbsim, BothModelsFlyTheSameTenSeconds) {
       }
       return x;
     };
-    const State a = fly(rate_of_subject), b = fly(rate_of_file);
+    const RigidBodyState<double> a = fly(rate_of_subject), b = fly(rate_of_file);
     EXPECT_GT((a.head<3>() - Eigen::Vector3d(0, 0, -200)).norm(), 10.0) << name << " must have flown";
     EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-7) << name;
   }

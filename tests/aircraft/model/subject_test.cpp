@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Subject read(std::string_view text) {
+Subject parsed_subject(std::string_view text) {
   const Study study = Study::parse(text, "s.toml");
   Subject s = read_subject(study.root().table("subject"));
   study.root().finish();
@@ -17,7 +17,7 @@ Subject read(std::string_view text) {
 
 std::string message(std::string_view text) {
   try {
-    read(text);
+    parsed_subject(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -29,7 +29,7 @@ constexpr std::string_view kGeometry = "[subject]\nmass = 2\nwing_area = 0.45\ns
 TEST(Subject, EveryBuiltInOneReadsBackEqualFromItsOwnFile) {
   for (const std::string& name : builtin_subject_names()) {
     const Subject s = builtin_subject(name);
-    EXPECT_TRUE(read(write_subject_toml(s)) == s) << write_subject_toml(s);
+    EXPECT_TRUE(parsed_subject(write_subject_toml(s)) == s) << write_subject_toml(s);
     EXPECT_FALSE(s.sign_convention.empty());
     EXPECT_TRUE(s.model.unknown_parameters().empty());
   }
@@ -46,7 +46,7 @@ TEST(Subject, SaysThatThePublishedInertiaOfX8AndThorIsImpossible) {
 }
 
 TEST(Subject, OverridesWhatABuiltInOneSays) {
-  const Subject s = read(
+  const Subject s = parsed_subject(
       "[subject]\nbuiltin = \"unatrap\"\nname = \"mine\"\nmass = \"27.8 lb\"\n[subject.model]\nCm = [\"1\", "
       "\"alpha\"]\n"
       "[subject.actuators.elevator]\nupper = \"15 deg\"\n[subject.propulsion]\nposition = [-1, 0, 0.1]\n");
@@ -61,7 +61,7 @@ TEST(Subject, OverridesWhatABuiltInOneSays) {
 }
 
 TEST(Subject, WithoutInertiaIsASubjectWithoutMoments) {
-  const Subject s = read(kGeometry);
+  const Subject s = parsed_subject(kGeometry);
   EXPECT_FALSE(s.inertia.has_value());
   EXPECT_NEAR(s.aspect_ratio(), 1.88 * 1.88 / 0.45, 1e-14);
 }

@@ -64,7 +64,7 @@ TEST(Trim, IsFoundForEveryBuiltInAircraftAndReallySteady) {
       for (int i = 0; i < 200; ++i) {
         x = numerics::runge_kutta_4_step(
             [&](double, const RigidBodyState<double>& y) {
-              return aircraft_rate<double>(s, body, y, t.controls, zero, zero, kSeaLevelDensity, kStandardGravity);
+              return aircraft_rate<double>(s, body, y, t.controls, zero, zero, kSeaLevelDensity, kGravity);
             },
             0.0, x, 0.0025);
       }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/kalman/kalman_filter.hpp"
 #include "veridyn/estimation/kalman/smoother.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -14,7 +15,6 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kDeg = M_PI / 180.0;
 const DrydenSettings kModerate{200.0, 200.0, 50.0, 2.12, 2.12, 1.4};
 const DrydenSettings kLight{200.0, 200.0, 50.0, 1.06, 1.06, 0.7};
 
@@ -27,22 +27,22 @@ TEST(InformationBound, ReproducesTheSpecificationsValues) {
   for (const Printed& p :
        {Printed{kModerate, 15.0, 0.45, 0.37, 0.41, 0.33}, Printed{kModerate, 25.0, 0.41, 0.34, 0.37, 0.29},
         Printed{kLight, 15.0, 0.35, 0.27, 0.31, 0.24}}) {
-    const auto b = information_bound(p.spectrum, p.speed, 0.6 * kDeg, 100.0);
+    const auto b = information_bound(p.spectrum, p.speed, 0.6 * kDegree, 100.0);
     // Half of the last printed digit. One value rounds otherwise: alpha, smoother, 25 m/s is 0.3347, printed 0.34.
-    EXPECT_NEAR(b.alpha.filter / kDeg, p.alpha_filter, 0.0055);
-    EXPECT_NEAR(b.alpha.smoother / kDeg, p.alpha_smoother, 0.0055);
-    EXPECT_NEAR(b.beta.filter / kDeg, p.beta_filter, 0.0055);
-    EXPECT_NEAR(b.beta.smoother / kDeg, p.beta_smoother, 0.0055);
+    EXPECT_NEAR(b.alpha.filter / kDegree, p.alpha_filter, 0.0055);
+    EXPECT_NEAR(b.alpha.smoother / kDegree, p.alpha_smoother, 0.0055);
+    EXPECT_NEAR(b.beta.filter / kDegree, p.beta_filter, 0.0055);
+    EXPECT_NEAR(b.beta.smoother / kDegree, p.beta_smoother, 0.0055);
   }
 }
 
 TEST(InformationBound, GrowsWithNoiseAndTurbulenceAndShrinksWithRate) {
-  const auto b = information_bound(kModerate, 20.0, 0.6 * kDeg, 100.0);
-  EXPECT_GT(information_bound(kModerate, 20.0, 0.7 * kDeg, 100.0).alpha.filter, b.alpha.filter);
-  EXPECT_LT(information_bound(kLight, 20.0, 0.6 * kDeg, 100.0).beta.smoother, b.beta.smoother);
-  EXPECT_LT(information_bound(kModerate, 20.0, 0.6 * kDeg, 200.0).alpha.smoother, b.alpha.smoother);
+  const auto b = information_bound(kModerate, 20.0, 0.6 * kDegree, 100.0);
+  EXPECT_GT(information_bound(kModerate, 20.0, 0.7 * kDegree, 100.0).alpha.filter, b.alpha.filter);
+  EXPECT_LT(information_bound(kLight, 20.0, 0.6 * kDegree, 100.0).beta.smoother, b.beta.smoother);
+  EXPECT_LT(information_bound(kModerate, 20.0, 0.6 * kDegree, 200.0).alpha.smoother, b.alpha.smoother);
   EXPECT_LT(b.alpha.smoother, b.alpha.filter);
-  EXPECT_LT(b.alpha.filter, 0.6 * kDeg);
+  EXPECT_LT(b.alpha.filter, 0.6 * kDegree);
 }
 
 // The gust alone: two states and the vane.
@@ -90,7 +90,7 @@ struct GustReplay {
 // Long simulation of the linear problem with the filter and smoother of the estimation room: 2000 s, several hundred
 // correlation times, so that the sample RMS scatters by about a percent.
 TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
-  constexpr double kSpeed = 15.0, kSigma = 0.6 * kDeg;
+  constexpr double kSpeed = 15.0, kSigma = 0.6 * kDegree;
   Gust model;
   const double b = kSpeed / kModerate.Lw, theta = b * 0.01;
   // From the continuous model by its matrix exponential and the Lyapunov balance, in unscaled canonical states.
@@ -143,16 +143,16 @@ TEST(InformationBound, ReproducesTheSpecificationsValuesForAKnownAircraft) {
   ASSERT_TRUE(at15.usable && at20.usable);
   // 0.0749 and 0.0741: the normal force also holds drag's share (slope 3.73 where CL_alpha is 3.607; lift alone would
   // give 0.0775, which prints as 0.08).
-  EXPECT_NEAR(at15.angles.alpha.filter / kDeg, 0.0775 * 3.607 / 3.73, 0.001);
-  EXPECT_LT(at15.angles.alpha.filter / kDeg, 0.08);
+  EXPECT_NEAR(at15.angles.alpha.filter / kDegree, 0.0775 * 3.607 / 3.73, 0.001);
+  EXPECT_LT(at15.angles.alpha.filter / kDegree, 0.08);
   EXPECT_LT(at15.angles.alpha.smoother, at15.angles.alpha.filter);
   EXPECT_NEAR(at15.angles.alpha.smoother / at15.angles.alpha.filter, 1.0, 0.02);  // 0.08 and 0.08 are printed
-  EXPECT_NEAR(at15.angles.beta.filter / kDeg, 0.28, 0.005);
-  EXPECT_NEAR(at15.angles.beta.smoother / kDeg, 0.24, 0.005);
-  EXPECT_NEAR(at20.angles.alpha.filter / kDeg, 0.04, 0.005);
-  EXPECT_NEAR(at20.angles.alpha.smoother / kDeg, 0.04, 0.005);
-  EXPECT_NEAR(at20.angles.beta.filter / kDeg, 0.19, 0.005);
-  EXPECT_NEAR(at20.angles.beta.smoother / kDeg, 0.17, 0.005);
+  EXPECT_NEAR(at15.angles.beta.filter / kDegree, 0.28, 0.005);
+  EXPECT_NEAR(at15.angles.beta.smoother / kDegree, 0.24, 0.005);
+  EXPECT_NEAR(at20.angles.alpha.filter / kDegree, 0.04, 0.005);
+  EXPECT_NEAR(at20.angles.alpha.smoother / kDegree, 0.04, 0.005);
+  EXPECT_NEAR(at20.angles.beta.filter / kDegree, 0.19, 0.005);
+  EXPECT_NEAR(at20.angles.beta.smoother / kDegree, 0.17, 0.005);
 }
 
 // An accelerometer that tells nothing leaves the bound of who does not know the aircraft, computed by the other
@@ -160,7 +160,7 @@ TEST(InformationBound, ReproducesTheSpecificationsValuesForAKnownAircraft) {
 TEST(InformationBound, IsTheModelFreeOneWhenTheAccelerometerTellsNothing) {
   const auto b = information_bound(kModerate, unatrap_without_stall(), 20.0,
                                    {.accelerometer = 1e6, .dynamic_pressure = 0.0, .airspeed_known = true});
-  const auto free = information_bound(kModerate, 20.0, 0.6 * kDeg, 100.0);
+  const auto free = information_bound(kModerate, 20.0, 0.6 * kDegree, 100.0);
   // At an angle of attack, alpha also turns with the gust along x, which is known here, and beta's gain is 1/Va still.
   EXPECT_NEAR(b.angles.alpha.filter / free.alpha.filter, 1.0, 0.01);
   EXPECT_NEAR(b.angles.alpha.smoother / free.alpha.smoother, 1.0, 0.01);

@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/reconstruction/guarded_filter.hpp"
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -26,7 +27,6 @@ using testing::linear_unatrap;
 using testing::reconstructed;
 using testing::reference_options;
 
-constexpr double kDeg = M_PI / 180.0;
 using Model = ModelBasedAirData<true>;
 
 Model some_model(const Subject& subject) {
@@ -36,7 +36,7 @@ Model some_model(const Subject& subject) {
   return model;
 }
 
-Model::State<double> some_state() {
+Model::State<double> model_based_state() {
   Model::State<double> x;
   x.attitude = numerics::quaternion_from_euler(0.4, 0.2, 2.0);
   x.velocity = x.attitude * Eigen::Vector3d(19.0, 1.0, 2.0) + Eigen::Vector3d(3.0, -4.0, 0.2);
@@ -64,7 +64,7 @@ Model::Input some_input() {
 TEST(ModelBasedAirData, ObeysTheWindAxesEquationsInStillAir) {
   const Subject subject = builtin_subject("unatrap", "test");
   const Model model = some_model(subject);
-  Model::State<double> x = some_state();
+  Model::State<double> x = model_based_state();
   x.gust.setZero();
   x.imu_bias.setZero();
   x.imu_scale.setZero();
@@ -100,7 +100,7 @@ TEST(ModelBasedAirData, IntegratesWithSecondOrder) {
   const Subject subject = builtin_subject("unatrap", "test");
   const Model model = some_model(subject);
   const auto go = [&](int steps) {
-    Model::State<double> x = some_state();
+    Model::State<double> x = model_based_state();
     Model::Input u = some_input();
     u.gyro.setZero();
     for (int k = 0; k < steps; ++k) x = model.propagate<double>(x, u, 0.2 / steps);
@@ -115,14 +115,14 @@ TEST(ModelBasedAirData, TransitionEqualsFiniteDifferences) {
   const Subject subject = builtin_subject("unatrap", "test");
   const Model model = some_model(subject);
   Model::State<double> after;
-  const auto F = estimation::transition(model, some_state(), some_input(), 0.01, after);
+  const auto F = estimation::transition(model, model_based_state(), some_input(), 0.01, after);
   constexpr double h = 1e-6;
   for (int j = 0; j < Model::kStates; ++j) {
     Model::Vector e = Model::Vector::Zero();
     e(j) = h;
-    const auto plus = model.propagate<double>(Model::retract<double>(some_state(), e), some_input(), 0.01);
+    const auto plus = model.propagate<double>(Model::retract<double>(model_based_state(), e), some_input(), 0.01);
     const auto minus =
-        model.propagate<double>(Model::retract<double>(some_state(), Model::Vector(-e)), some_input(), 0.01);
+        model.propagate<double>(Model::retract<double>(model_based_state(), Model::Vector(-e)), some_input(), 0.01);
     const Model::Vector column = (Model::local<double>(after, plus) - Model::local<double>(after, minus)) / (2.0 * h);
     EXPECT_LT((F.col(j) - column.head<Model::kDynamic>()).cwiseAbs().maxCoeff(), 1e-7) << "error component " << j;
   }
@@ -134,15 +134,16 @@ TEST(ModelBasedAirData, AccelerometerRowsEqualFiniteDifferences) {
   constexpr double h = 1e-6;
   double noise = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const Model::Vector H = Model::row(predict_specific_force(model, some_state(), some_input(), axis, 0.006, noise));
+    const Model::Vector H =
+        Model::row(predict_specific_force(model, model_based_state(), some_input(), axis, 0.006, noise));
     EXPECT_GT(noise, 0.0);
     for (int j = 0; j < Model::kStates; ++j) {
       Model::Vector e = Model::Vector::Zero();
       e(j) = h;
       const auto at = [&](const Model::Vector& step) {
         double unused = 0.0;
-        return predict_specific_force(model, Model::retract<double>(some_state(), step), some_input(), axis, 0.006,
-                                      unused)
+        return predict_specific_force(model, Model::retract<double>(model_based_state(), step), some_input(), axis,
+                                      0.006, unused)
             .value;
       };
       EXPECT_NEAR(H(j), (at(e) - at(Model::Vector(-e))) / (2.0 * h), 1e-5) << "axis " << axis << ", component " << j;
@@ -176,7 +177,7 @@ void compare(double airspeed, int seeds, double duration) {
     }
   }
   for (const FilterError& e : mean) {
-    const double unit = e.quantity == "alpha" || e.quantity == "beta" ? kDeg : 1.0;
+    const double unit = e.quantity == "alpha" || e.quantity == "beta" ? kDegree : 1.0;
     std::printf("  %2.0f m/s %-17s model-free %.3f / %.3f, model-based %.3f / %.3f, bound %.3f / %.3f\n", airspeed,
                 e.quantity.c_str(), e.model_free.filter_rms / unit, e.model_free.smoother_rms / unit,
                 e.model_based.filter_rms / unit, e.model_based.smoother_rms / unit, e.model_based.filter_bound / unit,
@@ -209,8 +210,8 @@ TEST(ModelBasedFilter, ReachesTheSpecificationsBoundWhereTheAirspeedIsKnown) {
   const ModelBound b = information_bound(gust_spectrum("low_moderate"), f.subject, 20.0, {.airspeed_known = true});
   const double filter = testing::rms_error(r.filtered, f.truth, "alpha", 30.0);
   const double smoother = testing::rms_error(r.smoothed, f.truth, "alpha", 30.0);
-  std::printf("  alpha %.4f / %.4f deg, bound %.4f / %.4f\n", filter / kDeg, smoother / kDeg,
-              b.angles.alpha.filter / kDeg, b.angles.alpha.smoother / kDeg);
+  std::printf("  alpha %.4f / %.4f deg, bound %.4f / %.4f\n", filter / kDegree, smoother / kDegree,
+              b.angles.alpha.filter / kDegree, b.angles.alpha.smoother / kDegree);
   EXPECT_LT(filter, 1.2 * b.angles.alpha.filter);
   EXPECT_LT(smoother, 1.2 * b.angles.alpha.smoother);
 }
@@ -279,7 +280,7 @@ TEST(GuardedFilter, StaysWithARightModel) {
   const Reconstruction r = reconstructed(f, o);
   EXPECT_EQ(r.guard->falls, 0U);
   EXPECT_EQ(r.guard->model_based_share, 1.0);
-  EXPECT_LT(testing::rms_error(r.filtered, f.truth, "alpha"), 0.12 * kDeg);
+  EXPECT_LT(testing::rms_error(r.filtered, f.truth, "alpha"), 0.12 * kDegree);
 }
 
 TEST(GuardedFilter, FallsBackFromAWrongModelAndIsThenAsGoodAsTheModelFreeFilter) {

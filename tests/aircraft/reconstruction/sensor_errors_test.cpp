@@ -10,6 +10,7 @@
 #include <map>
 
 #include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -17,8 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 using testing::MadeFlight;
 using testing::make_flight;
-
-constexpr double kDeg = M_PI / 180.0;
 
 TEST(SensorErrors, AreJudgedByWhatTheFlightAddsToThePrior) {
   Eigen::MatrixXd C(3, 3);
@@ -41,7 +40,7 @@ TEST(SensorErrors, AreJudgedByWhatTheFlightAddsToThePrior) {
 /// Errors put into made flights, estimated, in units of the printed sigma: their root mean square over the seeds.
 std::map<std::string, double> normalised_errors(int seeds, double duration, bool beta) {
   const std::map<std::string, double> truth{
-      {"alpha_bias", 2.0 * kDeg}, {"beta_bias", -1.0 * kDeg}, {"pitot_scale", 0.06}};
+      {"alpha_bias", 2.0 * kDegree}, {"beta_bias", -1.0 * kDegree}, {"pitot_scale", 0.06}};
   std::map<std::string, double> squares;
   for (int seed = 1; seed <= seeds; ++seed) {
     MadeFlight f = make_flight({.duration = duration, .seed = static_cast<std::uint64_t>(seed)});

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "tests/support/refusal.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -14,8 +15,6 @@ namespace {
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Channel channel(std::string name, std::string_view unit, std::vector<double> value) {
   std::vector<double> time(value.size());
@@ -27,16 +26,6 @@ MappedRecording map(const Recording& log, const std::string& table = "", Surface
   static std::vector<Study> studies;  // keeps the document alive
   studies.push_back(Study::parse("[map]\n" + table, "study.toml"));
   return map_channels(log, studies.back().root().table("map"), throws);
-}
-
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 Recording log_with(std::vector<Channel> channels) {
@@ -87,26 +76,26 @@ TEST(ChannelMap, TakesAChannelAwayOnRequest) {
 
 TEST(ChannelMap, SaysWhatIsWrongWithAMapping) {
   const Recording log = log_with({channel("ARSP.Airspeed", "m/s", {15, 16}), channel("RCOU.C2", "1", {1500, 1600})});
-  EXPECT_EQ(message_of([&] { map(log, "airspede = \"ARSP.Airspeed\"\n"); }),
+  EXPECT_EQ(why([&] { map(log, "airspede = \"ARSP.Airspeed\"\n"); }),
             "study.toml:2: map.airspede: is not a standard channel (did you mean 'airspeed'?)");
-  EXPECT_EQ(message_of([&] { map(log, "airspeed = \"ARSP.Airsped\"\n"); }),
+  EXPECT_EQ(why([&] { map(log, "airspeed = \"ARSP.Airsped\"\n"); }),
             "study.toml:2: map.airspeed: flight.bin has no channel 'ARSP.Airsped' (did you mean 'ARSP.Airspeed'?)");
-  EXPECT_EQ(message_of([&] { map(log, "alpha = \"ARSP.Airspeed\"\n"); }),
+  EXPECT_EQ(why([&] { map(log, "alpha = \"ARSP.Airspeed\"\n"); }),
             "study.toml:2: map.alpha: channel 'ARSP.Airspeed' is in [m/s], but alpha is in [rad]");
-  EXPECT_THAT(message_of([&] { map(log, "alpha = { channel = \"RCOU.C2\", unit = \"kg\" }\n"); }),
+  EXPECT_THAT(why([&] { map(log, "alpha = { channel = \"RCOU.C2\", unit = \"kg\" }\n"); }),
               HasSubstr("study.toml:2: map.alpha.unit: unit 'kg' is a mass [kg], expected an angle [rad]"));
 }
 
 TEST(ChannelMap, RefusesAFrameWithZUp) {
   Recording log = log_with({channel("airspeed", "m/s", {1, 2})});
   log.frame = Frame::kFlu;
-  EXPECT_THAT(message_of([&] { map(log); }), HasSubstr("its frame is flu"));
+  EXPECT_THAT(why([&] { map(log); }), HasSubstr("its frame is flu"));
 }
 
 TEST(ChannelMap, ListsWhatALogHasWhenSomethingIsMissing) {
   const MappedRecording mapped = map(log_with({channel("airspeed", "m/s", {15, 16})}));
   const std::vector<std::string> needed{"gyro_x", "airspeed"};
-  EXPECT_EQ(message_of([&] { require_channels(mapped, needed, "the rates"); }),
+  EXPECT_EQ(why([&] { require_channels(mapped, needed, "the rates"); }),
             "flight.bin: has no gyro_x (standard names log), which is needed for the rates; it has airspeed");
 }
 

@@ -33,7 +33,7 @@ Eigen::MatrixXd correlated_errors(double ratio) {
   return W;
 }
 
-Eigen::VectorXd true_theta() {
+Eigen::VectorXd true_parameters() {
   Eigen::VectorXd theta(4);
   theta << 0.5, -0.7, 0.3, -1.2;
   return theta;
@@ -65,7 +65,7 @@ TEST(TotalLeastSquares, GivesTheOrthogonalLineOfDemingsClosedForm) {
 // Van Huffel & Vandewalle (1991), theorem 2.7: (X'X - s_min^2 I) theta = X'z, without any SVD of ours.
 TEST(TotalLeastSquares, SolvesTheCorrectedNormalEquations) {
   RowMatrix X = RowMatrix::Random(300, 4);
-  const Eigen::VectorXd z = X * true_theta() + 0.1 * Eigen::VectorXd::Random(300);
+  const Eigen::VectorXd z = X * true_parameters() + 0.1 * Eigen::VectorXd::Random(300);
   RegressionData data;
   data.regressors = X;
   data.regressand = z;
@@ -79,7 +79,7 @@ TEST(TotalLeastSquares, SolvesTheCorrectedNormalEquations) {
 
 TEST(GeneralisedTotalLeastSquares, EqualsTheDirectSvdOfTheWhitenedMatrix) {
   // No exact column, so D C^-1 exists: with the constant replaced by another noisy regressor.
-  auto s = simulate_regression(5, true_theta(), correlated_errors(0.5));
+  auto s = simulate_regression(5, true_parameters(), correlated_errors(0.5));
   Eigen::MatrixXd W = s.data.error_covariance;
   W(0, 0) = 0.3;
   s.data.error_covariance = W;
@@ -95,7 +95,7 @@ TEST(GeneralisedTotalLeastSquares, EqualsTheDirectSvdOfTheWhitenedMatrix) {
 
 // An exact constant takes the means away: mixed OLS-TLS on the columns without their means.
 TEST(GeneralisedTotalLeastSquares, TreatsAnExactConstantLikeRemovedMeans) {
-  const auto s = simulate_regression(6, true_theta(), correlated_errors(0.5));
+  const auto s = simulate_regression(6, true_parameters(), correlated_errors(0.5));
   RegressionData centred = s.data;
   centred.regressors = s.data.regressors.rightCols(3).rowwise() - s.data.regressors.rightCols(3).colwise().mean();
   centred.regressand.array() -= s.data.regressand.mean();
@@ -113,7 +113,7 @@ TEST(GeneralisedTotalLeastSquares, TreatsAnExactConstantLikeRemovedMeans) {
 TEST(GeneralisedTotalLeastSquares, WithExactRegressorsIsOrdinaryLeastSquares) {
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(5, 5);
   W(4, 4) = 0.1;
-  const auto s = simulate_regression(7, true_theta(), W);
+  const auto s = simulate_regression(7, true_parameters(), W);
   const RegressionOptions white{.covariance = CovarianceKind::kWhite};
   const RegressionEstimate gtls = estimate(s.data, Method::kGtls, white), ols = estimate(s.data, Method::kOls, white);
   EXPECT_LT((gtls.theta - ols.theta).norm(), 1e-13);
@@ -121,7 +121,7 @@ TEST(GeneralisedTotalLeastSquares, WithExactRegressorsIsOrdinaryLeastSquares) {
 }
 
 TEST(GeneralisedTotalLeastSquares, DoesNotChangeWithTheUnitsOfColumns) {
-  const auto s = simulate_regression(8, true_theta(), correlated_errors(1.0));
+  const auto s = simulate_regression(8, true_parameters(), correlated_errors(1.0));
   RegressionData scaled = s.data;
   Eigen::VectorXd unit(5);
   unit << 1.0, 1e-4, 2e3, 57.3, 1e5;
@@ -144,7 +144,7 @@ TEST(GeneralisedTotalLeastSquares, AcceptsFullyCorrelatedErrors) {
   W.block(1, 1, 2, 2).setConstant(0.3);
   W(3, 3) = 0.1;
   W(4, 4) = 0.05;
-  auto s = simulate_regression(9, true_theta(), W, {.rows = 20000});
+  auto s = simulate_regression(9, true_parameters(), W, {.rows = 20000});
   const RegressionEstimate singular = estimate(s.data, Method::kGtls);
   ASSERT_TRUE(singular.usable());
   EXPECT_EQ(singular.singular_values.size(), 3U);
@@ -154,7 +154,7 @@ TEST(GeneralisedTotalLeastSquares, AcceptsFullyCorrelatedErrors) {
   EXPECT_EQ(nearly.singular_values.size(), 4U);
   EXPECT_LT((singular.theta - nearly.theta).norm(), 1e-5);
   for (Eigen::Index i = 0; i < 4; ++i)
-    EXPECT_NEAR(singular.theta(i), true_theta()(i), 4.0 * singular.parameters[static_cast<std::size_t>(i)].sigma);
+    EXPECT_NEAR(singular.theta(i), true_parameters()(i), 4.0 * singular.parameters[static_cast<std::size_t>(i)].sigma);
 }
 
 TEST(TotalLeastSquares, ReportsTheNongenericCase) {
@@ -174,7 +174,7 @@ TEST(TotalLeastSquares, ReportsTheNongenericCase) {
 }
 
 TEST(TotalLeastSquares, JacobianIsTheDerivativeOfTheSumOfScores) {
-  const auto s = simulate_regression(10, true_theta(), correlated_errors(0.5));
+  const auto s = simulate_regression(10, true_parameters(), correlated_errors(0.5));
   const Eigen::MatrixXd W = s.data.error_covariance;
   const TotalLeastSquares tls = total_least_squares(triangle_of(s.data), W, static_cast<double>(s.data.rows()));
   const auto sum_at = [&](const Eigen::VectorXd& theta) {
@@ -193,7 +193,7 @@ TEST(TotalLeastSquares, JacobianIsTheDerivativeOfTheSumOfScores) {
 }
 
 TEST(EquationError, GivesFullersClosedForm) {
-  auto s = simulate_regression(11, true_theta(), correlated_errors(0.5), {.rows = 4000});
+  auto s = simulate_regression(11, true_parameters(), correlated_errors(0.5), {.rows = 4000});
   s.data.error_covariance(3, 4) = s.data.error_covariance(4, 3) = 0.0;
   s.data.error_covariance(4, 4) = 0.001;  // far too small: the rest is equation error
   s.data.regressand_error_known = false;
@@ -221,7 +221,7 @@ class TlsCoverage : public testing::TestWithParam<CoverageCase> {};
 // 250 runs of 4 parameters is 0.007 (runs independent, parameters nearly so).
 TEST_P(TlsCoverage, IntervalsHoldWhatTheyPromise) {
   const CoverageCase& c = GetParam();
-  const Eigen::VectorXd theta = true_theta();
+  const Eigen::VectorXd theta = true_parameters();
   const int runs = 250;
   for (const double ratio : c.ratios) {
     double covered = 0.0, deviation = 0.0;

@@ -5,6 +5,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -14,8 +15,6 @@ using testing::DataFlashWriter;
 using ::testing::HasSubstr;
 using testing::message_of;
 using testing::shared_flight;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Recording read_small() { return to_recording(read_dataflash(testing::small_dataflash(), "small.bin")); }
 

@@ -1,10 +1,10 @@
 #include "veridyn/io/dataflash/dataflash_text.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -13,8 +13,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::message_of;
 using testing::shared_flight;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(DataFlashText, ReadsALogOfOldFirmware) {
   const Log log = read_dataflash_text(testing::small_dataflash_text(), "old.log");

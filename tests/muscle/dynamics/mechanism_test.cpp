@@ -165,7 +165,7 @@ TEST(Mechanism, ParentsMayComeAfterTheirChildrenInTheFile) {
   for (int i = 1; i < 4; ++i) EXPECT_LT(swapped.link(i).parent, i);
 }
 
-std::string message_of(const Model& model) {
+std::string refusal_of(const Model& model) {
   try {
     const Mechanism mechanism(model);
   } catch (const InputError& error) {
@@ -179,26 +179,26 @@ TEST(Mechanism, NamesWhatIsWrongWithTheTree) {
   using testing::HasSubstr;
   Model circle = test::pendulum(3);
   circle.joints[0].parent = 3;
-  EXPECT_THAT(message_of(circle), AllOf(HasSubstr("rod"), HasSubstr("circle")));
+  EXPECT_THAT(refusal_of(circle), AllOf(HasSubstr("rod"), HasSubstr("circle")));
 
   Model loose = test::pendulum(2);
   loose.bodies.push_back(loose.bodies[1]);
   loose.bodies.back().name = "loose";
-  EXPECT_THAT(message_of(loose), AllOf(HasSubstr("'loose'"), HasSubstr("no joint")));
+  EXPECT_THAT(refusal_of(loose), AllOf(HasSubstr("'loose'"), HasSubstr("no joint")));
 
   Model twice = test::pendulum(3);
   twice.joints[2].name = "second";
   twice.joints[2].child = 2;
-  EXPECT_THAT(message_of(twice), AllOf(HasSubstr("'second'"), HasSubstr("'rod2'"), HasSubstr("moved by joint")));
+  EXPECT_THAT(refusal_of(twice), AllOf(HasSubstr("'second'"), HasSubstr("'rod2'"), HasSubstr("moved by joint")));
 
   Model foreign = test::pendulum(2);
   foreign.joints[1].rotation[1].coordinate = 0;
-  EXPECT_THAT(message_of(foreign), AllOf(HasSubstr("'q0'"), HasSubstr("not its own")));
+  EXPECT_THAT(refusal_of(foreign), AllOf(HasSubstr("'q0'"), HasSubstr("not its own")));
 
   Model unused = test::pendulum(1);
   unused.coordinates.push_back(unused.coordinates[0]);
   unused.coordinates.back().name = "orphan";
-  EXPECT_THAT(message_of(unused), AllOf(HasSubstr("'orphan'"), HasSubstr("no joint")));
+  EXPECT_THAT(refusal_of(unused), AllOf(HasSubstr("'orphan'"), HasSubstr("no joint")));
 }
 
 // Poses and velocities that OpenSim 4.5.2 computed; the leg has spline joints.

@@ -33,7 +33,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), with);
 }
 
-std::string error_of(std::string text) {
+std::string reading_error(std::string text) {
   try {
     static_cast<void>(OsimFile::parse(std::move(text), "arm.osim"));
   } catch (const InputError& error) {
@@ -222,44 +222,47 @@ TEST(OsimWriter, RefusesAMuscleThatTheFileDoesNotHave) {
 
 TEST(OsimReader, BadModelsGetOneLineThatNamesFileLineAndElement) {
   const std::string arm = arm_text();
-  EXPECT_THAT(error_of(arm.substr(0, arm.size() / 2)), AllOf(HasSubstr("arm.osim:"), HasSubstr("not well-formed XML")));
-  EXPECT_THAT(error_of("hello"), HasSubstr("arm.osim"));
-  EXPECT_THAT(error_of("<a/>"), HasSubstr("no OpenSimDocument"));
+  EXPECT_THAT(reading_error(arm.substr(0, arm.size() / 2)),
+              AllOf(HasSubstr("arm.osim:"), HasSubstr("not well-formed XML")));
+  EXPECT_THAT(reading_error("hello"), HasSubstr("arm.osim"));
+  EXPECT_THAT(reading_error("<a/>"), HasSubstr("no OpenSimDocument"));
   EXPECT_THAT(
-      error_of(replaced(arm, "<socket_child_frame>/bodyset/forearm<", "<socket_child_frame>/bodyset/forarm<")),
+      reading_error(replaced(arm, "<socket_child_frame>/bodyset/forearm<", "<socket_child_frame>/bodyset/forarm<")),
       AllOf(HasSubstr("PinJoint 'elbow'"), HasSubstr("no body or frame '/bodyset/forarm'"), HasSubstr("forearm")));
-  EXPECT_THAT(error_of(replaced(arm, "<tendon_slack_length>0.136<", "<tendon_slack_length>-0.136<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<tendon_slack_length>0.136<", "<tendon_slack_length>-0.136<")),
               AllOf(HasSubstr("Thelen2003Muscle 'triceps_long'"),
                     HasSubstr("tendon_slack_length: -0.136 must not be negative")));
-  EXPECT_THAT(error_of(replaced(arm, "<mass>1.9<", "<mass>nan<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<mass>1.9<", "<mass>nan<")),
               AllOf(HasSubstr("Body 'humerus'"), HasSubstr("mass: 'nan' is not a finite number")));
-  EXPECT_THAT(error_of(replaced(arm, "<mass>1.9<", "<mass>-1.9<")), HasSubstr("mass: -1.9 must not be negative"));
-  EXPECT_THAT(error_of(replaced(arm, "<mass>1.9<", "<mass>heavy<")), HasSubstr("'heavy' is not a number"));
-  EXPECT_THAT(error_of(replaced(arm, ">0.0136 0.0026 0.0136 0 0 0<", ">0.0136 -0.0026 0.0136 0 0 0<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<mass>1.9<", "<mass>-1.9<")), HasSubstr("mass: -1.9 must not be negative"));
+  EXPECT_THAT(reading_error(replaced(arm, "<mass>1.9<", "<mass>heavy<")), HasSubstr("'heavy' is not a number"));
+  EXPECT_THAT(reading_error(replaced(arm, ">0.0136 0.0026 0.0136 0 0 0<", ">0.0136 -0.0026 0.0136 0 0 0<")),
               AllOf(HasSubstr("Body 'humerus'"), HasSubstr("inertia")));
-  EXPECT_THAT(error_of(replaced(arm, "<wrap_object>elbow<", "<wrap_object>elbo<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<wrap_object>elbow<", "<wrap_object>elbo<")),
               AllOf(HasSubstr("PathWrap"), HasSubstr("no wrap object 'elbo'"), HasSubstr("did you mean 'elbow'")));
-  EXPECT_THAT(error_of(replaced(arm, "<length_units>meters<", "<length_units>inches<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<length_units>meters<", "<length_units>inches<")),
               HasSubstr("length_units: 'inches'"));
-  EXPECT_THAT(error_of(replaced(arm, "<radius>0.022<", "<radius>0<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<radius>0.022<", "<radius>0<")),
               AllOf(HasSubstr("WrapSphere 'humeral_head'"), HasSubstr("radius")));
-  EXPECT_THAT(error_of(replaced(arm, "<coordinates>shoulder_flexion<", "<coordinates>elbow_flexion<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<coordinates>shoulder_flexion<", "<coordinates>elbow_flexion<")),
               HasSubstr("elbow_flexion"));
-  EXPECT_THAT(error_of(replaced(arm, "<range>0 2.268928<", "<range>3 2.268928<")),
+  EXPECT_THAT(reading_error(replaced(arm, "<range>0 2.268928<", "<range>3 2.268928<")),
               AllOf(HasSubstr("Coordinate 'elbow_flexion'"), HasSubstr("range: begins at 3 above its end")));
-  EXPECT_THAT(error_of(replaced(arm, "<range>3 4<", "<range>3 9<")), HasSubstr("9 is beyond the 4 points of the path"));
-  EXPECT_THAT(error_of(replaced(arm, "name=\"forearm\"", "name=\"humerus\"")), HasSubstr("a second body of this name"));
+  EXPECT_THAT(reading_error(replaced(arm, "<range>3 4<", "<range>3 9<")),
+              HasSubstr("9 is beyond the 4 points of the path"));
+  EXPECT_THAT(reading_error(replaced(arm, "name=\"forearm\"", "name=\"humerus\"")),
+              HasSubstr("a second body of this name"));
   std::string scapula = replaced(arm, "<PinJoint ", "<ScapulothoracicJoint ");
   scapula = replaced(scapula, "</PinJoint>", "</ScapulothoracicJoint>");
-  EXPECT_THAT(error_of(scapula), AllOf(HasSubstr("ScapulothoracicJoint 'elbow'"), HasSubstr("not understood")));
+  EXPECT_THAT(reading_error(scapula), AllOf(HasSubstr("ScapulothoracicJoint 'elbow'"), HasSubstr("not understood")));
 }
 
 TEST(OsimReader, JointsThatGoRoundInACircleAreRefused) {
   // The humerus hangs on the forearm and the forearm on the humerus.
   const std::string text = replaced(arm_text(), "<socket_parent>/ground<", "<socket_parent>/bodyset/forearm<");
-  EXPECT_THAT(error_of(text), HasSubstr("go round in a circle"));
+  EXPECT_THAT(reading_error(text), HasSubstr("go round in a circle"));
   const std::string frames = replaced(arm_text(), "<socket_parent>/ground<", "<socket_parent>shoulder_in_ground<");
-  EXPECT_THAT(error_of(frames), HasSubstr("circle"));
+  EXPECT_THAT(reading_error(frames), HasSubstr("circle"));
 }
 
 TEST(OsimReader, TenThousandDamagedFilesAreReadOrRefusedInOneLine) {

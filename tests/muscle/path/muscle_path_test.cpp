@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <sstream>
 
 #include "tests/support/folders.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -20,12 +20,9 @@
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = veridyn::test::shared_folder();
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-#define SKIP_WITHOUT_REFERENCE()                               \
-  if (!std::filesystem::exists(kShared / "reference/opensim")) \
-  GTEST_SKIP() << "the reference of ../shared is not "         \
+#define SKIP_WITHOUT_REFERENCE()                                                      \
+  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
+  GTEST_SKIP() << "the reference of ../shared is not "                                \
                   "here"
 
 std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
@@ -62,7 +59,7 @@ struct Arm {
   Eigen::VectorXd q;
 };
 
-Model arm26() { return read_osim(kShared / "data/opensim/arm26.osim"); }
+Model arm26() { return read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"); }
 
 /// Largest difference between dL/dq and central differences over the poses.
 void expect_differences(Arm& arm, const std::vector<Eigen::VectorXd>& poses, double tolerance) {
@@ -105,7 +102,7 @@ bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
 TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
   SKIP_WITHOUT_REFERENCE();
   Arm arm(arm26());
-  const auto rows = csv(kShared / "reference/opensim/a_arm26_paths_grid.csv");
+  const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   int compared = 0, left_out = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto& row = rows[i];
@@ -169,7 +166,7 @@ TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
 TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
   SKIP_WITHOUT_REFERENCE();
   Arm arm(arm26(), WrapMode::kAsOpenSim);
-  const auto rows = csv(kShared / "reference/opensim/a_arm26_paths_grid.csv");
+  const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto& row = rows[i];
     const std::string& name = row[2];
@@ -187,8 +184,8 @@ TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
 }
 
 void compare_random_poses(const std::string& file, const std::string& prefix) {
-  Arm arm(read_osim(kShared / "data/opensim" / file));
-  const auto poses = csv(kShared / "reference/opensim" / (prefix + "_poses.csv"));
+  Arm arm(read_osim(veridyn::test::shared_folder() / "data/opensim" / file));
+  const auto poses = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_poses.csv"));
   std::map<int, Eigen::VectorXd> at;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     Eigen::VectorXd q = arm.model.default_pose();
@@ -200,7 +197,7 @@ void compare_random_poses(const std::string& file, const std::string& prefix) {
     }
     at[std::stoi(poses[i][0])] = q;
   }
-  const auto lengths = csv(kShared / "reference/opensim" / (prefix + "_lengths.csv"));
+  const auto lengths = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_lengths.csv"));
   for (std::size_t i = 1; i < lengths.size(); ++i) {
     arm.pose(at[std::stoi(lengths[i][0])]);
     const int m = arm.model.muscle(lengths[i][1]);
@@ -208,7 +205,7 @@ void compare_random_poses(const std::string& file, const std::string& prefix) {
     EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(lengths[i][2]), 1e-9)
         << lengths[i][1] << " pose " << lengths[i][0];
   }
-  const auto arms = csv(kShared / "reference/opensim" / (prefix + "_momentarms.csv"));
+  const auto arms = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_momentarms.csv"));
   for (std::size_t i = 1; i < arms.size(); ++i) {
     if (arms[i][4] == "nan") continue;
     const Eigen::VectorXd& q = at[std::stoi(arms[i][0])];

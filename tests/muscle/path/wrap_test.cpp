@@ -3,9 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/wrap_cylinder.hpp"
 #include "veridyn/muscle/path/wrap_ellipsoid.hpp"
 #include "veridyn/muscle/path/wrap_opensim.hpp"
@@ -16,7 +16,6 @@ namespace veridyn::muscle {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = std::numbers::pi;
 
 Vector3d random_point(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> u(-size, size);

@@ -20,10 +20,8 @@
 namespace veridyn::muscle {
 namespace {
 
-const std::filesystem::path kShared = veridyn::test::shared_folder();
-
-#define SKIP_WITHOUT_REFERENCE()                               \
-  if (!std::filesystem::exists(kShared / "reference/opensim")) \
+#define SKIP_WITHOUT_REFERENCE()                                                      \
+  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
   GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here"
 
 /// Elbow from `from` to `to` within a second by minimum jerk, shoulder at rest.
@@ -93,8 +91,9 @@ TEST(ComputedMuscleControl, MissingCoordinatesAndSenselessOptionsAreNamed) {
 TEST(ComputedMuscleControl, FindsOpenSimsActivationsAndTracksCloser) {
   SKIP_WITHOUT_REFERENCE();
   const test::ReferenceTable table = test::read_reference("opensim/d_arm26_cmc.csv");
-  const MusculoskeletalSystem system(read_osim(kShared / "data/opensim/arm26.osim"));
-  const Motion motion = make_motion(read_signals(kShared / "reference/opensim/minjerk_elbow.mot"), system.model());
+  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"));
+  const Motion motion =
+      make_motion(read_signals(veridyn::test::shared_folder() / "reference/opensim/minjerk_elbow.mot"), system.model());
   Progress progress;
   const ControlResult r = computed_muscle_control(system, motion, {.end = 1.01, .rate_Hz = 1000.0}, progress);
   ASSERT_TRUE(r.usable());
@@ -149,8 +148,10 @@ TEST(MuscleWindow, TheExcitationItFindsEndsAtTheWishedForce) {
 TEST(MotionAnalysis, StaticOptimisationOfAMotionIsOpenSims) {
   SKIP_WITHOUT_REFERENCE();
   const test::ReferenceTable table = test::read_reference("opensim/d_arm26_static_optimization.csv");
-  const MusculoskeletalSystem system(read_osim(kShared / "data/opensim/arm26.osim"), {.paths = PathSource::kAsOpenSim});
-  const Motion motion = make_motion(read_signals(kShared / "reference/opensim/minjerk_elbow.mot"), system.model());
+  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"),
+                                     {.paths = PathSource::kAsOpenSim});
+  const Motion motion =
+      make_motion(read_signals(veridyn::test::shared_folder() / "reference/opensim/minjerk_elbow.mot"), system.model());
   Progress progress;
   const MotionAnalysis a = optimise_motion(system, motion, system.model().default_pose(), frame_times(0.0, 1.0, 200.0),
                                            {.reserve = {1.0, 1.0}}, progress);

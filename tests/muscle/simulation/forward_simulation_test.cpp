@@ -5,11 +5,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "tests/muscle/arm26_scenarios.hpp"
 #include "tests/muscle/reference_table.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
@@ -19,8 +19,6 @@ namespace veridyn::muscle {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kDegree = std::numbers::pi / 180.0;
-const std::filesystem::path kShared = veridyn::test::shared_folder();
 
 Drive constant_drive(std::size_t muscles, double excitation) {
   return {ControlSignals(std::vector<double>(muscles, excitation)), {}};
@@ -34,9 +32,9 @@ struct Differences {
 Differences compare(const std::string& kind, int number, PathSource paths) {
   const test::ReferenceTable table =
       test::read_reference("opensim/c_arm26_forward_" + kind + "_s" + std::to_string(number) + ".csv");
-  const MusculoskeletalSystem system(
-      read_osim(kShared / "data/opensim" / (kind == "millard" ? "arm26_millard.osim" : "arm26.osim")),
-      {.paths = paths});
+  const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim" /
+                                               (kind == "millard" ? "arm26_millard.osim" : "arm26.osim")),
+                                     {.paths = paths});
   StartState start = default_start(system.model());
   start.q << table.number(0, "r_shoulder_elev_rad"), table.number(0, "r_elbow_flex_rad");
   Progress progress;
@@ -60,7 +58,7 @@ Differences compare(const std::string& kind, int number, PathSource paths) {
 }
 
 TEST(ForwardSimulation, WholeArmStaysWithinHalfADegreeOfOpenSimAndOnItsOwnPathsWithinItsReference) {
-  if (!std::filesystem::exists(kShared / "reference/opensim"))
+  if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim"))
     GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here";
   for (const char* kind : {"thelen", "millard"}) {
     for (int number = 1; number <= 3; ++number) {
@@ -224,9 +222,9 @@ TEST(MusculoskeletalSystem, MusclesThatAreOffAreLeftOutAndUnknownCoordinatesName
 }
 
 TEST(MusculoskeletalSystem, EveryModelOfOpenSimIsSimulated) {
-  if (!std::filesystem::exists(kShared / "data/opensim"))
+  if (!std::filesystem::exists(veridyn::test::shared_folder() / "data/opensim"))
     GTEST_SKIP() << "the OpenSim models of ../shared/data are not here";
-  for (const auto& entry : std::filesystem::directory_iterator(kShared / "data/opensim")) {
+  for (const auto& entry : std::filesystem::directory_iterator(veridyn::test::shared_folder() / "data/opensim")) {
     if (entry.path().extension() != ".osim") continue;
     SCOPED_TRACE(entry.path().filename().string());
     const MusculoskeletalSystem system(read_osim(entry.path()), {.without_unsupported = true});

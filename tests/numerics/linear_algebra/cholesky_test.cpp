@@ -35,6 +35,19 @@ TEST(Cholesky, SaysWhenTheMatrixIsNotPositiveDefinite) {
   EXPECT_FALSE(Cholesky(A).positive_definite());
 }
 
+TEST(PivotedCholesky, SolvesAndSaysHowFarTheMatrixIsFromIndefinite) {
+  const Eigen::MatrixXd A = lower() * lower().transpose();
+  const PivotedCholesky definite(A);
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(3, 2);
+  const Eigen::VectorXd b = B.col(0);
+  EXPECT_GT(definite.smallest_pivot(), 0.1);
+  EXPECT_TRUE((A * definite.solve(B)).isApprox(B, 1e-13));
+  EXPECT_TRUE((A * definite.solve(b)).isApprox(b, 1e-13));
+  Eigen::MatrixXd indefinite(2, 2);
+  indefinite << 1.0, 2.0, 2.0, 1.0;  // eigenvalues 3 and -1
+  EXPECT_LT(PivotedCholesky(indefinite).smallest_pivot(), 0.0);
+}
+
 TEST(SolveSymmetric, SolvesADefiniteMatrixOfEitherSign) {
   const Eigen::MatrixXd A = -(lower() * lower().transpose());
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(3, 2);

@@ -57,5 +57,14 @@ TEST(SolveLinear, SolvesARegularSystem) {
   EXPECT_TRUE(solve_linear(A, Eigen::MatrixXd(b)).isApprox(Eigen::Vector2d(-4.0, 5.0), 1e-14));
 }
 
+// Second row twice the first: of all solutions the shortest, and a pivot below the threshold counts as zero.
+TEST(ShortestLeastSquares, TakesPivotsBelowTheThresholdForZero) {
+  Eigen::MatrixXd A(2, 2);
+  A << 1.0, 1.0, 2.0, 2.0 + 1e-6;
+  const Eigen::VectorXd b = Eigen::Vector2d(1.0, 2.0);
+  EXPECT_TRUE(shortest_least_squares(A, b, 1e-3).isApprox(Eigen::Vector2d(0.5, 0.5), 1e-6));
+  EXPECT_TRUE(shortest_least_squares(A, b).isApprox(Eigen::Vector2d(1.0, 0.0), 1e-6));
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

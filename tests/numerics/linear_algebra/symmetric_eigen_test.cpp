@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 namespace veridyn::numerics {
@@ -37,17 +36,6 @@ TEST(SymmetricEigen, IsPutTogetherAgainByItsValuesAndVectors) {
 TEST(SymmetricEigen, OfAMatrixWithoutRowsIsEmpty) {
   EXPECT_EQ(symmetric_eigen(Eigen::MatrixXd(0, 0)).values.size(), 0);
   EXPECT_EQ(symmetric_eigenvalues(Eigen::MatrixXd(0, 0)).size(), 0);
-  EXPECT_EQ(hermitian_eigen(Eigen::MatrixXcd(0, 0)).values.size(), 0);
-}
-
-// [[2, i], [-i, 2]] has the eigenvalues 1 and 3.
-TEST(HermitianEigen, FindsRealEigenvaluesAndIsPutTogetherAgain) {
-  Eigen::MatrixXcd A(2, 2);
-  A << 2.0, std::complex<double>(0.0, 1.0), std::complex<double>(0.0, -1.0), 2.0;
-  const HermitianEigen eigen = hermitian_eigen(A);
-  EXPECT_NEAR(eigen.values(0), 1.0, 1e-14);
-  EXPECT_NEAR(eigen.values(1), 3.0, 1e-14);
-  EXPECT_TRUE(from_eigen(eigen.vectors, eigen.values).isApprox(A, 1e-14));
 }
 
 }  // namespace

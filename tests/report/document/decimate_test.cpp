@@ -8,10 +8,10 @@
 #include <limits>
 #include <random>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::report {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Recording {
   std::vector<double> x;

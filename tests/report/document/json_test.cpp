@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "tests/report/sample_document.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -16,8 +16,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 json parsed(const Document& document, const JsonOptions& options = {}) {
   return json::parse(to_json(document, options));

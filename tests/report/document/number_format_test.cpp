@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::report {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(FormatNumber, ShowsSignificantDigits) {
   EXPECT_EQ(format_number(0.0, 4), "0");

@@ -5,12 +5,12 @@
 
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::report {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Scaled, MultipliesEveryValue) { EXPECT_THAT(scaled(std::vector<double>{1.0, -2.0}, 3.0), ElementsAre(3.0, -6.0)); }
 

@@ -6,16 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
 #include "tests/support/refusal.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/spectral_response.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 double steer(const Manoeuvre& m, double time) { return m.driver->controls(time).steer; }
 

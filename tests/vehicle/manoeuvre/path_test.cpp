@@ -5,16 +5,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <string>
 
 #include "tests/support/folders.hpp"
 #include "tests/support/refusal.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TEST(Path, ACircleHasItsRadiusAndGrowsWithTheLaps) {
   const Path path = Path::circle(33.0, -1);

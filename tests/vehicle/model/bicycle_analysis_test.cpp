@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
@@ -14,8 +15,6 @@
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 LinearBicycle<double> bicycle_of(const VehicleParameters<double>& p, double u) {
   return {p.mass, p.I_z, p.a, p.b, p.C_f, p.C_r, u};

@@ -4,15 +4,13 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Zero until 2 s, ramp to 5 deg at 3 s, held until 15 s, back to zero at 16 s.
 double reference_steer(double t) {

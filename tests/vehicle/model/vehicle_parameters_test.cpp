@@ -30,7 +30,7 @@ TEST(VehicleParameters, EveryNumberThatNoVehicleHasIsNamed) {
     field_of(p, field) = value;
     return inadmissible(p);
   };
-  EXPECT_EQ(inadmissible({}), "");
+  EXPECT_EQ(inadmissible(VehicleParameters<double>{}), "");
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     const std::string name = kVehicleFields[i].name;
     EXPECT_TRUE(with(i, -1.0).starts_with(name)) << with(i, -1.0);

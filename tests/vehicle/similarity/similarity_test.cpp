@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <set>
 
 #include "tests/support/refusal.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
@@ -18,8 +18,6 @@
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 SimilaritySubject subject_of(std::string_view name) {
   const BuiltinVehicle& vehicle = builtin_vehicle(name);

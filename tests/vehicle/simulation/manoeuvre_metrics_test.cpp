@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double value(const std::vector<Metric>& list, std::string_view name) {
   const auto found = std::ranges::find_if(list, [&](const Metric& m) { return m.name == name; });

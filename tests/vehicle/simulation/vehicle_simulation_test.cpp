@@ -7,11 +7,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "tests/vehicle/cars.hpp"
 #include "tests/vehicle/tyre/small_tir.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
@@ -22,9 +22,6 @@ namespace {
 
 using testing::linear_car;
 using testing::LinearCar;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kGravity = 9.80665;
 
 struct SignalDriver : Driver {
   std::function<Controls(double)> signal;

@@ -15,8 +15,6 @@
 namespace veridyn::vehicle {
 namespace {
 
-const std::filesystem::path kShared = test::shared_folder();
-
 /// The tyre that the published program has: of Sedan_Pac02Tire.tir, without all that depends on load, its slip
 /// stiffnesses in proportion to it, all scaling factors 1.
 MagicFormulaTyre<double> load_independent(MagicFormulaTyre<double> tyre) {
@@ -59,8 +57,8 @@ struct Row {
 class PublishedTyre : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto table = kShared / "reference/tyre_reference.csv";
-    const auto tir = kShared / "data/vehicle/chrono/Sedan_Pac02Tire.tir";
+    const auto table = test::shared_folder() / "reference/tyre_reference.csv";
+    const auto tir = test::shared_folder() / "data/vehicle/chrono/Sedan_Pac02Tire.tir";
     if (!std::filesystem::exists(table) || !std::filesystem::exists(tir))
       GTEST_SKIP() << "needs the shared reference values, which are not part of the project: " << table.string();
     tyre = load_independent(read_tir(tir).tyre);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -17,7 +17,6 @@ using numerics::FirKernel;
 using recording::angle_on_grid;
 using recording::on_grid;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDefaultPass_Hz = 10.0;
 
 class Preparation {

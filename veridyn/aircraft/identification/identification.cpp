@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +12,8 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -43,9 +43,9 @@ double unexplained_variance(const RegressionData& data) {
   const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose() / std::sqrt(rows);
   if (!(scale.minCoeff() > 0.0)) return kNaN;
   const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * A * inverse.asDiagonal());
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-12)) return kNaN;
-  const Eigen::VectorXd y = factor.solve(inverse.asDiagonal() * b);
+  const numerics::PivotedCholesky factor(inverse.asDiagonal() * A * inverse.asDiagonal());
+  if (!(factor.smallest_pivot() > 1e-12)) return kNaN;
+  const Eigen::VectorXd y = factor.solve(Eigen::VectorXd(inverse.asDiagonal() * b));
   return data.regressand.squaredNorm() / rows - b.dot(inverse.asDiagonal() * y);
 }
 
@@ -53,7 +53,7 @@ double unexplained_variance(const RegressionData& data) {
 double least_response_variance(const Eigen::MatrixXd& W) {
   const auto n = W.rows() - 1;
   const Eigen::VectorXd shared = W.topRightCorner(n, 1);
-  return 1.001 * shared.dot(W.topLeftCorner(n, n).completeOrthogonalDecomposition().solve(shared));
+  return 1.001 * shared.dot(numerics::shortest_least_squares(W.topLeftCorner(n, n), shared));
 }
 
 /// Predicted and measured coefficient over rows.

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/aircraft/identification/output_error_model.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/bootstrap.hpp"
 #include "veridyn/estimation/regression/frequency_domain.hpp"
 
@@ -51,9 +51,9 @@ class OtherMethods {
     row.coefficient = result.coefficient;
     row.estimate = {p.name, method, p.value, p.sigma, p.low95, p.high95, p.unit, p.status};
     const ParameterEstimate* regression = result.chosen ? result.chosen->find(p.name) : nullptr;
-    row.apart_sigma = regression != nullptr ? (p.value - regression->value) / std::hypot(p.sigma, regression->sigma)
-                                            : std::numeric_limits<double>::quiet_NaN();
-    if (!std::isfinite(p.sigma)) row.apart_sigma = std::numeric_limits<double>::quiet_NaN();
+    row.apart_sigma =
+        regression != nullptr ? (p.value - regression->value) / std::hypot(p.sigma, regression->sigma) : kNaN;
+    if (!std::isfinite(p.sigma)) row.apart_sigma = kNaN;
     out_.parameters.push_back(std::move(row));
   }
 

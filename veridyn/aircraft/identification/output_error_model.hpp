@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "veridyn/aircraft/identification/flight_signals.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 
 namespace veridyn::aircraft {
@@ -101,7 +101,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   std::vector<Drive> drives_;
   std::vector<Segment> segments_;
   double step_ = 0.02;  // of the integration [s]
-  double gravity_ = 9.80665;
+  double gravity_ = kGravity;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -177,7 +177,7 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const D
 template <typename Scalar>
 bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
                                 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
-  constexpr double kLargest_rad = 80.0 * std::numbers::pi / 180.0;
+  constexpr double kLargest_rad = 80.0 * kPi / 180.0;
   constexpr double kSlowest_mps = 2.0;
   const Segment& s = segments_[segment];
   const std::span<const Scalar> parameters(theta.data(), parameters_.size());

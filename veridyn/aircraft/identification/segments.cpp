@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// What is left of a block, less than this is no block [s].
 constexpr double kShortestBlock_s = 1.0;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <numbers>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
 
 namespace veridyn::aircraft {
@@ -26,12 +26,6 @@ bool is_angle(AeroVariable v) {
          v == AeroVariable::kDr;
 }
 
-std::string_view trim(std::string_view s) {
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.front())) != 0) s.remove_prefix(1);
-  while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back())) != 0) s.remove_suffix(1);
-  return s;
-}
-
 /// Splits at `separator`, but not within parentheses.
 std::vector<std::string_view> split(std::string_view s, char separator) {
   std::vector<std::string_view> parts;
@@ -41,11 +35,11 @@ std::vector<std::string_view> split(std::string_view s, char separator) {
     if (s[i] == '(') ++depth;
     if (s[i] == ')') --depth;
     if (s[i] == separator && depth == 0) {
-      parts.push_back(trim(s.substr(begin, i - begin)));
+      parts.push_back(trimmed(s.substr(begin, i - begin)));
       begin = i + 1;
     }
   }
-  parts.push_back(trim(s.substr(begin)));
+  parts.push_back(trimmed(s.substr(begin)));
   return parts;
 }
 
@@ -58,7 +52,7 @@ class TermParser {
 
   std::vector<Factor> parse() const {
     std::vector<Factor> factors;
-    if (trim(text_).empty()) fail("an empty term; the constant is written \"1\"");
+    if (trimmed(text_).empty()) fail("an empty term; the constant is written \"1\"");
     for (const std::string_view part : split(text_, '*')) {
       if (part == "1") continue;
       merge(factors, parse_factor(part));
@@ -74,7 +68,7 @@ class TermParser {
 
  private:
   [[noreturn]] void fail(std::string_view what) const {
-    throw InputError(place_, fmt::format("term '{}': {}", trim(text_), what));
+    throw InputError(place_, fmt::format("term '{}': {}", trimmed(text_), what));
   }
 
   /// alpha * alpha is alpha^2; products of splines stay as they are.
@@ -111,7 +105,7 @@ class TermParser {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
     if (error != std::errc() || !std::isfinite(x)) fail(fmt::format("knot '{}' is not a number", word));
     const std::string_view rest =
-        trim(std::string_view(end, static_cast<std::size_t>(word.data() + word.size() - end)));
+        trimmed(std::string_view(end, static_cast<std::size_t>(word.data() + word.size() - end)));
     if (rest.empty()) return x;
     const std::string_view expected = is_angle(v) ? "rad" : v == AeroVariable::kVa ? "m/s" : "1";
     try {
@@ -124,7 +118,7 @@ class TermParser {
   /// The inside of "name(...)" when `part` is such a call.
   std::optional<std::string_view> call(std::string_view part, std::string_view name) const {
     if (!part.starts_with(name)) return std::nullopt;
-    const std::string_view rest = trim(part.substr(name.size()));
+    const std::string_view rest = trimmed(part.substr(name.size()));
     if (rest.empty() || rest.front() != '(') return std::nullopt;
     if (rest.back() != ')') fail(fmt::format("'{}' lacks its closing parenthesis", part));
     return rest.substr(1, rest.size() - 2);
@@ -143,12 +137,12 @@ class TermParser {
     }
     const std::size_t hat = part.rfind('^');
     if (hat != std::string_view::npos) {
-      f.power = parse_whole(trim(part.substr(hat + 1)), 1, kHighestPower, "power");
-      part = trim(part.substr(0, hat));
+      f.power = parse_whole(trimmed(part.substr(hat + 1)), 1, kHighestPower, "power");
+      part = trimmed(part.substr(0, hat));
     }
     if (const auto inside = call(part, "abs")) {
       f.kind = Factor::Kind::kAbsolute;
-      f.variable = parse_variable(trim(*inside));
+      f.variable = parse_variable(trimmed(*inside));
       return f;
     }
     f.variable = parse_variable(part);
@@ -221,7 +215,7 @@ StallBlend read_stall(const StudyTable& table, const StallBlend& base, StallForm
   stall.form = form;
   stall.M = table.positive_or("M", "1/rad", base.M);
   stall.alpha0 = table.positive_or("alpha0", "rad", base.alpha0);
-  if (stall.alpha0 >= 0.5 * std::numbers::pi) table.fail("alpha0", "is not below 90 deg");
+  if (stall.alpha0 >= 0.5 * kPi) table.fail("alpha0", "is not below 90 deg");
   stall.drag = table.flag_or("drag", base.drag);
   return stall;
 }

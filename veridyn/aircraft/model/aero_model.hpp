@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "veridyn/aircraft/model/stall.hpp"
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -124,7 +124,7 @@ struct Term {
 [[nodiscard]] std::string parameter_name(Coefficient coefficient, const Term& term);
 
 /// A parameter whose value is not known (yet).
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kUnknown = kNaN;
 
 /// One coefficient as a sum of parameters times terms.
 struct CoefficientModel {

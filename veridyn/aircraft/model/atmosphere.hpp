@@ -6,8 +6,6 @@
 
 namespace veridyn::aircraft {
 
-/// Standard gravity [m/s^2].
-inline constexpr double kStandardGravity = kGravity;
 /// Sea-level density of the standard atmosphere [kg/m^3].
 inline constexpr double kSeaLevelDensity = 1.225;
 
@@ -28,7 +26,7 @@ template <typename Scalar>
   using std::exp;
   using std::pow;
   constexpr double kR = 287.05287, kT0 = 288.15, kP0 = 101325.0, kLapse = 0.0065, kTropopause = 11000.0;
-  constexpr double kExponent = kStandardGravity / (kR * kLapse);
+  constexpr double kExponent = kGravity / (kR * kLapse);
   Air<Scalar> air;
   if (altitude < Scalar(kTropopause)) {
     air.temperature = Scalar(kT0) - Scalar(kLapse) * altitude;
@@ -37,7 +35,7 @@ template <typename Scalar>
     const double T11 = kT0 - kLapse * kTropopause;
     const double p11 = kP0 * std::pow(T11 / kT0, kExponent);
     air.temperature = Scalar(T11);
-    air.pressure = Scalar(p11) * exp(Scalar(-kStandardGravity / (kR * T11)) * (altitude - Scalar(kTropopause)));
+    air.pressure = Scalar(p11) * exp(Scalar(-kGravity / (kR * T11)) * (altitude - Scalar(kTropopause)));
   }
   air.density = air.pressure / (Scalar(kR) * air.temperature);
   return air;

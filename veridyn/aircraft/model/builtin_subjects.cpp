@@ -4,7 +4,6 @@
 
 #include <array>
 #include <initializer_list>
-#include <numbers>
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
@@ -43,7 +42,7 @@ void set_servos(Subject& s, double time_constant, double rate_limit) {
 
 /// Drag of last_letter's type 1, CDp + (CL0 + CLa alpha - CL_min)^2 / (pi e AR), written as a polynomial in alpha.
 void set_drag_parabola(Subject& s, double CDp, double CL0, double CLa, double oswald, double CL_min = 0.0) {
-  const double k = 1.0 / (std::numbers::pi * oswald * s.aspect_ratio());
+  const double k = 1.0 / (kPi * oswald * s.aspect_ratio());
   const double c = CL0 - CL_min;
   set(s, Coefficient::kCD, {{"1", CDp + k * c * c}, {"alpha", 2.0 * k * c * CLa}, {"alpha^2", k * CLa * CLa}});
 }
@@ -285,7 +284,7 @@ Subject thor() {
   set_lateral(s, Coefficient::kCn, {0, 0.0723, 0.118, -0.1833, 0.0574, -0.1811});
   s.propulsion = linear_thrust(16.0, 0.35);
   set_stops(s, 25.0 * kDegree, 25.0 * kDegree, 25.0 * kDegree);
-  for (Actuator* a : {&s.aileron, &s.elevator, &s.rudder}) a->time_constant = 1.0 / (2.0 * std::numbers::pi * 8.0);
+  for (Actuator* a : {&s.aileron, &s.elevator, &s.rudder}) a->time_constant = 1.0 / (2.0 * kPi * 8.0);
   return s;
 }
 

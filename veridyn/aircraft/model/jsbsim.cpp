@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -359,7 +360,7 @@ void write_body(pugi::xml_node root, const Subject& s) {
   location(mass, "CG", {0.0, 0.0, 0.0});
 
   pugi::xml_node ground = root.append_child("ground_reactions");
-  const double half = 0.5 * s.span, weight = s.mass * 9.80665;
+  const double half = 0.5 * s.span, weight = s.mass * kGravity;
   const std::pair<const char*, std::array<double, 3>> points[] = {{"nose", {0.3 * s.span, 0.0, 0.1 * s.span}},
                                                                   {"tail", {-0.4 * s.span, 0.0, 0.05 * s.span}},
                                                                   {"left tip", {0.0, -half, 0.0}},

@@ -2,13 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "veridyn/aircraft/model/aero_model.hpp"
 #include "veridyn/aircraft/model/propulsion.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -31,11 +31,11 @@ struct Inertia {
 /// A servo with what it moves, or the engine's throttle: output follows the command through delay, first-order lag,
 /// rate limit and stops.
 struct Actuator {
-  double lower = -0.35;                                         ///< stop [rad]; throttle: 0
-  double upper = 0.35;                                          ///< stop [rad]; throttle: 1
-  double rate_limit = std::numeric_limits<double>::infinity();  ///< [rad/s]; throttle [1/s]
-  double time_constant = 0.0;                                   ///< [s]; 0 follows at once
-  double delay = 0.0;                                           ///< [s]
+  double lower = -0.35;           ///< stop [rad]; throttle: 0
+  double upper = 0.35;            ///< stop [rad]; throttle: 1
+  double rate_limit = kInfinity;  ///< [rad/s]; throttle [1/s]
+  double time_constant = 0.0;     ///< [s]; 0 follows at once
+  double delay = 0.0;             ///< [s]
 
   friend bool operator==(const Actuator&, const Actuator&) = default;
 };

@@ -3,11 +3,12 @@
 #include <ceres/jet.h>
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::aircraft {
 
@@ -64,7 +65,7 @@ Eigen::Matrix<Scalar, 6, 1> accelerations(const Subject& s, const MassProperties
 }
 
 std::vector<std::complex<double>> sorted_eigenvalues(const Eigen::Matrix4d& A) {
-  const Eigen::Vector4cd values = Eigen::EigenSolver<Eigen::Matrix4d>(A, false).eigenvalues();
+  const Eigen::VectorXcd values = numerics::general_eigenvalues(A);
   std::vector<std::complex<double>> out(values.data(), values.data() + 4);
   std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
     const double na = std::abs(a), nb = std::abs(b);
@@ -83,7 +84,7 @@ Eigen::Matrix4d block(const Eigen::Matrix<double, 8, 8>& A, const std::array<int
 }  // namespace
 
 std::string Trim::message() const {
-  constexpr double kDeg = 180.0 / std::numbers::pi;
+  constexpr double kDeg = 180.0 / kPi;
   const std::string where = fmt::format("level flight at {:g} m/s", condition.airspeed);
   const std::string state = fmt::format("alpha {:.2f} deg, elevator {:.2f} deg, throttle {:.3f}", alpha * kDeg,
                                         controls.de * kDeg, controls.throttle);
@@ -112,7 +113,7 @@ Trim find_trim(const Subject& s, const TrimCondition& at) {
   };
   // Thrust may not depend on throttle at small settings (it is cut at zero), so several starts are tried.
   Vector6 best = Vector6::Zero();
-  double best_norm = std::numeric_limits<double>::infinity();
+  double best_norm = kInfinity;
   for (const double throttle : {0.5, 0.8, 0.3, 1.0}) {
     for (const double alpha : {0.05, 0.15, -0.05}) {
       Vector6 x;
@@ -130,10 +131,7 @@ Trim find_trim(const Subject& s, const TrimCondition& at) {
           jacobian.row(i) = f(i).v.transpose();
         }
         if (!value.allFinite() || !jacobian.allFinite()) break;
-        Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 6, 6>> solver;
-        solver.setThreshold(1e-10);
-        solver.compute(jacobian);
-        const Vector6 step = solver.solve(value);
+        const Vector6 step = numerics::shortest_least_squares(jacobian, Eigen::VectorXd(value), 1e-10);
         double scale = std::min(1.0, 0.2 / std::max(1e-12, step.lpNorm<Eigen::Infinity>()));
         bool better = false;
         for (int halving = 0; halving < 30; ++halving, scale *= 0.5) {

@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 
@@ -15,7 +16,7 @@ struct TrimCondition {
   double airspeed = 20.0;             ///< [m/s]
   double density = kSeaLevelDensity;  ///< [kg/m^3]
   double bank = 0.0;                  ///< [rad]; the turn rate is g tan(bank) / Va
-  double gravity = kStandardGravity;  ///< [m/s^2]
+  double gravity = kGravity;          ///< [m/s^2]
 };
 
 enum class TrimEnd {

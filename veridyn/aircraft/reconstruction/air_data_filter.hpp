@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/simulation/dryden.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/kalman/kalman_model.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -157,7 +158,7 @@ struct AirDataMotion : AirDataErrorVector {
     const Eigen::Quaternion<S> middle = x.attitude * half;
     next.attitude = middle * half;
     next.velocity += (middle * force) * S(dt);
-    next.velocity(2) += S(kStandardGravity * dt);
+    next.velocity(2) += S(kGravity * dt);
     const Decay d = decay(airspeed, dt);
     next.gust(0) = S(d.u) * x.gust(0);
     next.gust(1) = S(d.v) * x.gust(1);

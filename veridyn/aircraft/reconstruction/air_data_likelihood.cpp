@@ -1,10 +1,11 @@
 #include "veridyn/aircraft/reconstruction/air_data_likelihood.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -122,7 +123,7 @@ AirDataErrors estimate_air_data_errors(const FilterEngine& engine, const RunSett
   result.converged = false;
   for (int i = 0; i < kMaxIterations; ++i) {
     ++result.iterations;
-    const Eigen::VectorXd step = now.information.ldlt().solve(now.gradient);
+    const Eigen::VectorXd step = numerics::solve_symmetric(now.information, now.gradient);
     const double length = std::sqrt(std::max(0.0, step.dot(now.gradient)));  // in sigmas
     if (length < 0.05) {
       if (gate <= task.options->gate.threshold) {

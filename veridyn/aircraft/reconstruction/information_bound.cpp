@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/model/trim.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -81,8 +82,8 @@ SteadyPoint balance_forces(const Subject& s, double airspeed, double density) {
     const Jet a(alpha, 0), T(thrust, 1);
     const numerics::Vector3<Jet> v(cos(a) * airspeed, Jet(0.0), sin(a) * airspeed);
     const auto f = specific_force<Jet>(still, v, SteadyPoint{}, density);
-    const Jet along = f(0) + T / s.mass - sin(a) * kStandardGravity;
-    const Jet down = f(2) + cos(a) * kStandardGravity;
+    const Jet along = f(0) + T / s.mass - sin(a) * kGravity;
+    const Jet down = f(2) + cos(a) * kGravity;
     Eigen::Matrix2d J;
     J.row(0) = along.v.transpose();
     J.row(1) = down.v.transpose();

@@ -11,6 +11,7 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_run.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_solve.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -112,7 +113,7 @@ void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std:
   }
   const Segment part = typical_part(s, segments, 60.0);
   constexpr std::array<double, 7> kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0};
-  double best = -std::numeric_limits<double>::infinity();
+  double best = -kInfinity;
   for (const char* setting : {"low_light", "medium_light"}) {
     for (const double scale : kScales) {
       const DrydenSettings spectrum = gust_spectrum(setting, scale);

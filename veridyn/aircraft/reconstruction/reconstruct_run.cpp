@@ -1,8 +1,8 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_run.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft::internal {
@@ -10,7 +10,7 @@ namespace veridyn::aircraft::internal {
 double median_within(const Stream& s, double from, double window) {
   const auto first = std::lower_bound(s.t.begin(), s.t.end(), from);
   const auto last = std::upper_bound(first, s.t.end(), from + window);
-  if (first == last) return std::numeric_limits<double>::quiet_NaN();
+  if (first == last) return kNaN;
   std::vector<double> v(s.v.begin() + (first - s.t.begin()), s.v.begin() + (last - s.t.begin()));
   std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
   return v[v.size() / 2];
@@ -88,7 +88,7 @@ EventCursor::EventCursor(const FlightStreams& streams, const std::vector<double>
 }
 
 double EventCursor::next_time() const {
-  double event = std::numeric_limits<double>::infinity();
+  double event = kInfinity;
   const auto earlier = [&event](const std::vector<double>& t, std::size_t i) {
     if (i < t.size() && t[i] < event) event = t[i];
   };
@@ -96,7 +96,7 @@ double EventCursor::next_time() const {
   earlier(streams_->gyro.t, next_gyro_);
   earlier(streams_->accel.t, next_accel_);
   earlier(*output_t_, next_output_);
-  return event <= end_ ? event : std::numeric_limits<double>::quiet_NaN();
+  return event <= end_ ? event : kNaN;
 }
 
 void EventCursor::fill(AirDataInput& u, double time, bool with_controls) {

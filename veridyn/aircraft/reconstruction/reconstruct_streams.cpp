@@ -343,7 +343,7 @@ void load_model_streams(const Recording& recording, Subject& subject, FlightStre
       throw InputError(recording.source, fmt::format("has neither 'thrust' nor 'throttle'; {} needs one", needing));
     }
     Stream rotor = throttle;
-    double speed = std::numeric_limits<double>::quiet_NaN();
+    double speed = kNaN;
     for (std::size_t i = 0; i < throttle.t.size(); ++i) {
       const double steady = subject.propulsion.steady_rotor_speed(throttle.v[i]);
       const bool lags = subject.propulsion.kind == PropulsionKind::kPropeller && std::isfinite(speed);

@@ -1,8 +1,8 @@
 #include "veridyn/aircraft/reproduction/batch_experiment.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -52,7 +52,7 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
     BatchStatistics s;
     s.method = methods[m];
     s.mean = s.sd = s.mean_sigma = s.coverage = Eigen::VectorXd::Zero(n);
-    s.output_error = Eigen::VectorXd::Constant(o.seeds, std::numeric_limits<double>::quiet_NaN());
+    s.output_error = Eigen::VectorXd::Constant(o.seeds, kNaN);
     for (std::size_t k = 0; k < seeds; ++k) {
       const One& one = found[m][k];
       if (!one.usable) continue;

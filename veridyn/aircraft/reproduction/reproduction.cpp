@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
@@ -206,7 +206,7 @@ class Expectations {
     for (std::size_t k = 0; k < run.history.time.size(); ++k) {
       if (run.history.excited[k] >= n) return run.history.time[k];
     }
-    return std::numeric_limits<double>::infinity();
+    return kInfinity;
   }
 
   /// Largest share of the coefficient's deviation that some parameter's error amounts to at a stored moment.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "veridyn/core/constants.hpp"
@@ -81,7 +80,7 @@ std::vector<double> TrackingExperiment::settling(std::size_t tracker, std::size_
   std::vector<double> times;
   for (const TrackingRun& run : runs[tracker]) {
     const double t = run.settling_s[phase];
-    times.push_back(std::isnan(t) ? std::numeric_limits<double>::infinity() : t);
+    times.push_back(std::isnan(t) ? kInfinity : t);
   }
   std::sort(times.begin(), times.end());
   return times;

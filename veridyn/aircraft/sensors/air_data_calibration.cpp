@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -381,8 +380,8 @@ std::vector<SensorCalibration> read_calibration(const std::filesystem::path& pat
         t.fail("covariance", "must be 4 numbers, a covariance matrix of [scale, bias] by rows");
       c.covariance << v[0], v[1], v[2], v[3];
     }
-    c.raw_low = -std::numeric_limits<double>::infinity();
-    c.raw_high = std::numeric_limits<double>::infinity();
+    c.raw_low = -kInfinity;
+    c.raw_high = kInfinity;
     if (t.has("range")) {
       const std::vector<double> v = t.numbers("range", unit_of(channel));
       if (v.size() != 2 || !(v[0] < v[1])) t.fail("range", "must be two numbers, the smaller first");

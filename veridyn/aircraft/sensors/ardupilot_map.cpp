@@ -2,15 +2,15 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/aircraft/sensors/channel_rules.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
 
 // Messages by the firmware's own description (libraries/AP_Logger/LogStructure.h). Units stand for logs without FMTU.
-const std::vector<ChannelRule>& rules() {
+const std::vector<ChannelRule>& ardupilot_rules() {
   static const std::vector<ChannelRule> table{
       {"accel_x", "IMU.AccX", "m/s^2", ""},
       {"accel_y", "IMU.AccY", "m/s^2", ""},
@@ -59,7 +59,7 @@ void map_gps_velocity(MapBuilder& builder) {
   std::vector<double> north(speed->size());
   std::vector<double> east(speed->size());
   for (std::size_t i = 0; i < north.size(); ++i) {
-    const double angle = course_in_degrees ? course->value[i] * std::numbers::pi / 180.0 : course->value[i];
+    const double angle = course_in_degrees ? course->value[i] * kPi / 180.0 : course->value[i];
     north[i] = speed->value[i] * std::cos(angle);
     east[i] = speed->value[i] * std::sin(angle);
   }
@@ -121,7 +121,7 @@ bool is_ardupilot(const Recording& log) {
 }
 
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws) {
-  builder.apply(rules());
+  builder.apply(ardupilot_rules());
   map_gps_velocity(builder);
   // SERVOn_FUNCTION: 4 aileron, 19 elevator, 21 rudder, 70 throttle (ArduPilot parameter list).
   map_servo(builder, "aileron", 4, 1, throws.aileron);

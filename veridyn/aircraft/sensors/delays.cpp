@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft {
@@ -16,8 +16,6 @@ using recording::BandLimited;
 using recording::DelayGroup;
 using Series = BandLimited::Series;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kGravity = 9.80665;
 /// Below this airspeed the flow angles have no rate [m/s].
 constexpr double kSlowest_mps = 3.0;
 

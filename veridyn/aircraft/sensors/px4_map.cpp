@@ -10,7 +10,7 @@ namespace {
 
 // Topic and field names drift between PX4 releases; each row names the releases in which it holds. ULog gives no units,
 // these are those of the message definitions (msg/*.msg).
-const std::vector<ChannelRule>& rules() {
+const std::vector<ChannelRule>& px4_rules() {
   static const std::vector<ChannelRule> table{
       {"accel_x", "vehicle_acceleration.xyz[0]", "m/s^2", "1.11 and later"},
       {"accel_y", "vehicle_acceleration.xyz[1]", "m/s^2", "1.11 and later"},
@@ -122,7 +122,7 @@ bool is_px4(const Recording& log) {
 }
 
 void map_px4(MapBuilder& builder, const SurfaceThrows& throws) {
-  builder.apply(rules());
+  builder.apply(px4_rules());
   map_attitude(builder);
   map_controls(builder, throws);
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
@@ -168,12 +167,12 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
     const bool angle = kTruthChannels[static_cast<std::size_t>(source)].angle;
     if (share < 1.0) {
       double change = now[source] - last_[source];
-      if (angle) change = std::remainder(change, 2.0 * std::numbers::pi);
+      if (angle) change = std::remainder(change, 2.0 * kPi);
       truth = last_[source] + share * change;
     }
     wander_[i] += walk_step * noise_.normal();
     y[i] = settings_.bias[i] + wander_[i] + (1.0 + settings_.scale) * truth + settings_.sigma[i] * noise_.normal();
-    if (angle) y[i] = std::remainder(y[i], 2.0 * std::numbers::pi);
+    if (angle) y[i] = std::remainder(y[i], 2.0 * kPi);
     if (settings_.resolution > 0.0) y[i] = settings_.resolution * std::round(y[i] / settings_.resolution);
   }
   if (settings_.dropout > 0.0) {

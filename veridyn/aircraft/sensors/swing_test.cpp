@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/resample.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -377,7 +377,7 @@ SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
   // Mean attitude: the eigenvector of sum q q' (Markley 2007), which is indifferent to the sign of q.
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
   for (const Eigen::Vector4d& v : q) A += v * v.transpose();
-  const Eigen::Vector4d m = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(A).eigenvectors().col(3);
+  const Eigen::Vector4d m = numerics::symmetric_eigen(A).vectors.col(3);
   const Eigen::Quaterniond mean(m(3), m(0), m(1), m(2));
   Eigen::MatrixXd turn(static_cast<Eigen::Index>(q.size()), 3);
   for (std::size_t i = 0; i < q.size(); ++i) {
@@ -387,12 +387,12 @@ SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
     const double scale = n > 1e-12 ? 2.0 * std::atan2(n, std::abs(d.w())) / n : 2.0;
     turn.row(static_cast<Eigen::Index>(i)) = s * scale * d.vec().transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(turn.transpose() * turn);
-  const Eigen::Vector3d axis = principal.eigenvectors().col(2);
+  const numerics::SymmetricEigen principal = numerics::symmetric_eigen(turn.transpose() * turn);
+  const Eigen::Vector3d axis = principal.vectors.col(2);
   const Eigen::VectorXd angle = turn * axis;
   swing.angle.assign(angle.begin(), angle.end());
-  const double all = principal.eigenvalues().sum();
-  swing.principal_share = all > 0.0 ? principal.eigenvalues()(2) / all : 1.0;
+  const double all = principal.values.sum();
+  swing.principal_share = all > 0.0 ? principal.values(2) / all : 1.0;
   return swing;
 }
 

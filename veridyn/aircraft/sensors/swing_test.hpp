@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
@@ -62,7 +63,7 @@ struct SwingAxis {
 struct SwingTest {
   std::string name = "aircraft";
   double mass = 0.0, cradle_mass = 0.0;
-  double gravity = 9.80665;
+  double gravity = kGravity;
   double sigma_mass = 0.002, sigma_filar_distance = 0.002, sigma_length = 0.005;
   std::string channel;
   double settle_s = 0.0;

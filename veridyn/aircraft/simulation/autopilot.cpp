@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/constants.hpp"
 
@@ -44,7 +43,7 @@ std::array<double, kSurfaces> Autopilot::command(double t, double step, const Tr
   } else {
     if (turning_) heading_ = x[Truth::kYaw];
     turning_ = false;
-    const double error = std::remainder(heading_ - x[Truth::kYaw], 2.0 * std::numbers::pi);
+    const double error = std::remainder(heading_ - x[Truth::kYaw], 2.0 * kPi);
     phi_wanted = std::clamp(0.8 * error, -25 * kDegree, 25 * kDegree);
   }
   const double p_wanted = std::clamp(1.5 * (phi_wanted - phi), -40 * kDegree, 40 * kDegree);

@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -16,7 +15,7 @@ namespace veridyn::aircraft {
 
 namespace {
 
-constexpr double kTurnAround = 2.0 * std::numbers::pi;
+constexpr double kTurnAround = 2.0 * kPi;
 constexpr double kPause = 2.0;  ///< between the surfaces of one doublet or 3-2-1-1 [s]
 
 double pulse_count(ManoeuvreKind kind) {
@@ -288,7 +287,7 @@ std::vector<Multisine> make_multisines(std::size_t count, double duration, doubl
     const double n = static_cast<double>(m.frequency.size());
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
       const double j = static_cast<double>(k) + 1.0;
-      m.phase.push_back(std::remainder(-std::numbers::pi * j * (j - 1.0) / n, kTurnAround));
+      m.phase.push_back(std::remainder(-kPi * j * (j - 1.0) / n, kTurnAround));
     }
     lower_peak(m, duration);
     start_at_zero(m, duration);
@@ -337,7 +336,7 @@ double Excitation::bank(double t) const {
   for (const Manoeuvre& m : manoeuvres_) {
     if (m.kind == ManoeuvreKind::kTurn && t >= m.start && t < m.end()) return m.bank;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return kNaN;
 }
 
 }  // namespace veridyn::aircraft

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/aircraft/sensors/servo.hpp"
 #include "veridyn/aircraft/simulation/autopilot.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/ode.hpp"
 
@@ -128,20 +128,19 @@ std::string SimulatedFlight::message() const {
   const auto at = [this] { return fmt::format("at {:.1f} s", end_time); };
   switch (end) {
     case SimulationEnd::kCompleted:
-      return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time,
-                         alpha_min * 180.0 / std::numbers::pi, alpha_max * 180.0 / std::numbers::pi);
+      return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time, alpha_min * 180.0 / kPi,
+                         alpha_max * 180.0 / kPi);
     case SimulationEnd::kNoTrim:
       return trim.message();
     case SimulationEnd::kGround:
       return fmt::format("the aircraft hit the ground {}", at());
     case SimulationEnd::kUpset:
       return fmt::format("the aircraft departed from controlled flight {}", at());
-    case SimulationEnd::kNotFinite:
+    case SimulationEnd::kDiverged:
       return fmt::format("the state is no longer finite {}: the step is too long for this aircraft", at());
-    case SimulationEnd::kInterrupted:
+    default:
       return fmt::format("interrupted {}", at());
   }
-  return {};
 }
 
 SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
@@ -193,7 +192,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   TruthRecorder recorder;
   const auto steps = static_cast<long long>(std::llround(o.duration / h));
   const auto every = std::max(1LL, std::llround(1.0 / (o.truth_rate * h)));
-  flight.alpha_min = std::numeric_limits<double>::infinity();
+  flight.alpha_min = kInfinity;
   flight.alpha_max = -flight.alpha_min;
   progress.stage(fmt::format("simulating {:.0f} s of flight", o.duration));
   std::size_t changed = 0;
@@ -202,7 +201,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
     while (changed < o.changes.size() && t >= o.changes[changed].time - 0.5 * h) s.model = o.changes[changed++].model;
     const TruthSample truth = truth_of(s, body, now, o.gravity);
     if (!now.state.allFinite() || !std::isfinite(truth[Truth::kAirspeed])) {
-      flight.end = SimulationEnd::kNotFinite;
+      flight.end = SimulationEnd::kDiverged;
       break;
     }
     for (Sensor& sensor : sensors) sensor.observe(t, truth);
@@ -214,7 +213,7 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
       flight.end = SimulationEnd::kGround;
       break;
     }
-    if (std::abs(truth[Truth::kAlpha]) > 0.5 * std::numbers::pi || now.state.tail<3>().norm() > 50.0) {
+    if (std::abs(truth[Truth::kAlpha]) > 0.5 * kPi || now.state.tail<3>().norm() > 50.0) {
       flight.end = SimulationEnd::kUpset;
       break;
     }

@@ -10,8 +10,10 @@
 #include "veridyn/aircraft/simulation/dryden.hpp"
 #include "veridyn/aircraft/simulation/flight_plan.hpp"
 #include "veridyn/aircraft/simulation/wind.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
+#include "veridyn/core/simulation_end.hpp"
 
 namespace veridyn::aircraft {
 
@@ -32,7 +34,7 @@ struct SimulationOptions {
   double heading = 0.0;       ///< at the start [rad]
   double step = 0.0025;       ///< of the integration [s]
   double truth_rate = 100.0;  ///< of the truth recording [Hz]; rounded to whole steps
-  double gravity = kStandardGravity;
+  double gravity = kGravity;
   double excitation_gain = 0.3;  ///< share of its feedback that the pilot keeps on a surface while it is excited
   WindSettings wind;
   DrydenSettings turbulence;
@@ -40,15 +42,6 @@ struct SimulationOptions {
   std::optional<std::vector<Manoeuvre>> manoeuvres;  ///< none: `default_plan`
   std::vector<ModelChange> changes = {};             ///< by time
   std::uint64_t seed = 1;
-};
-
-enum class SimulationEnd {
-  kCompleted,    ///< flown to the end
-  kNoTrim,       ///< steady level flight at the airspeed asked for does not exist
-  kGround,       ///< touched the ground
-  kUpset,        ///< angle of attack beyond 90 deg or rates beyond 50 rad/s: the model means nothing there
-  kNotFinite,    ///< the state became NaN or infinite: the step is too long for this aircraft
-  kInterrupted,  ///< the caller asked to stop
 };
 
 /// A simulated flight: what the sensors saw and what was true (see kTruthChannels).
@@ -65,7 +58,7 @@ struct SimulatedFlight {
 };
 
 /// Airspeed of level flight at CL = 0.5 and sea-level density [m/s], for aircraft that name none.
-[[nodiscard]] double default_airspeed(const Subject& subject, double gravity = kStandardGravity);
+[[nodiscard]] double default_airspeed(const Subject& subject, double gravity = kGravity);
 
 /// Flies the subject: six degrees of freedom with the attitude as quaternion, fixed steps of the fourth-order
 /// Runge-Kutta method, controls and gusts varying linearly within a step. Same options, same bytes. A flight that fails

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -52,7 +52,7 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
     rho[k] = streams.density_at(stamps[k], cursor);
     // sigma of q is constant, that of Va = sqrt(2 q / rho) is sigma_q / (rho Va).
     const double raw = streams.pitot_is_pressure ? pitot.sigma / (rho[k] * std::max(1.0, even[k])) : pitot.sigma;
-    sigma[k] = std::isfinite(even[k]) ? raw * std::sqrt(kernel.noise_gain()) : std::numeric_limits<double>::quiet_NaN();
+    sigma[k] = std::isfinite(even[k]) ? raw * std::sqrt(kernel.noise_gain()) : kNaN;
   }
   const TimeBase time = make_time_base(std::move(stamps));
   out.set(make_channel("airspeed", "m/s", time, std::move(even)));

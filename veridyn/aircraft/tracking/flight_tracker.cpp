@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -22,10 +22,7 @@ double filter_margin(const FlightSignals& signals) {
 
 FlightTracker::FlightTracker(Subject subject, TrackOptions options, double min_airspeed_mps,
                              const estimation::Estimate* start)
-    : subject_(std::move(subject)),
-      options_(std::move(options)),
-      min_airspeed_(min_airspeed_mps),
-      last_(-std::numeric_limits<double>::infinity()) {
+    : subject_(std::move(subject)), options_(std::move(options)), min_airspeed_(min_airspeed_mps), last_(-kInfinity) {
   if (start != nullptr) start_ = *start;
   for (const auto& model : subject_.model.coefficients) {
     const auto& wanted = options_.coefficients;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
@@ -19,7 +20,6 @@ namespace {
 using Eigen::Index;
 using internal::OutputErrorProblem;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Share of a parameter's unit vector in what is not identifiable above which it has no error bar.
 constexpr double kShareWithoutErrorBar = 1e-4;
 

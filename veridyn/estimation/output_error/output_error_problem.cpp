@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
@@ -18,7 +19,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Standard deviation of the noise, as a share of the signal's, below which a fit counts as perfect.
 constexpr double kNoiseFloor = 1e-8;
 

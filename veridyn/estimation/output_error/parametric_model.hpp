@@ -4,12 +4,12 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 
 namespace veridyn::estimation {
@@ -19,10 +19,10 @@ struct ModelParameter {
   std::string name;
   std::string unit = "1";
   double start = 0.0;  ///< where the search begins; also the mean of the prior
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
+  double low = -kInfinity;
+  double high = kInfinity;
   /// Standard deviation of the prior about `start`; infinity: no prior.
-  double prior_sigma = std::numeric_limits<double>::infinity();
+  double prior_sigma = kInfinity;
   bool fixed = false;  ///< stays at `start`
 };
 

@@ -6,6 +6,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
+#include "veridyn/numerics/linear_algebra/real_form.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
@@ -103,9 +104,9 @@ ResidualSpectrum residual_spectrum(const std::vector<RowMatrix>& residuals, Eige
   }
   for (auto& density : result.density) {
     for (Eigen::Index a = 0; a < p; ++a) density(a, a) = density(a, a).real();
-    const numerics::HermitianEigen eigen = numerics::hermitian_eigen(density);
+    const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(numerics::real_form(density));
     if (eigen.values(0) >= kLeastDensity) continue;
-    density = numerics::from_eigen(eigen.vectors, eigen.values.cwiseMax(kLeastDensity));
+    density = numerics::complex_form(numerics::from_eigen(eigen.vectors, eigen.values.cwiseMax(kLeastDensity)));
   }
   return result;
 }

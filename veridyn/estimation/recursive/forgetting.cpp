@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -23,7 +23,7 @@ void ForgettingOptions::validate() const {
 }
 
 double cut_off_time(double lambda, double rate_Hz, double weight) {
-  if (!(lambda < 1.0)) return std::numeric_limits<double>::infinity();
+  if (!(lambda < 1.0)) return kInfinity;
   return std::log(weight) / (std::log(lambda) * rate_Hz);
 }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/recursive/recursive_state.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -224,12 +224,11 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
     }
   }
   if (good) return;
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   result.covariance.setZero();
   result.sigma.setZero();
   for (const Eigen::Index i : free) {
-    result.covariance(i, i) = result.sigma(i) = kInfinite;
-    result.excited_variance(i) = kInfinite;
+    result.covariance(i, i) = result.sigma(i) = kInfinity;
+    result.excited_variance(i) = kInfinity;
   }
 }
 
@@ -285,9 +284,9 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
     p.high95 = p.value + quantile95 * p.sigma;
     p.status = status(i, significance);
     if (p.status == ParameterStatus::kFixed) {
-      p.p_value = std::numeric_limits<double>::quiet_NaN();
+      p.p_value = kNaN;
     } else {
-      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(std::numeric_limits<double>::infinity(), p.value);
+      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
       p.p_value = numerics::student_t_two_sided_p(p.t, std::max(1.0, known.degrees_of_freedom));
     }
     p.unexcited_share = unexcited_share(i);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/recursive/recursive_state.hpp"
 
@@ -116,8 +116,7 @@ ParameterStatus RecursiveRegression::status(Eigen::Index parameter, double signi
 
 double RecursiveRegression::effective_samples() const { return state_->samples; }
 double RecursiveRegression::residual_sd() const {
-  return state_->residual_variance >= 0.0 ? std::sqrt(state_->residual_variance)
-                                          : std::numeric_limits<double>::quiet_NaN();
+  return state_->residual_variance >= 0.0 ? std::sqrt(state_->residual_variance) : kNaN;
 }
 double RecursiveRegression::error_scale() const { return state_->options.method == Method::kOls ? 0.0 : state_->scale; }
 double RecursiveRegression::degrees_of_freedom() const {

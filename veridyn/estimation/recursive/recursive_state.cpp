@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::estimation {
@@ -167,7 +168,7 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
 RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, double z) {
   VERIDYN_ASSERT(x.size() == names.size());
   RecursiveUpdate result;
-  result.innovation = result.innovation_sigma = std::numeric_limits<double>::quiet_NaN();
+  result.innovation = result.innovation_sigma = kNaN;
   const Eigen::Index n = count();
   Buffer row{};
   bool good = std::abs(z) <= kLargestValue;

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -175,14 +176,14 @@ void RegressionTracker::remember(double t) {
   }
   for (std::size_t i = 0; i < history_.singular_value.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    history_.singular_value[i].push_back(k < s.size() ? s(k) : std::numeric_limits<double>::quiet_NaN());
+    history_.singular_value[i].push_back(k < s.size() ? s(k) : kNaN);
   }
   history_.threshold.push_back(regression_.threshold());
   history_.excited.push_back(static_cast<int>(regression_.excited_directions()));
   history_.lambda.push_back(least_lambda_);
   history_.suspicion.push_back(detector_.suspicion());
   history_.innovation.push_back(innovations_ > 0 ? std::sqrt(innovation_power_ / static_cast<double>(innovations_))
-                                                 : std::numeric_limits<double>::quiet_NaN());
+                                                 : kNaN);
   least_lambda_ = 1.0;
   innovation_power_ = 0.0;
   innovations_ = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -109,7 +110,7 @@ VERIDYN_INLINE Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& po
       const Pair longer = own > power.pair[j] ? own : power.pair[j];
       const Pair square = d * d;
       Pair difference = power.pair[j] - own;
-      if (j == static_cast<int>(i) / 2) difference[static_cast<int>(i) % 2] = std::numeric_limits<double>::infinity();
+      if (j == static_cast<int>(i) / 2) difference[static_cast<int>(i) % 2] = kInfinity;
       Pair k = d / difference;
       k = square > rounding * longer ? k : none;
       K[i].pair[j] = k;

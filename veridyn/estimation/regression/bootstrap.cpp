@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
@@ -154,7 +155,6 @@ Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& esti
     result.replicates.row(result.replicates.rows() - 1) = e->transpose();
   }
   const Index count = result.replicates.rows();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   result.mean = result.sigma = result.low95 = result.high95 = Eigen::VectorXd::Constant(n, kNaN);
   result.covariance = Eigen::MatrixXd::Constant(n, n, kNaN);
   if (result.interrupted || count < 2) {

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
@@ -83,7 +83,7 @@ Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step
   Eigen::VectorXcd result(static_cast<Index>(frequencies_Hz.size()));
   const std::size_t last = x.size() - 1;
   for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
-    const double theta = 2.0 * std::numbers::pi * frequencies_Hz[i] * step;
+    const double theta = 2.0 * kPi * frequencies_Hz[i] * step;
     const EndCorrection c = end_correction(theta);
     Complex sum = c.inner * rotated_sum(x, theta);
     // The formulas are for exp(+j theta k): conjugated here.
@@ -101,7 +101,7 @@ Eigen::VectorXcd derivative_transform(std::span<const double> x, double step, st
   Eigen::VectorXcd result = finite_fourier_transform(x, step, frequencies_Hz);
   const double T = step * static_cast<double>(x.size() - 1);
   for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
-    const double omega = 2.0 * std::numbers::pi * frequencies_Hz[i];
+    const double omega = 2.0 * kPi * frequencies_Hz[i];
     Complex& value = result(static_cast<Index>(i));
     value = Complex(0.0, omega) * value + x.back() * std::polar(1.0, -omega * T) - x.front();
   }
@@ -164,8 +164,8 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
     ParameterEstimate p;
     p.name = data.parameter_names[static_cast<std::size_t>(j)];
     if (!data.parameter_units.empty()) p.unit = data.parameter_units[static_cast<std::size_t>(j)];
-    p.value = std::numeric_limits<double>::quiet_NaN();
-    p.sigma = p.sigma_white = p.high95 = std::numeric_limits<double>::infinity();
+    p.value = kNaN;
+    p.sigma = p.sigma_white = p.high95 = kInfinity;
     p.low95 = -p.sigma;
     e.parameters.push_back(std::move(p));
   }
@@ -223,7 +223,7 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
     p.low95 = p.value - quantile95 * p.sigma;
     p.high95 = p.value + quantile95 * p.sigma;
     p.variance_inflation = std::max(1.0, D.col(i).squaredNorm() * ols.inverse_normal(i, i));
-    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(std::numeric_limits<double>::infinity(), p.value);
+    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
     p.p_value = numerics::student_t_two_sided_p(p.t, e.degrees_of_freedom);
     p.status = p.p_value < options.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
   }

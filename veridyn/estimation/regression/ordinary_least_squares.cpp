@@ -1,8 +1,7 @@
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
-#include <limits>
-
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
@@ -18,7 +17,7 @@ OrdinaryLeastSquares ordinary_least_squares(const Eigen::MatrixXd& triangle) {
   const numerics::SingularValues svd = numerics::singular_values(unit, numerics::SingularVectors::kFullUAndV);
   result.singular_values = svd.values;
   const double largest = result.singular_values(0), smallest = result.singular_values(n - 1);
-  result.condition_number = smallest > 0.0 ? largest / smallest : std::numeric_limits<double>::infinity();
+  result.condition_number = smallest > 0.0 ? largest / smallest : kInfinity;
   result.full_rank = smallest > 1e-13 * largest;
   const Eigen::VectorXd inverse =
       result.singular_values.unaryExpr([&](double s) { return s > 1e-13 * largest ? 1.0 / s : 0.0; });

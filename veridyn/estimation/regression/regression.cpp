@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
 
@@ -75,7 +76,7 @@ void RegressionOptions::validate(Eigen::Index parameters) const {
                      fmt::format("has {} values for {} parameters", prior_weight.size(), parameters));
   }
   if (!(prior_weight.array() > 0.0).all()) throw InputError("regression.prior_weight", "has a value that is not > 0");
-  if (!(prior_weight.array() < std::numeric_limits<double>::infinity()).any()) {
+  if (!(prior_weight.array() < kInfinity).any()) {
     throw InputError("regression.prior_weight", "pins every parameter; at least one must be finite");
   }
 }

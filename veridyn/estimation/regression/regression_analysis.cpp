@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
@@ -78,8 +79,8 @@ RegressionAnalysis::RegressionAnalysis(const RegressionData& data, const Regress
     if (constant_[static_cast<std::size_t>(j)]) continue;
     double spread = triangle_.col(j).squaredNorm();
     if (has_constant && data.row_scale.size() == 0) spread -= rows() * mean(j) * mean(j);
-    variance_inflation_(j) = least_squares_.full_rank ? std::max(1.0, spread * least_squares_.inverse_normal(j, j))
-                                                      : std::numeric_limits<double>::infinity();
+    variance_inflation_(j) =
+        least_squares_.full_rank ? std::max(1.0, spread * least_squares_.inverse_normal(j, j)) : kInfinity;
   }
 }
 
@@ -316,7 +317,7 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
     p.value = result.theta(i);
     p.variance_inflation = variance_inflation_(i);
     if (!usable) {
-      p.sigma = p.sigma_white = std::numeric_limits<double>::infinity();
+      p.sigma = p.sigma_white = kInfinity;
       p.low95 = -p.sigma;
       p.high95 = p.sigma;
       p.status = ParameterStatus::kRejected;
@@ -327,18 +328,17 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
     p.low95 = p.value - quantile95 * p.sigma;
     p.high95 = p.value + quantile95 * p.sigma;
     if (p.status == ParameterStatus::kFixed) {
-      p.p_value = std::numeric_limits<double>::quiet_NaN();
+      p.p_value = kNaN;
       continue;
     }
-    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(std::numeric_limits<double>::infinity(), p.value);
+    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
     p.p_value = numerics::student_t_two_sided_p(p.t, freedom);
     if (p.status != ParameterStatus::kNotExcited) {
       p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
     }
   }
   if (!usable) {
-    result.covariance = result.covariance_white =
-        Eigen::MatrixXd::Constant(n, n, std::numeric_limits<double>::infinity());
+    result.covariance = result.covariance_white = Eigen::MatrixXd::Constant(n, n, kInfinity);
   }
 }
 

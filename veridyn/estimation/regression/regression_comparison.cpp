@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
@@ -165,8 +166,7 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
                                       with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()),
                                       analysis.rows());
   HonestyCheck sensitivity{.name = "sensitivity to the error ratio", .limit = kSensitivityLimit};
-  const Distance moved = other.solved ? distance(candidate, candidate.theta, other.theta)
-                                      : Distance{std::numeric_limits<double>::infinity(), ""};
+  const Distance moved = other.solved ? distance(candidate, candidate.theta, other.theta) : Distance{kInfinity, ""};
   sensitivity.value = moved.sigmas;
   sensitivity.passed = moved.sigmas <= kSensitivityLimit;
   sensitivity.text =

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
@@ -64,7 +65,7 @@ class Search {
     for (Index j = 0; j < k; ++j) part.col(j) = triangle_.col(columns[static_cast<std::size_t>(j)]);
     const numerics::HouseholderQr qr(part);
     for (Index j = 0; j < k; ++j) {
-      if (!(std::abs(qr.R()(j, j)) > kDependent * part.col(j).norm())) return std::numeric_limits<double>::infinity();
+      if (!(std::abs(qr.R()(j, j)) > kDependent * part.col(j).norm())) return kInfinity;
     }
     const Eigen::VectorXd rest = qr.apply_transposed(Eigen::VectorXd(triangle_.col(n)));
     return rest.tail(rest.size() - k).squaredNorm();
@@ -119,13 +120,13 @@ class Search {
 
   [[nodiscard]] double partial_F(double without_it, double with_it, std::size_t terms_with_it) const {
     const double freedom = std::max(1.0, N_ - static_cast<double>(terms_with_it));
-    return with_it > 0.0 ? (without_it - with_it) / (with_it / freedom) : std::numeric_limits<double>::infinity();
+    return with_it > 0.0 ? (without_it - with_it) / (with_it / freedom) : kInfinity;
   }
 
   /// The column that lowers the residual sum of squares most, or -1.
   [[nodiscard]] Index best_candidate(double& squares) const {
     Index best = -1;
-    squares = std::numeric_limits<double>::infinity();
+    squares = kInfinity;
     for (Index j = 0; j < data_.parameters(); ++j) {
       if (in_model(j) || static_cast<double>(model_.size()) + 2.0 > N_) continue;
       const double candidate = rss(with(model_, j));

@@ -1,18 +1,18 @@
 #include "veridyn/estimation/uncertainty/damped_cosine.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * kPi;
 constexpr std::size_t kSpectrumSamples = 1000;
 constexpr int kIterations = 100;
 
@@ -66,7 +66,7 @@ void solve_linear(const std::vector<double>& t, const std::vector<double>& y, Pa
     A += x * x.transpose();
     r += x * y[i];
   }
-  p.tail<3>() = A.ldlt().solve(r);
+  p.tail<3>() = numerics::solve_symmetric(A, Eigen::VectorXd(r));
 }
 
 struct Linearisation {
@@ -138,7 +138,7 @@ DampedCosine fit_damped_cosine(std::span<const double> time, std::span<const dou
     const Eigen::Matrix<double, 5, 5> N = at.J.transpose() * at.J;
     Eigen::Matrix<double, 5, 5> damped = N;
     damped.diagonal() += damping * N.diagonal();
-    Parameters next = p + damped.ldlt().solve(at.J.transpose() * at.residual);
+    Parameters next = p + numerics::solve_symmetric(damped, Eigen::VectorXd(at.J.transpose() * at.residual));
     // The three linear parameters are free: exact for every frequency and decay.
     solve_linear(t, y, next);
     Linearisation trial = linearise(t, y, next);
@@ -177,7 +177,8 @@ DampedCosine fit_damped_cosine(std::span<const double> time, std::span<const dou
   const Eigen::Index window = correlation_length(at.residual, whole, std::min<Eigen::Index>(5000, at.J.rows() / 4));
   const Eigen::MatrixXd S = coloured_normal_matrix(at.J, at.residual, whole, window).matrix;
   const Eigen::Matrix<double, 5, 5> N = at.J.transpose() * at.J;
-  const Eigen::Matrix<double, 5, 5> inverse = N.ldlt().solve(Eigen::Matrix<double, 5, 5>::Identity());
+  const Eigen::Matrix<double, 5, 5> inverse =
+      numerics::solve_symmetric(N, Eigen::MatrixXd(Eigen::MatrixXd::Identity(5, 5)));
   fit.sigma_frequency = std::sqrt(std::max(0.0, (inverse * S * inverse)(0, 0)));
   if (fit.usable() && (!(fit.cycles() >= 3.0) || !(fit.r_squared >= 0.5))) fit.end = DampedCosineEnd::kNoOscillation;
   return fit;

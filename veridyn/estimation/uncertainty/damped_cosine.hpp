@@ -1,10 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::estimation {
 
@@ -21,13 +22,13 @@ enum class DampedCosineEnd {
 /// damping does after it is let go.
 struct DampedCosine {
   DampedCosineEnd end = DampedCosineEnd::kTooFewSamples;
-  double damped_frequency = std::numeric_limits<double>::quiet_NaN();  ///< w [rad/s]
-  double decay = 0.0;                                                  ///< s [1/s]
-  double cosine = 0.0;                                                 ///< a
-  double sine = 0.0;                                                   ///< b
-  double offset = 0.0;                                                 ///< c
-  double start = 0.0;                                                  ///< stamp of t = 0
-  double duration = 0.0;                                               ///< of the record [s]
+  double damped_frequency = kNaN;  ///< w [rad/s]
+  double decay = 0.0;              ///< s [1/s]
+  double cosine = 0.0;             ///< a
+  double sine = 0.0;               ///< b
+  double offset = 0.0;             ///< c
+  double start = 0.0;              ///< stamp of t = 0
+  double duration = 0.0;           ///< of the record [s]
   double sigma_frequency = 0.0;    ///< of w, from the residual with its autocorrelation
   double residual_rms = 0.0;       ///< unit of y
   double r_squared = 0.0;          ///< 1 - residual power / variance of y

@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/gather.hpp"
@@ -73,7 +73,7 @@ class RunningClock {
 
  private:
   double now_ = 0.0;
-  double doubtful_ = std::numeric_limits<double>::infinity();
+  double doubtful_ = kInfinity;
   bool started_ = false;
 };
 

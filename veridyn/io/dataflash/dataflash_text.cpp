@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <variant>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
@@ -18,18 +19,11 @@
 namespace veridyn::io {
 namespace {
 
-std::string_view trim(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r");
-  // Still inside of the line: cells are joined again by their places.
-  if (begin == std::string_view::npos) return text.substr(0, 0);
-  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
-}
-
 void split(std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
   while (true) {
     const std::size_t comma = line.find(',');
-    cells.push_back(trim(line.substr(0, comma)));
+    cells.push_back(trimmed(line.substr(0, comma)));
     if (comma == std::string_view::npos) return;
     line.remove_prefix(comma + 1);
   }
@@ -63,7 +57,7 @@ class TextReader {
     std::string_view rest = data_;
     while (!rest.empty()) {
       const std::size_t stop = rest.find('\n');
-      const std::string_view line = trim(rest.substr(0, stop));
+      const std::string_view line = trimmed(rest.substr(0, stop));
       const bool last = stop == std::string_view::npos;
       rest.remove_prefix(last ? rest.size() : stop + 1);
       if (line.empty()) continue;
@@ -120,7 +114,7 @@ class TextReader {
     const std::size_t count = table.columns.size();
     if (cells.size() - 1 < count) return false;
     if (cells.size() - 1 > count && !join_text(table, cells)) return false;
-    values_.assign(count, std::numeric_limits<double>::quiet_NaN());
+    values_.assign(count, kNaN);
     for (std::size_t i = 0; i < count; ++i) {
       const DataFlashColumn& column = table.columns[i];
       const std::string_view cell = cells[i + 1];

@@ -2,11 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::io {
 
@@ -52,7 +53,7 @@ class Column {
     return std::visit(
         [i](const auto& values) {
           if constexpr (std::is_same_v<std::decay_t<decltype(values)>, TextColumn>) {
-            return std::numeric_limits<double>::quiet_NaN();
+            return kNaN;
           } else {
             return static_cast<double>(values[i]);
           }

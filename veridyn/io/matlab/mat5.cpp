@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kFileHeader = 128;
 constexpr std::size_t kLargestVariable = std::size_t{1} << 31U;
-constexpr int kDeepestNesting = 16;
 
 enum Stored : std::uint32_t {
   kInt8 = 1,
@@ -169,7 +168,7 @@ class Parser {
   std::optional<MatValue> matrix(std::string_view bytes, int depth) const {
     MatValue value;
     if (bytes.empty()) return value;  // an empty cell
-    if (depth > kDeepestNesting) return std::nullopt;
+    if (depth > kDeepestMatNesting) return std::nullopt;
     Elements elements(bytes, swap_);
     const auto flags = elements.next();
     if (!flags || flags->type != kUint32 || flags->data.size() < 8) return std::nullopt;

@@ -9,8 +9,6 @@
 namespace veridyn::io {
 namespace {
 
-constexpr int kDeepestNesting = 16;
-
 template <typename T>
 void copy(const matvar_t& from, std::size_t count, std::vector<double>& to) {
   const T* const values = static_cast<const T*>(from.data);
@@ -26,7 +24,7 @@ MatValue convert(matvar_t& from, int depth) {
     value.extents.push_back(from.dims[i]);
     count *= from.dims[i];
   }
-  if (depth > kDeepestNesting) return value;
+  if (depth > kDeepestMatNesting) return value;
   if (from.class_type == MAT_C_CELL || from.class_type == MAT_C_STRUCT) {
     const bool cell = from.class_type == MAT_C_CELL;
     value.kind = cell ? MatValue::Kind::kCell : MatValue::Kind::kStruct;

@@ -10,6 +10,9 @@
 
 namespace veridyn::io {
 
+/// Cells and structs within each other that a MAT file may have before it is taken for damaged.
+inline constexpr int kDeepestMatNesting = 16;
+
 /// A variable of a MAT file, or a part of one.
 struct MatValue {
   enum class Kind { kNumbers, kText, kCell, kStruct, kOther };

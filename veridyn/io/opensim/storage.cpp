@@ -10,6 +10,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -52,13 +53,6 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
     words.push_back(trimmed(line.substr(begin, end - begin)));
     begin = line.find_first_not_of(separators, end);
   }
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
 }
 
 double number_of(std::string_view word, const std::string& place, std::string_view label) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
@@ -20,10 +21,7 @@ namespace {
 using internal::CellReader;
 using internal::Header;
 using internal::kMissing;
-using internal::lower;
-using internal::shown;
 using internal::TimeChoice;
-using internal::trim;
 
 /// A column while it is being read; text once its first cell that is not empty is no number.
 struct Growing {
@@ -53,11 +51,11 @@ class CsvParser {
   [[nodiscard]] std::string place(std::size_t line) const { return fmt::format("{}:{}", log_.source, line); }
 
   void read_comment(std::string_view line) {
-    line = trim(line.substr(1));
+    line = trimmed(line.substr(1));
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) return;
-    const std::string key = lower(trim(line.substr(0, colon)));
-    const std::string value(trim(line.substr(colon + 1)));
+    const std::string key = lower(trimmed(line.substr(0, colon)));
+    const std::string value(trimmed(line.substr(colon + 1)));
     if (key == "frame") {
       if (value == "frd") log_.frame = Frame::kFrd;
       if (value == "flu") log_.frame = Frame::kFlu;
@@ -75,7 +73,7 @@ class CsvParser {
     while (line.empty()) {
       if (rest.empty()) throw InputError(log_.source, "no header: the file has only blank lines and comments");
       const std::size_t stop = std::min(rest.find('\n'), rest.size());
-      line = trim(rest.substr(0, stop));
+      line = trimmed(rest.substr(0, stop));
       if (line.empty() || line.front() == '#') {
         if (!line.empty()) read_comment(line);
         line = {};

@@ -6,30 +6,10 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "veridyn/core/text.hpp"
 #include "veridyn/io/log/log.hpp"
 
 namespace veridyn::io::internal {
-
-std::string_view trim(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(kBlank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
-std::string shown(std::string_view cell) {
-  std::string text = printable(cell.substr(0, 40));
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return cell.size() > 40 ? text + "..." : text;
-}
 
 char guess_delimiter(std::string_view line) {
   char best = ',';
@@ -72,7 +52,7 @@ std::string_view CellReader::line() {
   const std::string_view text(at_, static_cast<std::size_t>(last - at_));
   at_ = stop != nullptr ? stop + 1 : end_;
   ++lines_;
-  return trim(text);
+  return trimmed(text);
 }
 
 std::string CellReader::text() {
@@ -95,12 +75,12 @@ std::string CellReader::text() {
     if (from != end_) ++from;
     while (from != end_ && *from != delimiter_ && *from != '\n') cell += *from++;
     close(from);
-    return std::string(trim(cell));
+    return std::string(trimmed(cell));
   }
   while (from != end_ && *from != delimiter_ && *from != '\n') ++from;
   cell.assign(at_, from);
   close(from);
-  return std::string(trim(cell));
+  return std::string(trimmed(cell));
 }
 
 }  // namespace veridyn::io::internal

@@ -2,22 +2,17 @@
 
 #include <charconv>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::io::internal {
 
-inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kMissing = kNaN;
 
-/// Without blanks, tabulators and carriage returns at its ends.
-[[nodiscard]] std::string_view trim(std::string_view text);
-/// ASCII letters in lower case.
-[[nodiscard]] std::string lower(std::string_view text);
-/// A cell for a message: at most 40 characters.
-[[nodiscard]] std::string shown(std::string_view cell);
 /// Comma, semicolon or tabulator, whichever the line holds most of.
 [[nodiscard]] char guess_delimiter(std::string_view line);
 /// The number that a cell stands for which is no plain one: empty, NA and the like are missing, true is 1; infinite

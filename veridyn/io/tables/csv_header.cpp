@@ -9,6 +9,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/date_stamp.hpp"
@@ -79,7 +80,7 @@ Header split_header(const std::string& cell, bool our_own, const std::string& pl
   const std::size_t open = cell.rfind('[');
   if (open == std::string::npos || open == 0) return header;
   const std::string unit = cell.substr(open + 1, cell.size() - open - 2);
-  const std::string name(trim(std::string_view(cell).substr(0, open)));
+  const std::string name(trimmed(std::string_view(cell).substr(0, open)));
   // In files by others "control[3]" is an element, in ours the last brackets always hold a unit.
   const bool element = !unit.empty() && unit.find_first_not_of("0123456789") == std::string::npos;
   if (!our_own && element) return header;

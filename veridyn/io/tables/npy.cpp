@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -17,15 +18,7 @@ static_assert(std::endian::native == std::endian::little, "arrays are copied as 
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 
-std::string shown(std::string_view text) {
-  std::string result = internal::printable(text.substr(0, 40));
-  for (char& c : result) {
-    if (c == '\n' || c == '\t') c = ' ';
-  }
-  return text.size() > 40 ? result + "..." : result;
-}
-
-struct Header {
+struct ArrayHeader {
   std::string type;
   bool fortran_order = false;
   std::vector<std::size_t> shape;
@@ -36,8 +29,8 @@ class HeaderParser {
  public:
   HeaderParser(std::string_view text, const std::string& source) : rest_(text), source_(source) {}
 
-  Header run() {
-    Header header;
+  ArrayHeader run() {
+    ArrayHeader header;
     bool type = false, order = false, shape = false;
     expect('{');
     while (!take('}')) {
@@ -175,7 +168,7 @@ NpyArray read_npy(std::string_view bytes, const std::string& source) {
   if (length > bytes.size() - start)
     throw InputError(source,
                      fmt::format("is cut: {} of {} bytes of its header are there", bytes.size() - start, length));
-  const Header header = HeaderParser(bytes.substr(start, length), source).run();
+  const ArrayHeader header = HeaderParser(bytes.substr(start, length), source).run();
   const std::string_view data = bytes.substr(start + length);
 
   const std::string_view type = header.type;

@@ -5,28 +5,25 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/text.hpp"
 
 namespace veridyn::io {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-  return text;
+std::string_view unquoted(std::string_view text) {
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   while (true) {
     const std::size_t comma = line.find(',');
-    cells.push_back(trimmed(line.substr(0, comma)));
+    cells.push_back(unquoted(trimmed(line.substr(0, comma))));
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
   }
@@ -55,7 +52,7 @@ Table parse_table(std::string_view text, std::string source) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
+    const std::string_view line = unquoted(trimmed(text.substr(0, end)));
     text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
     ++number;
     if (line.empty() || line.front() == '#') continue;
@@ -64,7 +61,7 @@ Table parse_table(std::string_view text, std::string source) {
     if (table.columns.empty()) {
       for (const std::string_view cell : cells) {
         const std::size_t open = cell.find('[');
-        std::string name(trimmed(cell.substr(0, open)));
+        std::string name(unquoted(trimmed(cell.substr(0, open))));
         Unit unit;
         if (open != std::string_view::npos) {
           try {
@@ -87,7 +84,7 @@ Table parse_table(std::string_view text, std::string source) {
     if (cells.size() != table.columns.size())
       throw InputError(place, fmt::format("has {} cells, the header {}", cells.size(), table.columns.size()));
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      double value = std::numeric_limits<double>::quiet_NaN();
+      double value = kNaN;
       if (!cells[i].empty()) {
         const char* last = cells[i].data() + cells[i].size();
         const auto [stop, error] = std::from_chars(cells[i].data(), last, value);

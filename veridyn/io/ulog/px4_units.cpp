@@ -6,11 +6,11 @@
 namespace veridyn::io {
 namespace {
 
-using Key = std::pair<std::string_view, std::string_view>;
+using MessageField = std::pair<std::string_view, std::string_view>;
 
-const std::map<Key, Px4Unit>& table() {
-  static const std::map<Key, Px4Unit> units = [] {
-    std::map<Key, Px4Unit> result;
+const std::map<MessageField, Px4Unit>& table() {
+  static const std::map<MessageField, Px4Unit> units = [] {
+    std::map<MessageField, Px4Unit> result;
     const auto put = [&](std::initializer_list<std::string_view> topics, std::initializer_list<std::string_view> fields,
                          const char* unit, double scale = 1.0) {
       for (const auto topic : topics) {

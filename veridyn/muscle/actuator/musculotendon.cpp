@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <string_view>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::muscle {
@@ -92,7 +92,7 @@ void check(const MuscleParameters& p) {
   r.between("fiber_damping", p.fiber_damping, 0.0, 1e3);
   r.between("minimum_activation", p.minimum_activation, 0.0, 1.0);
   r.positive("maximum_pennation_angle", p.maximum_pennation_angle);
-  r.below("maximum_pennation_angle", p.maximum_pennation_angle, std::numbers::pi / 2.0);
+  r.below("maximum_pennation_angle", p.maximum_pennation_angle, kPi / 2.0);
   std::visit([&](const auto& c) { check_curves(r, c); }, p.curves);
 }
 

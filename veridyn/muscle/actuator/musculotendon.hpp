@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/actuator/degroote_fregly2016.hpp"
 #include "veridyn/muscle/actuator/millard2012.hpp"
 #include "veridyn/muscle/actuator/thelen2003.hpp"
@@ -444,7 +445,7 @@ MuscleDetails musculotendon_details(const Curves& curves, const MusculotendonCon
     const bool slack = !(lMT > k.LS);
     d.fiber_velocity = slack ? 0.0 : vMT * cosine;
     d.tendon_length = slack ? lMT : k.LS;
-    d.tendon_stiffness = std::numeric_limits<double>::infinity();
+    d.tendon_stiffness = kInfinity;
     if (slack) d.limit = MuscleLimit::kSlackTendon;
   } else {
     d.fiber_length = std::max(lM, k.minimum_length);

@@ -5,9 +5,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::muscle {
@@ -56,8 +56,8 @@ bool increases(const std::array<double, 6>& x) {
   return true;
 }
 
-constexpr int kDegree = 7;
-using Cell = Eigen::Matrix<double, kDegree + 1, 1>;
+constexpr int kPolynomialDegree = 7;
+using Cell = Eigen::Matrix<double, kPolynomialDegree + 1, 1>;
 
 }  // namespace
 
@@ -140,11 +140,11 @@ void QuinticBezierCurve::tabulate() {
 
   // Interpolation at Chebyshev's points of [-1/2, 1/2]; the error is looked at halfway between them.
   Cell node, between;
-  Eigen::Matrix<double, kDegree + 1, kDegree + 1> powers;
-  for (int i = 0; i <= kDegree; ++i) {
-    node(i) = -0.5 * std::cos(std::numbers::pi * (i + 0.5) / (kDegree + 1));
-    between(i) = -0.5 * std::cos(std::numbers::pi * i / kDegree);
-    for (int j = 0; j <= kDegree; ++j) powers(i, j) = std::pow(node(i), j);
+  Eigen::Matrix<double, kPolynomialDegree + 1, kPolynomialDegree + 1> powers;
+  for (int i = 0; i <= kPolynomialDegree; ++i) {
+    node(i) = -0.5 * std::cos(kPi * (i + 0.5) / (kPolynomialDegree + 1));
+    between(i) = -0.5 * std::cos(kPi * i / kPolynomialDegree);
+    for (int j = 0; j <= kPolynomialDegree; ++j) powers(i, j) = std::pow(node(i), j);
   }
   const auto solve = powers.partialPivLu();
 
@@ -162,18 +162,18 @@ void QuinticBezierCurve::tabulate() {
       for (int cell = 0; cell < cells; ++cell) {
         Cell y;
         const auto x_at = [&](double t) { return piece.x[0] + width * (cell + 0.5 + t) / cells; };
-        for (int i = 0; i <= kDegree; ++i) {
+        for (int i = 0; i <= kPolynomialDegree; ++i) {
           u = parameter_at(piece, x_at(node(i)), u);
           y(i) = quintic(piece.y, u).value;
         }
         const Cell c = solve.solve(y);
         std::copy(c.data(), c.data() + 8, table.begin() + 8 * cell);
-        for (int i = 0; i <= kDegree; ++i) {
+        for (int i = 0; i <= kPolynomialDegree; ++i) {
           const double t = between(i);
           u = parameter_at(piece, std::min(x_at(t), piece.x[5]), u);
           const Quintic qx = quintic(piece.x, u), qy = quintic(piece.y, u);
           double value = 0.0, slope = 0.0;
-          for (int j = kDegree; j >= 0; --j) {
+          for (int j = kPolynomialDegree; j >= 0; --j) {
             slope = slope * t + value;
             value = value * t + c(j);
           }

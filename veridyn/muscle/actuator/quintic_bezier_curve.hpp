@@ -2,9 +2,9 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/model/scalar.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
@@ -99,7 +99,7 @@ class QuinticBezierCurve {
 
  private:
   static constexpr std::size_t kMaxPieces = 5;
-  static constexpr double kNever = std::numeric_limits<double>::infinity();
+  static constexpr double kNever = kInfinity;
 
   struct Lookup {
     const double* coefficient;

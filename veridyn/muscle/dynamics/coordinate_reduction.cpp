@@ -5,14 +5,9 @@
 #include <string>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
-
 CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int> prescribed)
     : roles_(model.coordinates.size(), CoordinateRole::kFree),
       free_root_(model.coordinates.size(), -1),

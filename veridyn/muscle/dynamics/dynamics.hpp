@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/mechanism.hpp"
 
 /// Dynamics of a tree of links, M(q) qddot + h(q, qdot) = tau, h with gravity, by Featherstone's recursive algorithms
@@ -80,7 +81,6 @@ class Dynamics {
   static constexpr double kSingularPivot = 1e-12;
 
  private:
-  [[nodiscard]] static std::size_t at(int index) { return static_cast<std::size_t>(index); }
   [[nodiscard]] static Scalar pivot_scale(const SpatialVector<Scalar>& S, const RigidInertia<Scalar>& I) {
     return I.inertia.trace() * S.angular.squaredNorm() + I.mass * S.linear.squaredNorm();
   }

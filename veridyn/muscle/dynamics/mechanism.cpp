@@ -5,11 +5,10 @@
 #include <algorithm>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 bool moves(const TransformAxis& axis) { return axis.coordinate >= 0 && !axis.function.is_constant(); }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
@@ -181,9 +182,9 @@ struct UnsupportedElement {
 struct Model {
   std::string name;
   std::string credits;
-  int version = 0;                              ///< of the document, 40000 for OpenSim 4.0
-  Eigen::Vector3d gravity{0.0, -9.80665, 0.0};  ///< in ground [m/s^2]
-  std::vector<Body> bodies;                     ///< [0] is the ground
+  int version = 0;                               ///< of the document, 40000 for OpenSim 4.0
+  Eigen::Vector3d gravity{0.0, -kGravity, 0.0};  ///< in ground [m/s^2]
+  std::vector<Body> bodies;                      ///< [0] is the ground
   std::vector<Joint> joints;
   std::vector<Coordinate> coordinates;
   std::vector<CoordinateCoupler> couplers;

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -28,8 +28,8 @@ Piece hermite(double h, const numerics::FunctionValue<double>& a, const numerics
 }
 
 numerics::FunctionValue<double> half_sine(const Ramp& ramp, double s) {
-  const double rate = std::numbers::pi / ramp.duration;
-  const double half = 0.5 * (ramp.to - ramp.from), angle = std::numbers::pi * s;
+  const double rate = kPi / ramp.duration;
+  const double half = 0.5 * (ramp.to - ramp.from), angle = kPi * s;
   return {ramp.from + half * (1.0 - std::cos(angle)), half * rate * std::sin(angle),
           half * rate * rate * std::cos(angle)};
 }

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -128,7 +127,7 @@ Motion make_motion(const SignalTable& table, const Model& model, const MotionOpt
     check_finite(table, static_cast<std::size_t>(column));
     std::vector<double> value = table.values[static_cast<std::size_t>(column)];
     if (table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational) {
-      for (double& v : value) v *= std::numbers::pi / 180.0;
+      for (double& v : value) v *= kDegree;
     }
     const auto [low, high] = std::minmax_element(value.begin(), value.end());
     const double slack = 1e-3 * (coordinate.high - coordinate.low);
@@ -166,9 +165,9 @@ void ControlSignals::evaluate(double time, double* out) const {
 }
 
 double ControlSignals::next_break(double time) const {
-  if (time_.size() < 2) return std::numeric_limits<double>::infinity();
+  if (time_.size() < 2) return kInfinity;
   const auto after = std::upper_bound(time_.begin(), time_.end(), time);
-  return after == time_.end() ? std::numeric_limits<double>::infinity() : *after;
+  return after == time_.end() ? kInfinity : *after;
 }
 
 ControlSignals make_excitations(const SignalTable& table, const Model& model, std::span<const double> otherwise,

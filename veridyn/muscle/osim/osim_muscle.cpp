@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <numbers>
 #include <set>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
@@ -226,7 +226,7 @@ void read_limit_force(Context& context, const Element& e) {
   // The file is per degree for a rotational coordinate.
   const bool rotational =
       context.model.coordinates[static_cast<std::size_t>(f.coordinate)].motion == CoordinateMotion::kRotational;
-  const double unit = rotational ? std::numbers::pi / 180.0 : 1.0;
+  const double unit = rotational ? kDegree : 1.0;
   f.upper_stiffness = e.not_negative_or("upper_stiffness", 1.0) / unit;
   f.upper_limit = e.number_or("upper_limit", 0.0) * unit;
   f.lower_stiffness = e.not_negative_or("lower_stiffness", 1.0) / unit;
@@ -256,7 +256,7 @@ void read_muscle(Context& context, const Element& e) {
   m.tendon_slack_length = e.not_negative_or("tendon_slack_length", 0.2);
   m.pennation_angle_at_optimal =
       e.not_negative_or("pennation_angle_at_optimal", e.not_negative_or("pennation_angle", 0.0));
-  if (m.pennation_angle_at_optimal >= std::numbers::pi / 2.0) {
+  if (m.pennation_angle_at_optimal >= kPi / 2.0) {
     e.fail("pennation_angle_at_optimal", fmt::format("{} rad must be below pi/2", m.pennation_angle_at_optimal));
   }
   m.max_contraction_velocity = e.positive_or("max_contraction_velocity", e.positive_or("Vmax", 10.0));

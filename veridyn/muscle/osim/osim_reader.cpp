@@ -5,9 +5,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 #include <set>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -90,7 +90,7 @@ void read_wraps_of(Context& context, const Element& body_element, int body) {
 }
 
 void read_gravity_and_units(Context& context, const Element& root) {
-  context.model.gravity = root.vector_or("gravity", {0.0, -9.80665, 0.0});
+  context.model.gravity = root.vector_or("gravity", {0.0, -kGravity, 0.0});
   const std::string length = root.text_or("length_units", "meters");
   if (length != "meters" && length != "m" && length != "meter") {
     root.fail("length_units", fmt::format("'{}': only models in meters are read", length));

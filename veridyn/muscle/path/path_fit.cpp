@@ -9,21 +9,9 @@
 #include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace veridyn::muscle {
-namespace {
+namespace internal {
 
-/// Halton's sequence: point `index` of dimension `axis`, in 0..1.
-double halton(int index, int axis) {
-  constexpr std::array<int, 12> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
-  const int base = kPrimes[static_cast<std::size_t>(axis) % kPrimes.size()];
-  double fraction = 1.0, value = 0.0;
-  for (int i = index + 1; i > 0; i /= base) {
-    fraction /= base;
-    value += fraction * (i % base);
-  }
-  return value;
-}
-
-struct Sampler {
+struct PathSampler {
   const Mechanism& mechanism;
   const MusclePaths& exact;
   Kinematics<double> kinematics;
@@ -39,6 +27,22 @@ struct Sampler {
     return 0.0;
   }
 };
+
+}  // namespace internal
+
+namespace {
+
+/// Halton's sequence: point `index` of dimension `axis`, in 0..1.
+double halton(int index, int axis) {
+  constexpr std::array<int, 12> kPrimes{2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  const int base = kPrimes[static_cast<std::size_t>(axis) % kPrimes.size()];
+  double fraction = 1.0, value = 0.0;
+  for (int i = index + 1; i > 0; i /= base) {
+    fraction /= base;
+    value += fraction * (i % base);
+  }
+  return value;
+}
 
 /// Exponents of all monomials of `n` variables up to total degree `degree`; for n <= 2 in the order of rows.
 std::vector<std::array<unsigned char, 8>> exponents(int n, int degree) {
@@ -118,7 +122,7 @@ class FittedPaths::Builder {
   const Model& model_;
   const MusclePaths& exact_;
   const PathFitOptions& options_;
-  Sampler sampler_;
+  internal::PathSampler sampler_;
   Eigen::VectorXd rest_;
   std::vector<double> low_, high_;
   std::vector<int> axis_of_;

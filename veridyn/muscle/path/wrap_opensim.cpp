@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/wrap_opensim_parts.hpp"
 
 namespace veridyn::muscle {
@@ -16,7 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using internal::angle_between;
 using internal::sign_of;
-constexpr double kPi = std::numbers::pi;
 
 // --- Ellipsoid ------------------------------------------------------------------------------------------------------
 
@@ -25,7 +23,7 @@ constexpr double kPi = std::numbers::pi;
 Vector3d closest_point(const Vector3d& a, const Vector3d& x, int keep = -1) {
   if (keep < 0) {
     // A point on a plane of symmetry is treated as one of that plane's ellipse, of the smallest if there are several.
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (int i = 0; i < 3; ++i) {
       const double radii = a.sum() - a[i];
       if (std::abs(x[i]) <= 2e-13 && radii < least) {
@@ -34,7 +32,7 @@ Vector3d closest_point(const Vector3d& a, const Vector3d& x, int keep = -1) {
       }
     }
   }
-  double t = -std::numeric_limits<double>::infinity();
+  double t = -kInfinity;
   for (int i = 0; i < 3; ++i)
     if (i != keep) t = std::max(t, a[i] * std::abs(x[i]) - a[i] * a[i]);
   for (int iteration = 0; iteration < 64; ++iteration) {
@@ -154,7 +152,7 @@ std::optional<Passage> passage(const Vector3d& a, const Vector3d& p, const Vecto
 struct PlanePoint {
   Vector3d c = Vector3d::Zero();
   double axis_share = 0.0;  ///< of the axis that the segment follows most, 0 to 1
-  double fan_weight = -std::numeric_limits<double>::infinity();
+  double fan_weight = -kInfinity;
 };
 constexpr double kBlendLow = 0.7073;
 constexpr double kBlendHigh = 0.9;

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/wrap_opensim_parts.hpp"
 
 namespace veridyn::muscle::internal {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPi = std::numbers::pi;
 
 Vector3d radial(const Vector3d& x) { return {x.x(), x.y(), 0.0}; }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/numerics/dormand_prince.hpp"
@@ -23,7 +23,7 @@ class DriveState {
   }
   /// The first instant after `time` at which a held signal jumps; infinite when there is none.
   [[nodiscard]] double piece_end(double time) const {
-    double end = std::numeric_limits<double>::infinity();
+    double end = kInfinity;
     for (const ControlSignals* signals : {&drive_.excitation, &drive_.reserve}) {
       if (signals->interpolation() == Interpolation::kHold) end = std::min(end, signals->next_break(time));
     }

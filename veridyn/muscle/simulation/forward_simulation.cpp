@@ -211,7 +211,7 @@ std::string MuscleTrajectory::message() const {
       return fmt::format("no step is small enough at {:.6g} s: {}", end_time, trouble);
     case SimulationEnd::kStepLimit:
       return fmt::format("the limit of {} steps was reached at {:.6g} s: {}", steps, end_time, trouble);
-    case SimulationEnd::kInterrupted:
+    default:
       break;
   }
   return fmt::format("interrupted at {:.6g} s", end_time);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/core/simulation_end.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/muscle/model/signals.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
@@ -30,14 +31,6 @@ struct ForwardOptions {
   /// Largest error of a step in units of `MusculoskeletalSystem::scales`; OpenSim's tools take 1e-5 for their own norm.
   double accuracy = 1e-5;
   long max_steps = 1000000;
-};
-
-enum class SimulationEnd {
-  kCompleted,
-  kDiverged,     ///< a state became infinite, or a coordinate went beyond 1e4 rad or m
-  kStepSize,     ///< no step is small enough: a muscle or a joint at a limit of its model
-  kStepLimit,    ///< `max_steps` used up
-  kInterrupted,  ///< the caller asked to stop
 };
 
 /// A muscle that reached a limit of its model, or left it.

@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/io/tables/table.hpp"
@@ -110,7 +110,7 @@ PoseTable read_motion(const Model& model, const std::string& file) {
     if (index < 0) return {};
     std::vector<double> values = table.values[static_cast<std::size_t>(index)];
     if (table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational) {
-      for (double& v : values) v *= std::numbers::pi / 180.0;
+      for (double& v : values) v *= kDegree;
     }
     return values;
   };

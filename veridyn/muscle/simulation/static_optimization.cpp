@@ -11,9 +11,7 @@
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::muscle {
-namespace {
-
-using Jet = ceres::Jet<double, 1>;
+namespace internal {
 
 /// min sum |x_i|^p subject to B x = tau and low <= x <= high, through its dual.
 ///
@@ -105,12 +103,18 @@ struct SeparableProgram {
   }
 };
 
+}  // namespace internal
+
+namespace {
+
+using Jet = ceres::Jet<double, 1>;
+
 }  // namespace
 
 struct StaticOptimizer::Work {
   MuscleGroup<double> muscles;
   MuscleGroup<Jet> with_slopes;
-  SeparableProgram program;
+  internal::SeparableProgram program;
   std::vector<RigidTendonForces> forces;
   std::vector<Jet> activation, length, speed;
   std::vector<RigidTendonParts<Jet>> parts;
@@ -161,7 +165,7 @@ void StaticOptimizer::restart() { work_->program.lambda.setZero(); }
 /// Bounds of all controls, and what the reserves do: muscles first, then reserves.
 void StaticOptimizer::bound_controls(Eigen::Index n, Eigen::Index m) {
   const Eigen::Index reserves = options_.reserve.empty() ? 0 : m;
-  SeparableProgram& q = work_->program;
+  internal::SeparableProgram& q = work_->program;
   q.resize(n + reserves, m);
   q.p = options_.exponent;
   q.iterations = 0;
@@ -193,7 +197,7 @@ StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::Matr
                                                                const Eigen::VectorXd& required, double tolerance,
                                                                const Eigen::VectorXd& start) {
   Work& w = *work_;
-  SeparableProgram& q = w.program;
+  internal::SeparableProgram& q = w.program;
   const Eigen::Index n = arms.rows();
   Balance result{false, false};
   q.x.head(n) = q.low.head(n);
@@ -230,7 +234,7 @@ StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::Matr
 void StaticOptimizer::fill(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required,
                            StaticOptimizationFrame& frame) const {
   const Work& w = *work_;
-  const SeparableProgram& q = w.program;
+  const internal::SeparableProgram& q = w.program;
   const Eigen::Index n = arms.rows(), m = arms.cols();
   frame.activation = q.x.head(n);
   frame.force.resize(n);

@@ -1,8 +1,7 @@
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
-#include <Eigen/Cholesky>
-
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::numerics {
 
@@ -29,6 +28,15 @@ Eigen::MatrixXd Cholesky::solve_lower(const Eigen::MatrixXd& B) const {
 Eigen::MatrixXd Cholesky::solve_upper(const Eigen::MatrixXd& B) const {
   return L_.triangularView<Eigen::Lower>().adjoint().solve(B);
 }
+
+PivotedCholesky::PivotedCholesky(const Eigen::MatrixXd& matrix) : factor_(matrix) {
+  VERIDYN_ASSERT(matrix.rows() == matrix.cols());
+  smallest_pivot_ = factor_.info() == Eigen::Success ? factor_.vectorD().minCoeff() : kNaN;
+}
+
+Eigen::MatrixXd PivotedCholesky::solve(const Eigen::MatrixXd& B) const { return factor_.solve(B); }
+
+Eigen::VectorXd PivotedCholesky::solve(const Eigen::VectorXd& b) const { return factor_.solve(b); }
 
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   VERIDYN_ASSERT(A.rows() == A.cols() && A.cols() == B.rows());

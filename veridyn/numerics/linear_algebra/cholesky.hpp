@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace veridyn::numerics {
@@ -24,6 +25,23 @@ class Cholesky {
  private:
   Eigen::MatrixXd L_;
   bool positive_definite_ = false;
+};
+
+/// P' L D L' P of a symmetric positive or negative semidefinite matrix, with pivoting: for matrices whose definiteness
+/// is the question.
+class PivotedCholesky {
+ public:
+  explicit PivotedCholesky(const Eigen::MatrixXd& matrix);
+
+  /// The smallest element of D; NaN where the factorisation failed, so that `smallest_pivot() > limit` is false.
+  [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
+  /// A^-1 B
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+
+ private:
+  Eigen::LDLT<Eigen::MatrixXd> factor_;
+  double smallest_pivot_ = 0.0;
 };
 
 /// A^-1 B of a symmetric positive or negative semidefinite matrix by L D L' with pivoting: for matrices whose

@@ -6,6 +6,16 @@
 #include "veridyn/core/assert.hpp"
 
 namespace veridyn::numerics {
+namespace {
+
+Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed(const Eigen::MatrixXd& A, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  if (threshold > 0.0) decomposition.setThreshold(threshold);
+  decomposition.compute(A);
+  return decomposition;
+}
+
+}  // namespace
 
 HouseholderQr::HouseholderQr(const Eigen::MatrixXd& matrix) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
@@ -57,15 +67,12 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 
 Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double threshold) {
   VERIDYN_ASSERT(A.rows() == B.rows());
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  if (threshold > 0.0) decomposition.setThreshold(threshold);
-  decomposition.compute(A);
-  return decomposition.solve(B);
+  return decomposed(A, threshold).solve(B);
 }
 
-Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double threshold) {
   VERIDYN_ASSERT(A.rows() == b.size());
-  return A.completeOrthogonalDecomposition().solve(b);
+  return decomposed(A, threshold).solve(b);
 }
 
 Eigen::MatrixXd solve_linear(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {

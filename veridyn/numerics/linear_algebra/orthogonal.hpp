@@ -42,8 +42,9 @@ struct Eliminated {
 /// Pivots below `threshold` times the largest count as zero; 0: the machine's precision times the size.
 [[nodiscard]] Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                                                      double threshold = 0.0);
-/// The same for one right-hand side, with the machine's precision as threshold.
-[[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+/// The same for one right-hand side.
+[[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                                                     double threshold = 0.0);
 
 /// A^-1 B of a regular square matrix, by LU with partial pivoting.
 [[nodiscard]] Eigen::MatrixXd solve_linear(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);

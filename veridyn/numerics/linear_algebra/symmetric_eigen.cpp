@@ -19,19 +19,8 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-HermitianEigen hermitian_eigen(const Eigen::MatrixXcd& matrix) {
-  VERIDYN_ASSERT(matrix.rows() == matrix.cols());
-  if (matrix.rows() == 0) return {.values = Eigen::VectorXd(0), .vectors = matrix};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(matrix);
-  return {.values = solver.eigenvalues(), .vectors = solver.eigenvectors()};
-}
-
 Eigen::MatrixXd from_eigen(const Eigen::MatrixXd& vectors, const Eigen::VectorXd& values) {
   return vectors * values.asDiagonal() * vectors.transpose();
-}
-
-Eigen::MatrixXcd from_eigen(const Eigen::MatrixXcd& vectors, const Eigen::VectorXd& values) {
-  return vectors * values.asDiagonal() * vectors.adjoint();
 }
 
 }  // namespace veridyn::numerics

@@ -4,15 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Bucket {
   std::size_t begin;
@@ -61,8 +59,8 @@ void draw_bucket(std::span<const double> x, std::span<const double> y, Bucket ra
 }
 
 struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
+  double low = kInfinity;
+  double high = -kInfinity;
 
   void add(double value) {
     low = std::min(low, value);

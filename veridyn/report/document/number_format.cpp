@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 
@@ -60,7 +61,7 @@ Align resolved_align(const Table& table, std::size_t column) {
 }
 
 std::vector<double> round_for_storage(const std::vector<double>& values, double steps) {
-  double low = std::numeric_limits<double>::infinity();
+  double low = kInfinity;
   double high = -low;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
@@ -74,7 +75,7 @@ std::vector<double> round_for_storage(const std::vector<double>& values, double 
   const double power = std::pow(10.0, std::abs(decimals));
   for (double& value : rounded) {
     if (!std::isfinite(value)) {
-      value = std::numeric_limits<double>::quiet_NaN();
+      value = kNaN;
     } else if (decimals > 15.0 || decimals < -15.0) {
       continue;  // no plain decimal number would be shorter
     } else if (decimals >= 0.0) {

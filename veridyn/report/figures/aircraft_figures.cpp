@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 

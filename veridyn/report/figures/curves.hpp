@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,9 +10,7 @@
 /// What figures of all domains make their curves of.
 namespace veridyn::report {
 
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// [rad]
-inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Every value times a factor: from SI to the unit shown.
 [[nodiscard]] std::vector<double> scaled(std::span<const double> values, double factor);

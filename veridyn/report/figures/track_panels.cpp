@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::report {
 
 Panel singular_value_panel(const aircraft::TrackHistory& history) {
   Panel panel{.label = "log10 singular values", .unit = "1"};
   const auto log10_of = [](std::vector<double> values) {
-    for (double& v : values) v = v > 0.0 ? std::log10(v) : std::numeric_limits<double>::quiet_NaN();
+    for (double& v : values) v = v > 0.0 ? std::log10(v) : kNaN;
     return values;
   };
   for (std::size_t i = 0; i < history.singular_value.size(); ++i)

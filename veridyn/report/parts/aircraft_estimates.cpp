@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 

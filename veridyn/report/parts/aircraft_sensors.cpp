@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 
 namespace veridyn::report {

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
@@ -15,9 +14,6 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLongestStep_s = 5e-3;
 /// Step times the fastest decay rate of the bicycle: RK4 then errs by less than 1e-5 of a transient.
 constexpr double kStepTimesRate = 0.25;

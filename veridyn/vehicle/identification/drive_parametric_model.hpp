@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
@@ -77,7 +78,7 @@ struct DriveModelOptions {
   /// that. 0: none; negative (the default): 4 Hz or a tenth of the rate, where the steering's noise is above 1e-4 of
   /// the steering.
   double smoothing_Hz = -1.0;
-  double gravity = 9.80665;
+  double gravity = kGravity;
 
   DriveModelOptions();
   /// @throws InputError naming file, line and key.

@@ -2,15 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -21,7 +23,6 @@ using estimation::Method;
 using estimation::RegressionData;
 using estimation::RegressionEstimate;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rows a cut-off frequency: they are nearly independent then.
 constexpr double kRowsPerCutoff = 4.0;
 /// Rows on which the error covariance is averaged.
@@ -281,7 +282,7 @@ Eigen::MatrixXd influence(const RegressionData& data, const RegressionEstimate& 
   const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
   const Eigen::MatrixXd all =
-      scale.asDiagonal() * scaled.fullPivLu().solve(scale.asDiagonal() * Eigen::MatrixXd(scores.transpose()));
+      scale.asDiagonal() * numerics::solve_linear(scaled, Eigen::MatrixXd(scale.asDiagonal() * scores.transpose()));
   return all.topRows(2).transpose();
 }
 
@@ -310,8 +311,7 @@ Eigen::Matrix4d joint_covariance(const DriveRegressions& data, const RegressionE
     Q.topRightCorner<2, 2>() *= share;
     Q.bottomLeftCorner<2, 2>() *= share;
     const Eigen::Vector4d scale = Q.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-    const Eigen::LDLT<Eigen::Matrix4d> factor(scale.asDiagonal() * Q * scale.asDiagonal());
-    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 1e-6) return Q;
+    if (numerics::PivotedCholesky(scale.asDiagonal() * Q * scale.asDiagonal()).smallest_pivot() > 1e-6) return Q;
   }
   P.topRightCorner<2, 2>().setZero();
   P.bottomLeftCorner<2, 2>().setZero();
@@ -381,7 +381,7 @@ AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& fi
   }
   const Eigen::Matrix4d P = joint_covariance(data, first, second);
   const Eigen::Vector4d scale = P.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::LDLT<Eigen::Matrix4d> factor(scale.asDiagonal() * P * scale.asDiagonal());
+  const numerics::PivotedCholesky factor(scale.asDiagonal() * P * scale.asDiagonal());
   const Eigen::Vector3d size = x;
   Eigen::Vector4d f;
   Eigen::Matrix<double, 4, 3> J;
@@ -391,8 +391,9 @@ AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& fi
     coefficients(x, p, data.direct, f, J);
     const Eigen::Matrix<double, 4, 3> A = scale.asDiagonal() * J * size.asDiagonal();
     const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
-    normal = A.transpose() * factor.solve(A);
-    const Eigen::Vector3d move = normal.ldlt().solve(A.transpose() * factor.solve(e));
+    normal = A.transpose() * factor.solve(Eigen::MatrixXd(A));
+    const Eigen::Vector3d move =
+        numerics::solve_symmetric(normal, Eigen::VectorXd(A.transpose() * factor.solve(Eigen::VectorXd(e))));
     Eigen::Vector3d next = x + size.cwiseProduct(move);
     for (int halving = 0; halving < 20 && !(next.minCoeff() > 0.0); ++halving) next = 0.5 * (next + x);
     const double moved = (next - x).cwiseQuotient(size).cwiseAbs().maxCoeff();
@@ -406,8 +407,8 @@ AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& fi
       kSmallAngles * Eigen::Vector4d(data.direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
   Eigen::Matrix4d doubt = P;
   doubt.diagonal() += own.cwiseAbs2();
-  const Eigen::LDLT<Eigen::Matrix4d> doubted(scale.asDiagonal() * doubt * scale.asDiagonal());
-  const double chi_square = e.dot(doubted.solve(e));
+  const numerics::PivotedCholesky doubted(scale.asDiagonal() * doubt * scale.asDiagonal());
+  const double chi_square = e.dot(doubted.solve(Eigen::VectorXd(e)));
   out.value = x;
   out.covariance = size.asDiagonal() * normal.inverse() * size.asDiagonal();
   out.consistency_p = std::isfinite(chi_square) ? numerics::chi_square_upper_p(std::max(0.0, chi_square), 1.0) : 0.0;

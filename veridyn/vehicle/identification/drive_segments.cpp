@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 using recording::drop_shorter;
 using recording::within;

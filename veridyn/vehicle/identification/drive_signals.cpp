@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -215,7 +215,7 @@ class Preparation {
   /// Means over two seconds about each sample; NaN where one is missing.
   [[nodiscard]] std::vector<double> slow(const std::vector<double>& values) const {
     const auto half = static_cast<std::size_t>(1.0 / out_.grid.step);
-    std::vector<double> out(values.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> out(values.size(), kNaN);
     double sum = 0.0;
     std::size_t filled = 0;  // finite samples up to the window's end
     for (std::size_t k = 0; k < values.size(); ++k) {

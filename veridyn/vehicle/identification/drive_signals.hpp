@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/recording/channel_map.hpp"
 #include "veridyn/recording/grid_signals.hpp"
@@ -49,7 +50,7 @@ struct DriveSignalOptions {
   /// `[signals.noise]`: standard deviation of a channel's white noise per sample by standard name; what is not given is
   /// measured from the channel's content above 0.2 of its rate.
   recording::GivenNoise noise = {};
-  double gravity = 9.80665;  ///< [m/s^2]
+  double gravity = kGravity;  ///< [m/s^2]
 
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static DriveSignalOptions read(const StudyTable& table);

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Measured and modelled values of one quantity over all spans.
 struct Pairs {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::vehicle {
@@ -14,7 +14,6 @@ using estimation::Method;
 using estimation::ParameterEstimate;
 using estimation::ParameterStatus;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Cut-off of the regressions' filter where none is given [Hz].
 constexpr double kDefaultPass_Hz = 2.0;
 /// Longest correlation of residuals that is looked for.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
@@ -20,7 +20,7 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
   for (const DriveUnknown u : {DriveUnknown::kSteerBias, DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
     biases_only.free[index_of(u)] = true;
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
-    biases_only.start[index_of(u)] = std::numeric_limits<double>::quiet_NaN();
+    biases_only.start[index_of(u)] = kNaN;
   const DriveParametricModel model(signals, spans, vehicle, biases_only);
   const estimation::OutputErrorEstimate biases = estimation::output_error(model, model.measured());
   if (biases.usable()) return biases.theta;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
@@ -42,7 +43,7 @@ void PreviewDriverOptions::validate() const {
   require(preview_time > 0.0 && preview_time < 60.0, "preview_time", preview_time, "> 0 and < 60 s");
   require(delay >= 0.0 && delay < 10.0, "delay", delay, ">= 0 and < 10 s");
   require(lag >= 0.0 && lag < 10.0, "lag", lag, ">= 0 and < 10 s");
-  require(max_steer > 0.0 && max_steer < std::numbers::pi / 2.0, "max_steer", max_steer, "> 0 and < 90 deg");
+  require(max_steer > 0.0 && max_steer < kPi / 2.0, "max_steer", max_steer, "> 0 and < 90 deg");
   require(max_steer_rate > 0.0, "max_steer_rate", max_steer_rate, "> 0");
   require(decision_interval > 0.0 && decision_interval < preview_time, "decision_interval", decision_interval,
           "> 0 and < preview_time");
@@ -91,7 +92,7 @@ double PreviewDriver::decide(const PlanarMotion& motion) {
   lateral_error_ = (motion.y - here.y) * c - (motion.x - here.x) * s;
   const double u = std::max(motion.u, kSlowest);
   if (std::abs(u - predicted_speed_) > 0.01 * u) predict(u);
-  const double heading_error = std::remainder(motion.yaw - here.heading, 2.0 * std::numbers::pi);
+  const double heading_error = std::remainder(motion.yaw - here.heading, 2.0 * kPi);
   double numerator = 0.0, denominator = 0.0;
   double road = 0.0;  // lateral position of the straightened path, the integral of u times its turn
   double turn_before = 0.0;

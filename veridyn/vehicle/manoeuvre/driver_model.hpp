@@ -1,9 +1,9 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/manoeuvre/path.hpp"
 #include "veridyn/vehicle/manoeuvre/piecewise_linear.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
@@ -62,7 +62,7 @@ class PreviewDriver : public Driver {
   std::vector<double> from_v_, from_r_, from_steer_, weight_;
   std::vector<double> history_time_, history_steer_;  // ring buffers of what is asked for, before the delay
   std::size_t history_begin_ = 0, history_size_ = 0;
-  double last_decision_ = -std::numeric_limits<double>::infinity();
+  double last_decision_ = -kInfinity;
   double s_ = 0.0;
   double lateral_error_ = 0.0;
   bool started_ = false;
@@ -93,7 +93,7 @@ class SpeedControlledDriver : public Driver {
   SpeedControllerOptions options_;
   double torque_ = 0.0;
   double integral_ = 0.0;
-  double last_ = std::numeric_limits<double>::infinity();
+  double last_ = kInfinity;
 };
 
 }  // namespace veridyn::vehicle

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
@@ -60,7 +60,7 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
 
 LaneCheck check_lanes(const VehicleTrajectory& trajectory, const DoubleLaneChange& course, const BodyOutline& body) {
   LaneCheck check;
-  check.margin = std::numeric_limits<double>::infinity();
+  check.margin = kInfinity;
   for (std::size_t k = 0; k < trajectory.size(); ++k) {
     const std::array<Corner, 4> corners = corners_of(trajectory, k, body);
     for (std::size_t i = 0; i < course.lanes.size(); ++i) {

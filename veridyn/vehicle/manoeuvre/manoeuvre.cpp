@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 class SignalDriver final : public Driver {
  public:

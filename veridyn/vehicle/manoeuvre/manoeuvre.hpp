@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
@@ -77,7 +78,7 @@ struct Manoeuvre {
 struct ManoeuvreContext {
   VehicleParameters<double> parameters;
   double speed = 20.0;
-  double gravity = 9.80665;
+  double gravity = kGravity;
   std::uint64_t seed = 1;
   double wheel_radius = 0.30;  ///< for the torque of a driver who holds a speed [m]
   /// Cornering stiffnesses of one tyre that a driver expects; those of the parameters when absent.

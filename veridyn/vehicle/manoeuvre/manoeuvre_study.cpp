@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/io/tables/table.hpp"
@@ -12,8 +12,6 @@
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 PreviewDriverOptions read_driver(const StudyTable& drive) {
   PreviewDriverOptions options;

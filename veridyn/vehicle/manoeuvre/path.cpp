@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
@@ -45,7 +45,7 @@ double arc_length(const Path::Polynomial& c, double p0, double p1) {
 }
 
 double nearest_turn(double angle, double reference) {
-  return angle + 2.0 * std::numbers::pi * std::round((reference - angle) / (2.0 * std::numbers::pi));
+  return angle + 2.0 * kPi * std::round((reference - angle) / (2.0 * kPi));
 }
 
 /// The polynomial on [0, 1] with these values and derivatives at its ends (in p).
@@ -152,7 +152,7 @@ Path Path::from_origin() const {
 Path Path::circle(double radius, int direction) {
   VERIDYN_ASSERT(radius > 0.0 && direction != 0);
   Path path;
-  path.append_arc(2.0 * std::numbers::pi * radius, (direction > 0 ? 1.0 : -1.0) / radius);
+  path.append_arc(2.0 * kPi * radius, (direction > 0 ? 1.0 : -1.0) / radius);
   path.close();
   return path;
 }
@@ -219,7 +219,7 @@ PathPoint Path::at(double s) const {
   if (closed_) {
     const double laps = std::floor(s / length_);
     s -= laps * length_;
-    turns = laps * 2.0 * std::numbers::pi * std::round((end_.heading - start_.heading) / (2.0 * std::numbers::pi));
+    turns = laps * 2.0 * kPi * std::round((end_.heading - start_.heading) / (2.0 * kPi));
   } else if (s < 0.0 || s > length_) {
     const PathPoint& from = s < 0.0 ? start_ : end_;
     const double beyond = s < 0.0 ? s : s - length_;
@@ -262,7 +262,7 @@ double Path::nearest(double x, double y, double guess, double window) const {
 
 double Path::nearest(double x, double y) const {
   const int samples = std::max(100, static_cast<int>(pieces_.size()) * 8);
-  double best = 0.0, least = std::numeric_limits<double>::infinity();
+  double best = 0.0, least = kInfinity;
   for (int i = 0; i <= samples; ++i) {
     const double s = length_ * i / samples;
     const PathPoint q = at(s);

@@ -2,11 +2,12 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 
 namespace veridyn::vehicle {
 
@@ -41,7 +42,7 @@ Eigen::Matrix<double, kBicycleCharacteristics, Eigen::Dynamic> characteristic_se
   for (std::size_t i = 0; i < kBicycleCharacteristics; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     out.row(row) = values[i].v.transpose();
-    if (!std::isfinite(values[i].a)) out.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!std::isfinite(values[i].a)) out.row(row).setConstant(kNaN);
   }
   return out;
 }
@@ -63,13 +64,12 @@ std::array<double, kBicycleCharacteristics> characteristic_sigmas(const VehicleP
 }
 
 std::vector<Mode> modes(const Eigen::MatrixXd& A) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, /*computeEigenvectors=*/false);
   std::vector<Mode> list;
-  for (const std::complex<double>& value : solver.eigenvalues()) {
+  for (const std::complex<double>& value : numerics::general_eigenvalues(A)) {
     if (value.imag() < 0.0) continue;
     Mode mode{.eigenvalue = value};
     const double size = std::abs(value);
-    mode.frequency_Hz = size / (2.0 * std::numbers::pi);
+    mode.frequency_Hz = size / (2.0 * kPi);
     mode.damping_ratio = size > 0.0 ? -value.real() / size : 0.0;
     mode.oscillates = value.imag() > 0.0;
     mode.stable = value.real() < 0.0;
@@ -80,7 +80,7 @@ std::vector<Mode> modes(const Eigen::MatrixXd& A) {
 }
 
 BicycleResponse frequency_response(const LinearBicycle<double>& bicycle, double frequency_Hz) {
-  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_Hz);
+  const std::complex<double> s(0.0, 2.0 * kPi * frequency_Hz);
   const Eigen::Matrix2cd resolvent = (s * Eigen::Matrix2cd::Identity() - bicycle.A().cast<std::complex<double>>());
   const Eigen::Vector2cd state = resolvent.inverse() * bicycle.B().cast<std::complex<double>>();
   const Eigen::Vector3cd out =

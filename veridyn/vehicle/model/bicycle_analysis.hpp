@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
-#include <numbers>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 
 namespace veridyn::vehicle {
@@ -216,7 +215,6 @@ void yaw_frequency_characteristics(BicycleCharacteristics<Scalar>& c) {
 template <typename Scalar>
 BicycleCharacteristics<Scalar> characteristics(const LinearBicycle<Scalar>& s) {
   using std::sqrt;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Scalar L = s.wheelbase();
   BicycleCharacteristics<Scalar> c;
   c.understeer_gradient = s.mass * (s.b / s.C_f - s.a / s.C_r) / (2.0 * L);
@@ -239,7 +237,7 @@ BicycleCharacteristics<Scalar> characteristics(const LinearBicycle<Scalar>& s) {
     c.damping_ratio = -trace / (2.0 * c.natural_frequency);
     internal::yaw_frequency_characteristics(c);
   } else {
-    const Scalar none(std::numeric_limits<double>::quiet_NaN());
+    const Scalar none(kNaN);
     c.natural_frequency = c.damping_ratio = c.bandwidth = c.peak_frequency = c.peak_ratio = c.equivalent_time = none;
   }
   return c;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
@@ -36,7 +37,7 @@ struct BicycleModel {
   VehicleParameters<Scalar> parameters;
   Tyre front;
   Tyre rear;
-  double gravity = 9.80665;  ///< for the static loads [m/s^2]
+  double gravity = kGravity;  ///< for the static loads [m/s^2]
   BicycleGeometry geometry = BicycleGeometry::kExact;
 
   [[nodiscard]] BicycleRates<Scalar> rates(const Scalar& v, const Scalar& r, const Scalar& steer,

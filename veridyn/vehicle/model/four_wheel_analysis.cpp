@@ -1,10 +1,11 @@
 #include "veridyn/vehicle/model/four_wheel_analysis.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <numbers>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_algebra/real_form.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -81,19 +82,19 @@ LinearFourWheel linear_four_wheel_frame(const VehicleParameters<double>& p, doub
 }  // namespace internal
 
 std::vector<FourWheelMode> modes(const LinearFourWheel& model) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(model.A);
+  const numerics::GeneralEigen eigen = numerics::general_eigen(model.A);
   std::vector<FourWheelMode> list;
-  for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
-    const std::complex<double> value = solver.eigenvalues()(i);
+  for (Eigen::Index i = 0; i < eigen.values.size(); ++i) {
+    const std::complex<double> value = eigen.values(i);
     if (value.imag() < 0.0) continue;
     FourWheelMode mode;
     mode.eigenvalue = value;
     const double size = std::abs(value);
-    mode.frequency_Hz = size / (2.0 * std::numbers::pi);
+    mode.frequency_Hz = size / (2.0 * kPi);
     mode.damping_ratio = size > 0.0 ? -value.real() / size : 0.0;
     mode.oscillates = value.imag() > 0.0;
     mode.stable = value.real() < 0.0;
-    name(model, solver.eigenvectors().col(i), mode);
+    name(model, eigen.vectors.col(i), mode);
     list.push_back(mode);
   }
   std::ranges::stable_sort(list, {}, &FourWheelMode::frequency_Hz);
@@ -102,9 +103,9 @@ std::vector<FourWheelMode> modes(const LinearFourWheel& model) {
 
 FourWheelResponse frequency_response(const LinearFourWheel& model, double frequency_Hz) {
   using Matrix = Eigen::MatrixXcd;
-  const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_Hz);
+  const std::complex<double> s(0.0, 2.0 * kPi * frequency_Hz);
   const Matrix resolvent = s * Matrix::Identity(model.A.rows(), model.A.cols()) - model.A.cast<std::complex<double>>();
-  const Eigen::VectorXcd x = resolvent.partialPivLu().solve(model.B.cast<std::complex<double>>());
+  const Eigen::VectorXcd x = numerics::solve_complex(resolvent, model.B.cast<std::complex<double>>());
   const Eigen::Vector4cd y = model.C.cast<std::complex<double>>() * x + model.D.cast<std::complex<double>>();
   return {frequency_Hz, y(0), y(1), y(2), y(3)};
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
@@ -59,7 +60,7 @@ struct FourWheelOptions {
   FourWheelConvention convention = FourWheelConvention::kFirstPrinciples;
   /// kSmallAngles: slip angle delta - V_y/V_x and forces not turned by delta.
   BicycleGeometry geometry = BicycleGeometry::kExact;
-  double gravity = 9.80665;  ///< [m/s^2]
+  double gravity = kGravity;  ///< [m/s^2]
   /// 0: both front wheels steered alike; 1: Ackermann, their axes meet on the line of the rear axle. Between: linear.
   double ackermann = 0.0;
   double camber_per_roll = 0.0;  ///< inclination of the wheels as a share of the body's roll

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::vehicle {
 
 std::string inadmissible(const LongitudinalParameters& p) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Range {
     const char* name;
     double value;

@@ -6,14 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kGravity = 9.80665;
 
 using Given = std::array<bool, kVehicleFields.size()>;
 

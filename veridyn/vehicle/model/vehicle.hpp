@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/model/four_wheel_model.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
@@ -100,7 +101,7 @@ template <typename Tyre>
 }
 
 /// Cornering stiffnesses of one tyre at its static load, front and rear [N/rad].
-[[nodiscard]] std::array<double, 2> cornering_stiffnesses(const Vehicle& vehicle, double gravity = 9.80665);
+[[nodiscard]] std::array<double, 2> cornering_stiffnesses(const Vehicle& vehicle, double gravity = kGravity);
 
 /// The vehicle as the TOML of a `[subject]`, to be read again by `read_vehicle`; tyre files by their absolute path.
 [[nodiscard]] std::string write_vehicle_toml(const Vehicle& vehicle);

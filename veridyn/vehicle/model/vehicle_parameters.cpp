@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::vehicle {
 
 std::string inadmissible(const VehicleParameters<double>& p) {
@@ -18,7 +20,7 @@ std::string inadmissible(const VehicleParameters<double>& p) {
       const std::string unit = may_be_infinite ? "" : fmt::format(" {}", kVehicleFields[i].unit);
       return fmt::format("{} is {:g}{}; must be {}", name, value, unit, may_be_zero ? ">= 0" : "> 0");
     }
-    if (!may_be_infinite && !(value < std::numeric_limits<double>::infinity())) {
+    if (!may_be_infinite && !(value < kInfinity)) {
       return fmt::format("{} is infinite", name);
     }
   }

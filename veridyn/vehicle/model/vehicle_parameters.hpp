@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <string>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/wheels.hpp"
 
 namespace veridyn::vehicle {
@@ -35,7 +35,7 @@ struct VehicleParameters {
   Scalar K_tf{20000.0};  ///< vertical stiffness of one tyre [N/m]
   Scalar K_tr{20000.0};
   /// Friction coefficient between linear tyres and road; infinite: no limit.
-  Scalar mu{std::numeric_limits<double>::infinity()};
+  Scalar mu{kInfinity};
 
   [[nodiscard]] Scalar wheelbase() const { return a + b; }
 

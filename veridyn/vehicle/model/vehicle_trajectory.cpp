@@ -16,10 +16,11 @@ std::string_view to_string(SimulationEnd end) {
       return "the vehicle rolls or pitches beyond 45 deg: the model ends there";
     case SimulationEnd::kInterrupted:
       return "interrupted";
-    case SimulationEnd::kNotFinite:
+    case SimulationEnd::kDiverged:
       return "the simulation diverged: the step is too long for these stiffnesses";
+    default:
+      return "";
   }
-  return "";
 }
 
 std::string VehicleTrajectory::message() const {

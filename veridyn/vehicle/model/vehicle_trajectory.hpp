@@ -4,19 +4,12 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/simulation_end.hpp"
 #include "veridyn/vehicle/model/wheels.hpp"
 
 namespace veridyn::vehicle {
 
-/// How a simulation ended. All but the last two leave a usable trajectory up to `end_time`.
-enum class SimulationEnd {
-  kCompleted,    ///< driven to the end
-  kStopped,      ///< forward speed fell below 0.5 m/s, where slip angles lose their meaning
-  kSpun,         ///< slip angle at the centre of gravity beyond 90 deg: the vehicle goes backwards
-  kRolledOver,   ///< roll or pitch beyond 45 deg: small angles are over
-  kInterrupted,  ///< the caller's progress asked to stop
-  kNotFinite     ///< the state became NaN or infinite: the step is too long for these stiffnesses
-};
+/// What the end of a drive is called in messages; empty for ends that drives do not have.
 [[nodiscard]] std::string_view to_string(SimulationEnd end);
 
 /// A wheel that left the ground.
@@ -55,7 +48,8 @@ struct VehicleTrajectory {
   PerWheel<std::vector<double>> wheel_speed;        ///< [rad/s]
 
   [[nodiscard]] std::size_t size() const { return time.size(); }
-  [[nodiscard]] bool usable() const { return end != SimulationEnd::kInterrupted && end != SimulationEnd::kNotFinite; }
+  /// Whether the rows up to `end_time` mean something.
+  [[nodiscard]] bool usable() const { return end != SimulationEnd::kInterrupted && end != SimulationEnd::kDiverged; }
   /// One sentence: how it ended, and which wheels left the ground.
   [[nodiscard]] std::string message() const;
 };

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <string_view>
 #include <unsupported/Eigen/FFT>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -80,7 +80,7 @@ Iso8608Road::Iso8608Road(const Iso8608Options& options) : fade_in_(options.fade_
     const double to = std::min(options.high, n + 0.5 * spacing);
     if (!(from < to)) continue;
     const double amplitude = std::sqrt(2.0 * variance(options, from, to));
-    const double phase = random.uniform(0.0, 2.0 * std::numbers::pi);
+    const double phase = random.uniform(0.0, 2.0 * kPi);
     // A phase between the tracks to either side: the mean of exp(i phase) over many waves is the coherence.
     const double coherence = std::exp(-n * options.coherence_length);
     const double between = (random.uniform() < 0.5 ? -1.0 : 1.0) * std::acos(std::min(1.0, coherence));
@@ -110,7 +110,7 @@ double Iso8608Road::height(const RoadPoint& point) const {
                         : point.offset < 0.0 ? interpolated(right_, position)
                                              : 0.5 * (interpolated(left_, position) + interpolated(right_, position));
   if (point.distance >= fade_in_) return height;
-  return 0.5 * (1.0 - std::cos(std::numbers::pi * point.distance / fade_in_)) * height;
+  return 0.5 * (1.0 - std::cos(kPi * point.distance / fade_in_)) * height;
 }
 
 }  // namespace veridyn::vehicle

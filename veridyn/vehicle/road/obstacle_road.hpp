@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/road/road.hpp"
 
 namespace veridyn::vehicle {
@@ -45,11 +45,11 @@ class ObstacleRoad final : public Road {
     const double share = over ? 1.0 : ahead / obstacle_.length;
     switch (obstacle_.shape) {
       case Obstacle::Shape::kStep:
-        return over ? obstacle_.height : 0.5 * obstacle_.height * (1.0 - std::cos(std::numbers::pi * share));
+        return over ? obstacle_.height : 0.5 * obstacle_.height * (1.0 - std::cos(kPi * share));
       case Obstacle::Shape::kRamp:
         return obstacle_.height * share;
       case Obstacle::Shape::kBump:
-        return over ? 0.0 : 0.5 * obstacle_.height * (1.0 - std::cos(2.0 * std::numbers::pi * share));
+        return over ? 0.0 : 0.5 * obstacle_.height * (1.0 - std::cos(2.0 * kPi * share));
       case Obstacle::Shape::kPlank:
         return over ? 0.0 : obstacle_.height;
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
@@ -89,7 +90,7 @@ std::vector<SimilarityParameter> similarity_parameters(const SimilaritySubject& 
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     const VehicleField& field = kVehicleFields[i];
     const double value = field_of(subject.parameters, i);
-    if (std::string_view(field.name) == "mu" && !with_friction && !(value < std::numeric_limits<double>::infinity())) {
+    if (std::string_view(field.name) == "mu" && !with_friction && !(value < kInfinity)) {
       continue;
     }
     const Role role = role_of(field.name);

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/numerics/dimensional_analysis.hpp"
@@ -28,7 +28,7 @@ struct SimilarityParameter {
 struct SimilaritySubject {
   VehicleParameters<double> parameters;
   double speed = 20.0;                         ///< u [m/s]
-  double gravity = 9.80665;                    ///< g [m/s^2]
+  double gravity = kGravity;                   ///< g [m/s^2]
   std::optional<double> steer{};               ///< amplitude of the manoeuvre [rad]; no group of it when absent
   std::vector<SimilarityParameter> further{};  ///< the user's own; names must be new
 };
@@ -89,7 +89,7 @@ struct ScaledVehicle {
   ScaleFactors factors;
   /// The gravity under which even loads, lift-off and the friction limit would be alike [m/s^2]; that of the prototype
   /// for a Froude twin. `model.gravity` is that of the prototype: one cannot build another.
-  double similar_gravity = 9.80665;
+  double similar_gravity = kGravity;
   std::vector<std::string> chosen{};  ///< which of the three ratios were not given and how they were chosen, in words
 };
 /// The exactly similar vehicle: every number times the factor of its unit, also those of `further`.

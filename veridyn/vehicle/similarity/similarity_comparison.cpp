@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
@@ -11,8 +11,6 @@
 namespace veridyn::vehicle {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double mismatch_percent(double prototype, double model) {
   if (prototype == model) return 0.0;
@@ -119,7 +117,7 @@ SimilarityReport compare(const SimilaritySubject& prototype, const SimilaritySub
     const auto found = std::ranges::find(list, name, &SimilarityParameter::name);
     return found == list.end() ? std::string() : found->affects;
   };
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = kNaN;
   for (const SimilarityGroup& group : left) {
     if (group.parameter == "gravity") continue;
     const auto found = std::ranges::find(right, group.parameter, &SimilarityGroup::parameter);

@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A series of the trajectory at any time within it, on the straight line between samples.
 double at(const std::vector<double>& time, const std::vector<double>& value, double t) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
@@ -36,7 +37,7 @@ struct DriveSensorSet {
   /// A sensor on the body of a vehicle that rolls and pitches feels gravity: g sin(roll) along y, -g sin(pitch) along
   /// x. Only where the trajectory has these angles.
   bool feels_gravity = true;
-  double gravity = 9.80665;
+  double gravity = kGravity;
   [[nodiscard]] const DriveSensor& operator[](DriveSensorKind k) const { return sensors[static_cast<std::size_t>(k)]; }
   [[nodiscard]] DriveSensor& operator[](DriveSensorKind k) { return sensors[static_cast<std::size_t>(k)]; }
 };

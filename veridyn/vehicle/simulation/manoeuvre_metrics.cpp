@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = kNaN;
 using Series = std::span<const double>;
 
 /// Mean over the last fifth of the drive.
@@ -184,10 +184,10 @@ std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double whee
   }
   const Line understeer = fit(acceleration, beyond);
   const std::string range = fmt::format("over {:g} to {:g} m/s^2", low, high);
-  std::vector<Metric> list{{"understeer_gradient", understeer.slope, "rad s^2/m", "ISO 4138", range},
-                           {"understeer_gradient_deg_per_g", understeer.slope * 9.80665 * 180.0 / std::numbers::pi,
-                            "deg/g", "ISO 4138", range},
-                           {"sideslip_gradient", fit(acceleration, sideslip).slope, "rad s^2/m", "ISO 4138", range}};
+  std::vector<Metric> list{
+      {"understeer_gradient", understeer.slope, "rad s^2/m", "ISO 4138", range},
+      {"understeer_gradient_deg_per_g", understeer.slope * kGravity * 180.0 / kPi, "deg/g", "ISO 4138", range},
+      {"sideslip_gradient", fit(acceleration, sideslip).slope, "rad s^2/m", "ISO 4138", range}};
   if (rolls) list.push_back({"roll_gradient", fit(acceleration, roll).slope, "rad s^2/m", "ISO 4138", range});
   return list;
 }
@@ -270,7 +270,7 @@ std::vector<Metric> peak_metrics(const VehicleTrajectory& t, double gravity) {
   list.push_back({"peak_sideslip", largest(sideslip_of(t)), "rad", "", "at the centre of gravity"});
   if (t.roll.size() == t.size()) list.push_back({"peak_roll", largest(t.roll), "rad", "", ""});
   if (t.Fz[0].size() == t.size()) {
-    double transfer = 0.0, least = std::numeric_limits<double>::infinity();
+    double transfer = 0.0, least = kInfinity;
     std::size_t lightest = 0;
     for (std::size_t i = 0; i < t.size(); ++i) {
       const double left = t.Fz[kFrontLeft][i] + t.Fz[kRearLeft][i], right = t.Fz[kFrontRight][i] + t.Fz[kRearRight][i];

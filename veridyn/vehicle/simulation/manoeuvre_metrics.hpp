@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/spectral_response.hpp"
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
@@ -23,7 +24,7 @@ struct Metric {
 /// The metrics of a manoeuvre's own standard, then peaks, then those of the ride where the road is uneven.
 [[nodiscard]] std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& trajectory, const Manoeuvre& manoeuvre,
                                                     const VehicleParameters<double>& parameters,
-                                                    double gravity = 9.80665);
+                                                    double gravity = kGravity);
 
 /// ISO 7401 step input. Steady state is the mean of the last fifth of the drive; times count from where the steer
 /// crosses half its steady value: to 90 % of the steady value (response time), to the first maximum (peak response
@@ -63,7 +64,7 @@ struct MeasuredFrequencyResponse {
 /// Peaks of lateral acceleration, yaw rate, sideslip, roll; largest lateral load transfer ratio
 /// |left - right|/(left + right) of normal forces (1: wheels of a side lift), smallest normal force over its static
 /// value.
-[[nodiscard]] std::vector<Metric> peak_metrics(const VehicleTrajectory& trajectory, double gravity = 9.80665);
+[[nodiscard]] std::vector<Metric> peak_metrics(const VehicleTrajectory& trajectory, double gravity = kGravity);
 
 /// Vertical comfort: rms of the vertical acceleration of the sprung mass, plain and weighted with W_k of ISO 2631-1,
 /// rms of suspension travel and of the change of wheel load over its mean. Empty when the model has no vertical motion.

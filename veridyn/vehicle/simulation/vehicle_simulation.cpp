@@ -4,9 +4,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
@@ -17,9 +17,6 @@
 namespace veridyn::vehicle {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 /// The step times the fastest rate that the Runge-Kutta method of order 4 follows: it is stable to 2.79 on the real and
 /// 2.83 on the imaginary axis.
@@ -157,7 +154,7 @@ SimulationEnd ended(const FourWheelState<double>& s, bool speed_varies) {
   constexpr double kStandstill = 0.5;
   constexpr double kOver = 45.0 * kDegree;
   // A sum is finite where its terms are; far cheaper than asking each.
-  if (!(std::abs(s.sum()) < kInfinity)) return SimulationEnd::kNotFinite;
+  if (!(std::abs(s.sum()) < kInfinity)) return SimulationEnd::kDiverged;
   if (std::abs(s(kRoll)) > kOver || std::abs(s(kPitch)) > kOver) return SimulationEnd::kRolledOver;
   if (speed_varies && s(kU) < kStandstill) {
     if (std::abs(s(kV)) < kStandstill) return SimulationEnd::kStopped;

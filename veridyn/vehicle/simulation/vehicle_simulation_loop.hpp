@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 /// The definitions behind vehicle_simulation.hpp, for tyres that vehicle_simulation.cpp does not compile.
@@ -85,9 +85,8 @@ namespace internal {
 /// Throws InputError("drive", ...) when the numbers of a driver are out of range.
 void check_controls(const Controls& controls, double time, bool with_torques);
 [[nodiscard]] inline bool admissible(const Controls& c) {
-  return c.steer > -1.5707963 && c.steer < 1.5707963 && c.brake_torque >= 0.0 &&
-         c.brake_torque < std::numeric_limits<double>::infinity() &&
-         std::abs(c.drive_torque) < std::numeric_limits<double>::infinity();
+  return c.steer > -1.5707963 && c.steer < 1.5707963 && c.brake_torque >= 0.0 && c.brake_torque < kInfinity &&
+         std::abs(c.drive_torque) < kInfinity;
 }
 [[nodiscard]] inline Controls controls_at(const Driver& driver, double time, bool with_torques) {
   const Controls controls = driver.controls(time);
@@ -243,7 +242,7 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
     out.end_time = begin;
     out.end = internal::ended(state, spins);
     const bool last = k == plan.steps || out.end != SimulationEnd::kCompleted;
-    if (out.end != SimulationEnd::kNotFinite && (last || plan.sampled(k))) {
+    if (out.end != SimulationEnd::kDiverged && (last || plan.sampled(k))) {
       internal::record(out, begin, state, now.steer, rates, under, spins);
     }
     if (last) break;
@@ -323,9 +322,9 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driv
     BicycleRates<double> rates, unused;
     const State k1 = derivative(state, steer, rates);
     out.end_time = begin;
-    out.end = state.allFinite() ? SimulationEnd::kCompleted : SimulationEnd::kNotFinite;
+    out.end = state.allFinite() ? SimulationEnd::kCompleted : SimulationEnd::kDiverged;
     const bool last = k == plan.steps || out.end != SimulationEnd::kCompleted;
-    if (out.end != SimulationEnd::kNotFinite && (last || plan.sampled(k))) {
+    if (out.end != SimulationEnd::kDiverged && (last || plan.sampled(k))) {
       internal::record_plane(out, begin, state, steer);
       out.yaw_acceleration.push_back(rates.dr);
       out.longitudinal_acceleration.push_back(-state(kR) * state(kV));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 using estimation::ParameterStatus;
 using numerics::FirKernel;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rows a cut-off frequency: they are nearly independent then.
 constexpr double kRowsPerCutoff = 4.0;
 /// Standard deviations of the constants at the start: of rates [rad/s] and of the steering [rad].
@@ -28,7 +28,7 @@ constexpr double kAfterChange = 1.0;
 constexpr double kHeldShare = 0.05;
 
 /// What the ring keeps of every sample.
-enum Column : std::size_t { kDelta, kCurvature, kAccel, kSpeedAccel, kSpeedYaw, kSpeedSteer, kYaw, kSpeedColumn };
+enum Column : std::size_t { kDelta, kCurvature, kAccel, kSpeedAccel, kSpeedYaw, kSpeedSteer, kYawRate, kSpeedColumn };
 
 /// Noise of a row [x..., z] from white noise of steer, speed, yaw rate and accel_y.
 class NoiseTerms {
@@ -214,7 +214,7 @@ void DriveTracker::form_row(std::vector<DriveChange>& found) {
   const FirKernel &h = kernel_.smooth, &d = kernel_.first, &dd = kernel_.second;
   const double m = start_.mass, a = start_.a, b = start_.b, L = start_.wheelbase(), k = start_.I_z / m;
   const double gain = 0.5 * m / L;
-  const double u = filtered(kSpeedColumn, h), a_y = filtered(kAccel, h), dr = filtered(kYaw, d);
+  const double u = filtered(kSpeedColumn, h), a_y = filtered(kAccel, h), dr = filtered(kYawRate, d);
   if (!started()) begin(u);
   // u r' = (u r)' - u' r, with the rate of the speed taken as constant over the kernel.
   const double d_ur = filtered(kSpeedYaw, dd) - filtered(kSpeedColumn, d) * dr;

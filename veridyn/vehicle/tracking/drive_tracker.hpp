@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/recursive/regression_tracker.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
@@ -123,8 +123,8 @@ class DriveTracker {
   std::size_t next_ = 0;
   std::size_t since_row_ = 0;
   std::size_t rows_ = 0;
-  double last_ = -std::numeric_limits<double>::infinity();
-  double next_history_ = -std::numeric_limits<double>::infinity();
+  double last_ = -kInfinity;
+  double next_history_ = -kInfinity;
   std::vector<estimation::RegressionTracker> trackers_;
   std::array<DriveTrackHistory, kTrackedAxles> history_;
   std::vector<DriveChange> changes_;

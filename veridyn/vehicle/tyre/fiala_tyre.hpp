@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
 namespace veridyn::vehicle {
@@ -28,7 +28,7 @@ struct FialaTyre {
     const Scalar Fx = slip_stiffness * slip_ratio;
     const Scalar Fy = stiffness * slip_angle;
     const Scalar squared = Fx * Fx + Fy * Fy;
-    if (!(squared > 0.0) || !(mu < std::numeric_limits<double>::infinity())) return {Fx, Fy};
+    if (!(squared > 0.0) || !(mu < kInfinity)) return {Fx, Fy};
     const Scalar S = sqrt(squared);
     const Scalar limit = mu * load;
     const Scalar s = S / (3.0 * limit);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
 namespace veridyn::vehicle {
@@ -14,14 +14,14 @@ template <typename Scalar>
 struct LinearTyre {
   Scalar stiffness{60000.0};        ///< C [N/rad]
   Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
-  Scalar mu{std::numeric_limits<double>::infinity()};
+  Scalar mu{kInfinity};
 
   [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
                                           const Scalar& /*camber*/) const {
     using std::sqrt;
     Scalar Fx = slip_stiffness * slip_ratio;
     Scalar Fy = stiffness * slip_angle;
-    if (!(mu < std::numeric_limits<double>::infinity())) return {Fx, Fy};
+    if (!(mu < kInfinity)) return {Fx, Fy};
     const Scalar limit = mu * load;
     const Scalar squared = Fx * Fx + Fy * Fy;
     if (squared <= limit * limit) return {Fx, Fy};

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/tyre/magic_formula_coefficients.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
@@ -23,13 +23,13 @@ enum class CombinedSlip {
 /// Where a file says that its coefficients hold. Slips and camber beyond are taken at the limit.
 struct MagicFormulaRange {
   double load_min = 0.0;
-  double load_max = std::numeric_limits<double>::infinity();  ///< [N]
-  double slip_ratio_min = -std::numeric_limits<double>::infinity();
-  double slip_ratio_max = std::numeric_limits<double>::infinity();
-  double slip_angle_min = -std::numeric_limits<double>::infinity();  ///< file convention [rad]
-  double slip_angle_max = std::numeric_limits<double>::infinity();
-  double camber_min = -std::numeric_limits<double>::infinity();  ///< file convention [rad]
-  double camber_max = std::numeric_limits<double>::infinity();
+  double load_max = kInfinity;  ///< [N]
+  double slip_ratio_min = -kInfinity;
+  double slip_ratio_max = kInfinity;
+  double slip_angle_min = -kInfinity;  ///< file convention [rad]
+  double slip_angle_max = kInfinity;
+  double camber_min = -kInfinity;  ///< file convention [rad]
+  double camber_max = kInfinity;
 };
 
 /// The Magic Formula of PAC2002 / MF-Tyre 5.2: steady-state forces at pure and combined slip with load dependence and

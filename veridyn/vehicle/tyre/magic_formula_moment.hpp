@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/vehicle/tyre/magic_formula.hpp"
 
 namespace veridyn::vehicle {
@@ -55,8 +55,8 @@ template <typename Scalar>
   const Scalar D_t = t.Fz * (c.QDZ1 + c.QDZ2 * t.dfz) * (1.0 + c.QDZ3 * lean + c.QDZ4 * lean * lean) *
                      (c.UNLOADED_RADIUS / nominal) * c.LTR;  // (4.E42, 4.E43)
   const Scalar E_t = magic_formula::curvature(
-      Scalar((c.QEZ1 + t.dfz * (c.QEZ2 + t.dfz * c.QEZ3)) * (1.0 + (c.QEZ4 + c.QEZ5 * lean) * (2.0 / std::numbers::pi) *
-                                                                       atan(B_t * c.QCZ1 * trail_angle))));   // (4.E44)
+      Scalar((c.QEZ1 + t.dfz * (c.QEZ2 + t.dfz * c.QEZ3)) *
+             (1.0 + (c.QEZ4 + c.QEZ5 * lean) * (2.0 / kPi) * atan(B_t * c.QCZ1 * trail_angle))));             // (4.E44)
   const Scalar trail = D_t * cos(magic_formula::angle(c.QCZ1, E_t, Scalar(B_t * trail_angle))) * cos(alpha);  // (4.E33)
 
   const Scalar residual_angle = equivalent(Scalar(alpha + t.SH_y + t.SV_y / t.K_y));  // (4.E37, 4.E38)

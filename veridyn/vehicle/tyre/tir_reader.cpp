@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/text.hpp"
@@ -48,7 +49,7 @@ double scale_of(const TirLines& lines, std::string_view key, std::string_view si
   const std::string word = upper(entry->value);
   for (const UnitWord& known : kUnitWords) {
     if (word != known.word) continue;
-    if (known.unit == "kgf") return si == "N" ? 9.80665 : throw InputError(lines.place(key), "kgf is a force");
+    if (known.unit == "kgf") return si == "N" ? kGravity : throw InputError(lines.place(key), "kgf is a force");
     if (known.unit == "MPa") return si == "Pa" ? 1e6 : throw InputError(lines.place(key), "MPa is a pressure");
     try {
       return parse_unit_like(known.unit, parse_unit(si)).scale;
