@@ -33,7 +33,7 @@ format: ## reformat the sources
 format-check: setup
 	@git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 
-# The modules that read files by strangers. All of them, which takes far longer: `make tidy TIDY="veridyn apps"`.
+# The modules that read files by strangers. All of them: `make tidy TIDY="veridyn apps"`.
 TIDY ?= veridyn/core veridyn/io veridyn/recording
 
 tidy: setup ## clang-tidy on the modules that read files; TIDY="veridyn apps" for all
@@ -54,9 +54,9 @@ bench: setup ## benchmarks; results in build/bench/*.json
 	tools/bench.sh build/bench
 
 fuzz: setup ## each reader under libFuzzer for SECONDS_EACH (60)
-	cmake --preset fuzz --log-level=WARNING
-	cmake --build build/fuzz -j $(JOBS)
-	fuzz/run.sh $(or $(SECONDS_EACH),60) build/fuzz
+	cmake --preset asan --log-level=WARNING
+	cmake --build build/asan -j $(JOBS) --target fuzz
+	fuzz/run.sh $(or $(SECONDS_EACH),60) build/asan
 
 soak: setup ## long-running campaigns (label soak), coverage of intervals
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING

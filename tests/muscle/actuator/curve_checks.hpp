@@ -34,7 +34,7 @@ void expect_velocity_inverts_force(const Curves& c, double damping, double most)
 // Slopes against automatic differentiation of the values, energies against quadrature of the forces.
 template <typename Curves>
 void expect_consistent(const Curves& c) {
-  using Jet = ceres::Jet<double, 1>;
+  using Jet1 = ceres::Jet<double, 1>;
   const auto simpson = [](const auto& f, double from, double to) {
     double sum = 0.0;
     const int n = 4000;
@@ -46,7 +46,7 @@ void expect_consistent(const Curves& c) {
     return sum;
   };
   for (double l = 0.4537; l < 1.95; l += 0.0131) {
-    const Jet x(l, 0);
+    const Jet1 x(l, 0);
     EXPECT_NEAR(c.active(l).value, c.active_length(l), 1e-14);
     EXPECT_NEAR(c.active(l).slope, c.active_length(x).v[0], 1e-12) << l;
     EXPECT_NEAR(c.passive(l).value, c.passive_force(l), 1e-14);
@@ -56,7 +56,7 @@ void expect_consistent(const Curves& c) {
   }
   for (double s = 0.9803; s < 1.08; s += 0.0017) {
     EXPECT_NEAR(c.tendon(s).value, c.tendon_force(s), 1e-13);
-    EXPECT_NEAR(c.tendon(s).slope, c.tendon_force(Jet(s, 0)).v[0], 1e-10) << s;
+    EXPECT_NEAR(c.tendon(s).slope, c.tendon_force(Jet1(s, 0)).v[0], 1e-10) << s;
   }
   const auto tendon = [&](double s) { return c.tendon_force(s); };
   const auto passive = [&](double l) { return c.passive_force(l); };

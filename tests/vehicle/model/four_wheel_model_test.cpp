@@ -13,6 +13,7 @@
 
 #include "tests/vehicle/cars.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
@@ -84,7 +85,7 @@ TEST(FourWheelModel, StandsStillInItsSpringsOnItsStaticLoads) {
   const double weight = p.mass * 9.80665;
   EXPECT_NEAR(rates.Fz(0) + rates.Fz(1) + rates.Fz(2) + rates.Fz(3), weight, 1e-9);
   EXPECT_NEAR(p.a * (rates.Fz(0) + rates.Fz(1)), p.b * (rates.Fz(2) + rates.Fz(3)), 1e-9);
-  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(rates.Fz(i), static_loads(p, 9.80665)[i]);
+  for (std::size_t i = 0; i < kWheels; ++i) EXPECT_EQ(rates.Fz(signed_index(i)), static_loads(p, 9.80665)[i]);
 }
 
 // Newton and Euler for the whole vehicle from the forces and their places alone.
@@ -103,10 +104,11 @@ TEST(FourWheelModel, ChangesMomentumByItsForces) {
       }
       for (std::size_t i = 0; i < kWheels; ++i) {
         const double angle = is_front(i) ? m.steer : 0.0;
-        const Eigen::Vector3d in_wheel(rates.Fx(i), rates.Fy(i), rates.Fz(i));
+        const Eigen::Vector3d in_wheel(rates.Fx(signed_index(i)), rates.Fy(signed_index(i)), rates.Fz(signed_index(i)));
         const Eigen::Vector3d f = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * in_wheel;
         force += f;
-        moment += Eigen::Vector3d(car.wheel_x()(i), car.wheel_y()(i), -p.cg_height).cross(f);
+        moment +=
+            Eigen::Vector3d(car.wheel_x()(signed_index(i)), car.wheel_y()(signed_index(i)), -p.cg_height).cross(f);
       }
       EXPECT_NEAR(p.mass * (d(kU) - m.state(kR) * m.state(kV)), force.x(), 1e-7);
       EXPECT_NEAR(p.mass * (d(kV) + m.state(kR) * m.state(kU)), force.y(), 1e-7);
@@ -172,21 +174,22 @@ double power(const LinearCar<double>& car, const Moment& m, const FourWheelRates
   const Eigen::Vector3d velocity(s(kU), s(kV), 0.0), spin(s(kRollRate), s(kPitchRate), s(kR));
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto w = static_cast<Eigen::Index>(i);
-    const double x = car.wheel_x()(i), y = car.wheel_y()(i);
+    const double x = car.wheel_x()(signed_index(i)), y = car.wheel_y()(signed_index(i));
     const Eigen::Vector3d contact = velocity + spin.cross(Eigen::Vector3d(x, y, -p.cg_height));
-    EXPECT_NEAR(rates.contact_x(i), contact.x(), 1e-12);
-    EXPECT_NEAR(rates.contact_y(i), contact.y(), 1e-12);
+    EXPECT_NEAR(rates.contact_x(signed_index(i)), contact.x(), 1e-12);
+    EXPECT_NEAR(rates.contact_y(signed_index(i)), contact.y(), 1e-12);
     const Eigen::Vector3d force = Eigen::AngleAxisd(is_front(i) ? m.steer : 0.0, Eigen::Vector3d::UnitZ()) *
-                                  Eigen::Vector3d(rates.Fx(i), rates.Fy(i), 0.0);
-    sum += force.dot(contact) + rates.Fz(i) * road_rate[i];
+                                  Eigen::Vector3d(rates.Fx(signed_index(i)), rates.Fy(signed_index(i)), 0.0);
+    sum += force.dot(contact) + rates.Fz(signed_index(i)) * road_rate[i];
     const double stretching = s(kWheelHeightRate + w) - s(kHeaveRate) - y * s(kRollRate) + (x - ahead) * s(kPitchRate) -
                               p.cg_height * (s(kRoll) * s(kRollRate) + s(kPitch) * s(kPitchRate));
     sum -= (is_front(i) ? p.C_sf : p.C_sr) * stretching * stretching;
     if (const auto& l = car.options().longitudinal) {
       const double drive = is_front(i) ? l->front_drive_share : 1.0 - l->front_drive_share;
       const double brake = is_front(i) ? l->front_brake_share : 1.0 - l->front_brake_share;
-      const double friction = 0.5 * brake * m.brake + l->rolling_resistance * rates.Fz(i) * l->wheel_radius;
-      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx(i)) * s(kWheelSpin + w) -
+      const double friction =
+          0.5 * brake * m.brake + l->rolling_resistance * rates.Fz(signed_index(i)) * l->wheel_radius;
+      sum += (0.5 * drive * m.drive - l->wheel_radius * rates.Fx(signed_index(i))) * s(kWheelSpin + w) -
              friction * std::abs(s(kWheelSpin + w));
     }
   }
@@ -220,7 +223,7 @@ TEST(FourWheelModel, GainsEnergyOnlyFromForcesAtMovingPoints) {
         road_rate[i] = any(generator);
         road[i].a = m.road[i];
         road[i].v(0) = road_rate[i];
-        off_the_ground += rates.Fz(i) == 0.0 ? 1 : 0;
+        off_the_ground += rates.Fz(signed_index(i)) == 0.0 ? 1 : 0;
       }
       const double expected = power(car, m, rates, road_rate);
       EXPECT_NEAR(energy(p, moving, road, car.options()).v(0), expected, 1e-10 * (1e4 + std::abs(expected)));
@@ -274,8 +277,8 @@ class EnergyBalance {
     return m;
   }
   [[nodiscard]] Eigen::Vector2d place(const Moment& m, std::size_t i) const {
-    return m.state.head<2>() +
-           Eigen::Rotation2Dd(m.state(kYaw)) * Eigen::Vector2d(car_.wheel_x()(i), car_.wheel_y()(i));
+    return m.state.head<2>() + Eigen::Rotation2Dd(m.state(kYaw)) *
+                                   Eigen::Vector2d(car_.wheel_x()(signed_index(i)), car_.wheel_y()(signed_index(i)));
   }
   [[nodiscard]] PerWheel<double> road_rates(const Moment& m, const FourWheelRates<double>& rates) const {
     PerWheel<double> out{};

@@ -13,6 +13,7 @@
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
@@ -241,7 +242,7 @@ TEST(FourWheelSimulation, FallsIntoAHoleAndLandsAgain) {
   }
   // It comes to rest as it was; while one wheel is off the others carry the car.
   for (std::size_t i = 0; i < kWheels; ++i) {
-    EXPECT_NEAR(out.Fz[i].back(), linear_car(road_car()).rest_loads()[i], 0.5);
+    EXPECT_NEAR(out.Fz[i].back(), linear_car(road_car()).rest_loads()[signed_index(i)], 0.5);
     EXPECT_NEAR(out.wheel_height[i].back(), 0.0, 1e-5);
   }
 }

@@ -38,7 +38,7 @@ VehicleStudy study_of(const Recording& recording) {
 }
 
 TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     VehicleStudy study = study_of(drive_with_drop(seed, 90.0, 60.0));
     Progress silent;
     const DriveTracking tracking = track(study, silent);
@@ -64,7 +64,7 @@ TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
 // 0.03.
 TEST(DriveTracker, RaisesNoMoreFalseAlarmsThanStated) {
   std::size_t alarms = 0;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     VehicleStudy study = study_of(drive_with_drop(seed, 500.0, 1e9));
     Progress silent;
     alarms += track(study, silent).drive.tracker()->changes().size();

@@ -14,9 +14,9 @@
 namespace veridyn::aircraft {
 namespace {
 
-constexpr double kFoot = 0.3048;                                   // m
-constexpr double kPound = 4.4482216152605;                         // N
-constexpr double kSlugPerCubicFoot = kPound / std::pow(kFoot, 4);  // kg/m^3: 1 slug = 1 lbf s^2/ft
+constexpr double kFoot = 0.3048;                               // m
+constexpr double kPound = 4.4482216152605;                     // N
+const double kSlugPerCubicFoot = kPound / std::pow(kFoot, 4);  // kg/m^3: 1 slug = 1 lbf s^2/ft
 
 /// The children of an operation, composed by value: JSBSim's functions are trees.
 struct Expression {

@@ -95,7 +95,7 @@ class Builder {
     const std::size_t m = kernel_.smooth.half_width();
     if (end < begin + 2 * m + 1) return;
     const std::size_t n = end - begin;
-    const auto at = [&](DriveSignal which, std::size_t k) { return s_[which].value[begin + k]; };
+    const auto at = [this, first = begin](DriveSignal which, std::size_t k) { return s_[which].value[first + k]; };
     // Products on unfiltered samples.
     std::vector<double> delta(n), r(n), u(n), curvature(n), a(n), ua(n), ur(n), du_r(n), v_prime(n);
     std::vector<double> front(n), rear(n), accel(n);
