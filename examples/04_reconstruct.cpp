@@ -31,8 +31,9 @@ int main() try {
   }
 
   aircraft::ReconstructOptions options;
-  options.sensors = "reference";     // these are the simulator's sensors; for a real log leave "auto"
-  options.turbulence = "low_light";  // or "auto": what the innovations like best
+  options.sensors =
+      aircraft::NoiseSource::kReference;  // these are the simulator's sensors; for a real log leave "auto"
+  options.turbulence = aircraft::named_turbulence("low_light");  // or nothing: of the largest likelihood
   const aircraft::Reconstruction result = aircraft::reconstruct(flight.measured, options, silent);
 
   const Channel& alpha = result.smoothed.at("alpha");

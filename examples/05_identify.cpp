@@ -1,4 +1,4 @@
-// The whole way: from a flight to a validated aerodynamic model, in one call.
+// The full pipeline: from a flight to a validated aerodynamic model, in one call.
 //
 // The study simulates its flight, so the truth is known; with `[data]` instead of `[flight]` it reads a log. The
 // program `veridyn identify` does the same and writes the report.
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/core/constants.hpp"
 
 int main() try {
   using namespace veridyn;
@@ -21,17 +22,18 @@ int main() try {
   )",
                                    "example 05");
   Progress silent;
-  aircraft::FlightStudy flight = aircraft::read_study(study, silent);
+  const aircraft::FlightStudy flight = aircraft::read_study(study, silent);
   const aircraft::FlightAnalysis analysis = aircraft::identify(flight, silent);
 
   for (const aircraft::CoefficientResult& coefficient : analysis.coefficients) {
-    std::printf("%-12s %s\n", aircraft::to_string(coefficient.verdict), coefficient.reason.c_str());
+    std::printf("%-12s %s\n", std::string(estimation::to_string(coefficient.verdict)).c_str(),
+                coefficient.reason.c_str());
     const aircraft::CoefficientModel* truth = flight.true_subject->model.find(coefficient.coefficient);
     if (!coefficient.chosen || truth == nullptr) continue;
     for (std::size_t i = 0; i < coefficient.model.size(); ++i) {
-      const estimation::ParameterEstimate& p = coefficient.chosen->parameters[i];
+      const estimation::Parameter& p = coefficient.chosen->parameters[i];
       std::printf("    %-10s %9.4f  [%9.4f, %9.4f]  true %9.4f  %s\n", p.name.c_str(), p.value, p.low95, p.high95,
-                  truth->value_of(coefficient.model.terms[i].expression).value_or(aircraft::kUnknown),
+                  truth->value_of(coefficient.model.terms[i].expression).value_or(kNaN),
                   std::string(estimation::to_string(p.status)).c_str());
     }
   }

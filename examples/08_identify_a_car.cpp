@@ -57,7 +57,8 @@ int main() {
     }
   }
   std::printf("\n%s\n", result.reason.c_str());
-  const PredictedDriveQuantity* yaw_rate = result.validation.find("yaw_rate");
-  const bool holds = result.verdict == VehicleVerdict::kIdentified && yaw_rate != nullptr && yaw_rate->fit.r2 > 0.99;
+  const estimation::PredictedQuantity* yaw_rate = result.validation.find("yaw_rate");
+  const bool holds =
+      result.verdict == estimation::GroupVerdict::kIdentified && yaw_rate != nullptr && yaw_rate->fit.r2 > 0.99;
   return holds ? 0 : 1;
 }

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <map>
 
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/aircraft_report.hpp"
 #include "veridyn/report/document/html.hpp"
 
@@ -19,31 +20,6 @@ namespace veridyn::app {
 namespace {
 
 using namespace veridyn::aircraft;
-
-/// Every method's figures for every parameter, the recommended regression first.
-std::string methods_csv(const FlightAnalysis& analysis) {
-  std::string text = "parameter,method,value,sigma,low95,high95,unit\n";
-  std::map<std::string, std::string, std::less<>> units;
-  for (const estimation::EstimatedParameter& p : analysis.estimate.parameters) units[p.name] = p.unit;
-  const auto line = [&](std::string_view name, std::string_view method, double value, double sigma, double low,
-                        double high) {
-    const auto unit = units.find(name);
-    text += fmt::format("{},{},{},{},{},{},{}\n", name, method, value, sigma, low, high,
-                        unit == units.end() ? "1" : unit->second);
-  };
-  for (const CoefficientResult& r : analysis.coefficients) {
-    for (const estimation::RegressionEstimate& e : r.comparison.estimates) {
-      if (!e.usable()) continue;
-      for (const auto& p : e.parameters)
-        line(p.name, estimation::to_string(e.method), p.value, p.sigma, p.low95, p.high95);
-    }
-    for (const OtherParameter& other : analysis.others.parameters) {
-      const estimation::MethodEstimate& p = other.estimate;
-      if (other.coefficient == r.coefficient) line(p.parameter, p.method, p.value, p.sigma, p.low95, p.high95);
-    }
-  }
-  return text;
-}
 
 std::string structure_csv(const FlightAnalysis& analysis) {
   std::string text = "coefficient,action,term,terms,F,residual_sd,r2,r2_change,press,pse,in_model,reason\n";
@@ -123,7 +99,7 @@ Recording coefficient_recording(const FlightAnalysis& analysis) {
     const TimeBase time = make_time_base(r.time);
     const char* unit = r.per_unit_inertia ? "1/kg/m^2" : "1";
     recording.add(make_channel(r.name, unit, time, r.measured));
-    if (r.verdict == CoefficientVerdict::kIdentified) {
+    if (r.verdict == estimation::GroupVerdict::kIdentified) {
       recording.add(make_channel(fmt::format("{}_model", r.name), unit, time, r.modelled));
     }
   }
@@ -173,20 +149,22 @@ Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& 
   return summary;
 }
 
-void write_identification(OutputFolder& folder, const FlightStudy& study, const FlightAnalysis& analysis,
-                          const std::string& command) {
+void write_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
+                          const FlightAnalysis& analysis) {
   report::AircraftReportContext context{.program = program_name()};
-  context.verb = command;
-  // The large texts are made side by side; an error in one is thrown by `get` once the others are done.
-  std::future<std::string> page = std::async(
-      std::launch::async, [&] { return report::to_html(report::identification_report(study, analysis, context)); });
-  std::future<std::string> flight = std::async(
-      std::launch::async, [&] { return io::to_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz)); });
+  context.command = run.command;
+  std::string page, flight;  // the large texts
+  numerics::parallel_for(2, run.options().threads, [&](std::size_t k) {
+    if (k == 0)
+      page = report::to_html(report::identification_report(study, analysis, context));
+    else
+      flight = io::to_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz));
+  });
   folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
   if (analysis.validation.available())
     folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
-  folder.write("report.html", page.get());
-  folder.write("flight.csv", flight.get());
+  folder.write("report.html", page);
+  folder.write("flight.csv", flight);
   write_filter_tables(folder, analysis.reconstruction);
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
@@ -201,15 +179,6 @@ void write_identification(OutputFolder& folder, const FlightStudy& study, const 
 
 }  // namespace
 
-std::string parameters_csv(const estimation::Estimate& estimate) {
-  std::string text = "name,value,sigma,low95,high95,unit,status\n";
-  for (const auto& p : estimate.parameters) {
-    text += fmt::format("{},{},{},{},{},{},{}\n", p.name, p.value, p.sigma, p.low95, p.high95, p.unit,
-                        estimation::to_string(p.status));
-  }
-  return text;
-}
-
 void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const FlightAnalysis& analysis) {
   folder.write("report.html",
                report::to_html(report::reconstruction_report(study, analysis, {.program = program_name()})));
@@ -220,7 +189,7 @@ void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const 
 
 void publish_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
                             const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
-  write_identification(folder, study, analysis, run.command);
+  write_identification(run, folder, study, analysis);
   RunRecord record = run.record(study.seed, study.inputs);
   record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
   folder.publish(record, run.options(), summary_of(analysis, folder.path()));

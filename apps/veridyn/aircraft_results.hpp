@@ -22,7 +22,4 @@ void publish_identification(const StudyRun& run, OutputFolder& folder, const air
 void write_reconstruction(OutputFolder& folder, const aircraft::FlightStudy& study,
                           const aircraft::FlightAnalysis& analysis);
 
-/// Parameters as a table: name, value, sigma, low95, high95, unit, status.
-[[nodiscard]] std::string parameters_csv(const estimation::Estimate& estimate);
-
 }  // namespace veridyn::app

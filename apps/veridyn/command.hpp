@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "veridyn/core/interruption.hpp"
+
 namespace veridyn::app {
 
 inline constexpr int kDone = 0;
@@ -22,7 +24,7 @@ class Interrupted : public std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "interrupted, nothing was written"; }
 };
 
-/// The options that every command takes.
+/// The options that every command takes, and the user's request to end it.
 struct CommonOptions {
   std::string out;                     ///< --out: folder of the results
   std::vector<std::string> overrides;  ///< --set key=value
@@ -30,12 +32,13 @@ struct CommonOptions {
   int threads = 0;                     ///< --threads; 0: as many as there are
   bool quiet = false;                  ///< --quiet
   bool json = false;                   ///< --json: a machine-readable summary on stdout
+  Interruption interruption;           ///< Ctrl-C
 };
 
 /// A text, a repeatable text, a number or a flag.
 using ArgumentValue = std::variant<std::string, std::vector<std::string>, double, bool>;
 
-/// One argument of a command's own: positional where its name has no dashes ("STUDY"), else an option ("--estimate").
+/// An argument of one command: positional where its name has no dashes ("STUDY"), else an option ("--format").
 struct Argument {
   std::string name;
   std::string help;
@@ -45,14 +48,15 @@ struct Argument {
   bool positive = false;                  ///< a number that must be > 0
   bool folder = false;                    ///< a text that must name an existing folder
   std::vector<std::string> choices = {};  ///< a text that must be one of these; none: any
+  std::string old_name = {};              ///< of an option that earlier versions called so; still taken, with a note
 };
 
-/// What the user gave a command: the common options, and a value for each of its own arguments.
+/// What the user gave a command: the common options, and a value for each of its arguments.
 struct Arguments {
   CommonOptions common;
-  std::map<std::string, ArgumentValue, std::less<>> own;
+  std::map<std::string, ArgumentValue, std::less<>> values;
 
-  /// The value of the argument of this name; it must be one of the command's own, of this kind.
+  /// The value of the argument of this name; the command must have one of this name and kind.
   [[nodiscard]] const std::string& text(std::string_view name) const { return std::get<std::string>(at(name)); }
   [[nodiscard]] const std::vector<std::string>& texts(std::string_view name) const {
     return std::get<std::vector<std::string>>(at(name));
@@ -61,7 +65,7 @@ struct Arguments {
   [[nodiscard]] bool flag(std::string_view name) const { return std::get<bool>(at(name)); }
 
  private:
-  [[nodiscard]] const ArgumentValue& at(std::string_view name) const { return own.at(std::string(name)); }
+  [[nodiscard]] const ArgumentValue& at(std::string_view name) const { return values.at(std::string(name)); }
 };
 
 /// A command of the program: what --help says of it, what it takes and what it does.
@@ -75,7 +79,7 @@ struct Command {
   std::vector<Command> commands = {};             ///< `init aircraft`; a command with commands has no `run`
 };
 
-// Each command is made in a file of its own name.
+// Each command is made in the file of its name.
 [[nodiscard]] Command demo_command();
 [[nodiscard]] Command export_command();
 [[nodiscard]] Command identify_command();

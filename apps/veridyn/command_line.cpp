@@ -2,20 +2,27 @@
 #include "apps/veridyn/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <iostream>
+#include <limits>
 #include <new>
+#include <optional>
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
 namespace {
+
+constexpr int kMostThreads = 1024;
 
 /// The command that was chosen, with its arguments.
 struct Chosen {
@@ -23,8 +30,45 @@ struct Chosen {
   std::shared_ptr<Arguments> arguments;
 };
 
+/// The number that the whole text is.
+template <typename Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && stop == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// A whole number from 0 to `most`. CLI11 would take "-3" for a large one.
+CLI::Validator whole_number(std::int64_t most) {
+  return {[most](const std::string& text) {
+            const auto value = parsed<std::int64_t>(text);
+            return value && *value >= 0 && *value <= most
+                       ? std::string()
+                       : fmt::format("is {}; must be a whole number from 0 to {}", text, most);
+          },
+          ""};
+}
+
+CLI::Validator positive_number() {
+  return {[](const std::string& text) {
+            const auto value = parsed<double>(text);
+            return value && *value > 0.0 && std::isfinite(*value) ? std::string()
+                                                                  : fmt::format("is {}; must be a number > 0", text);
+          },
+          ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+  return {[choices](const std::string& text) {
+            return std::find(choices.begin(), choices.end(), text) != choices.end()
+                       ? std::string()
+                       : fmt::format("is '{}'; must be one of {}", text, fmt::join(choices, ", "));
+          },
+          fmt::format("{{{}}}", fmt::join(choices, ","))};
+}
+
 void add_argument(CLI::App& app, const Argument& argument, Arguments& arguments) {
-  ArgumentValue& value = arguments.own.emplace(argument.name, argument.value).first->second;
+  ArgumentValue& value = arguments.values.emplace(argument.name, argument.value).first->second;
   CLI::Option* option = nullptr;
   if (auto* flag = std::get_if<bool>(&value)) {
     app.add_flag(argument.name, *flag, argument.help);
@@ -32,14 +76,14 @@ void add_argument(CLI::App& app, const Argument& argument, Arguments& arguments)
   }
   if (auto* number = std::get_if<double>(&value)) {
     option = app.add_option(argument.name, *number, argument.help)->capture_default_str();
-    if (argument.positive) option->check(CLI::PositiveNumber);
+    if (argument.positive) option->check(positive_number());
   } else if (auto* texts = std::get_if<std::vector<std::string>>(&value)) {
     option = app.add_option(argument.name, *texts, argument.help);
   } else {
     auto& text = std::get<std::string>(value);
     option = app.add_option(argument.name, text, argument.help);
     if (argument.folder) option->check(CLI::ExistingDirectory);
-    if (!argument.choices.empty()) option->check(CLI::IsMember(argument.choices));
+    if (!argument.choices.empty()) option->check(one_of(argument.choices));
     if (!text.empty()) option->capture_default_str();
   }
   if (!argument.type.empty()) option->type_name(argument.type);
@@ -53,10 +97,12 @@ void add_common(CLI::App& app, CommonOptions& options, const Command& command) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
-  app.add_option("--seed", options.seed, "seed of all random numbers (key `seed` of the study)")->type_name("N");
+  app.add_option("--seed", options.seed, "seed of all random numbers (key `seed` of the study)")
+      ->check(whole_number(std::numeric_limits<std::int64_t>::max()))
+      ->type_name("N");
   app.add_option("--threads", options.threads, "threads to use; 0: all. Results do not depend on it")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(kMostThreads))
       ->type_name("N");
   app.add_flag("--quiet", options.quiet, "no progress, only errors");
   app.add_flag("--json", options.json, "a machine-readable summary on stdout");
@@ -76,15 +122,22 @@ void add_command(CLI::App& parent, const Command& command, Chosen& chosen) {
   app->callback([&command, arguments, &chosen] { chosen = {&command, arguments}; });
 }
 
-/// Refuses a missing or unknown command, naming those that there are. `before`: the words read already.
-void check_command(std::span<const Command> commands, std::span<const char* const> words, const std::string& before) {
+struct NamedCommand {
+  const Command* command = nullptr;  ///< none: only help or the version is wanted
+  std::string name;                  ///< "init aircraft"
+};
+
+/// The command that the words name. Refuses a missing or unknown one, naming those that there are. `before`: the words
+/// read already.
+NamedCommand find_command(std::span<const Command> commands, std::span<const std::string> words,
+                          const std::string& before = "") {
   const std::string word = words.empty() ? "" : words.front();
-  if (word == "--help" || word == "-h" || word == "--version") return;
+  if (word == "--help" || word == "-h" || word == "--version") return {};
   std::vector<std::string> names;
   for (const Command& command : commands) {
     if (command.name == word) {
-      if (!command.commands.empty()) check_command(command.commands, words.subspan(1), before + word + " ");
-      return;
+      if (command.commands.empty()) return {&command, before + word};
+      return find_command(command.commands, words.subspan(1), before + word + " ");
     }
     names.push_back(command.name);
   }
@@ -96,28 +149,52 @@ void check_command(std::span<const Command> commands, std::span<const char* cons
   throw InputError(before + word, fmt::format("there is no such command{}", suggestion(word, names)));
 }
 
-int fail(const std::string& message, int exit_code) {
-  // Work that a signal stopped may end in an error of its own, which says nothing about the input.
-  const bool interrupted = TerminalProgress(true).interrupted();
-  fmt::print(stderr, "veridyn: {}\n", interrupted ? Interrupted().what() : message);
-  return interrupted ? kFailed : exit_code;
+/// Options of a command that earlier versions called otherwise get their names, with a note.
+void rename_options(const Command& command, std::vector<std::string>& words) {
+  for (const Argument& argument : command.arguments) {
+    if (argument.old_name.empty()) continue;
+    for (std::string& word : words) {
+      if (word != argument.old_name && !word.starts_with(argument.old_name + "=")) continue;
+      word.replace(0, argument.old_name.size(), argument.name);
+      fmt::print(stderr, "note: {} is now called {}\n", argument.old_name, argument.name);
+    }
+  }
 }
 
-int parse_and_run(std::span<const Command> commands, int argc, const char* const* argv) {
+/// What is wrong with the arguments of a command, in one line.
+std::string explained(const CLI::ParseError& error, const CLI::App& program, const NamedCommand& named) {
+  const std::vector<std::string> extra = program.remaining(true);
+  const bool unknown =
+      dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && named.command != nullptr && !extra.empty();
+  if (!unknown) return fmt::format("{} (`veridyn {} --help` says more)", error.what(), named.name);
+  const std::string& word = extra.front();
+  if (!word.starts_with("-")) return fmt::format("'{}' is one argument too many", word);
+  std::vector<std::string> names = {"--out", "--set", "--seed", "--threads", "--quiet", "--json", "--help"};
+  for (const Argument& argument : named.command->arguments) {
+    if (argument.name.starts_with("-")) names.push_back(argument.name);
+  }
+  return fmt::format("there is no option {}{}", word, suggestion(word, names));
+}
+
+int parse_and_run(std::span<const Command> commands, const Interruption& interruption, std::vector<std::string> words) {
   CLI::App program("veridyn: from recorded motion to a dynamic model you can trust", "veridyn");
   program.set_version_flag("--version", std::string(version()));
   program.require_subcommand(1);
-  program.failure_message(CLI::FailureMessage::simple);
   Chosen chosen;
   for (const Command& command : commands) add_command(program, command, chosen);
-  check_command(commands, {argv + 1, argv + std::max(1, argc)}, "");
+  const NamedCommand named = find_command(commands, words);
+  if (named.command != nullptr) rename_options(*named.command, words);
   try {
-    program.parse(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    program.parse(words);
   } catch (const CLI::ParseError& error) {
-    const int code = program.exit(error);
+    if (error.get_exit_code() != 0)
+      throw InputError(named.name.empty() ? "command line" : named.name, explained(error, program, named));
+    program.exit(error);
     if (!std::cout.flush()) throw std::runtime_error("stdout: cannot be written");
-    return code == 0 ? kDone : kWrongInput;
+    return kDone;
   }
+  chosen.arguments->common.interruption = interruption;
   const int exit_code = chosen.command->run(*chosen.arguments);
   print_text("");  // what is still in the buffer
   return exit_code;
@@ -125,12 +202,18 @@ int parse_and_run(std::span<const Command> commands, int argc, const char* const
 
 }  // namespace
 
-int run_program(std::span<const Command> commands, int argc, const char* const* argv) {
-  TerminalProgress::watch_signals();
+int run_program(std::span<const Command> commands, const Interruption& interruption, int argc,
+                const char* const* argv) {
   // A file beyond the shell's limit of size is an error like a full disk, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
+  const auto fail = [&](const std::string& message, int exit_code) {
+    // Work that a signal stopped may end in an error that says nothing about the input.
+    const bool interrupted = interruption.requested();
+    fmt::print(stderr, "veridyn: {}\n", interrupted ? Interrupted().what() : message);
+    return interrupted ? kFailed : exit_code;
+  };
   try {
-    return parse_and_run(commands, argc, argv);
+    return parse_and_run(commands, interruption, {argv + 1, argv + std::max(1, argc)});
   } catch (const InputError& error) {
     return fail(error.what(), kWrongInput);
   } catch (const std::bad_alloc&) {

@@ -13,6 +13,10 @@ void print_line(const CommonOptions& options, const std::string& line) {
   if (!options.quiet) fmt::print(stderr, "{}\n", line);
 }
 
+TerminalProgress progress_of(const CommonOptions& options) {
+  return TerminalProgress(options.quiet, options.threads, options.interruption);
+}
+
 void print_text(std::string_view text) {
   const std::size_t written = std::fwrite(text.data(), 1, text.size(), stdout);
   if (written == text.size() && std::fflush(stdout) == 0) return;

@@ -5,11 +5,15 @@
 
 #include "apps/veridyn/command.hpp"
 #include "apps/veridyn/summary.hpp"
+#include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
 
 /// A line for people on stderr, unless quiet.
 void print_line(const CommonOptions& options, const std::string& line);
+
+/// The progress of a command with these options.
+[[nodiscard]] TerminalProgress progress_of(const CommonOptions& options);
 
 /// Text on stdout, flushed. @throws std::runtime_error when it cannot be written.
 void print_text(std::string_view text);

@@ -83,7 +83,7 @@ builtin = "reference_1to5"
 StudyRun part(const Arguments& arguments, const std::string& folder, const char* text) {
   StudyRun run = parse_study("demo", (std::filesystem::path(arguments.common.out) / folder / "study.toml").string(),
                              text, arguments);
-  run.own_text = text;
+  run.text_to_write = text;
   run.arguments.common.out = run.path.parent_path().string();
   return run;
 }
@@ -91,16 +91,16 @@ StudyRun part(const Arguments& arguments, const std::string& folder, const char*
 int demo(const Arguments& arguments) {
   if (const int code = identify_aircraft(part(arguments, "aircraft", kDemoStudy)); code != kDone) return code;
   // The overrides are meant for the aircraft's study, and the summary is the aircraft's.
-  Arguments own = arguments;
-  own.common.overrides.clear();
-  own.common.seed.reset();
-  own.common.json = false;
-  if (const int code = identify_vehicle(part(own, "vehicle", kVehicleDemo)); code != kDone) return code;
-  StudyRun scale = part(own, "vehicle", kVehicleDemo);
-  scale.own_text.clear();
+  Arguments rest = arguments;
+  rest.common.overrides.clear();
+  rest.common.seed.reset();
+  rest.common.json = false;
+  if (const int code = identify_vehicle(part(rest, "vehicle", kVehicleDemo)); code != kDone) return code;
+  StudyRun scale = part(rest, "vehicle", kVehicleDemo);
+  scale.text_to_write.clear();
   scale.arguments.common.out += "/scale";
   if (const int code = scale_vehicle(scale); code != kDone) return code;
-  return simulate_muscle(part(own, "muscle", kMuscleDemo));
+  return simulate_muscle(part(rest, "muscle", kMuscleDemo));
 }
 
 }  // namespace

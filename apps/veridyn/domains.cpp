@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/veridyn/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 
 namespace veridyn::app {
@@ -88,7 +88,7 @@ std::string domains_with(const Row& row) {
 
 Domain domain_of(const Study& study) {
   const StudyTable& root = study.root();
-  // Not `has`: a key that was asked for counts as known, and these are known in some domains only.
+  // Not `has`: a key that `has` looked for counts as known, and these are known in some domains only.
   const std::vector<std::string> tables = root.keys();
   const auto named = [&](const char* key) { return std::find(tables.begin(), tables.end(), key) != tables.end(); };
   if (named("swing_test")) return Domain::kSwingTest;
@@ -110,12 +110,11 @@ Domain domain_of(const Study& study) {
 
 RunRecord StudyRun::record(std::uint64_t seed, std::vector<std::filesystem::path> inputs) const {
   inputs.push_back(path);
-  return {command, study.name(), study.to_toml(), seed, std::move(inputs), own_text};
+  return {command, study.name(), study.to_toml(), seed, std::move(inputs), text_to_write};
 }
 
 StudyRun parse_study(std::string command, const std::filesystem::path& path, std::string_view text,
                      const Arguments& arguments) {
-  numerics::set_default_threads(arguments.common.threads);
   std::vector<std::string> overrides = arguments.common.overrides;
   if (arguments.common.seed) overrides.push_back(fmt::format("seed={}", *arguments.common.seed));
   return {std::move(command), path, Study::parse(text, path.string(), path.parent_path(), overrides), arguments};
@@ -127,7 +126,11 @@ int run_on_study(std::string_view command, const Arguments& arguments) {
   const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
   const auto domain = static_cast<std::size_t>(domain_of(run.study));
   const Cell& cell = row.cells[domain];
-  if (cell.run != nullptr) return cell.run(run);
+  if (cell.run != nullptr) {
+    const int exit_code = cell.run(run);
+    for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
+    return exit_code;
+  }
   throw InputError(run.study.name(), fmt::format("{} is for {}; this study is of {}; {}", command, domains_with(row),
                                                  kNames[domain].one, cell.instead));
 }

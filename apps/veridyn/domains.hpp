@@ -33,14 +33,14 @@ struct StudyRun {
   std::filesystem::path path;  ///< of the study
   Study study;
   Arguments arguments;
-  std::string own_text = {};  ///< of a study that comes with the program and is written with its results
+  std::string text_to_write = {};  ///< of a study that comes with the program and is written with its results
 
   [[nodiscard]] const CommonOptions& options() const { return arguments.common; }
   /// What run.json says of this run; `inputs` are the files read beyond the study, which is added.
   [[nodiscard]] RunRecord record(std::uint64_t seed, std::vector<std::filesystem::path> inputs = {}) const;
 };
 
-/// A study with the overrides of `--set` and the seed of `--seed`; sets the threads to use.
+/// A study with the overrides of `--set` and the seed of `--seed`.
 [[nodiscard]] StudyRun parse_study(std::string command, const std::filesystem::path& path, std::string_view text,
                                    const Arguments& arguments);
 

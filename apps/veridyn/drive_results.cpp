@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 
-#include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -24,30 +26,15 @@ namespace {
 
 using namespace veridyn::vehicle;
 
-std::vector<std::pair<std::string, double>> truth_of(const Vehicle& vehicle, double gravity) {
+std::map<std::string, double, std::less<>> truth_of(const Vehicle& vehicle, double gravity) {
   VehicleParameters<double> p = vehicle.parameters;
   const auto [C_f, C_r] = cornering_stiffnesses(vehicle, gravity);
   p.C_f = C_f;
   p.C_r = C_r;
-  std::vector<std::pair<std::string, double>> truth{
+  std::map<std::string, double, std::less<>> truth{
       {"C_f", p.C_f}, {"C_r", p.C_r}, {"I_z", p.I_z}, {"understeer_gradient", understeer_gradient(p)}};
-  if (std::isfinite(p.mu)) truth.emplace_back("mu", p.mu);
+  if (std::isfinite(p.mu)) truth["mu"] = p.mu;
   return truth;
-}
-
-/// Every method's figures, the chosen one first.
-std::string methods_csv(const VehicleIdentification& id) {
-  std::string text = "parameter,method,value,sigma,low95,high95,unit\n";
-  const auto lines = [&](const VehicleEstimate& e) {
-    if (!e.usable) return;
-    for (const estimation::ParameterEstimate& p : e.parameters)
-      text += fmt::format("{},{},{},{},{},{},{}\n", p.name, to_string(e.method), p.value, p.sigma, p.low95, p.high95,
-                          p.unit);
-  };
-  if (id.best() != nullptr) lines(*id.best());
-  for (const VehicleEstimate& e : id.estimates)
-    if (&e != id.best()) lines(e);
-  return text;
 }
 
 /// Measured and predicted motion on the hold-out.
@@ -75,7 +62,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   const VehicleIdentification& id = analysis.identification;
   folder.write("estimate.json", io::to_json(analysis.estimate));
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
-  folder.write("methods.csv", methods_csv(id));
+  folder.write("methods.csv", methods_csv(analysis));
   folder.write("validation.csv", prediction_csv(id.validation));
   if (drive.run) {
     folder.write("truth.csv", io::to_csv(to_recording(drive.run->trajectory)));
@@ -87,7 +74,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
     identified.parameters = id.identified;
     folder.write("subject.toml", write_vehicle_toml(identified));
   }
-  report::DriveReportContext context{.program = program_name(), .truth = drive.truth};
+  report::DriveReportContext context{.program = program_name()};
   context.validation_only = validation_only;
   folder.write("report.html", report::to_html(report::drive_report(drive.study, analysis, context)));
 }
@@ -96,12 +83,12 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
                     const CommonOptions& options) {
   const VehicleIdentification& id = analysis.identification;
   if (const VehicleEstimate* best = id.best()) {
-    for (const estimation::ParameterEstimate& p : best->parameters) {
+    for (const estimation::Parameter& p : best->parameters) {
       print_line(options, fmt::format("  {:<20} {:>12.5g} +- {:<9.2g} {:<12} {}", p.name, p.value, p.sigma, p.unit,
                                       estimation::to_string(p.status)));
     }
   }
-  for (const PredictedDriveQuantity& q : id.validation.quantities) {
+  for (const estimation::PredictedQuantity& q : id.validation.quantities) {
     print_line(options,
                fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
   }
@@ -123,16 +110,15 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
 
 PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   PreparedDrive drive;
-  if (study.root().has("data") && (study.root().table("data").has("file") || study.root().table("data").has("files") ||
-                                   study.root().table("data").has("runs"))) {
+  if (names_recording(study.root())) {
+    finish_drive_study(study.root(), progress);
     drive.study = vehicle::read_study(study, progress);
-    for (const char* table : {"drive", "road", "sensors", "scale"}) static_cast<void>(study.root().has(table));
-    study.root().finish();
     return drive;
   }
   if (!study.root().has("drive"))
     study.root().fail("data", "is missing: the study names no recording, and no [drive] that could be simulated");
-  SimulationStudy vehicle = read_simulation_study(study.root());
+  SimulationStudy vehicle = read_simulation_study(study.root(), progress);
+  finish_drive_study(study.root(), progress, DriveTables::kSimulation);
   if (!vehicle.sensors) vehicle.sensors = reference_drive_sensors();
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
   drive.run = run_simulation_study(vehicle, progress);
@@ -142,9 +128,7 @@ PreparedDrive prepare_drive(const Study& study, Progress& progress) {
   measured.source = "simulated drive";
   drive.study = vehicle::read_study(study, measured, progress);
   drive.study.inputs = vehicle.inputs;
-  drive.truth = truth_of(vehicle.vehicle, vehicle.four_wheel.gravity);
-  static_cast<void>(study.root().has("scale"));
-  study.root().finish();
+  drive.study.truth = truth_of(vehicle.vehicle, vehicle.four_wheel.gravity);
   return drive;
 }
 

@@ -15,10 +15,9 @@
 
 namespace veridyn::app {
 
-/// A drive to be analysed, with its truth where it was simulated.
+/// A drive to be analysed, with the simulation that it comes from, if any.
 struct PreparedDrive {
   vehicle::VehicleStudy study;
-  std::vector<std::pair<std::string, double>> truth;
   std::optional<vehicle::SimulationRun> run;
 };
 

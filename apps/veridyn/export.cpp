@@ -36,10 +36,9 @@ int export_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   const StudyTable& root = run.study.root();
   aircraft::Subject subject = aircraft::read_subject(root.table("subject"));
-  check_flight_tables(root);
   if (root.has("flight")) static_cast<void>(aircraft::read_simulation(root));
-  root.finish();
-  const std::string& file = run.arguments.text("--estimate");
+  finish_flight_study(root);
+  const std::string& file = run.arguments.text("--estimate-file");
   std::optional<estimation::Estimate> estimate;
   if (!file.empty()) {
     estimate = io::read_estimate(file);
@@ -64,13 +63,16 @@ Command export_command() {
   return {.name = "export",
           .summary = "the model for other programs: JSON, TOML, CSV, JSBSim XML",
           .arguments = {{.name = "STUDY", .help = "study, or the subject.toml of an identification", .required = true},
-                        {.name = "--estimate", .help = "take the parameters from this estimate.json", .type = "FILE"},
+                        {.name = "--estimate-file",
+                         .help = "take the parameters from this estimate.json",
+                         .type = "FILE",
+                         .old_name = "--estimate"},
                         {.name = "--format",
                          .help = "what to write",
                          .value = "all",
                          .choices = {"all", "json", "toml", "csv", "jsbsim"}}},
           .default_out = "out/export",
-          .example = "veridyn export study.toml --estimate out/identify/estimate.json --format jsbsim",
+          .example = "veridyn export study.toml --estimate-file out/identify/estimate.json --format jsbsim",
           .run = [](const Arguments& arguments) { return run_on_study("export", arguments); }};
 }
 

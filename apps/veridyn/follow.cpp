@@ -11,7 +11,6 @@
 
 #include "apps/veridyn/console.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -44,7 +43,6 @@ std::vector<std::filesystem::path> followed_files(const StudyTable& root) {
 
 void follow_files(const std::vector<std::filesystem::path>& files, const FollowOptions& follow,
                   const CommonOptions& options, const std::function<void(bool finished)>& advance) {
-  TerminalProgress signals(true);  // for its signals; a bar would fight with a table
   std::uintmax_t seen = 0;
   std::string obstacle;
   double pause_s = follow.interval_s;
@@ -52,7 +50,7 @@ void follow_files(const std::vector<std::filesystem::path>& files, const FollowO
   print_line(options, fmt::format("following {}; ends {:g} s after the last new data, or with Ctrl-C",
                                   files.front().string(), follow.idle_s));
   while (true) {
-    const bool stop = signals.interrupted();
+    const bool stop = options.interruption.requested();
     const std::uintmax_t size = size_of(files);
     const bool news = size != seen;
     if (news) grown = Clock::now();

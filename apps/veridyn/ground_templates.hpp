@@ -39,7 +39,7 @@ cradle_files = ["cradle_x_1.csv", "cradle_x_2.csv"]
 suspension = "pendulum"
 length = "1.86 m"                # pivot to the centre of gravity of aircraft and cradle
 cradle_length = "1.79 m"         # pivot to the centre of gravity of the cradle
-offset = "0.0275 m"              # how much further from the pivot the aircraft's own centre of gravity is
+offset = "0.0275 m"              # how much further from the pivot the aircraft's centre of gravity is
 files = ["aircraft_y_1.csv", "aircraft_y_2.csv"]
 cradle_files = ["cradle_y_1.csv", "cradle_y_2.csv"]
 

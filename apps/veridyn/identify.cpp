@@ -1,15 +1,15 @@
 // veridyn identify STUDY: from recording to parameters, validation and report.
 #include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
-#include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
 
 int identify_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  TerminalProgress progress(run.options().quiet);
-  aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
+  TerminalProgress progress = progress_of(run.options());
+  const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
   if (analysis.interrupted) throw Interrupted();
   progress.stage("writing the results");
@@ -19,7 +19,7 @@ int identify_aircraft(const StudyRun& run) {
 
 int identify_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
   PreparedDrive drive = prepare_drive(run.study, progress);
   const vehicle::VehicleAnalysis analysis = vehicle::identify(drive.study, progress);
   if (analysis.interrupted) throw Interrupted();

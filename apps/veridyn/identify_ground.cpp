@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
 #include "veridyn/aircraft/sensors/swing_test.hpp"
-#include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/ground_report.hpp"
@@ -101,7 +101,7 @@ GroundResult calibration(const Study& study, Progress& progress) {
 template <typename Analyse>
 int identify_ground(const StudyRun& run, const Analyse& analyse) {
   OutputFolder folder(run.options().out);
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
   const GroundResult result = analyse(run.study, progress);
   if (progress.interrupted()) throw Interrupted();
   publish(run, folder, result);

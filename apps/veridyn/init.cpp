@@ -6,14 +6,15 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/ground_templates.hpp"
 #include "apps/veridyn/muscle_template.hpp"
+#include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/vehicle_template.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/files.hpp"
 
 namespace veridyn::app {
 namespace {
 
-constexpr const char* kAircraftStudy = R"toml(# A study of one flight: who flew, what was recorded, what to find out.
+constexpr const char* kAircraftStudy =
+    R"toml(# A study of one flight: the aircraft, what was recorded, what to find out.
 #   veridyn inspect flight.bin          what the log holds and how it would be mapped
 #   veridyn identify study.toml         from log to model, with a report
 # Numbers are SI and radians; a text may carry any unit of the same kind: "27 lb", "12 deg". Keys with a leading # show
@@ -112,7 +113,7 @@ file = @LOG@
 # memory = "100 s"               # a sample counts 5 % after this time
 # forgetting = "variable"        # shorter memory while innovations are large
 # false_alarm_interval = "36000 s"
-# estimate = "estimate.json"     # start from an earlier identification
+# estimate_file = "estimate.json"  # start from an earlier identification
 )toml";
 
 /// A file's path as TOML text, so that it is found from the study's folder.
@@ -136,19 +137,18 @@ std::string filled(std::string text, const std::string& mark, const std::string&
   return text.replace(text.find(mark), mark.size(), with);
 }
 
-std::filesystem::path folder_of(const Arguments& arguments) {
-  return arguments.common.out.empty() ? "." : arguments.common.out;
-}
-
 int write_study(const Arguments& arguments, const std::string& text, const std::string& to_do,
                 const std::string& command = "identify") {
-  const std::filesystem::path folder = folder_of(arguments);
-  make_folder(folder);
-  const std::filesystem::path path = folder / "study.toml";
+  OutputFolder folder(arguments.common.out);
+  const std::string name = "study.toml";
+  const std::filesystem::path path = folder.path() / name;
   if (std::filesystem::exists(path) && !arguments.flag("--force")) {
     throw InputError(path.string(), "is there already; --force replaces it");
   }
-  write_file(path, text);
+  folder.write(name, text);
+  print_summary(Summary::object({{"folder", folder.path().string()}, {"files", std::vector<std::string>{name}}}),
+                arguments.common);
+  folder.publish();
   print_line(arguments.common,
              fmt::format("wrote {}: {}, then `veridyn {} {}`", path.string(), to_do, command, path.string()));
   return kDone;
@@ -156,7 +156,7 @@ int write_study(const Arguments& arguments, const std::string& text, const std::
 
 /// The file that a study is about, named from the study's folder.
 std::string quoted_argument(const Arguments& arguments, const char* name) {
-  return quoted_path(arguments.text(name), folder_of(arguments));
+  return quoted_path(arguments.text(name), arguments.common.out);
 }
 
 int init_aircraft(const Arguments& arguments) {

@@ -47,7 +47,7 @@ int inspect(const Arguments& arguments) {
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
   const Recording recording = io::to_recording(std::move(log));
-  // Frames tell vehicles from aircraft.
+  // The frame distinguishes vehicles from aircraft.
   const bool vehicle = recording.frame == Frame::kFlu;
   const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
                                                     : aircraft::map_channels(recording, StudyTable("data.map"), {});

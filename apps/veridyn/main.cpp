@@ -2,11 +2,14 @@
 #include <array>
 
 #include "apps/veridyn/command_line.hpp"
+#include "veridyn/core/interruption.hpp"
 
 int main(int argc, char** argv) {
   using namespace veridyn::app;
   const std::array commands = {demo_command(),        init_command(),      inspect_command(), simulate_command(),
                                reconstruct_command(), identify_command(),  track_command(),   validate_command(),
                                scale_command(),       reproduce_command(), export_command()};
-  return run_program(commands, argc, argv);
+  const veridyn::Interruption interruption;
+  veridyn::request_on_signals(interruption);
+  return run_program(commands, interruption, argc, argv);
 }

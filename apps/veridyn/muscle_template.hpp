@@ -56,7 +56,7 @@ default = 0.05
 # time = "0.2 s"
 # brachialis = 0.15
 
-# --- the three others: a motion is wished for ----------------------------------------------------------------------
+# --- the three others follow a desired motion ----------------------------------------------------------------------
 # [motion]
 # file = "lift.mot"              # .mot, .sto or .csv with columns by the coordinates' names
 # low_pass = "6 Hz"              # of its samples, without delay

@@ -18,7 +18,7 @@ namespace veridyn::app {
 /// touched, and a run that fails, is interrupted or fills the disk leaves nothing, not even the folders that it made.
 class OutputFolder {
  public:
-  /// @throws InputError when something else stands in the way, or nothing can be written there.
+  /// @throws InputError when a file is in the way, or nothing can be written there.
   explicit OutputFolder(std::filesystem::path path);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -4,7 +4,6 @@
 #include "apps/veridyn/aircraft_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
-#include "veridyn/core/progress.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -35,7 +34,7 @@ void print_reconstruction(const aircraft::Reconstruction& reconstruction, const 
   if (reconstruction.guard) print_line(options, "guard: " + reconstruction.guard->statement);
   for (const aircraft::FilterError& e : reconstruction.comparison) {
     const auto text = [&](double v) {
-      return fmt::format("{:.3g}{}", aircraft::shown(v, e.unit), aircraft::shown_unit(e.unit));
+      return fmt::format("{:.3g}{}", aircraft::display_value(v, e.unit), aircraft::display_unit(e.unit));
     };
     print_line(options, fmt::format("  {:<16} RMS error of filter / smoother: model-free {} / {}, model-based {} / {}",
                                     e.quantity, text(e.model_free.filter_rms), text(e.model_free.smoother_rms),
@@ -48,8 +47,8 @@ void print_reconstruction(const aircraft::Reconstruction& reconstruction, const 
 
 int reconstruct_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  TerminalProgress progress(run.options().quiet);
-  aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
+  TerminalProgress progress = progress_of(run.options());
+  const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::reconstruct(flight, progress);
   if (analysis.interrupted) throw Interrupted();
   write_reconstruction(folder, flight, analysis);

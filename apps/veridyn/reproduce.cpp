@@ -12,8 +12,6 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
-#include "veridyn/core/progress.hpp"
-#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/report/aircraft_reproduction.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_reproduction_report.hpp"
@@ -63,12 +61,11 @@ using Run = std::optional<report::ReproducedRow> (*)(const StudyTable& root, Pro
 /// Runs every study by `run` (nothing: interrupted), prints the rows and writes the report.
 int reproduce(const Arguments& arguments, const std::string& domain, std::span<const EmbeddedText> embedded, Run run) {
   const CommonOptions& options = arguments.common;
-  numerics::set_default_threads(options.threads);
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   const std::vector<NamedStudy> studies = studies_of(arguments, embedded);
   OutputFolder folder(options.out);
-  TerminalProgress progress(options.quiet);
+  TerminalProgress progress = progress_of(options);
   std::vector<report::ReproducedRow> rows;
   Summary summary;
   summary["rows"] = Summary::array();

@@ -13,6 +13,7 @@
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -57,7 +58,7 @@ std::string sha1_of(const fs::path& path) {
   boost::uuids::detail::sha1 hash;
   std::vector<char> block(1 << 20);
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
-    hash.process_bytes(block.data(), static_cast<std::size_t>(file.gcount()));
+    hash.process_bytes(block.data(), at(file.gcount()));
   }
   unsigned int digest[5];
   hash.get_digest(digest);
@@ -71,7 +72,7 @@ std::string run_json(const RunRecord& run, const CommonOptions& options, const s
   Summary json;
   json["program"] = "veridyn";
   json["version"] = version();
-  json["verb"] = run.command;
+  json["command"] = run.command;
   json["study"] = run.study_name;
   json["overrides"] = options.overrides;
   json["seed"] = run.seed;
@@ -98,7 +99,7 @@ std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
       if (file.is_string()) files.push_back(file.get<std::string>());
     }
   } else {
-    files = results_before_lists(text("verb"));
+    files = results_before_lists(text("verb"));  // what those versions called the command
   }
   std::erase_if(files, [&](const std::string& name) { return !is_result(folder, name); });
   return files;

@@ -11,12 +11,12 @@ namespace veridyn::app {
 
 /// What a run was made from, for `run.json`: enough to repeat it.
 struct RunRecord {
-  std::string command;  ///< "identify"; key `verb` of run.json
+  std::string command;  ///< "identify"
   std::string study_name;
   std::string study_toml;  ///< after overrides
   std::uint64_t seed = 0;
   std::vector<std::filesystem::path> inputs;  ///< hashed
-  std::string own_study = {};                 ///< written as study.toml where not empty
+  std::string study_to_write = {};            ///< written as study.toml where not empty
 };
 
 /// An input of a run as run.json names it.

@@ -8,7 +8,6 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/similarity_report.hpp"
@@ -66,10 +65,9 @@ Summary summary_of(const std::filesystem::path& folder, const ScaleAnalysis& a) 
 
 int scale_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  ScaleStudy study = read_scale_study(run.study.root());
-  check_drive_tables(run.study.root());
-  run.study.root().finish();
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
+  const ScaleStudy study = read_scale_study(run.study.root(), progress);
+  finish_drive_study(run.study.root(), progress, DriveTables::kScale);
   progress.stage("driving prototype and models");
   const ScaleAnalysis analysis = run_scale_study(study, progress);
   if (analysis.interrupted) throw Interrupted();
@@ -77,7 +75,7 @@ int scale_vehicle(const StudyRun& run) {
   folder.write("groups.csv", groups_csv(r));
   folder.write("scaled.toml", write_vehicle_toml(analysis.twin));
   folder.write("prototype.csv", io::to_csv(to_recording(analysis.prototype)));
-  folder.write("model.csv", io::to_csv(to_recording(analysis.runs.back().own)));
+  folder.write("model.csv", io::to_csv(to_recording(analysis.runs.back().trajectory)));
   folder.write("report.html", report::to_html(report::similarity_report(study, analysis, program_name())));
   folder.publish(run.record(study.simulation.seed, study.simulation.inputs), run.options(),
                  summary_of(folder.path(), analysis));

@@ -8,7 +8,6 @@
 #include "apps/veridyn/study_tables.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn::app {
@@ -16,9 +15,8 @@ namespace veridyn::app {
 int simulate_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   const aircraft::SimulationOptions simulation = aircraft::read_simulation(run.study.root());
-  check_flight_tables(run.study.root());
-  run.study.root().finish();
-  TerminalProgress progress(run.options().quiet);
+  finish_flight_study(run.study.root());
+  TerminalProgress progress = progress_of(run.options());
   progress.stage(fmt::format("simulating {:.0f} s of {}", simulation.duration, simulation.subject.name));
   const aircraft::SimulatedFlight flight = aircraft::simulate(simulation, progress);
   if (flight.end == SimulationEnd::kInterrupted) throw Interrupted();
@@ -46,7 +44,7 @@ Command simulate_command() {
           {{.name = "STUDY",
             .help =
                 "study file (TOML). Aircraft: [subject], [flight] and [sensors]; writes what its sensors record and "
-                "the truth. Vehicle: [subject] with kind = \"vehicle\", [drive], and where wanted [road] and "
+                "the truth. Vehicle: [subject] with kind = \"vehicle\", [drive], and optionally [road] and "
                 "[sensors]. Muscles: [subject] with `model` (an .osim file or \"arm\") and [motion] with `method` "
                 "(forward, inverse dynamics, static optimization, computed muscle control); writes motion, muscle "
                 "states, controls and a report. `veridyn init muscle` writes one to start from",

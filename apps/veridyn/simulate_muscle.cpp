@@ -10,7 +10,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/progress.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -47,7 +47,7 @@ Summary summary_of(const std::filesystem::path& folder, const MuscleStudy& study
   s["evaluations"] = t.evaluations;
   s["coordinates"] = Summary::object();
   for (std::size_t c = 0; c < model.coordinates.size() && t.q.rows() > 0; ++c) {
-    const auto i = static_cast<Eigen::Index>(c);
+    const auto i = signed_index(c);
     Summary k = Summary::object({{"unit", model.coordinates[c].unit()},
                                  {"begin", t.q(0, i)},
                                  {"end", t.q(t.q.rows() - 1, i)},
@@ -58,14 +58,14 @@ Summary summary_of(const std::filesystem::path& folder, const MuscleStudy& study
   }
   s["muscles"] = Summary::object();
   for (std::size_t m = 0; m < model.muscles.size() && t.tendon_force.rows() > 0; ++m) {
-    const auto i = static_cast<Eigen::Index>(m);
+    const auto i = signed_index(m);
     s["muscles"][model.muscles[m].name()] = Summary::object(
         {{"peak_force_N", t.tendon_force.col(i).maxCoeff()}, {"peak_activation", t.activation.col(i).maxCoeff()}});
   }
   s["events"] = Summary::array();
   for (const MuscleEvent& event : t.events) {
     s["events"].push_back(Summary::object({{"time_s", event.time},
-                                           {"muscle", model.muscles[static_cast<std::size_t>(event.muscle)].name()},
+                                           {"muscle", model.muscles[at(event.muscle)].name()},
                                            {"what", event_text(event.kind)}}));
   }
   s["warnings"] = result.warnings;
@@ -79,14 +79,14 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
   const MuscleTrajectory& t = result.trajectory;
   std::string text;
   for (const int c : study.system->reduction().free()) {
-    const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+    const Coordinate& k = model.coordinates[at(c)];
     const bool angle = k.motion != CoordinateMotion::kTranslational;
     const double unit = angle ? 180.0 / kPi : 1.0;
     text += fmt::format("{}{} {:.4g} to {:.4g} {}", text.empty() ? "" : ", ", k.name, unit * t.q(0, c),
                         unit * t.q(t.q.rows() - 1, c), angle ? "deg" : "m");
     if (study.method == MuscleMethod::kComputedMuscleControl) {
-      text += fmt::format(" (within {:.2g} {} of the desired motion)",
-                          unit * result.tracking_error(static_cast<std::size_t>(c)), angle ? "deg" : "m");
+      text += fmt::format(" (within {:.2g} {} of the desired motion)", unit * result.tracking_error(at(c)),
+                          angle ? "deg" : "m");
     }
     if (text.size() > 400) {
       text += ", ...";
@@ -100,7 +100,7 @@ std::string headline(const MuscleStudy& study, const MuscleResult& result) {
 
 int simulate_muscle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
   const MuscleStudy muscles = read_study(run.study, progress);
   // Nothing here is random yet; the run record names the seed all the same.
   const auto seed = static_cast<std::uint64_t>(run.study.root().integer_or("seed", 1));

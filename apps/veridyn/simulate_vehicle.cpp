@@ -10,7 +10,6 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/core/progress.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_report.hpp"
@@ -50,10 +49,9 @@ Summary summary_of(const std::filesystem::path& folder, const SimulationStudy& s
 
 int simulate_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  SimulationStudy vehicle = read_simulation_study(run.study.root());
-  check_drive_tables(run.study.root());
-  run.study.root().finish();
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
+  const SimulationStudy vehicle = read_simulation_study(run.study.root(), progress);
+  finish_drive_study(run.study.root(), progress, DriveTables::kSimulation);
   progress.stage(fmt::format("driving {:.0f} s of {}", vehicle.simulation.duration, vehicle.vehicle.name));
   const SimulationRun driven = run_simulation_study(vehicle, progress);
   const VehicleTrajectory& trajectory = driven.trajectory;

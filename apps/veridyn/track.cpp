@@ -12,7 +12,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
-#include "veridyn/core/progress.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -43,8 +43,8 @@ std::string live_table(const TrackedFlight& flight) {
       const bool held = r.unexcited_share()(i) > 0.5;
       const double sigma = r.sigma()(i);
       const std::string band = std::isfinite(sigma) ? fmt::format("{:.2g}", sigma) : "?";
-      text += fmt::format(" {}{} {:.4g} +- {}{}", held ? "[" : "", r.names()[static_cast<std::size_t>(i)], r.theta()(i),
-                          band, held ? "]" : "");
+      text +=
+          fmt::format(" {}{} {:.4g} +- {}{}", held ? "[" : "", r.names()[at(i)], r.theta()(i), band, held ? "]" : "");
     }
     text += "\n";
   }
@@ -63,7 +63,7 @@ class LiveView {
     if (!terminal_ && Clock::now() - shown_ < std::chrono::seconds(10)) return;
     shown_ = Clock::now();
     const std::string table = live_table(flight);
-    lines_ = static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n'));
+    lines_ = at(std::count(table.begin(), table.end(), '\n'));
     fmt::print(stderr, "{}", table);
   }
 
@@ -104,8 +104,8 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
 }
 
 void replay(const StudyRun& run, OutputFolder& folder) {
-  TerminalProgress progress(run.options().quiet);
-  FlightStudy study = aircraft::read_study(run.study, progress);
+  TerminalProgress progress = progress_of(run.options());
+  const FlightStudy study = aircraft::read_study(run.study, progress);
   const TrackingAnalysis analysis = track_flight(study, progress);
   if (analysis.interrupted) throw Interrupted();
   for (const FlightChange& c : analysis.flight.tracker().changes()) print_line(run.options(), change_line(c));

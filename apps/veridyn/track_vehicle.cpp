@@ -6,6 +6,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/drive_results.hpp"
 #include "apps/veridyn/follow.hpp"
+#include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
@@ -57,7 +58,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
   }
   summary["warnings"] = estimate.warnings;
   folder.write("changes.csv", changes);
-  const report::DriveReportContext context{.program = program_name(), .truth = drive.truth};
+  const report::DriveReportContext context{.program = program_name()};
   folder.write("report.html", report::to_html(report::drive_tracking_report(drive.study, tracked, context)));
   folder.publish(run.record(drive.study.seed, drive.study.inputs), run.options(), summary);
   for (const std::string& warning : estimate.warnings) print_line(run.options(), "warning: " + warning);
@@ -67,6 +68,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
 }
 
 void follow_drive(const StudyRun& run, OutputFolder& folder) {
+  finish_drive_study(run.study.root(), Progress());
   PreparedDrive drive;
   std::optional<TrackedDrive> tracked;
   follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
@@ -88,7 +90,7 @@ int track_vehicle(const StudyRun& run) {
     follow_drive(run, folder);
     return kDone;
   }
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
   PreparedDrive drive = prepare_drive(run.study, progress);
   const DriveTracking tracking = vehicle::track(drive.study, progress);
   if (tracking.interrupted) throw Interrupted();

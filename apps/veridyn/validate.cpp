@@ -1,18 +1,18 @@
-// veridyn validate STUDY --estimate FILE: an estimate against other data.
+// veridyn validate STUDY --estimate-file FILE: an estimate against other data.
 #include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
-#include "veridyn/core/progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
 
 int validate_aircraft(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const std::string& file = run.arguments.text("--estimate");
+  const std::string& file = run.arguments.text("--estimate-file");
   const estimation::Estimate estimate = io::read_estimate(file);
-  TerminalProgress progress(run.options().quiet);
-  aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
+  TerminalProgress progress = progress_of(run.options());
+  const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::validate(flight, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
   publish_identification(run, folder, flight, analysis, {file});
@@ -21,9 +21,9 @@ int validate_aircraft(const StudyRun& run) {
 
 int validate_vehicle(const StudyRun& run) {
   OutputFolder folder(run.options().out);
-  const std::string& file = run.arguments.text("--estimate");
+  const std::string& file = run.arguments.text("--estimate-file");
   const estimation::Estimate estimate = io::read_estimate(file);
-  TerminalProgress progress(run.options().quiet);
+  TerminalProgress progress = progress_of(run.options());
   PreparedDrive drive = prepare_drive(run.study, progress);
   const vehicle::VehicleAnalysis analysis = vehicle::validate(drive.study, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
@@ -34,11 +34,14 @@ int validate_vehicle(const StudyRun& run) {
 Command validate_command() {
   return {.name = "validate",
           .summary = "an estimate validated on held-out data: another flight or drive",
-          .arguments =
-              {{.name = "STUDY", .help = "study file of the other flight or drive", .required = true},
-               {.name = "--estimate", .help = "estimate.json of an identification", .type = "FILE", .required = true}},
+          .arguments = {{.name = "STUDY", .help = "study file of the other flight or drive", .required = true},
+                        {.name = "--estimate-file",
+                         .help = "estimate.json of an identification",
+                         .type = "FILE",
+                         .required = true,
+                         .old_name = "--estimate"}},
           .default_out = "out/validate",
-          .example = "veridyn validate flight8.toml --estimate out/flight7/estimate.json",
+          .example = "veridyn validate flight8.toml --estimate-file out/flight7/estimate.json",
           .run = [](const Arguments& arguments) { return run_on_study("validate", arguments); }};
 }
 

@@ -5,8 +5,8 @@ namespace veridyn::app {
 /// What `veridyn init vehicle` writes; "@DATA@" stands for the lines of the log.
 constexpr const char* kVehicleStudy = R"toml(# A study of a road vehicle: drive it, identify it from a log, scale it.
 #   veridyn simulate study.toml         drives the manoeuvre below, with a report
-#   veridyn identify study.toml         from a drive log to parameters with error bars, validated on data not seen;
-#                                       without a log the drive below is simulated and its truth shown beside
+#   veridyn identify study.toml         from a drive log to parameters with error bars, validated on held-out data;
+#                                       without a log the drive below is simulated and its truth shown alongside
 #   veridyn track study.toml            follows cornering stiffnesses on line, replayed or --live
 #   veridyn scale study.toml            the same vehicle in another size, and how like it a model is
 # Numbers are SI and radians; a text may carry any unit of the same kind: "80 km/h", "12 deg". Keys with a leading # show

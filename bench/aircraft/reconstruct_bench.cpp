@@ -10,8 +10,8 @@ namespace {
 void reconstruct_one_hour(benchmark::State& state) {
   const auto flight = veridyn::aircraft::testing::make_flight({.duration = 3600.0});
   veridyn::aircraft::ReconstructOptions options;
-  options.sensors = "reference";
-  options.turbulence = "low_moderate";
+  options.sensors = veridyn::aircraft::NoiseSource::kReference;
+  options.turbulence = veridyn::aircraft::named_turbulence("low_moderate");
   veridyn::Progress quiet;
   for (auto _ : state) {
     benchmark::DoNotOptimize(veridyn::aircraft::reconstruct(flight.recording, options, quiet));

@@ -1,5 +1,5 @@
 // Kinematics and dynamics of an arm (2 coordinates, 2 links) and of a walker's tree (23 coordinates, 12 links), step by
-// step, with derivatives, and beside Simbody's accelerations of the same trees.
+// step, with derivatives, and alongside Simbody's accelerations of the same trees.
 #include <benchmark/benchmark.h>
 #include <ceres/jet.h>
 

@@ -7,11 +7,13 @@
 #include <random>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/simulation/static_optimization.hpp"
 
 namespace {
 using namespace veridyn::muscle;
+using veridyn::kPi;
 
 constexpr std::size_t kStates = 256, kMuscles = 6;
 constexpr std::array<std::array<double, 4>, kMuscles> kArm26{{{798.52, 0.1340, 0.1430, 0.20943951},
@@ -47,8 +49,8 @@ struct States {
     for (std::size_t s = 0; s < kStates; ++s) {
       const auto uniform = [&](std::size_t i, double phase) {
         if (!motion) return random(generator);
-        return 0.5 + 0.5 * std::sin(2.0 * 3.14159 *
-                                    (static_cast<double>(s) / kStates + 0.13 * static_cast<double>(i) + phase));
+        return 0.5 +
+               0.5 * std::sin(2.0 * kPi * (static_cast<double>(s) / kStates + 0.13 * static_cast<double>(i) + phase));
       };
       for (std::size_t i = 0; i < kMuscles; ++i) {
         a[i] = 0.02 + 0.9 * uniform(i, 0.0);
@@ -152,7 +154,7 @@ void static_optimization(benchmark::State& state, double exponent, StaticForce f
   StaticOptimizationFrame frame;
   std::size_t s = 0;
   for (auto _ : state) {
-    const double phase = 2.0 * 3.14159 * static_cast<double>(s) / 200.0;
+    const double phase = 2.0 * kPi * static_cast<double>(s) / 200.0;
     for (Eigen::Index i = 0; i < 6; ++i) {
       const auto& [F0, L0, LS, phi0] = kArm26[static_cast<std::size_t>(i)];
       length(i) = LS + L0 * (1.0 + 0.15 * std::sin(phase + 0.7 * static_cast<double>(i)));

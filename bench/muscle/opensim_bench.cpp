@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include "tests/muscle/arm26_scenarios.hpp"
 #include "tests/support/folders.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
@@ -36,7 +36,7 @@ StartState start_of(const Model& model, int number) {
   constexpr std::array<std::array<double, 2>, 3> kStart{{{2.5, 30.0}, {10.0, 30.0}, {0.0, 40.0}}};
   StartState start = default_start(model);
   for (Eigen::Index c = 0; c < 2; ++c) {
-    start.q(c) = kStart[static_cast<std::size_t>(number - 1)][static_cast<std::size_t>(c)] * std::numbers::pi / 180.0;
+    start.q(c) = kStart[static_cast<std::size_t>(number - 1)][static_cast<std::size_t>(c)] * kDegree;
   }
   return start;
 }

@@ -25,7 +25,7 @@ struct ReferenceDriver : Driver {
   }
 };
 
-/// The prototype on road springs, at a speed at which all tyres hold: the reference manoeuvre at 20 m/s asks for 1.2 g.
+/// The prototype on road springs, at a speed at which all tyres hold: the reference manoeuvre at 20 m/s needs 1.2 g.
 template <typename Tyre>
 void drive(benchmark::State& state, const PerWheel<Tyre>& tyres) {
   const bool longitudinal = state.range(0) != 0;
@@ -64,7 +64,7 @@ void BM_SimpleMagicFormula(benchmark::State& state) {
 }
 /// A whole tyre file, PAC2002 with combined slip; skipped where the shared data are not there.
 void BM_MagicFormula(benchmark::State& state) {
-  const std::filesystem::path file = test::shared_folder() "/data/vehicle/chrono/Sedan_Pac02Tire.tir";
+  const std::filesystem::path file = test::shared_folder() / "data/vehicle/chrono/Sedan_Pac02Tire.tir";
   if (!std::filesystem::exists(file)) {
     state.SkipWithError("no shared data");
     return;

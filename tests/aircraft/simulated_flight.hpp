@@ -46,8 +46,8 @@ inline Flown fly(const FlightToFly& c) {
 
 inline ReconstructOptions reference_options() {
   ReconstructOptions o;
-  o.sensors = "reference";
-  o.turbulence = "low_moderate";
+  o.sensors = NoiseSource::kReference;
+  o.turbulence = named_turbulence("low_moderate");
   return o;
 }
 

@@ -62,7 +62,7 @@ TEST(TrackFlight, FollowsAnAircraftThatChangesAndSaysWhen) {
   Progress silent;
   FlightStudy study = flown();
   const TrackingAnalysis analysis = track_flight(study, silent);
-  EXPECT_EQ(analysis.flight.air_data(), "filter");
+  EXPECT_EQ(analysis.flight.air_data(), AirDataSource::kFilter);
   // Within four standard errors, and these are small.
   for (const auto& [name, truth] : {std::pair{"Cm_alpha", -0.35}, {"Cm_de", 1.0}, {"CL_alpha", 3.607}}) {
     const double sigma = analysis.flight.tracker().estimate().find(name)->sigma;
@@ -94,7 +94,7 @@ TEST(TrackFlight, ALogThatGrowsGivesWhatTheWholeLogGives) {
   (void)live.advance(study.mapped, study, true, silent);
   EXPECT_EQ(live.tracker().rows(), whole.flight.tracker().rows());
   for (const char* name : {"Cm_alpha", "Cm_q", "Cm_de", "CL_alpha"}) {
-    // Not to the last digit: W is averaged over what had been read, and the state estimate starts anew in each window.
+    // Not to the last digit: W is averaged over what had been read, and the state estimate starts again in each window.
     const double sigma = whole.flight.tracker().estimate().find(name)->sigma;
     EXPECT_NEAR(value_of(live, name), value_of(whole.flight, name), sigma) << name;
   }

@@ -48,7 +48,7 @@ class Table : public ProgramTest, public testing::WithParamInterface<Cell> {
 TEST_P(Table, CommandWorksOrSaysForWhichDomainsItIs) {
   const auto [command, domain, refusal] = GetParam();
   std::string arguments = std::string(command) + " " + study(domain) + out();
-  if (std::string(command) == "validate") arguments += " --estimate " + estimate(domain);
+  if (std::string(command) == "validate") arguments += " --estimate-file " + estimate(domain);
   const Outcome outcome = run(arguments);
   if (refusal != nullptr) {
     EXPECT_EQ(outcome.exit_code, 2) << outcome.text;

@@ -21,7 +21,7 @@ class Export : public ProgramTest {
     const nlohmann::json estimate = {
         {"subject", "x"},           {"method", "OLS"}, {"parameters", parameters},
         {"covariance", covariance}, {"verdict", ""},   {"warnings", nlohmann::json::array()}};
-    return "export " + file("s.toml", "[subject]\nbuiltin = \"aerosonde\"\n") + " --format json --estimate " +
+    return "export " + file("s.toml", "[subject]\nbuiltin = \"aerosonde\"\n") + " --format json --estimate-file " +
            file("e.json", estimate.dump()) + out();
   }
 };
@@ -42,6 +42,14 @@ TEST_F(Export, RefusesANegativeErrorBar) {
   nlohmann::json wrong = parameter("CL_alpha", 4.5);
   wrong["sigma"] = -1;
   expect_refusal(with(nlohmann::json::array({wrong})), "e.json: parameter 'CL_alpha': sigma is -1; must be >= 0");
+}
+
+TEST_F(Export, TakesTheOldNameOfItsOptionWithANote) {
+  std::string arguments = with(nlohmann::json::array({parameter("CL_alpha", 4.5)}));
+  arguments.replace(arguments.find("--estimate-file "), std::string("--estimate-file ").size(), "--estimate=");
+  const Outcome exported = run(arguments);
+  EXPECT_EQ(exported.exit_code, 0);
+  EXPECT_EQ(exported.text, "note: --estimate is now called --estimate-file\n");
 }
 
 TEST_F(Export, MakesUnknownWhatWasNotIdentified) {

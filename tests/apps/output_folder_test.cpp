@@ -31,7 +31,7 @@ TEST_F(OutputFolder, IsCheckedBeforeAnyComputation) {
            "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\n"
            "manoeuvre = \"step steer\"\namplitude = \"2 deg\"\nduration = 3000\n[scale]\nlength_ratio = 0.2\n");
   const std::string arm = file("arm.toml", "[subject]\nmodel = \"arm\"\n[motion]\nduration = 500\n");
-  const std::string estimate = " --estimate missing.json";
+  const std::string estimate = " --estimate-file missing.json";
   file("out", "a file stands in the way");
   for (const std::string& arguments :
        {"simulate " + flight, "reconstruct " + flight, "identify " + flight, "validate " + flight + estimate,
@@ -40,7 +40,7 @@ TEST_F(OutputFolder, IsCheckedBeforeAnyComputation) {
         "identify " + examples + "calibration/study.toml", std::string("reproduce vehicle"),
         std::string("inspect arm --pose \"elbow_flexion=90 deg\""), std::string("init muscle")}) {
     const auto begun = std::chrono::steady_clock::now();
-    expect_refusal(arguments + out(), "out: cannot be made a folder");
+    expect_refusal(arguments + out(), "out: is a file, expected a folder");
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << arguments;
   }
   EXPECT_EQ(read_file(folder_ / "out"), "a file stands in the way");
@@ -78,6 +78,7 @@ TEST_F(OutputFolder, KeepsTheEarlierResultsWhenAllCannotBeWritten) {
 
 TEST_F(OutputFolder, IsListedInTheRunRecord) {
   ASSERT_EQ(run("export " + subject() + " --format csv" + out()).exit_code, 0);
+  EXPECT_EQ(record()["command"], "export");
   EXPECT_EQ(record()["files"], nlohmann::json({"model.csv", "run.json"}));
   EXPECT_THAT(results(), ElementsAre("model.csv", "run.json"));
 }
@@ -120,9 +121,9 @@ TEST_F(OutputFolder, RemovesNothingThatIsNotAFileOfItsOwn) {
     EXPECT_TRUE(fs::exists(in_out("jsbsim.xml"))) << run_json;
   };
   exported(
-      "{\"program\": \"veridyn\", \"verb\": \"export\", \"files\": [\"../elsewhere.txt\", \"sub/kept.txt\", "
+      "{\"program\": \"veridyn\", \"command\": \"export\", \"files\": [\"../elsewhere.txt\", \"sub/kept.txt\", "
       "\"sub\", \"study.toml\", \"\", \".\", \"..\", 7]}");
-  exported("{\"program\": \"another\", \"verb\": \"export\", \"files\": [\"jsbsim.xml\"]}");
+  exported("{\"program\": \"another\", \"command\": \"export\", \"files\": [\"jsbsim.xml\"]}");
   exported("not JSON");
   exported("[]");
 }

@@ -29,23 +29,24 @@ class Program : public ProgramTest {
       "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 45\nduration = 40\nsurfaces = [\"aileron\", \"rudder\"]\n";
 };
 
-TEST_F(Program, ShowsItsVerbsAndNoOthers) {
+TEST_F(Program, ShowsItsCommandsAndNoOthers) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* verb :
+  for (const char* command :
        {"demo", "init", "inspect", "simulate", "reconstruct", "identify", "validate", "export", "track", "reproduce"})
-    EXPECT_THAT(help.text, HasSubstr(verb));
-  for (const char* verb : {"sensitivity", "cue", "rig", "serve"}) EXPECT_THAT(help.text, testing::Not(HasSubstr(verb)));
+    EXPECT_THAT(help.text, HasSubstr(command));
+  for (const char* command : {"sensitivity", "cue", "rig", "serve"})
+    EXPECT_THAT(help.text, testing::Not(HasSubstr(command)));
 }
 
-TEST_F(Program, HelpsEveryVerbWithAnExample) {
-  for (const char* verb : {"demo", "inspect", "simulate", "reconstruct", "identify", "validate", "export", "track",
-                           "reproduce aircraft", "init aircraft", "init muscle"}) {
-    const Outcome help = run(std::string(verb) + " --help");
-    EXPECT_EQ(help.exit_code, 0) << verb;
-    EXPECT_THAT(help.text, HasSubstr("Example:\n  veridyn ")) << verb;
+TEST_F(Program, HelpsEveryCommandWithAnExample) {
+  for (const char* command : {"demo", "inspect", "simulate", "reconstruct", "identify", "validate", "export", "track",
+                              "reproduce aircraft", "init aircraft", "init muscle"}) {
+    const Outcome help = run(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_THAT(help.text, HasSubstr("Example:\n  veridyn ")) << command;
     for (const char* option : {"--out", "--set", "--seed", "--threads", "--quiet", "--json"})
-      EXPECT_THAT(help.text, HasSubstr(option)) << verb;
+      EXPECT_THAT(help.text, HasSubstr(option)) << command;
   }
 }
 
@@ -67,7 +68,7 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   }
   const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
-  const estimation::EstimatedParameter* Cm_alpha = estimate.find("Cm_alpha");
+  const estimation::Parameter* Cm_alpha = estimate.find("Cm_alpha");
   ASSERT_NE(Cm_alpha, nullptr);
   EXPECT_EQ(Cm_alpha->status, estimation::ParameterStatus::kIdentified);
   // The truth of the built-in subject; five standard deviations.
@@ -76,7 +77,7 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
 
   // The same estimate on a flight with another seed.
   const Outcome validated =
-      run("validate " + study + " --seed 9 --estimate " + (folder_ / "out" / "estimate.json").string() +
+      run("validate " + study + " --seed 9 --estimate-file " + (folder_ / "out" / "estimate.json").string() +
           " --json --quiet --out " + (folder_ / "other").string());
   EXPECT_EQ(validated.exit_code, 0) << validated.text;
   EXPECT_THAT(validated.text, HasSubstr("\"Cm\": {\n      \"verdict\": \"identified\""));

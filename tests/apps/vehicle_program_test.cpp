@@ -119,7 +119,7 @@ TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
   ASSERT_EQ(run("identify " + study("identify_sweep") + out()).exit_code, 0);
   const std::string estimate = file("estimate.json", read_file(in_out("estimate.json")));
   const Outcome validated =
-      run("validate " + study("identify_sweep") + " --seed 99 --json --estimate " + estimate + out());
+      run("validate " + study("identify_sweep") + " --seed 99 --json --estimate-file " + estimate + out());
   ASSERT_EQ(validated.exit_code, 0) << validated.text;
   EXPECT_EQ(nlohmann::json::parse(validated.text)["verdict"], "identified");
 }

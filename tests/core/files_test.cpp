@@ -40,6 +40,7 @@ TEST_F(Files, LeaveNothingBesideTheFile) {
 
 TEST_F(Files, RefuseMissingFilesAndDirectories) {
   EXPECT_EQ(why([&] { static_cast<void>(read_file("missing.bin")); }), "missing.bin: no such file");
+  EXPECT_EQ(why([&] { static_cast<void>(read_file("")); }), "file: its name is empty");
   EXPECT_EQ(why([&] { static_cast<void>(read_file(folder_)); }),
             folder_.string() + ": is a directory, expected a file");
 }
@@ -48,7 +49,8 @@ TEST_F(Files, RefuseAFolderThatIsNotThereOrAFile) {
   EXPECT_THAT(why([&] { write_file(folder_ / "no" / "x", "1"); }),
               testing::HasSubstr("cannot be written: No such file"));
   write_file(folder_ / "x", "old");
-  EXPECT_THAT(why([&] { make_folder(folder_ / "x"); }), testing::HasSubstr("cannot be made a folder"));
+  EXPECT_THAT(why([&] { make_folder(folder_ / "x"); }), testing::HasSubstr("x: is a file, expected a folder"));
+  EXPECT_THAT(why([&] { make_folder(folder_ / "x" / "y"); }), testing::HasSubstr("y: cannot be made: Not a directory"));
   fs::create_directory(folder_ / "d");
   EXPECT_THAT(why([&] { write_file(folder_ / "d", "1"); }), testing::HasSubstr("cannot be written"));
   EXPECT_EQ(read_file(folder_ / "x"), "old");

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
-
 namespace veridyn {
 namespace {
 
@@ -18,19 +16,17 @@ TEST(Progress, NeverStopsTheWorkByItself) {
   Progress nobody;
   EXPECT_TRUE(nobody.update(0.5));
   EXPECT_FALSE(nobody.interrupted());
+  EXPECT_EQ(nobody.threads(), 0);
 }
 
-// In a process of its own: the flag stays set once a signal came.
-TEST(TerminalProgressDeathTest, StopsTheWorkAfterASignal) {
-  EXPECT_EXIT(
-      {
-        TerminalProgress progress(true);
-        TerminalProgress::watch_signals();
-        if (!progress.update(0.1)) std::exit(1);
-        std::raise(SIGINT);
-        std::exit(progress.update(0.2) || !progress.interrupted() ? 2 : 0);
-      },
-      testing::ExitedWithCode(0), "");
+TEST(TerminalProgress, StopsTheWorkWhenItsInterruptionIsRequested) {
+  Interruption interruption;
+  TerminalProgress progress(true, 3, interruption);
+  EXPECT_EQ(progress.threads(), 3);
+  EXPECT_TRUE(progress.update(0.1));
+  interruption.request();
+  EXPECT_FALSE(progress.update(0.2));
+  EXPECT_TRUE(progress.interrupted());
 }
 
 }  // namespace

@@ -52,6 +52,39 @@ TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
   EXPECT_EQ(why([&] { misspelt.root().finish(); }), "study.toml:3: subject.spann: unknown key (did you mean 'span'?)");
 }
 
+TEST(Study, RefusesATableThatWasNotOpened) {
+  const Study unread = study("[data]\nfil = \"log.bin\"\n[[change]]\ntime = 3\n");
+  EXPECT_TRUE(unread.root().has("data"));
+  EXPECT_TRUE(unread.root().has("change"));
+  EXPECT_EQ(why([&] { unread.root().finish(); }), "study.toml:3: change: is a table that nothing reads here");
+  for (const StudyTable& change : unread.root().tables("change")) static_cast<void>(change.number("time", "s"));
+  EXPECT_EQ(why([&] { unread.root().finish(); }), "study.toml:1: data: is a table that nothing reads here");
+  static_cast<void>(unread.root().table("data").text_or("file", ""));
+  EXPECT_EQ(why([&] { unread.root().finish(); }), "study.toml:2: data.fil: unknown key (did you mean 'file'?)");
+}
+
+TEST(Study, TakesAnEmptyTableAndOneThatIsAccepted) {
+  const Study empty = study("[data]\n[drive]\nstep = 1\nspeed = 3\n");
+  EXPECT_TRUE(empty.root().has("data"));
+  EXPECT_TRUE(empty.root().table("drive").has("step"));  // what was begun need not be finished
+  empty.root().accept("drive");
+  EXPECT_NO_THROW(empty.root().finish());
+}
+
+TEST(Study, TakesTheOldNameOfAKeyWithANote) {
+  const Study old = study("[track]\nestimate = \"e.json\"\n");
+  const StudyTable track = old.root().table("track");
+  for (int reading = 0; reading < 2; ++reading)
+    EXPECT_EQ(track.text(track.renamed("estimate_file", "estimate")), "e.json");
+  EXPECT_NO_THROW(old.root().finish());
+  EXPECT_THAT(old.notes(), ElementsAre("study.toml:2: track.estimate: this key is now called 'estimate_file'"));
+
+  const Study both = study("[track]\nestimate = \"e.json\"\nestimate_file = \"f.json\"\n");
+  EXPECT_EQ(both.root().table("track").text(both.root().table("track").renamed("estimate_file", "estimate")), "f.json");
+  EXPECT_EQ(why([&] { both.root().finish(); }), "study.toml:2: track.estimate: unknown key (known: estimate_file)");
+  EXPECT_THAT(both.notes(), testing::IsEmpty());
+}
+
 TEST(Study, AcceptsKeysReadThroughAnyOpeningOfATable) {
   const Study twice = study("[subject]\nmass = 2\nspan = 3\n");
   static_cast<void>(twice.root().table("subject").number("mass", "kg"));
@@ -76,6 +109,10 @@ TEST(Study, OverridesKeysFromTheCommandLine) {
   EXPECT_EQ(changed.root().table("data").text("file"), "log.bin");
   EXPECT_THAT(changed.root().table("new").table("table").numbers("key", "1"), ElementsAre(1.0, 2.0));
   EXPECT_EQ(why([] { static_cast<void>(study("", {"rate"})); }), "--set rate: expected key=value");
+  for (const char* key : {"a.", ".", "a..b", ".a"}) {
+    EXPECT_EQ(why([&] { static_cast<void>(study("", {std::string(key) + "=1"})); }),
+              std::string("--set ") + key + "=1: '" + key + "' is not a key, such as data.from");
+  }
   EXPECT_EQ(why([] { static_cast<void>(study("a = 1", {"a.b=1"})); }), "--set a.b=1: 'a' is not a table");
 }
 

@@ -64,7 +64,7 @@ TEST(GridSignals, HoleOfASecondIsAHoleAndASlowSensorIsInterpolated) {
   EXPECT_EQ(on_grid(gap, grid)[2], 0.0);
   const Channel slow = channel({0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 2.0, 3.0});
   EXPECT_NEAR(on_grid(slow, grid)[5], 0.5, 1e-12);
-  // By the sensor's own rate 0.4 s are a hole in 0.01 s, half a second is the shortest otherwise.
+  // By the sensor's rate 0.4 s are a hole in 0.01 s, half a second is the shortest otherwise.
   const Channel fast = channel({0.0, 0.01, 0.02, 0.03, 0.43, 0.44}, {0, 0, 0, 0, 0, 0});
   const numerics::UniformGrid fine{0.0, 0.01, 45};
   EXPECT_EQ(on_grid(fast, fine)[20], 0.0);

@@ -5,6 +5,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/folders.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -100,6 +101,32 @@ TEST_F(StudyData, ReadsTheDriveLogsOfOthers) {
   const Recording points =
       read("file = '" + (logs / "cpm_lab/calibration_points.csv").string() + "'\ntime = { rate = 1 }\n");
   EXPECT_EQ(points.at("image_x").size(), 1716U);
+}
+
+TEST_F(StudyData, HasItsKeysCheckedWithoutAFile) {
+  const std::vector<StandardChannel> standard{{"yaw_rate", "rad/s"}, {"steer", "rad"}};
+  const auto check = [&](const std::string& data) {
+    return why([&] {
+      const Study study = Study::parse("[data]\n" + data, "study.toml", folder);
+      check_study_data(study.root().table("data"), standard);
+      study.root().finish();
+    });
+  };
+  EXPECT_EQ(check("files = ['IMU.csv', 'GPS.csv']\nfrom = '1 s'\nto = 9\ncolumns = ['t', 'yaw_rate']\n"
+                  "[data.time]\nunit = 'ms'\nGPS = { column = 'T', unit = 'ms' }\n"
+                  "[data.map]\nsteer = 'none'\nyaw_rate = { channel = 'r', zero = 1, scale = 2, unit = 'deg/s', "
+                  "delay = '5 ms' }\n"),
+            "nothing was refused");
+  EXPECT_EQ(check("[data.map]\nsteer = { switch = 'mode', cases = { 1 = 'a', 2 = 'b' } }\n"
+                  "yaw_rate = { channels = ['a', 'b'], weights = [1, 2] }\n"),
+            "nothing was refused");
+  EXPECT_THAT(check("fil = 'x.csv'\n"), HasSubstr("study.toml:2: data.fil: unknown key (did you mean 'file'?)"));
+  EXPECT_THAT(check("frm = 3\n"), HasSubstr("data.frm: unknown key (did you mean 'from'?)"));
+  EXPECT_THAT(check("time = { colum = 'T' }\n"), HasSubstr("data.time.colum: unknown key (did you mean 'column'?)"));
+  EXPECT_THAT(check("file = 'GPS.csv'\n[data.time]\nGPS = { uni = 'ms' }\n"), HasSubstr("data.time.GPS.uni: unknown"));
+  EXPECT_THAT(check("[data.map]\nyaw_rat = 'r'\n"), HasSubstr("is not a standard channel (did you mean 'yaw_rate'?)"));
+  EXPECT_THAT(check("[data.map]\nsteer = { chanel = 'x' }\n"), HasSubstr("(did you mean 'channel'?)"));
+  EXPECT_THAT(check("from = 'noon'\n"), HasSubstr("is not a number with a unit"));
 }
 
 }  // namespace

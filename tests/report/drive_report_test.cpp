@@ -23,11 +23,5 @@ TEST(ResponseSpeed, IsMissingWhereNothingMoved) {
   EXPECT_FALSE(response_speed(std::vector<double>{}).has_value());
 }
 
-TEST(DriveReportContext, KnowsTheTruthByName) {
-  const DriveReportContext context{.program = "test", .truth = {{"C_f", 6e4}}};
-  EXPECT_EQ(context.true_value("C_f"), 6e4);
-  EXPECT_TRUE(std::isnan(context.true_value("C_r")));
-}
-
 }  // namespace
 }  // namespace veridyn::report

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "veridyn/vehicle/model/four_wheel_model.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
 
 namespace veridyn::vehicle::testing {
 
@@ -13,6 +12,12 @@ template <typename Scalar>
 LinearCar<Scalar> linear_car(const VehicleParameters<Scalar>& p, const FourWheelOptions& options = {}) {
   const LinearTyre<Scalar> front{.stiffness = p.C_f, .mu = p.mu}, rear{.stiffness = p.C_r, .mu = p.mu};
   return {p, {front, front, rear, rear}, options};
+}
+
+[[nodiscard]] inline FourWheelOptions with_longitudinal(const LongitudinalParameters& longitudinal) {
+  FourWheelOptions options;
+  options.longitudinal = longitudinal;
+  return options;
 }
 
 /// The reference car on springs and tyres as stiff as those of a car on the road.

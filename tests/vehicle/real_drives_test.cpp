@@ -34,7 +34,7 @@ TEST(RealDrives, AMinuteOfFreewayDoesNotGiveTheStiffnesses) {
   const Study study = Study::load(study_file("comma2k19.toml"));
   VehicleStudy drive = read_study(study, silent);
   const VehicleAnalysis analysis = identify(drive, silent);
-  EXPECT_NE(analysis.identification.verdict, VehicleVerdict::kIdentified) << analysis.identification.reason;
+  EXPECT_NE(analysis.identification.verdict, estimation::GroupVerdict::kIdentified) << analysis.identification.reason;
   for (const char* name : {"C_f", "C_r", "I_z"}) {
     const auto* p = analysis.estimate.find(name);
     ASSERT_NE(p, nullptr);

@@ -54,7 +54,7 @@ class WanderingSteer {
   std::vector<double> frequency_, phase_;
 };
 
-/// Drives a bicycle, which may change with time, by RK4 at 1 ms: independent of the library's own simulation.
+/// Drives a bicycle, which may change with time, by RK4 at 1 ms: independent of the library's simulation.
 template <typename Model>
 VehicleTrajectory drive_bicycle(const std::function<Model(double)>& model_at, double duration,
                                 const std::function<double(double)>& steer,

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/vehicle/scale_study.hpp"
-#include "veridyn/vehicle/vehicle_reproduction.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -31,13 +29,13 @@ mu = 0.9
 
 SimulationStudy read(const std::string& more, const std::string& subject = kCar) {
   const Study study = Study::parse(subject + more, "study.toml");
-  SimulationStudy out = read_simulation_study(study.root());
+  SimulationStudy out = read_simulation_study(study.root(), Progress());
   study.root().finish();
   return out;
 }
 
 SimulationRun drive(const std::string& more, const std::string& subject = kCar) {
-  SimulationStudy study = read(more, subject);
+  const SimulationStudy study = read(more, subject);
   Progress silent;
   return run_simulation_study(study, silent);
 }
@@ -108,42 +106,6 @@ TEST(SimulationStudy, WrittenVehicleReadsBackToTheSameNumbers) {
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i)
     EXPECT_EQ(field_of(one.vehicle.parameters, i), field_of(two.vehicle.parameters, i)) << kVehicleFields[i].name;
   EXPECT_EQ(two.vehicle.tyre_text, "fiala");
-}
-
-// A given model that is the exact twin has no mismatch and the same motion under the similar gravity.
-TEST(ScaleStudy, AnExactTwinIsFoundExact) {
-  const Study study = Study::parse(
-      "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmanoeuvre = \"step steer\"\nduration = 4\n"
-      "[scale]\nlength_ratio = 0.2\nmass = 8.8\nspeed = 4\n",
-      "study.toml");
-  ScaleStudy scale = read_scale_study(study.root());
-  Progress silent;
-  const ScaleAnalysis analysis = run_scale_study(scale, silent);
-  EXPECT_TRUE(analysis.twin_report.similar_without_gravity());
-  EXPECT_FALSE(analysis.twin_report.similar());
-  ASSERT_EQ(analysis.runs.size(), 2u);
-  for (const MotionDifference& d : analysis.runs[0].differences)
-    EXPECT_LT(d.largest, 1e-9 * (1.0 + d.range)) << d.quantity;
-  // Under the same gravity the body leans otherwise.
-  double roll = 0.0;
-  for (const MotionDifference& d : analysis.runs[1].differences)
-    if (d.quantity == "roll") roll = d.largest / d.range;
-  EXPECT_GT(roll, 0.05);
-}
-
-TEST(VehicleReproduction, ANumberThatIsNotMetFailsItsCheck) {
-  const std::string text =
-      "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"linear bicycle\"\n"
-      "[scale]\nlength_ratio = 0.2\nmass = 8.8\nspeed = 4\n[[published]]\nquantity = \"yaw_rate\"\ntime = 10\n";
-  Progress silent;
-  const auto passed = [&](const std::string& value) {
-    const Study study = Study::parse(text + "value = \"" + value + "\"\n", "row.toml");
-    return reproduce_vehicle(study.root(), silent).passed();
-  };
-  EXPECT_TRUE(passed("34.9515 deg/s"));
-  EXPECT_TRUE(passed("35.0 deg/s"));
-  EXPECT_FALSE(passed("34.9516 deg/s"));
-  EXPECT_THROW(static_cast<void>(passed("35 m/s")), InputError);
 }
 
 }  // namespace

@@ -22,17 +22,17 @@ TEST(VehicleStudy, IdentifiesARecordingThatItIsGiven) {
   EXPECT_EQ(read.identify.mass_sigma, 15.0);
   EXPECT_EQ(read.vehicle.I_z, 1500.0 * 1.2 * 1.5);
   VehicleAnalysis analysis = identify(read, silent);
-  const estimation::EstimatedParameter* C_f = analysis.estimate.find("C_f");
+  const estimation::Parameter* C_f = analysis.estimate.find("C_f");
   ASSERT_NE(C_f, nullptr);
   EXPECT_LE(C_f->low95, 55000.0);
   EXPECT_GE(C_f->high95, 55000.0);
   EXPECT_GT(analysis.estimate.validation.at("yaw_rate").r2, 0.99);
-  // On another drive, which it has not seen.
+  // On another drive: held-out data.
   VehicleStudy other =
       read_study(study, record_drive(lively_drive(family_car(), 9), reference_drive_sensors(), 9), silent);
-  const VehicleAnalysis seen = validate(other, analysis.estimate, silent);
-  EXPECT_EQ(seen.identification.verdict, VehicleVerdict::kIdentified) << seen.identification.reason;
-  EXPECT_GT(seen.estimate.validation.at("yaw_rate").r2, 0.99);
+  const VehicleAnalysis validated = validate(other, analysis.estimate, silent);
+  EXPECT_EQ(validated.identification.verdict, estimation::GroupVerdict::kIdentified) << validated.identification.reason;
+  EXPECT_GT(validated.estimate.validation.at("yaw_rate").r2, 0.99);
 }
 
 }  // namespace

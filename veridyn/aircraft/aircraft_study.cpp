@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
@@ -68,27 +69,28 @@ void check_flight(const FlightStudy& study) {
   }
 }
 
-void align_and_reconstruct(FlightStudy& study, FlightAnalysis& analysis, Progress& progress) {
+/// Delays and motion through the air.
+FlightAnalysis reconstruct_with(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
-  analysis.delays = align_delays(study.mapped, study.delays, progress);
+  AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
+  FlightAnalysis analysis;
+  analysis.aligned = std::move(aligned.mapped);
+  analysis.delays = std::move(aligned.delays);
   analysis.interrupted = progress.interrupted();
-  if (analysis.interrupted) return;
+  if (analysis.interrupted) return analysis;
+  const Recording& recording = analysis.aligned.recording;
   const Subject& model = study.filter_subject ? *study.filter_subject : study.subject;
-  analysis.reconstruction = reconstruct(study.mapped.recording, study.reconstruct, progress, &model);
-  if (study.truth && study.reconstruct.compare && study.reconstruct.filter != FilterKind::kModelFree) {
+  analysis.reconstruction = reconstruct(recording, options, progress, &model);
+  if (study.truth && options.compare && options.filter != FilterKind::kModelFree) {
     progress.stage("comparing the filters with the truth");
-    analysis.reconstruction.comparison =
-        compare_filters(study.mapped.recording, *study.truth, study.reconstruct, model, progress);
+    analysis.reconstruction.comparison = compare_filters(recording, *study.truth, options, model, progress);
   }
   analysis.interrupted = analysis.reconstruction.interrupted;
+  return analysis;
 }
 
-void find_flight(FlightStudy& study, FlightAnalysis& analysis) {
-  const bool data_sheet = study.reconstruct.sensors == "reference";
-  analysis.signals = prepare_signals(study.mapped, analysis.reconstruction.smoothed, study.subject, study.signals,
-                                     data_sheet ? &analysis.reconstruction.sigma : nullptr);
-  const FlightSignals& s = analysis.signals;
+Segments excited_segments(const FlightSignals& s, const SegmentOptions& options) {
   SegmentSignals signals;
   signals.begin = s.grid.begin;
   signals.step = s.grid.step;
@@ -99,10 +101,24 @@ void find_flight(FlightStudy& study, FlightAnalysis& analysis) {
   signals.elevator = s[FlightSignal::kElevator].value;
   signals.aileron = s[FlightSignal::kAileron].value;
   signals.rudder = s[FlightSignal::kRudder].value;
-  analysis.segments = find_segments(signals, study.segments);
+  return find_segments(signals, options);
 }
 
-std::vector<std::string> names_with(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
+/// What identification and validation share: from recording to signals and segments.
+FlightAnalysis analyse_motion(const FlightStudy& study, Progress& progress) {
+  ReconstructOptions options = study.reconstruct;
+  // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
+  options.keep_filter = study.truth.has_value();
+  FlightAnalysis analysis = reconstruct_with(study, options, progress);
+  if (analysis.interrupted) return analysis;
+  const bool data_sheet = options.sensors == NoiseSource::kReference;
+  analysis.signals = prepare_signals(analysis.aligned, analysis.reconstruction.smoothed, study.subject, study.signals,
+                                     data_sheet ? &analysis.reconstruction.sigma : nullptr);
+  analysis.segments = excited_segments(analysis.signals, study.segments);
+  return analysis;
+}
+
+std::vector<std::string> names_with(std::span<const CoefficientResult> results, estimation::GroupVerdict verdict) {
   std::vector<std::string> names;
   for (const CoefficientResult& result : results) {
     if (result.verdict == verdict) names.push_back(result.name);
@@ -110,56 +126,55 @@ std::vector<std::string> names_with(std::span<const CoefficientResult> results, 
   return names;
 }
 
-void summarise(const FlightStudy& study, FlightAnalysis& analysis) {
-  estimation::Estimate& estimate = analysis.estimate;
-  estimate = make_estimate(study.subject, analysis.coefficients);
-  for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
+/// One clause for each verdict: "identified: CL, Cm; rejected: CD".
+std::string verdict_text(std::span<const CoefficientResult> results) {
   std::vector<std::string> parts;
-  for (const CoefficientVerdict verdict : {CoefficientVerdict::kIdentified, CoefficientVerdict::kRejected,
-                                           CoefficientVerdict::kNotExcited, CoefficientVerdict::kSkipped}) {
-    const std::vector<std::string> names = names_with(analysis.coefficients, verdict);
+  for (const estimation::GroupVerdict verdict :
+       {estimation::GroupVerdict::kIdentified, estimation::GroupVerdict::kRejected,
+        estimation::GroupVerdict::kNotExcited, estimation::GroupVerdict::kSkipped}) {
+    const std::vector<std::string> names = names_with(results, verdict);
     if (!names.empty()) parts.push_back(fmt::format("{}: {}", to_string(verdict), fmt::join(names, ", ")));
   }
-  estimate.verdict = fmt::format("{}", fmt::join(parts, "; "));
-  for (const PredictedQuantity& q : analysis.validation.quantities) {
-    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::vector<std::string> warnings_of(const FlightStudy& study, const FlightAnalysis& analysis) {
+  std::vector<std::string> warnings;
+  for (const auto* texts : {&study.subject.warnings, &study.mapped.recording.warnings, &study.mapped.notes,
+                            &analysis.reconstruction.warnings, &analysis.signals.notes}) {
+    warnings.insert(warnings.end(), texts->begin(), texts->end());
   }
-  const auto warn = [&](const std::vector<std::string>& texts) {
-    estimate.warnings.insert(estimate.warnings.end(), texts.begin(), texts.end());
-  };
-  warn(study.subject.warnings);
-  warn(study.mapped.recording.warnings);
-  warn(study.mapped.notes);
-  warn(analysis.reconstruction.warnings);
-  warn(analysis.signals.notes);
   if (!study.subject.inertia) {
-    estimate.warnings.emplace_back(
+    warnings.emplace_back(
         "without subject.inertia the moments are identified per unit inertia (Cl/Jx, Cm/Jy, Cn/Jz), with the inertial "
         "coupling of a flat body (Jz = Jx + Jy, Jx = Jy, Jxz = 0) and the moments of the thrust left in");
   }
   for (const CoefficientResult& result : analysis.coefficients) {
-    if (result.verdict != CoefficientVerdict::kIdentified) estimate.warnings.push_back(result.reason);
+    if (result.verdict != estimation::GroupVerdict::kIdentified) warnings.push_back(result.reason);
   }
+  return warnings;
 }
 
-/// The part that identification and validation share: from recording to signals and segments.
-FlightAnalysis analyse_motion(FlightStudy& study, Progress& progress) {
-  FlightAnalysis analysis;
-  // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
-  study.reconstruct.keep_filter = study.truth.has_value();
-  align_and_reconstruct(study, analysis, progress);
-  if (!analysis.interrupted) find_flight(study, analysis);
-  return analysis;
+/// What estimate.json will say of an analysis that is complete but for it.
+estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& analysis) {
+  estimation::Estimate estimate = make_estimate(study.subject, analysis.coefficients);
+  for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
+  estimate.verdict = verdict_text(analysis.coefficients);
+  for (const PredictedQuantity& q : analysis.validation.quantities) {
+    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+  }
+  estimate.warnings = warnings_of(study, analysis);
+  return estimate;
 }
 
-/// And the end that they share: the model of what may be used, flown over the spans, and the verdict.
-void judge(const FlightStudy& study, FlightAnalysis& analysis, std::span<const TimeSpan> longitudinal,
-           std::span<const TimeSpan> lateral, const Progress& progress) {
-  analysis.identified = identified_subject(study.subject, analysis.coefficients);
-  analysis.validation = validate_flight(analysis.signals, longitudinal, lateral, analysis.identified,
-                                        identified_coefficients(analysis.coefficients), study.validate);
-  summarise(study, analysis);
+/// The results in the terms that all domains share.
+FlightAnalysis with_results(FlightAnalysis analysis, const FlightStudy& study, const Progress& progress) {
+  analysis.estimate = summarise(study, analysis);
+  analysis.groups = parameter_groups(analysis.coefficients, analysis.others);
+  analysis.predictions = predictions(analysis.validation.quantities, analysis.coefficients);
+  if (study.true_subject) analysis.truth = true_values(*study.true_subject, study.subject, analysis.coefficients);
   analysis.interrupted = progress.interrupted();
+  return analysis;
 }
 
 }  // namespace
@@ -219,38 +234,44 @@ FlightStudy read_study(const Study& study, Progress& progress) {
   return result;
 }
 
-FlightAnalysis reconstruct(FlightStudy& study, Progress& progress) {
-  FlightAnalysis analysis;
-  align_and_reconstruct(study, analysis, progress);
-  return analysis;
+FlightAnalysis reconstruct(const FlightStudy& study, Progress& progress) {
+  return reconstruct_with(study, study.reconstruct, progress);
 }
 
-FlightAnalysis identify(FlightStudy& study, Progress& progress) {
+FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
-  analysis.coefficients =
-      identify_coefficients(analysis.signals, analysis.segments, study.subject, study.identify, progress);
-  analysis.others = estimate_otherwise(analysis.signals, analysis.segments, study.subject, analysis.coefficients,
-                                       study.identify, progress);
+  const FlightSignals& signals = analysis.signals;
+  const Segments& segments = analysis.segments;
+  analysis.coefficients = identify_coefficients(signals, segments, study.subject, study.identify, progress);
+  analysis.others =
+      compare_other_estimators(signals, segments, study.subject, analysis.coefficients, study.identify, progress);
   progress.stage("uncertainty of the measured coefficients");
   if (study.uncertainty.enabled) {
-    analysis.uncertainty =
-        coefficient_uncertainty(coefficient_inputs(analysis.signals, analysis.segments, study.subject,
-                                                   study.uncertainty, study.mapped.calibration_sigma),
-                                study.subject, study.uncertainty, study.seed);
+    analysis.uncertainty = coefficient_uncertainty(
+        coefficient_inputs(signals, segments, study.subject, study.uncertainty, study.mapped.calibration_sigma),
+        study.subject, study.uncertainty, study.seed, progress.threads());
   }
   progress.stage("validating on the hold-out");
-  judge(study, analysis, analysis.segments.longitudinal.holdout, analysis.segments.lateral.holdout, progress);
-  return analysis;
+  analysis.identified = identified_subject(study.subject, analysis.coefficients);
+  analysis.validation =
+      validate_flight(signals, segments.longitudinal.holdout, segments.lateral.holdout, analysis.identified,
+                      identified_coefficients(analysis.coefficients), study.validate);
+  return with_results(std::move(analysis), study, progress);
 }
 
-FlightAnalysis validate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
-  analysis.coefficients =
-      evaluate_estimate(analysis.signals, analysis.segments, study.subject, study.identify, estimate);
+  const FlightSignals& signals = analysis.signals;
+  const Segments& segments = analysis.segments;
+  analysis.coefficients = evaluate_estimate(signals, segments, study.subject, study.identify, estimate);
   progress.stage("validating");
-  judge(study, analysis, analysis.segments.longitudinal.excited, analysis.segments.lateral.excited, progress);
+  analysis.identified = identified_subject(study.subject, analysis.coefficients);
+  analysis.validation =
+      validate_flight(signals, segments.longitudinal.excited, segments.lateral.excited, analysis.identified,
+                      identified_coefficients(analysis.coefficients), study.validate);
+  analysis = with_results(std::move(analysis), study, progress);
   // The parameters are those that were given; only the judgement is new.
   analysis.estimate.parameters = estimate.parameters;
   analysis.estimate.covariance = estimate.covariance;

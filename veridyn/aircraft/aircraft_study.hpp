@@ -17,14 +17,13 @@
 
 namespace veridyn::aircraft {
 
-/// A study of one flight, read and checked: who flew, what was recorded, what to do with it.
+/// A study of one flight, read and checked: the aircraft, the recording, what to do with it.
 ///
 ///     seed = 1
 ///     [subject]      see read_subject
 ///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: recording::read_study_data;
-///     `[data.map]` see map_channels. Without it the study must have a
-///     `[flight]`,
-///                    which is then simulated
+///                    `[data.map]`: see map_channels. Without it the study must have a `[flight]`, which is then
+///                    simulated
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions
 ///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
 ///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
@@ -54,31 +53,32 @@ struct FlightStudy {
 /// @throws InputError for anything that is wrong in either.
 [[nodiscard]] FlightStudy read_study(const Study& study, Progress& progress);
 
-/// Everything that became of a flight.
-struct FlightAnalysis {
+/// What the stages of the pipeline made of a flight, in their order.
+struct FlightAnalysis : estimation::Analysis {
+  MappedRecording aligned;  ///< the study's recording with the delays taken off
   std::vector<DelayReport> delays;
   Reconstruction reconstruction;
   FlightSignals signals;
   Segments segments;
   std::vector<CoefficientResult> coefficients;
-  OtherEstimators others;         ///< output error, frequency domain, bootstrap, where asked for
+  OtherEstimators others;         ///< output error, frequency domain, bootstrap, where the study has them
   UncertaintyReport uncertainty;  ///< of the measured coefficients
   Subject identified;             ///< the subject with the identified values
   Validation validation;
-  estimation::Estimate estimate;
-  bool interrupted = false;
 };
 
 /// Delays and state estimation only.
 /// @throws InputError when a channel that it needs is missing.
-[[nodiscard]] FlightAnalysis reconstruct(FlightStudy& study, Progress& progress);
+[[nodiscard]] FlightAnalysis reconstruct(const FlightStudy& study, Progress& progress);
 
-/// The whole way: delays, state estimation, segments, coefficients, validation on the hold-out, verdict.
-/// @throws InputError when a channel that it needs is missing, or the aircraft never flew.
-[[nodiscard]] FlightAnalysis identify(FlightStudy& study, Progress& progress);
+/// The full pipeline: delays, state estimation, segments, coefficients, validation on the hold-out, verdict.
+/// @throws InputError when a channel that it needs is missing, or the aircraft never flies.
+[[nodiscard]] FlightAnalysis identify(const FlightStudy& study, Progress& progress);
 
-/// An estimate against the flight of a study, none of which it has seen: coefficients and trajectory on every excited
-/// segment.
-[[nodiscard]] FlightAnalysis validate(FlightStudy& study, const estimation::Estimate& estimate, Progress& progress);
+/// An estimate validated on the flight of a study, which it was not identified from: coefficients and trajectory on
+/// every excited segment.
+/// @throws InputError as `identify`, and when the estimate has no parameter of the study's model.
+[[nodiscard]] FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate,
+                                      Progress& progress);
 
 }  // namespace veridyn::aircraft

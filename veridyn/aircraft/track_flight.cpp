@@ -37,8 +37,8 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
   require_channels(mapped, needed, "tracking");
   const TimeSpan span = mapped.recording.at("gyro_x").span();
   end_ = std::max(end_, span.end);
+  const bool by_sensors = study.track.air_data == AirDataSource::kSensors;
   air_data_ = study.track.air_data;
-  const bool by_sensors = air_data_ == "sensors";
   const double begin = std::isfinite(tracker_.last_time())
                            ? tracker_.last_time() - (by_sensors ? kWarmSensors_s : kWarmFilter_s)
                            : span.begin;
@@ -57,22 +57,20 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
     if (reconstruction.interrupted) return {};
     air = std::move(reconstruction.filtered);
   }
-  SignalOptions signal_options = study.signals;
-  std::vector<std::string> ignored;
-  const SensorSigma known = internal::load_streams(part.recording, study.reconstruct, ignored).sigma;
-  const FlightSignals signals = prepare_signals(part, air, study.subject, signal_options,
-                                                study.reconstruct.sensors == "reference" ? &known : nullptr);
+  const SensorSigma known = internal::load_streams(part.recording, study.reconstruct).sigma;
+  const FlightSignals signals = prepare_signals(
+      part, air, study.subject, study.signals, study.reconstruct.sensors == NoiseSource::kReference ? &known : nullptr);
   if (tracker_.rows() == 0) notes_ = signals.notes;
   const double margin = filter_margin(signals);
   return tracker_.feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);
 }
 
-TrackingAnalysis track_flight(FlightStudy& study, Progress& progress) {
+TrackingAnalysis track_flight(const FlightStudy& study, Progress& progress) {
   progress.stage("aligning sensor delays");
-  std::vector<DelayReport> delays = align_delays(study.mapped, study.delays, progress);
-  TrackingAnalysis analysis{std::move(delays), TrackedFlight(study), false};
+  const AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
+  TrackingAnalysis analysis{aligned.delays, TrackedFlight(study), false};
   progress.stage("tracking");
-  static_cast<void>(analysis.flight.advance(study.mapped, study, true, progress));
+  static_cast<void>(analysis.flight.advance(aligned.mapped, study, true, progress));
   analysis.interrupted = progress.interrupted();
   return analysis;
 }

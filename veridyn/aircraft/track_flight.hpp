@@ -9,7 +9,7 @@ namespace veridyn::aircraft {
 ///
 /// Both ways go through the same steps on the same instants, with nothing but the past and the half-width of the
 /// smoothing filters (0.3 s at 10 Hz): airspeed and flow angles by `TrackOptions::air_data`, flight signals as in batch
-/// identification, recursive regression. A recording that grows is read anew and its last seconds are processed, so a
+/// identification, recursive regression. A growing recording is read again and its last seconds are processed, so a
 /// truncated record at its end is met again, whole, at the next reading; a gap leaves a hole without rows.
 class TrackedFlight {
  public:
@@ -17,19 +17,19 @@ class TrackedFlight {
   /// @throws InputError for a file that cannot be read
   explicit TrackedFlight(const FlightStudy& study);
 
-  /// Takes what the recording holds beyond what was taken before. `finished`: nothing will follow, so that the end is
+  /// Takes what the recording has beyond what was taken before. `finished`: nothing will follow, so that the end is
   /// taken too. @return the changes found. @throws InputError when channels are missing
   std::vector<FlightChange> advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
                                     Progress& progress);
 
   [[nodiscard]] const FlightTracker& tracker() const { return tracker_; }
-  [[nodiscard]] const std::string& air_data() const { return air_data_; }  ///< "sensors" or "filter"
+  [[nodiscard]] AirDataSource air_data() const { return air_data_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] double end_time() const { return end_; }  ///< last stamp seen [s]
 
  private:
   FlightTracker tracker_;
-  std::string air_data_;
+  AirDataSource air_data_ = AirDataSource::kFilter;
   std::vector<std::string> notes_;
   double end_ = 0.0;
 };
@@ -40,7 +40,8 @@ struct TrackingAnalysis {
   TrackedFlight flight;
   bool interrupted = false;
 };
-[[nodiscard]] TrackingAnalysis track_flight(FlightStudy& study, Progress& progress);
+/// @throws InputError when channels are missing.
+[[nodiscard]] TrackingAnalysis track_flight(const FlightStudy& study, Progress& progress);
 
 /// History of all coefficients as a recording: `CL_alpha`, `sigma_CL_alpha`, `lambda_CL`, `excited_CL`,
 /// `suspicion_CL`, ...

@@ -9,12 +9,14 @@
 #include <stdexcept>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn {
 
 namespace fs = std::filesystem;
 
 std::string read_file(const fs::path& path) {
+  if (path.empty()) throw InputError("file", "its name is empty");
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(path.string(), "no such file");
@@ -25,7 +27,7 @@ std::string read_file(const fs::path& path) {
   if (fs::is_regular_file(status)) {
     content.resize(fs::file_size(path));
     file.read(content.data(), static_cast<std::streamsize>(content.size()));
-    content.resize(static_cast<std::size_t>(file.gcount()));
+    content.resize(at(file.gcount()));
   } else {
     content.assign(std::istreambuf_iterator<char>(file), {});
   }
@@ -57,10 +59,10 @@ void write_file(const fs::path& path, std::string_view content, std::string_view
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error || !fs::is_directory(path)) {
-    throw InputError(path.string(),
-                     fmt::format("cannot be made a folder: {}", error ? error.message() : "it is a file"));
-  }
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return;
+  if (fs::exists(path, ignored)) throw InputError(path.string(), "is a file, expected a folder");
+  throw InputError(path.string(), fmt::format("cannot be made: {}", error.message()));
 }
 
 }  // namespace veridyn

@@ -4,30 +4,24 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
+#include <utility>
 
 namespace veridyn {
-namespace {
-
-// Set by the signal handler, the one thing that it may do. Process-wide because signals are.
-std::atomic<bool> stop_requested{false};
-
-extern "C" void request_stop(int signal) {
-  stop_requested = true;
-  std::signal(signal, SIG_DFL);
-}
-
-}  // namespace
 
 void Progress::stage(std::string_view) {}
 bool Progress::update(double) { return !interrupted(); }
 bool Progress::interrupted() const { return false; }
+int Progress::threads() const { return 0; }
 
-TerminalProgress::TerminalProgress(bool quiet)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), begun_(Clock::now()), shown_(begun_) {}
+TerminalProgress::TerminalProgress(bool quiet, int threads, Interruption interruption)
+    : quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      threads_(threads),
+      interruption_(std::move(interruption)),
+      begun_(Clock::now()),
+      shown_(begun_) {}
 
 TerminalProgress::~TerminalProgress() { end_line(); }
 
@@ -55,12 +49,9 @@ bool TerminalProgress::update(double fraction) {
   return !interrupted();
 }
 
-bool TerminalProgress::interrupted() const { return stop_requested; }
+bool TerminalProgress::interrupted() const { return interruption_.requested(); }
 
-void TerminalProgress::watch_signals() {
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-}
+int TerminalProgress::threads() const { return threads_; }
 
 void TerminalProgress::end_line() {
   if (drawn_) fmt::print(stderr, "\r\033[K");

@@ -5,12 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "veridyn/core/interruption.hpp"
+
 namespace veridyn {
 
-/// Where long work says how far it is and learns whether to go on.
+/// Where long work says how far it is, and learns whether to go on and on how many threads.
 ///
 /// Work is a sequence of named stages. Implementations are cheap to call (they rate-limit themselves). The base class
-/// shows nothing and never interrupts: pass it where nobody watches.
+/// shows nothing, never interrupts and allows all threads: pass it where nobody watches.
 class Progress {
  public:
   virtual ~Progress() = default;
@@ -21,13 +23,15 @@ class Progress {
   [[nodiscard]] virtual bool update(double fraction);
   /// Whether the work should stop.
   [[nodiscard]] virtual bool interrupted() const;
+  /// How many threads the work may use; 0: as many as the machine has. Results do not depend on it.
+  [[nodiscard]] virtual int threads() const;
 };
 
 /// Shows a bar with the remaining time on stderr when that is a terminal, one line a stage when it is not; nothing when
-/// quiet. Stops the work on SIGINT and SIGTERM once `watch_signals()` was called.
+/// quiet. Stops the work when `interruption` is requested.
 class TerminalProgress : public Progress {
  public:
-  explicit TerminalProgress(bool quiet);
+  explicit TerminalProgress(bool quiet, int threads = 0, Interruption interruption = {});
   ~TerminalProgress() override;
   TerminalProgress(const TerminalProgress&) = delete;
   TerminalProgress& operator=(const TerminalProgress&) = delete;
@@ -35,9 +39,7 @@ class TerminalProgress : public Progress {
   void stage(std::string_view name) override;
   [[nodiscard]] bool update(double fraction) override;
   [[nodiscard]] bool interrupted() const override;
-
-  /// From now on SIGINT and SIGTERM set the flag that `interrupted()` reads; a second one ends the program at once.
-  static void watch_signals();
+  [[nodiscard]] int threads() const override;
 
  private:
   void end_line();
@@ -45,6 +47,8 @@ class TerminalProgress : public Progress {
   using Clock = std::chrono::steady_clock;
   bool quiet_;
   bool terminal_;
+  int threads_;
+  Interruption interruption_;
   bool drawn_ = false;
   std::string stage_;
   Clock::time_point begun_;

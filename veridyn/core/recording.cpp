@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn {
@@ -15,7 +16,7 @@ double median_interval(std::span<const double> times) {
   if (times.size() < 2) return 0.0;
   std::vector<double> intervals(times.size() - 1);
   for (std::size_t i = 0; i + 1 < times.size(); ++i) intervals[i] = times[i + 1] - times[i];
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  const auto middle = intervals.begin() + signed_index(intervals.size() / 2);
   std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
 }

@@ -10,7 +10,7 @@ enum class SimulationEnd {
   kDiverged,    ///< the state became NaN or infinite, or left every sensible range: the step is too long for this model
   kStepSize,    ///< no step is small enough: a limit of the model
   kStepLimit,   ///< the largest number of steps is used up
-  kNoTrim,      ///< aircraft: steady level flight at the airspeed asked for does not exist
+  kNoTrim,      ///< aircraft: steady level flight at the desired airspeed does not exist
   kGround,      ///< aircraft: touched the ground
   kUpset,       ///< aircraft: angle of attack beyond 90 deg or rates beyond 50 rad/s, where the model means nothing
   kStopped,     ///< vehicle: forward speed fell below 0.5 m/s, where slip angles lose their meaning

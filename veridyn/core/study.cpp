@@ -14,6 +14,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/units.hpp"
 
@@ -26,13 +27,15 @@ struct StudyDocument {
   toml::table root;
   std::string name;
   std::filesystem::path folder;
+  std::vector<std::string> notes;
 };
 
-/// One table of the document with the keys that were asked for and the tables opened from it.
+/// One table of the document with the keys that were read and the tables opened from it.
 struct StudyNode {
-  std::shared_ptr<const StudyDocument> document;
+  std::shared_ptr<StudyDocument> document;
   const toml::table* table = nullptr;  ///< null for a table that is absent
-  std::set<std::string, std::less<>> asked;
+  std::set<std::string, std::less<>> known;
+  std::set<std::string, std::less<>> accepted;  ///< with all that is in them
   std::map<std::string, std::vector<std::pair<std::string, std::shared_ptr<StudyNode>>>, std::less<>> opened;
 };
 
@@ -88,7 +91,7 @@ double number_with_unit(const std::string& text, std::string_view unit, const st
   if (error != std::errc{}) {
     throw InputError(place, fmt::format("'{}' is not a number with a unit, such as \"1.5 {}\"", text, unit));
   }
-  const std::string_view rest(stop, static_cast<std::size_t>(text.data() + text.size() - stop));
+  const std::string_view rest(stop, at(text.data() + text.size() - stop));
   const Unit expected = parse_unit(unit);
   if (rest.find_first_not_of(" \t") == std::string_view::npos) return expected.to_si(number);
   try {
@@ -117,16 +120,26 @@ std::string text_from(const toml::node& node, const std::string& place) {
   throw InputError(place, fmt::format("is {}, expected a text in quotes", kind_of(node)));
 }
 
+/// A table, or an array that holds tables, with something in it.
+bool holds_keys(const toml::node& node) {
+  if (const toml::table* table = node.as_table()) return !table->empty();
+  const toml::array* array = node.as_array();
+  return array != nullptr && std::any_of(array->begin(), array->end(), holds_keys);
+}
+
 void refuse_unknown(const StudyNode& node, const std::string& path) {
   if (node.table != nullptr) {
-    const std::vector<std::string> known(node.asked.begin(), node.asked.end());
+    const std::vector<std::string> known(node.known.begin(), node.known.end());
     for (const auto& [key, value] : *node.table) {
-      if (node.asked.contains(key.str())) continue;
+      if (node.accepted.contains(key.str())) continue;
+      const bool read = node.known.contains(key.str());
+      if (read && (node.opened.contains(key.str()) || !holds_keys(value))) continue;
       throw InputError(place_of(node, &value, path, key.str()),
-                       fmt::format("unknown key{}", suggestion(key.str(), known)));
+                       read ? "is a table that nothing reads here" : "unknown key" + suggestion(key.str(), known));
     }
   }
   for (const auto& [key, children] : node.opened) {
+    if (node.accepted.contains(key)) continue;
     for (const auto& [child_path, child] : children) refuse_unknown(*child, child_path);
   }
 }
@@ -147,6 +160,8 @@ void apply_override(toml::table& root, const std::string& text) {
   std::stringstream parts(key);
   std::vector<std::string> names;
   for (std::string part; std::getline(parts, part, '.');) names.push_back(part);
+  if (key.back() == '.' || std::find(names.begin(), names.end(), "") != names.end())
+    throw InputError(place, fmt::format("'{}' is not a key, such as data.from", key));
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     if (at->get(names[i]) == nullptr) at->insert(names[i], toml::table{});
     at = at->get(names[i])->as_table();
@@ -163,9 +178,19 @@ StudyTable::StudyTable(std::shared_ptr<StudyNode> node, std::string path)
     : node_(std::move(node)), path_(std::move(path)) {}
 
 bool StudyTable::has(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   return find(*node_, key) != nullptr;
 }
+
+std::string_view StudyTable::renamed(std::string_view key, std::string_view old_key) const {
+  if (find(*node_, key) != nullptr || find(*node_, old_key) == nullptr) return key;
+  const std::string note = fmt::format("{}: this key is now called '{}'", place(old_key), key);
+  std::vector<std::string>& notes = node_->document->notes;
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  return old_key;
+}
+
+void StudyTable::accept(std::string_view key) const { node_->accepted.emplace(key); }
 
 std::vector<std::string> StudyTable::keys() const {
   std::vector<std::pair<toml::source_position, std::string>> found;
@@ -193,7 +218,7 @@ const toml::node& require(const StudyTable& table, const StudyNode& node, std::s
 }  // namespace
 
 double StudyTable::number(std::string_view key, std::string_view unit) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   return number_from(require(*this, *node_, key), unit, place(key));
 }
 
@@ -217,7 +242,7 @@ std::optional<double> StudyTable::optional_number(std::string_view key, std::str
 }
 
 long long StudyTable::integer(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   const toml::node& node = require(*this, *node_, key);
   if (!node.is_integer()) fail(key, fmt::format("is {}, expected a whole number", kind_of(node)));
   return *node.value<std::int64_t>();
@@ -235,7 +260,7 @@ bool StudyTable::flag_or(std::string_view key, bool otherwise) const {
 }
 
 std::string StudyTable::text(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   return text_from(require(*this, *node_, key), place(key));
 }
 
@@ -253,7 +278,7 @@ std::string StudyTable::choice_or(std::string_view key, std::span<const std::str
 }
 
 std::vector<double> StudyTable::numbers(std::string_view key, std::string_view unit) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   const toml::node& node = require(*this, *node_, key);
   const toml::array* array = node.as_array();
   if (array == nullptr) return {number_from(node, unit, place(key))};
@@ -265,7 +290,7 @@ std::vector<double> StudyTable::numbers(std::string_view key, std::string_view u
 }
 
 std::vector<std::string> StudyTable::texts(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   const toml::node& node = require(*this, *node_, key);
   const toml::array* array = node.as_array();
   if (array == nullptr) return {text_from(node, place(key))};
@@ -296,14 +321,14 @@ bool StudyTable::is_text(std::string_view key) const { return has(key) && find(*
 bool StudyTable::is_number(std::string_view key) const { return has(key) && find(*node_, key)->is_number(); }
 
 StudyTable StudyTable::table(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   const toml::node& node = require(*this, *node_, key);
   if (!node.is_table()) fail(key, fmt::format("is {}, expected a table", kind_of(node)));
   return table_or_empty(key);
 }
 
 StudyTable StudyTable::table_or_empty(std::string_view key) const {
-  node_->asked.emplace(key);
+  node_->known.emplace(key);
   const toml::node* found = find(*node_, key);
   if (found != nullptr && !found->is_table()) fail(key, fmt::format("is {}, expected a table", kind_of(*found)));
   auto& opened = node_->opened[std::string(key)];
@@ -367,6 +392,8 @@ Study Study::parse(std::string_view text, std::string name, const std::filesyste
   study.folder_ = folder;
   return study;
 }
+
+const std::vector<std::string>& Study::notes() const { return root_.node_->document->notes; }
 
 std::string Study::to_toml() const {
   std::ostringstream text;

@@ -18,7 +18,8 @@ struct StudyNode;
 ///
 /// A number with a unit is written either plainly (then it is in the SI unit, radians for angles) or as text with any
 /// unit of the same dimension: `mass = 12.6`, `mass = "27.8 lb"`, `M_alpha0 = "27 deg"`. Each read marks its key as
-/// known; `finish()` then refuses unknown keys, which are the misspelt ones.
+/// known; `finish()` then refuses unknown keys, which are the misspelt ones. A table is known when it was opened: to
+/// ask whether it is there says nothing about what is in it.
 ///
 /// All readers throw InputError, for example
 /// `study.toml:14: subject.mass = -1 must be > 0`, `study.toml:3: subject.span: unit 'kg' is a mass [kg], expected a
@@ -29,6 +30,11 @@ class StudyTable {
   explicit StudyTable(std::string path = {});
 
   [[nodiscard]] bool has(std::string_view key) const;
+  /// `key`, or `old_key`, what it was called in earlier versions, where the study has that one; the study then holds a
+  /// note that says the new name.
+  [[nodiscard]] std::string_view renamed(std::string_view key, std::string_view old_key) const;
+  /// Marks a key as known with all that is in it, for a table that nothing can be said about here.
+  void accept(std::string_view key) const;
   /// Keys in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
 
@@ -74,7 +80,7 @@ class StudyTable {
   /// Dotted name of this table, "subject.geometry"; empty at the root.
   [[nodiscard]] const std::string& path() const { return path_; }
 
-  /// Refuses keys that were not read, here and in every table opened from here, naming the nearest known key.
+  /// Refuses keys that were not read, here and in every table within, naming the nearest known key.
   void finish() const;
 
  private:
@@ -99,6 +105,8 @@ class Study {
   /// File name as given, for messages.
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// What its author should know: keys that have a new name. One line each.
+  [[nodiscard]] const std::vector<std::string>& notes() const;
   /// The study after its overrides, as TOML: what a result has to keep to be reproduced.
   [[nodiscard]] std::string to_toml() const;
 

@@ -6,32 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/estimation/regression/regression.hpp"
-#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/estimation/parameter.hpp"
 
 namespace veridyn::estimation {
 
-/// One parameter of an estimate file.
-struct EstimatedParameter {
-  std::string name;  ///< as in the literature: `CL_alpha`
-  double value = 0.0;
-  double sigma = 0.0;
-  double low95 = 0.0;
-  double high95 = 0.0;
-  std::string unit = "1";
-  ParameterStatus status = ParameterStatus::kRejected;
-};
-
-/// The same parameter by another method, for comparison.
+/// A parameter by another method, for comparison.
 struct MethodEstimate {
-  std::string parameter;
   std::string method;  ///< "output error", "frequency domain", "bootstrap of GTLS"
-  double value = 0.0;
-  double sigma = 0.0;
-  double low95 = 0.0;
-  double high95 = 0.0;
-  std::string unit = "1";
-  ParameterStatus status = ParameterStatus::kRejected;
+  Parameter parameter;
 };
 
 /// How well a quantity was predicted on held-out data.
@@ -47,7 +29,7 @@ struct ValidationMeasure {
 struct Estimate {
   std::string subject;
   std::string method;
-  std::vector<EstimatedParameter> parameters;
+  std::vector<Parameter> parameters;
   Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
   std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
@@ -55,7 +37,7 @@ struct Estimate {
   std::string verdict;
   std::vector<std::string> warnings;
 
-  [[nodiscard]] const EstimatedParameter* find(std::string_view name) const;
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
 };
 
 }  // namespace veridyn::estimation

@@ -22,8 +22,8 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
-/// Rows of a prescribed motion.
-MuscleResult take(MotionAnalysis&& analysis) {
+/// The rows of a prescribed motion as a result.
+MuscleResult result_of(MotionAnalysis&& analysis) {
   MuscleResult result;
   MuscleTrajectory& t = result.trajectory;
   t.time = std::move(analysis.time);
@@ -32,14 +32,14 @@ MuscleResult take(MotionAnalysis&& analysis) {
   t.path_length = std::move(analysis.path_length);
   t.end_time = t.time.back();
   if (analysis.interrupted) t.end = SimulationEnd::kInterrupted;
-  result.wished = t.q;
+  result.desired = t.q;
   result.generalized_force = std::move(analysis.moment);
   return result;
 }
 
 MuscleResult inverse(const MuscleStudy& study, Progress& progress) {
   progress.stage("inverse dynamics");
-  return take(
+  return result_of(
       analyse_motion(*study.system, study.motion, study.start.q, frame_times(study.begin, study.end, study.rate_Hz)));
 }
 
@@ -51,7 +51,7 @@ MuscleResult optimise(const MuscleStudy& study, Progress& progress) {
   estimation::RowMatrix activation = std::move(analysis.activation), force = std::move(analysis.force),
                         reserve = std::move(analysis.reserve);
   const std::vector<std::size_t> infeasible = std::move(analysis.infeasible);
-  MuscleResult result = take(std::move(analysis));
+  MuscleResult result = result_of(std::move(analysis));
   MuscleTrajectory& t = result.trajectory;
   t.activation = std::move(activation);
   t.tendon_force = std::move(force);
@@ -80,7 +80,7 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   ControlResult found = computed_muscle_control(*study.system, study.motion, study.control, progress);
   MuscleResult result;
   result.trajectory = std::move(found.trajectory);
-  result.wished = std::move(found.wished);
+  result.desired = std::move(found.desired);
   result.drive = std::move(found.drive);
   result.overloaded = std::move(found.overloaded);
   if (!result.overloaded.empty()) {
@@ -92,9 +92,9 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   return result;
 }
 
-/// Coordinates that a simulation carried out of their ranges: nothing but forces holds them.
-std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTrajectory& t) {
-  std::vector<std::string> said;
+/// Warnings about coordinates that left their ranges in a simulation: only forces keep them there.
+std::vector<std::string> range_warnings(const MuscleStudy& study, const MuscleTrajectory& t) {
+  std::vector<std::string> warnings;
   const Model& model = study.system->model();
   for (const int c : study.system->reduction().free()) {
     const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
@@ -102,23 +102,23 @@ std::vector<std::string> left_ranges(const MuscleStudy& study, const MuscleTraje
     for (Eigen::Index i = 0; i < t.q.rows(); ++i) {
       if (t.q(i, c) >= k.low - slack && t.q(i, c) <= k.high + slack) continue;
       const bool angle = k.unit() == "rad";
-      const double unit = angle ? 180.0 / kPi : 1.0;
-      said.push_back(fmt::format(
+      const double unit = angle ? 1.0 / kDegree : 1.0;
+      warnings.push_back(fmt::format(
           "'{}' leaves its range {:.4g} .. {:.4g} {} at {:.4g} s{}", k.name, unit * k.low, unit * k.high,
           angle ? "deg" : "m", t.time[static_cast<std::size_t>(i)],
           study.system->path_source() == PathSource::kFitted ? "; fitted paths are extrapolated from there on" : ""));
       break;
     }
   }
-  return said;
+  return warnings;
 }
 
 }  // namespace
 
 double MuscleResult::tracking_error(std::size_t coordinate) const {
-  if (wished.rows() == 0 || wished.rows() != trajectory.q.rows()) return 0.0;
+  if (desired.rows() == 0 || desired.rows() != trajectory.q.rows()) return 0.0;
   const auto c = static_cast<Eigen::Index>(coordinate);
-  return (trajectory.q.col(c) - wished.col(c)).cwiseAbs().maxCoeff();
+  return (trajectory.q.col(c) - desired.col(c)).cwiseAbs().maxCoeff();
 }
 
 MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
@@ -139,7 +139,7 @@ MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
   }
   result.notes = study.system->notes();
   if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
-    for (std::string& left : left_ranges(study, result.trajectory)) result.warnings.push_back(std::move(left));
+    for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
   }
   result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());
   return result;

@@ -11,30 +11,30 @@
 
 namespace veridyn::muscle {
 
-/// What a muscle study came to.
+/// The result of a muscle study.
 struct MuscleResult {
   /// Rows in time. Of inverse dynamics without excitations, activations, fibres and forces; of static optimization
   /// without excitations. Of a simulation that did not finish, the rows up to there.
   MuscleTrajectory trajectory;
-  estimation::RowMatrix wished;  ///< the wished pose, rows as `trajectory`; empty of a forward simulation
-  /// What the wished motion needs at each coordinate, of gravity and inertia [N m or N]; inverse dynamics and static
+  estimation::RowMatrix desired;  ///< the desired pose, rows as `trajectory`; empty of a forward simulation
+  /// What the desired motion needs at each coordinate, of gravity and inertia [N m or N]; inverse dynamics and static
   /// optimization.
   estimation::RowMatrix generalized_force;
   /// Excitations and reserves that, from the first row's state on, repeat the motion.
   std::optional<Drive> drive;
-  std::vector<double> overloaded;  ///< instants at which the muscles could not do what was wished [s]
+  std::vector<double> overloaded;  ///< instants at which the muscles could not produce the desired motion [s]
   std::vector<std::string> notes;
   std::vector<std::string> warnings;
 
   [[nodiscard]] bool usable() const { return trajectory.usable(); }
-  /// Largest |q - wished| of a coordinate [rad or m]; 0 without a wish.
+  /// Largest |q - desired| of a coordinate [rad or m]; 0 without a desired motion.
   [[nodiscard]] double tracking_error(std::size_t coordinate) const;
 };
 
-/// Does what the study asks. Never throws for a simulation that diverges: the result says how it ended.
+/// Runs the study. Never throws for a simulation that diverges: the result says how it ended.
 [[nodiscard]] MuscleResult run_study(const MuscleStudy& study, Progress& progress);
 
-/// motion.csv: by coordinate value and speed, wish, generalised force or reserve where there are any.
+/// motion.csv: by coordinate value and speed, desired value, generalised force or reserve where there are any.
 [[nodiscard]] Recording motion_table(const MuscleStudy& study, const MuscleResult& result);
 /// muscles.csv: by muscle excitation, activation, fibre length, tendon force, path length, as far as the method has
 /// them.
@@ -43,8 +43,8 @@ struct MuscleResult {
 /// them as states.
 [[nodiscard]] io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result);
 /// controls.sto: excitations by muscle, reserves by COORDINATE_reserve in units of the reserve's force. A value that
-/// holds until a jump is written twice, at its beginning and 1 ns before its end, so that held and linear reading are
-/// the same signal.
+/// holds until a jump is written twice, at its beginning and 1 ns before its end, so that held and linear interpolation
+/// are the same signal.
 [[nodiscard]] std::optional<io::Storage> control_storage(const MuscleStudy& study, const MuscleResult& result);
 
 }  // namespace veridyn::muscle

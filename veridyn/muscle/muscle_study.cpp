@@ -42,7 +42,7 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
   const double slack = 1e-9 * (1.0 + std::abs(study.end));
   if (file && (study.begin < study.motion.begin - slack || study.end > study.motion.end + slack)) {
     motion.fail(motion.has("duration") ? "duration" : "begin",
-                fmt::format("asks for {:g} .. {:g} s, the file has {:g} .. {:g} s", study.begin, study.end,
+                fmt::format("needs {:g} .. {:g} s, the file has {:g} .. {:g} s", study.begin, study.end,
                             study.motion.begin, study.motion.end));
   }
   if (study.end - study.begin > 3600.0)
@@ -97,7 +97,7 @@ void read_static(const StudyTable& table, MuscleStudy& study) {
 }
 
 /// Keys of other methods: files and ramps were meant to matter, so say that they do not. Tables of excitations and
-/// speeds may stay while a study's method changes.
+/// speeds may stay while a study's method changes: they are read in any case.
 void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
   const bool forward = method == MuscleMethod::kForward;
   for (const char* key : {"file", "low_pass", "ramp"}) {
@@ -109,7 +109,6 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
     if (motion.has(key) && !forward)
       motion.fail(key, fmt::format("has no meaning when method = \"{}\"", method_name(method)));
   }
-  for (const char* key : {"start_speed", "excitation", "excitation_step"}) static_cast<void>(motion.has(key));
 }
 
 }  // namespace
@@ -121,10 +120,10 @@ bool is_muscle_study(const StudyTable& root) {
 }
 
 MuscleStudy read_study(const Study& source, Progress& progress) {
-  const StudyTable root = source.root();
+  const StudyTable& root = source.root();
   MuscleStudy study;
   study.title = root.text_or("title", "");
-  static_cast<void>(root.integer_or("seed", 1));  // nothing here is random; `--seed` sets it all the same
+  static_cast<void>(root.integer_or("seed", 1));  // nothing here is random, but `--seed` sets it
   const StudyTable motion = root.table("motion");
   study.method = internal::word_or_first(motion, "method", kMethods);
   refuse_other_methods(motion, study.method);
@@ -132,9 +131,9 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   study.motion.coordinate.resize(study.system->model().coordinates.size());
   read_times(motion, study);
   internal::read_start(motion, study);
+  internal::read_excitations(motion, study);
   if (study.method == MuscleMethod::kForward) {
     internal::read_start_file(motion, study);
-    internal::read_excitations(motion, study);
   } else {
     internal::read_desired_motion(motion, study);
   }

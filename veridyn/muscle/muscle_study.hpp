@@ -17,12 +17,12 @@
 
 namespace veridyn::muscle {
 
-/// What a muscle study asks for.
+/// What a muscle study computes.
 enum class MuscleMethod {
-  kForward,                ///< excitations are given, the motion is wanted
-  kInverseDynamics,        ///< the motion is given, generalised forces are wanted
-  kStaticOptimization,     ///< the motion is given, activations are wanted, each instant for itself
-  kComputedMuscleControl,  ///< the motion is given, excitations are wanted that make the muscles follow it
+  kForward,                ///< from excitations to the motion
+  kInverseDynamics,        ///< from the motion to generalised forces
+  kStaticOptimization,     ///< from the motion to activations, each instant by itself
+  kComputedMuscleControl,  ///< from the motion to excitations that make the muscles follow it
 };
 
 /// The word of the study: "forward", "inverse dynamics", "static optimization", "computed muscle control".
@@ -43,7 +43,7 @@ struct ParameterChange {
   double after = 0.0;
 };
 
-/// A study of a musculoskeletal model, read and checked: the model made ready, and what is to be done with it.
+/// A study of a musculoskeletal model, read and checked: the prepared model, and what is to be computed.
 struct MuscleStudy {
   std::string title;
   std::string model_name;        ///< as the study names it
@@ -62,7 +62,7 @@ struct MuscleStudy {
   StartState start;                               ///< forward
   Drive drive;                                    ///< forward
   Motion motion;                                  ///< otherwise: every free and driven coordinate
-  std::vector<std::string> wished;                ///< coordinates whose motion the study gives; the others rest
+  std::vector<std::string> desired_coordinates;   ///< coordinates whose motion the study gives; the others rest
   ControlOptions control;                         ///< computed muscle control, begin to rate set from above
   StaticOptimizationOptions static_optimization;  ///< reserves set from above
 
@@ -80,7 +80,7 @@ struct MuscleStudy {
 ///     paths = "exact"                # "fitted": polynomials, faster; "opensim": OpenSim's wrapping, jumps included
 ///     locked = ["r_shoulder_elev"]   # held where they start
 ///     unlocked = []                  # move although the model locks them
-///     without_unsupported = false    # go on without forces and constraints that are not understood
+///     without_unsupported = false    # continue without forces and constraints that are not understood
 ///     [subject.parameters]
 ///     "BIClong.optimal_fiber_length" = 0.12  # also max_isometric_force, tendon_slack_length,
 ///                                    # pennation_angle_at_optimal, max_contraction_velocity,
@@ -97,16 +97,16 @@ struct MuscleStudy {
 ///     rate = 200                     # rows of the results [Hz]
 ///     accuracy = 1e-5                # of the integration: error of a step in units of the states' sizes
 ///     reserve_force = 1              # of an actuator that helps each free coordinate, at control 1 [N m]; 0: none
-///     file = "lift.mot"              # the wished motion: .mot, .sto or .csv
+///     file = "lift.mot"              # the desired motion: .mot, .sto or .csv
 ///     low_pass = "6 Hz"              # of its samples, without delay; none when left out
-///     [[motion.ramp]]                # or beside it, coordinates that the file does not have
+///     [[motion.ramp]]                # coordinates that the file does not have
 ///     coordinate = "r_elbow_flex"
 ///     from = "10 deg"                # where it is before; the end of the ramp before, or its start
 ///     to = "110 deg"
 ///     start = 0.03                   # [s]; `begin` when left out
 ///     duration = 1                   # [s]
 ///     shape = "minimum jerk"         # "half sine", "linear"
-///     [motion.start]                 # pose at `begin`, and of coordinates without a wish: the model's when left out
+///     [motion.start]                 # pose at `begin`, and of coordinates without a motion: the model's when left out
 ///     r_elbow_flex = "30 deg"
 ///     [motion.start_speed]           # forward only
 ///     r_elbow_flex = 0.0

@@ -62,12 +62,12 @@ void read_desired_motion(const StudyTable& motion, MuscleStudy& study) {
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     if (study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) continue;
     if (study.motion.coordinate[c]) {
-      study.wished.push_back(model.coordinates[c].name);
+      study.desired_coordinates.push_back(model.coordinates[c].name);
     } else {
       study.motion.coordinate[c] = resting_spline(study.start.q(static_cast<Eigen::Index>(c)));
     }
   }
-  if (study.wished.empty()) {
+  if (study.desired_coordinates.empty()) {
     motion.fail("", fmt::format("method = \"{}\" needs a motion: file = \"x.mot\" or [[motion.ramp]]",
                                 method_name(study.method)));
   }

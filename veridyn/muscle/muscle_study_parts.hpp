@@ -37,7 +37,7 @@ template <typename Value, std::size_t kWords>
   return words.front().second;
 }
 
-/// `[subject]`: the model, its parameters, loads and paths, made ready.
+/// `[subject]`: the model, its parameters, loads and paths, as a system.
 void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress);
 /// `[motion.start]`, `[motion.start_speed]`.
 void read_start(const StudyTable& motion, MuscleStudy& study);

@@ -10,7 +10,7 @@
 namespace veridyn::muscle::internal {
 namespace {
 
-/// Where a column stands at a time: the sample, or between two on their line.
+/// The value of a column at a time, linear between samples.
 double value_at(const SignalTable& table, int column, double time) {
   const std::vector<double>& t = table.time;
   const std::vector<double>& v = table.values[static_cast<std::size_t>(column)];
@@ -46,12 +46,12 @@ void read_start(const StudyTable& motion, MuscleStudy& study) {
     if (study.method != MuscleMethod::kForward && study.motion.coordinate[c])
       pose.fail(key, "and motion.file both say where it is");
   }
-  if (study.method != MuscleMethod::kForward) return;
   const StudyTable speed = motion.table_or_empty("start_speed");
   for (const std::string& key : speed.keys()) {
     const std::size_t c = coordinate_of(speed, key, key, model);
     check_not_coupled(speed, key, c, study);
-    study.start.qdot(static_cast<Eigen::Index>(c)) = speed.number(key, model.coordinates[c].unit() + "/s");
+    const double value = speed.number(key, model.coordinates[c].unit() + "/s");
+    if (study.method == MuscleMethod::kForward) study.start.qdot(static_cast<Eigen::Index>(c)) = value;
   }
 }
 

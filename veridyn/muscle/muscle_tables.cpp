@@ -29,7 +29,7 @@ Recording motion_table(const MuscleStudy& study, const MuscleResult& result) {
     recording.add(make_channel(k.name, k.unit(), time, column(t.q, c)));
     recording.add(make_channel(k.name + "_speed", k.unit() + "/s", time, column(t.qdot, c)));
     if (study.method == MuscleMethod::kComputedMuscleControl)
-      recording.add(make_channel(k.name + "_wish", k.unit(), time, column(result.wished, c)));
+      recording.add(make_channel(k.name + "_wish", k.unit(), time, column(result.desired, c)));
     if (result.generalized_force.size() > 0)
       recording.add(make_channel(k.name + "_force", force_unit, time, column(result.generalized_force, c)));
     if (!all_zero(t.reserve)) recording.add(make_channel(k.name + "_reserve", force_unit, time, column(t.reserve, c)));
@@ -100,7 +100,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     const std::span<const int> free = study.system->reduction().free();
     reserved.assign(free.begin(), free.end());
   }
-  // Without reserves of their own, what control lacked is in newtons or newton metres.
+  // Without an optimal force, what the muscles lacked is in newtons or newton metres.
   const double reserve_unit = study.reserve_force > 0.0 ? study.reserve_force : 1.0;
   io::Storage storage;
   storage.source = "controls.sto";
@@ -108,7 +108,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
   for (const Muscle& m : model.muscles) storage.labels.push_back(m.name());
   for (const int c : reserved)
     storage.labels.push_back(model.coordinates[static_cast<std::size_t>(c)].name + "_reserve");
-  // All instants at which either of them has a value of its own.
+  // All instants at which either of them has a sample.
   std::vector<double> times(excitation.times().begin(), excitation.times().end());
   if (!reserved.empty()) times.insert(times.end(), reserve.times().begin(), reserve.times().end());
   std::erase_if(times, [&](double t) { return t < study.begin || t > study.end; });

@@ -71,7 +71,7 @@ struct PiGroups {
 };
 
 /// Buckingham's theorem (1914, Phys. Rev. 4:345) with chosen repeating variables: the basis of the null space of the
-/// dimension matrix in which every other quantity stands in one group of its own, with exponent 1. Exact.
+/// dimension matrix in which every other quantity stands in exactly one group, with exponent 1. Exact.
 /// @throws InputError (place "repeating variables") when one is unknown (with the nearest symbol) or named twice, when
 /// they are not independent (naming the product that is dimensionless), or when they cannot express the dimension of a
 /// quantity (naming it); for symbols that appear twice.

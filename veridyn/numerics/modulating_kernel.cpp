@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::numerics {
 
@@ -23,14 +24,14 @@ ModulatingKernel modulating_kernel(double rate_Hz, double cutoff_Hz) {
   kernel.half_length_s = T;
   for (FirKernel* k : {&kernel.smooth, &kernel.first, &kernel.second}) {
     k->rate_Hz = rate_Hz;
-    k->taps.resize(static_cast<std::size_t>(2 * m + 1));
+    k->taps.resize(at(2 * m + 1));
   }
   double sum = 0.0, slope = 0.0, curvature = 0.0;
   for (int j = -m; j <= m; ++j) {
     const double s = j * step / T;
     const double q = 1.0 - s * s;
     const double q4 = q * q * q * q;
-    const auto i = static_cast<std::size_t>(j + m);
+    const std::size_t i = at(j + m);
     kernel.smooth.taps[i] = q4 * q * q;
     kernel.first.taps[i] = 2.0 * kPower * s * q4 * q / T;
     kernel.second.taps[i] = 2.0 * kPower * q4 * (2.0 * (kPower - 1) * s * s - q) / (T * T);

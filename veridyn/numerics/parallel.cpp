@@ -8,22 +8,10 @@
 #include <vector>
 
 namespace veridyn::numerics {
-namespace {
-
-std::atomic<int> chosen_threads = 0;
-
-}  // namespace
-
-void set_default_threads(int threads) { chosen_threads = std::max(0, threads); }
-
-int default_threads() {
-  const int chosen = chosen_threads;
-  return chosen > 0 ? chosen : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work,
                   const std::function<bool(std::size_t)>& proceed) {
-  if (threads <= 0) threads = default_threads();
+  if (threads <= 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::atomic<std::size_t> next = 0, done = 0;
   std::atomic<bool> stop = false;
   std::exception_ptr failure;

@@ -13,9 +13,4 @@ namespace veridyn::numerics {
 bool parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& work,
                   const std::function<bool(std::size_t done)>& proceed = {});
 
-/// Sets what `threads = 0` means everywhere in this program; 0: as many as the machine has.
-void set_default_threads(int threads);
-/// The number that `threads = 0` means: what was set, or the machine's.
-[[nodiscard]] int default_threads();
-
 }  // namespace veridyn::numerics

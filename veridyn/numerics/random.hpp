@@ -9,9 +9,9 @@ namespace veridyn::numerics {
 /// A reproducible stream of random numbers: same seed and name, same numbers, on every machine and compiler.
 ///
 /// Streams of different names (or numbers) under one seed are independent for all practical purposes, so that every
-/// sensor, task or thread takes its own: switching one off, or another number of threads, leaves the others unchanged.
-/// The engine is the 64-bit Mersenne twister, whose output the C++ standard fixes; distributions are Boost's, because
-/// those of the standard library differ between implementations.
+/// sensor, task or thread has one to itself: switching one off, or another number of threads, leaves the others
+/// unchanged. The engine is the 64-bit Mersenne twister, whose output the C++ standard fixes; distributions are
+/// Boost's, because those of the standard library differ between implementations.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view name);

@@ -30,10 +30,10 @@ std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<cons
   std::vector<double> piece(segment);
   std::vector<std::complex<double>> spectrum;
   // Spread evenly, so that the end of the record counts as well.
-  const std::size_t room = x.size() - segment;
-  const std::size_t last = (2 * room + segment - 1) / segment;
+  const std::size_t slack = x.size() - segment;
+  const std::size_t last = (2 * slack + segment - 1) / segment;
   for (std::size_t i = 0; i <= last; ++i) {
-    const std::size_t begin = last == 0 ? 0 : room * i / last;
+    const std::size_t begin = last == 0 ? 0 : slack * i / last;
     double mean = 0.0;
     for (std::size_t k = 0; k < segment; ++k) mean += x[begin + k];
     mean /= static_cast<double>(segment);

@@ -18,105 +18,138 @@ std::vector<double> shifted(std::span<const double> stamps, double delay_s) {
   return result;
 }
 
-/// One entry of the study's `[data.map]`.
-void map_from_study(const Recording& log, const StudyTable& map, const StandardChannel& target,
-                    MappedRecording& mapped) {
-  const std::string& name = target.name;
-  const auto source = [&](const StudyTable& table, std::string_view key, const std::string& channel) -> const Channel& {
-    if (const Channel* found = log.find(channel)) return *found;
-    table.fail(key, fmt::format("{} has no channel '{}'{}", log.source, channel, suggestion(channel, log.names())));
-  };
-  const auto finish = [&](TimeBase time, std::vector<double> values, std::string from) {
-    const double rate = Channel{name, {}, "", time, values}.rate_Hz();
-    mapped.recording.set(make_channel(name, target.unit, std::move(time), std::move(values)));
-    std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });
-    mapped.origins.push_back({name, std::move(from), rate, "mapped in the study"});
-  };
-  const auto check_dimension = [&](const StudyTable& table, std::string_view key, const Channel& raw,
-                                   std::string_view unit) {
-    const Unit actual = unit.empty() ? raw.unit : parse_unit(unit);
-    const Unit expected = parse_unit(target.unit);
-    if (actual.same_dimension(expected)) return;
-    table.fail(
-        key, fmt::format("channel '{}' is in [{}], but {} is in [{}]", raw.name, actual.si_name(), name, target.unit));
-  };
-
-  if (!map.is_table(name)) {
-    const std::string channel = map.text(name);
-    const Channel& raw = source(map, name, channel);
-    check_dimension(map, name, raw, "");
-    finish(raw.time, raw.value, channel);
-    return;
+/// The standard channel of this name; the study is refused where there is none.
+const StandardChannel& standard_channel(const StudyTable& map, const std::string& name,
+                                        std::span<const StandardChannel> standard) {
+  std::vector<std::string> known;
+  for (const StandardChannel& channel : standard) {
+    if (channel.name == name) return channel;
+    known.push_back(channel.name);
   }
-  const StudyTable entry = map.table(name);
-  const std::string unit = entry.text_or("unit", "");
-  if (!unit.empty()) {
+  map.fail(name, fmt::format("is not a standard channel{}", suggestion(name, known, known.size())));
+}
+
+/// What an entry of `[data.map]` makes of the log's channels.
+struct MappedValues {
+  TimeBase time;
+  std::vector<double> values;
+  std::string from;  ///< in words
+};
+
+/// How an entry turns a channel into SI.
+struct Conversion {
+  std::string unit;  ///< empty: that of the channel
+  double zero = 0.0, scale = 1.0;
+};
+
+const Channel& source_of(const Recording& log, const StudyTable& table, std::string_view key,
+                         const std::string& channel) {
+  if (const Channel* found = log.find(channel)) return *found;
+  table.fail(key, fmt::format("{} has no channel '{}'{}", log.source, channel, suggestion(channel, log.names())));
+}
+
+void check_dimension(const StudyTable& table, std::string_view key, const Channel& raw, std::string_view unit,
+                     const StandardChannel& target) {
+  const Unit actual = unit.empty() ? raw.unit : parse_unit(unit);
+  if (actual.same_dimension(parse_unit(target.unit))) return;
+  table.fail(key, fmt::format("channel '{}' is in [{}], but {} is in [{}]", raw.name, actual.si_name(), target.name,
+                              target.unit));
+}
+
+Conversion read_conversion(const StudyTable& entry, const StandardChannel& target) {
+  Conversion c{.unit = entry.text_or("unit", "")};
+  if (!c.unit.empty()) {
     try {
-      static_cast<void>(parse_unit_like(unit, parse_unit(target.unit)));
+      static_cast<void>(parse_unit_like(c.unit, parse_unit(target.unit)));
     } catch (const InputError& wrong) {
       entry.fail("unit", wrong.what());
     }
   }
-  const double zero = entry.number_or("zero", "1", 0.0);
-  const double scale = entry.number_or("scale", "1", 1.0);
-  const double delay = entry.number_or("delay", "s", 0.0);
-  TimeBase time;
-  std::vector<double> values;
-  std::string from;
-  if (entry.has("switch")) {
-    const std::string selector_name = entry.text("switch");
-    const Channel& selector = source(entry, "switch", selector_name);
-    const StudyTable cases = entry.table("cases");
-    time = selector.time;
-    values.assign(selector.size(), kNaN);
-    std::vector<std::string> parts;
-    for (const std::string& key : cases.keys()) {
-      const std::string channel = cases.text(key);
-      const Channel& raw = source(cases, key, channel);
-      check_dimension(cases, key, raw, unit);
-      const std::vector<double> at =
-          interpolated(Channel{raw.name, raw.unit, "", raw.time, in_si(raw, zero, scale, unit)}, selector.times());
-      double number = 0.0;
-      try {
-        number = std::stod(key);
-      } catch (const std::exception&) {
-        cases.fail(key, "a case is a number that the switch channel takes");
-      }
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        if (selector.value[i] == number) values[i] = at[i];
-      }
-      parts.push_back(fmt::format("{} when {} = {}", channel, selector_name, key));
+  c.zero = entry.number_or("zero", "1", 0.0);
+  c.scale = entry.number_or("scale", "1", 1.0);
+  return c;
+}
+
+/// The channel that another one, the switch, selects at each moment.
+MappedValues switched(const Recording& log, const StudyTable& entry, const StandardChannel& target,
+                      const Conversion& c) {
+  const std::string selector_name = entry.text("switch");
+  const Channel& selector = source_of(log, entry, "switch", selector_name);
+  const StudyTable cases = entry.table("cases");
+  MappedValues out{.time = selector.time, .values = std::vector<double>(selector.size(), kNaN), .from = {}};
+  std::vector<std::string> parts;
+  for (const std::string& key : cases.keys()) {
+    const std::string channel = cases.text(key);
+    const Channel& raw = source_of(log, cases, key, channel);
+    check_dimension(cases, key, raw, c.unit, target);
+    const std::vector<double> at =
+        interpolated(Channel{raw.name, raw.unit, "", raw.time, in_si(raw, c.zero, c.scale, c.unit)}, selector.times());
+    double number = 0.0;
+    try {
+      number = std::stod(key);
+    } catch (const std::exception&) {
+      cases.fail(key, "a case is a number that the switch channel takes");
     }
-    from = fmt::format("{}", fmt::join(parts, ", "));
-  } else if (entry.has("channels")) {
-    const std::vector<std::string> names = entry.texts("channels");
-    const std::vector<double> weights =
-        entry.has("weights") ? entry.numbers("weights", "1")
-                             : std::vector<double>(names.size(), 1.0 / static_cast<double>(names.size()));
-    if (weights.size() != names.size())
-      entry.fail("weights", fmt::format("has {} numbers for {} channels", weights.size(), names.size()));
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const Channel& raw = source(entry, "channels", names[i]);
-      check_dimension(entry, "channels", raw, unit);
-      const std::vector<double> si = in_si(raw, zero, scale, unit);
-      if (i == 0) {
-        time = raw.time;
-        values.assign(si.size(), 0.0);
-      }
-      const std::vector<double> at =
-          raw.time == time ? si : interpolated(Channel{raw.name, raw.unit, "", raw.time, si}, *time);
-      for (std::size_t k = 0; k < values.size(); ++k) values[k] += weights[i] * at[k];
+    for (std::size_t i = 0; i < out.values.size(); ++i) {
+      if (selector.value[i] == number) out.values[i] = at[i];
     }
-    from = fmt::format("{}", fmt::join(names, ", "));
-  } else {
-    from = entry.text("channel");
-    const Channel& raw = source(entry, "channel", from);
-    check_dimension(entry, "channel", raw, unit);
-    time = raw.time;
-    values = in_si(raw, zero, scale, unit);
+    parts.push_back(fmt::format("{} when {} = {}", channel, selector_name, key));
   }
-  if (delay != 0.0) time = make_time_base(shifted(*time, delay));
-  finish(std::move(time), std::move(values), std::move(from));
+  out.from = fmt::format("{}", fmt::join(parts, ", "));
+  return out;
+}
+
+/// The weighted sum of several channels, by default their mean.
+MappedValues weighted_sum(const Recording& log, const StudyTable& entry, const StandardChannel& target,
+                          const Conversion& c) {
+  const std::vector<std::string> names = entry.texts("channels");
+  const std::vector<double> weights = entry.has("weights")
+                                          ? entry.numbers("weights", "1")
+                                          : std::vector<double>(names.size(), 1.0 / static_cast<double>(names.size()));
+  if (weights.size() != names.size())
+    entry.fail("weights", fmt::format("has {} numbers for {} channels", weights.size(), names.size()));
+  MappedValues out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Channel& raw = source_of(log, entry, "channels", names[i]);
+    check_dimension(entry, "channels", raw, c.unit, target);
+    const std::vector<double> si = in_si(raw, c.zero, c.scale, c.unit);
+    if (i == 0) {
+      out.time = raw.time;
+      out.values.assign(si.size(), 0.0);
+    }
+    const std::vector<double> at =
+        raw.time == out.time ? si : interpolated(Channel{raw.name, raw.unit, "", raw.time, si}, *out.time);
+    for (std::size_t k = 0; k < out.values.size(); ++k) out.values[k] += weights[i] * at[k];
+  }
+  out.from = fmt::format("{}", fmt::join(names, ", "));
+  return out;
+}
+
+/// One entry of the study's `[data.map]`.
+MappedValues map_from_study(const Recording& log, const StudyTable& map, const StandardChannel& target) {
+  if (!map.is_table(target.name)) {
+    const std::string channel = map.text(target.name);
+    const Channel& raw = source_of(log, map, target.name, channel);
+    check_dimension(map, target.name, raw, "", target);
+    return {raw.time, raw.value, channel};
+  }
+  const StudyTable entry = map.table(target.name);
+  const Conversion c = read_conversion(entry, target);
+  const double delay = entry.number_or("delay", "s", 0.0);
+  MappedValues out;
+  if (entry.has("switch")) {
+    out = switched(log, entry, target, c);
+  } else if (entry.has("channels")) {
+    out = weighted_sum(log, entry, target, c);
+  } else {
+    out.from = entry.text("channel");
+    const Channel& raw = source_of(log, entry, "channel", out.from);
+    check_dimension(entry, "channel", raw, c.unit, target);
+    out.time = raw.time;
+    out.values = in_si(raw, c.zero, c.scale, c.unit);
+  }
+  if (delay != 0.0) out.time = make_time_base(shifted(*out.time, delay));
+  return out;
 }
 
 }  // namespace
@@ -182,22 +215,39 @@ void keep_standard_channels(const Recording& log, std::span<const StandardChanne
   }
 }
 
+void check_channel_map(const StudyTable& map, std::span<const StandardChannel> standard) {
+  for (const std::string& name : map.keys()) {
+    static_cast<void>(standard_channel(map, name, standard));
+    if (!map.is_table(name)) {
+      static_cast<void>(map.text(name));
+      continue;
+    }
+    const StudyTable entry = map.table(name);
+    for (const char* key : {"channel", "unit", "switch"}) static_cast<void>(entry.text_or(key, ""));
+    for (const char* key : {"zero", "scale"}) static_cast<void>(entry.number_or(key, "1", 0.0));
+    static_cast<void>(entry.number_or("delay", "s", 0.0));
+    if (entry.has("channels")) static_cast<void>(entry.texts("channels"));
+    if (entry.has("weights")) static_cast<void>(entry.numbers("weights", "1"));
+    const StudyTable cases = entry.table_or_empty("cases");
+    for (const std::string& key : cases.keys()) static_cast<void>(cases.text(key));
+  }
+}
+
 void apply_channel_map(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
                        MappedRecording& mapped) {
-  std::vector<std::string> known;
-  for (const StandardChannel& channel : standard) known.push_back(channel.name);
   std::vector<std::string> withdrawn;
   for (const std::string& name : map.keys()) {
-    const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) {
-      map.fail(name, fmt::format("is not a standard channel{}", suggestion(name, known, known.size())));
-    }
+    const StandardChannel& channel = standard_channel(map, name, standard);
     if (map.is_text(name) && map.text(name) == "none") {
       std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });
       withdrawn.push_back(name);
       continue;
     }
-    map_from_study(log, map, standard[static_cast<std::size_t>(at - known.begin())], mapped);
+    MappedValues made = map_from_study(log, map, channel);
+    const double rate = Channel{name, {}, "", made.time, made.values}.rate_Hz();
+    mapped.recording.set(make_channel(name, channel.unit, std::move(made.time), std::move(made.values)));
+    std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });
+    mapped.origins.push_back({name, std::move(made.from), rate, "mapped in the study"});
   }
   if (withdrawn.empty()) return;
   Recording kept = without_channels(mapped.recording);

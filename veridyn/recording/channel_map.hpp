@@ -11,7 +11,7 @@
 
 namespace veridyn::recording {
 
-/// A channel name that a domain understands without being told, and its SI unit.
+/// A channel name that a domain understands without a map, and its SI unit.
 struct StandardChannel {
   std::string name;
   std::string unit;
@@ -38,7 +38,7 @@ struct MappedRecording {
 /// What came with a recording, without its channels.
 [[nodiscard]] Recording without_channels(const Recording& recording);
 
-/// Channels of the log that bear standard names and that `map` does not speak of are taken as they are. One without a
+/// Channels of the log that bear standard names and that `map` does not name are taken as they are. One without a
 /// unit is passed over with a note. @throws InputError where a unit is of another kind.
 void keep_standard_channels(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
                             MappedRecording& mapped);
@@ -56,6 +56,10 @@ void keep_standard_channels(const Recording& log, std::span<const StandardChanne
 /// has).
 void apply_channel_map(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
                        MappedRecording& mapped);
+
+/// Reads the keys of `[data.map]` where there is no log to apply them to. @throws InputError for an unknown standard
+/// name and for values of the wrong kind.
+void check_channel_map(const StudyTable& map, std::span<const StandardChannel> standard);
 
 /// The recorded numbers in SI: scale * (raw - zero). Where the log's unit is of another kind than `unit` (volts of a
 /// vane, microseconds of a servo) the recorded numbers are scaled and then are in `unit`.

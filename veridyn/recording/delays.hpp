@@ -22,7 +22,7 @@ struct DelayGroup {
 
 /// How sensors are brought onto one clock. Study table `[delays]`; every key is optional.
 struct DelayOptions {
-  bool automatic = true;      ///< `automatic`: estimate and remove; false: only what the study says
+  bool automatic = true;      ///< `automatic`: estimate and remove; false: only what the study gives
   double max_delay_s = 0.3;   ///< `max`: searched up to here
   double min_delay_s = 0.01;  ///< `min`: smaller ones are left alone
   double band_Hz = 4.0;       ///< `band`: signals are compared below this frequency
@@ -56,7 +56,7 @@ class BandLimited {
  public:
   using Series = std::vector<double>;
 
-  /// The middle of `reference` (see kLongestDelaySearch_s) at its own rate; nothing where it is slower than four times
+  /// The middle of `reference` (see kLongestDelaySearch_s) at its rate; nothing where it is slower than four times
   /// the band or lasts less than 10 s: it can then be no clock for others.
   [[nodiscard]] static std::optional<BandLimited> around(const Channel& reference, double band_Hz);
 
@@ -69,7 +69,7 @@ class BandLimited {
   [[nodiscard]] Series smooth_angle(const Channel& channel) const;
   [[nodiscard]] Series angle_derivative(const Channel& channel) const;
 
-  /// The low-pass and the differentiator for a band of their own [Hz], for signals slower than the others.
+  /// The low-pass and the differentiator for another band [Hz], for signals slower than the others.
   [[nodiscard]] std::pair<numerics::FirKernel, numerics::FirKernel> kernels(double band_Hz) const;
 
   [[nodiscard]] std::size_t size() const { return grid_.count; }

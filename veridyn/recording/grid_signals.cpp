@@ -59,9 +59,9 @@ double noise_floor(std::span<const double> values, double rate_Hz) {
 double noise_floor(const Channel& channel) {
   const double rate = channel.rate_Hz();
   if (!(rate > 0.0)) return 0.0;
-  numerics::UniformGrid own = numerics::UniformGrid::covering(channel.span().begin, channel.span().end, 1.0 / rate);
-  own.count = std::min(own.count, kLongestGrid);
-  return noise_floor(on_grid(channel, own, Holes::kOfTheSensor, numerics::Interpolation::kLinear), rate);
+  numerics::UniformGrid grid = numerics::UniformGrid::covering(channel.span().begin, channel.span().end, 1.0 / rate);
+  grid.count = std::min(grid.count, kLongestGrid);
+  return noise_floor(on_grid(channel, grid, Holes::kOfTheSensor, numerics::Interpolation::kLinear), rate);
 }
 
 GivenNoise read_noise(const StudyTable& table, std::span<const StandardChannel> channels) {

@@ -19,7 +19,7 @@ namespace veridyn::recording {
 /// Where a signal's error comes from.
 enum class ErrorKind {
   kExact,      ///< no error worth naming
-  kClassical,  ///< measured = true + error, error independent of the truth: biases least squares, belongs into W
+  kClassical,  ///< measured = true + error, error independent of the true value: biases least squares, belongs into W
   kBerkson,    ///< true = estimate + error, error independent of the estimate: widens the residual, biases nothing
 };
 
@@ -61,7 +61,7 @@ inline constexpr double kHighestGridRate_Hz = 100.0;
 /// The most moments of a grid: more than 27 h at 100 Hz. A recording that needs more has its stamps in another unit.
 inline constexpr std::size_t kLongestGrid = 10'000'000;
 
-/// The rate of the grid for a channel: `chosen_Hz` where it is > 0, else the channel's own, rounded to whole Hz, at
+/// The rate of the grid for a channel: `chosen_Hz` where it is > 0, else that of the channel, rounded to whole Hz, at
 /// most kHighestGridRate_Hz.
 [[nodiscard]] double grid_rate(const Channel& reference, double chosen_Hz = 0.0);
 
@@ -86,14 +86,14 @@ enum class Holes {
 [[nodiscard]] std::vector<double> angle_on_grid(const Channel& channel, const numerics::UniformGrid& grid,
                                                 Holes holes = Holes::kOfHalfASecond);
 
-/// Standard deviation of the white noise of one sample, apart from the tail of the signal itself, which falls at least
+/// Standard deviation of the white noise of one sample, without the tail of the signal itself, which falls at least
 /// with the square of the frequency (as turbulence does): the mean of A/f^2 from f to the Nyquist frequency N is
 /// A/(f N), so the levels S above two frequencies, one twice the other, give the floor, 2 S(2 f) - S(f). Noise that is
 /// not white but falls towards high frequencies would come out negative: the lower of the two levels then.
 /// Uses what lies above 0.2 of `rate_Hz`; 0 for fewer than 32 samples in a row.
 [[nodiscard]] double noise_floor(std::span<const double> values, double rate_Hz);
 
-/// The same for a channel, on a grid of its own rate; 0 for a channel without a rate.
+/// The same for a channel, on a grid of its rate; 0 for a channel without a rate.
 [[nodiscard]] double noise_floor(const Channel& channel);
 
 /// Standard deviations of white noise per sample that the user gives, by standard channel name. Table

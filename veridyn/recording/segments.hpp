@@ -12,7 +12,7 @@
 
 namespace veridyn::recording {
 
-/// What every domain asks of the excited stretches of a recording. Study table `[segments]`; every key is optional.
+/// How every domain chooses excited stretches of a recording. Study table `[segments]`; every key is optional.
 struct SegmentOptions {
   double window_s = 4.0;        ///< `window`: excitation is measured over this long
   double merge_s = 3.0;         ///< `merge`: excited stretches closer than this are one
@@ -29,7 +29,7 @@ struct SegmentOptions {
 struct Segments {
   std::vector<TimeSpan> excited;
   std::vector<TimeSpan> identification;  ///< blocks used to identify
-  std::vector<TimeSpan> holdout;         ///< blocks that identification never sees
+  std::vector<TimeSpan> holdout;         ///< blocks that identification never uses
   bool given = false;                    ///< by the user
   std::string text;                      ///< one sentence for the report
 };
@@ -55,7 +55,7 @@ template <typename Predicate>
   return found;
 }
 
-/// Spans in order, those no further apart than `gap_s` joined.
+/// Spans in order, those with at most `gap_s` between them joined.
 [[nodiscard]] std::vector<TimeSpan> merged(std::span<const TimeSpan> spans, double gap_s);
 
 /// Removes spans shorter than `least_s` by more than a nanosecond, and those without length.
@@ -77,13 +77,13 @@ void drop_shorter(std::vector<TimeSpan>& spans, double least_s);
 /// What becomes of neighbouring blocks of the same use.
 enum class Neighbours {
   kJoined,
-  kSeparate  ///< each gets its own initial state, which keeps simulations short
+  kSeparate  ///< each gets an initial state, which keeps simulations short
 };
 
 /// Assigns every excited stretch in blocks to identification and hold-out, in turn, so that both see the recording's
 /// beginning and end and every manoeuvre that is repeated. The share of the hold-out, counted over the whole recording,
 /// is kept as closely as whole blocks allow; the first block is for identification. Where blocks of different use meet,
-/// both lose the guard; what is left shorter than `least_s` is dropped.
+/// both are shortened by the guard; what is left shorter than `least_s` is dropped.
 void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours neighbours, double least_s);
 
 }  // namespace veridyn::recording

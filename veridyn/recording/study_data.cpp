@@ -119,6 +119,24 @@ Recording read_study_file(const StudyTable& data, const std::filesystem::path& p
   return io::read_recording(path, options);
 }
 
+void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard) {
+  for (const char* key : {"file", "files", "columns"}) {
+    if (data.has(key)) static_cast<void>(data.texts(key));
+  }
+  for (const char* key : {"from", "to"}) static_cast<void>(data.optional_number(key, "s"));
+  const StudyTable time = data.table_or_empty("time");
+  io::CsvOptions options;
+  read_time(time, options);
+  for (const char* key : {"file", "files", "runs", "holdout_runs"}) {
+    if (!data.has(key)) continue;
+    for (const std::filesystem::path& path : data.files(key)) {
+      const std::string name = table_name(path);
+      if (time.has(name)) read_time(time.table(name), options);
+    }
+  }
+  check_channel_map(data.table_or_empty("map"), standard);
+}
+
 Recording read_study_data(const StudyTable& data) {
   if (data.has("file") == data.has("files")) {
     data.fail(data.has("file") ? "files" : "file",

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/recording/channel_map.hpp"
 
 namespace veridyn::recording {
 
@@ -20,11 +22,15 @@ namespace veridyn::recording {
 ///
 /// With several files the channels of each carry its name as a prefix, `IMU.AccX`; the instance that ulog2csv appends
 /// is dropped, so that `vehicle_attitude_0.csv` gives `vehicle_attitude.q[0]` as the log itself would. Keys of other
-/// rooms in `[data]` are left for them.
+/// modules in `[data]` are left for them.
 /// @throws InputError for unreadable files, or a part of the recording that holds nothing.
 [[nodiscard]] Recording read_study_data(const StudyTable& data);
 
-/// One file, read as `[data.time]` says; for domains whose `[data]` names files under keys of their own.
+/// Reads the same keys, and those of `[data.map]`, without opening a file: for commands that have no use for the
+/// recording, so that they refuse a misspelt key too. @throws InputError for values of the wrong kind.
+void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard);
+
+/// One file, read as `[data.time]` says; for domains whose `[data]` names files under other keys.
 [[nodiscard]] Recording read_study_file(const StudyTable& data, const std::filesystem::path& path);
 
 /// Tables hold one row for each stamp of any channel; a cell that is empty is no sample. Channels get the stamps that

@@ -14,6 +14,7 @@
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/aircraft_evidence.hpp"
 #include "veridyn/report/parts/aircraft_sensors.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
@@ -21,20 +22,20 @@ namespace {
 
 using namespace veridyn::aircraft;
 
-std::vector<std::string> meanings(std::span<const CoefficientResult> results, CoefficientVerdict verdict) {
+std::vector<std::string> meanings(std::span<const CoefficientResult> results, estimation::GroupVerdict verdict) {
   std::vector<std::string> names;
   for (const CoefficientResult& r : results) {
-    if (r.verdict == verdict) names.push_back(fmt::format("{} ({})", meaning(r.coefficient), r.name));
+    if (r.verdict == verdict) names.push_back(fmt::format("{} ({})", meaning_of(r.coefficient), r.name));
   }
   return names;
 }
 
 Verdict verdict_of(const FlightAnalysis& analysis) {
   Verdict verdict;
-  const auto good = meanings(analysis.coefficients, CoefficientVerdict::kIdentified);
-  const auto bad = meanings(analysis.coefficients, CoefficientVerdict::kRejected);
-  const auto calm = meanings(analysis.coefficients, CoefficientVerdict::kNotExcited);
-  const auto skipped = meanings(analysis.coefficients, CoefficientVerdict::kSkipped);
+  const auto good = meanings(analysis.coefficients, estimation::GroupVerdict::kIdentified);
+  const auto bad = meanings(analysis.coefficients, estimation::GroupVerdict::kRejected);
+  const auto calm = meanings(analysis.coefficients, estimation::GroupVerdict::kNotExcited);
+  const auto skipped = meanings(analysis.coefficients, estimation::GroupVerdict::kSkipped);
   if (good.empty()) {
     verdict.level = Level::kBad;
     verdict.word = bad.empty() ? "Not excited" : "Rejected";
@@ -71,7 +72,7 @@ std::vector<Fact> facts_of(const FlightStudy& study, const FlightAnalysis& analy
                                 : std::filesystem::path(study.mapped.recording.source).filename().string()},
       {"Log", study.mapped.log_kind},
       {"Mass", fmt::format("{:.4g} kg", study.subject.mass)}};
-  const TimeSpan span = study.mapped.recording.span();
+  const TimeSpan span = analysis.aligned.recording.span();
   facts.push_back({"Recorded", fmt::format("{:.0f} s", span.duration())});
   double airborne = 0.0;
   for (const TimeSpan& s : analysis.segments.airborne) airborne += s.duration();
@@ -95,7 +96,7 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
       {"Pass band", fmt::format("0 to {:.1f} Hz, zero phase", s.filter.pass_Hz)},
       {"Hold-out", fmt::format("{:.0f} % of the excited time, in blocks of {:.0f} s", 100.0 * study.segments.holdout,
                                study.segments.block_s)},
-      {"Estimator", study.identify.method}};
+      {"Estimator", std::string(study.identify.method ? estimation::to_string(*study.identify.method) : "auto")}};
   for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
     const GridSignal& signal = s[which];
     const bool angle = which != FlightSignal::kAz;
@@ -121,7 +122,7 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
 
 Document identification_report(const FlightStudy& study, const FlightAnalysis& analysis,
                                const AircraftReportContext& context) {
-  const bool given = context.verb == "validate";
+  const bool given = context.command == "validate";
   Document document =
       started_document(fmt::format("{}: aerodynamic model", study.subject.name),
                        given ? "A given estimate tried on this flight" : "Identified from flight", context.program);
@@ -131,8 +132,8 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   add(coefficients_section(analysis));
-  add(parameters_section(study, analysis), !given);
-  add(methods_section(study, analysis), !given);
+  add(parameters_section(analysis, ""), !given);
+  add(methods_section(analysis), !given);
   add(other_estimators_section(analysis));
   add(structure_section(analysis));
   add(validation_section(analysis));
@@ -145,7 +146,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(uncertainty_section(analysis.uncertainty), analysis.uncertainty.available());
   add(sensors_section(study, analysis));
   add_warnings(document, analysis.estimate.warnings);
-  add(rejected_section(study, analysis));
+  add(rejected_section(analysis));
   add(method_section(study, analysis));
   return document;
 }

@@ -5,7 +5,7 @@
 
 namespace veridyn::report {
 
-/// A row of `veridyn reproduce aircraft`: published and own parameters side by side, and its picture.
+/// A row of `veridyn reproduce aircraft`: published and reproduced parameters side by side, and its picture.
 [[nodiscard]] ReproducedRow reproduced_row(const aircraft::Reproduction& reproduction);
 
 }  // namespace veridyn::report

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
-#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
@@ -22,14 +23,15 @@ Verdict verdict(const VehicleAnalysis& a) {
   Verdict v;
   const VehicleIdentification& id = a.identification;
   switch (id.verdict) {
-    case VehicleVerdict::kIdentified:
+    case estimation::GroupVerdict::kIdentified:
       v.level = id.warnings.empty() ? Level::kGood : Level::kCaution;
       break;
-    case VehicleVerdict::kNotExcited:
+    case estimation::GroupVerdict::kNotExcited:
       v.level = Level::kCaution;
       v.word = "Not excited";
       break;
-    case VehicleVerdict::kRejected:
+    case estimation::GroupVerdict::kRejected:
+    case estimation::GroupVerdict::kSkipped:
       v.level = Level::kBad;
       break;
   }
@@ -51,77 +53,6 @@ std::vector<Fact> facts(const VehicleStudy& study, const VehicleAnalysis& a) {
   if (const VehicleEstimate* best = a.identification.best())
     list.push_back({"Method", std::string(to_string(best->method))});
   return list;
-}
-
-Table parameter_table(const VehicleEstimate& estimate, const DriveReportContext& context) {
-  Table table{.title = fmt::format("Parameters by {}", to_string(estimate.method)),
-              .caption =
-                  "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
-                  "bars where [identify.uncertainty] gives it.",
-              .columns = parameter_columns(!context.truth.empty())};
-  for (const estimation::ParameterEstimate& p : estimate.parameters) {
-    const ReadableNumber unit = readable(1.0, p.unit);
-    Row row = parameter_row({p.name, p.value, p.sigma, p.low95, p.high95, p.unit, p.status}, unit.value, unit.unit);
-    if (!context.truth.empty()) row.cells.push_back(number_cell(context.true_value(p.name) * unit.value));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-IntervalPlot interval_plot(const VehicleIdentification& id, const DriveReportContext& context) {
-  IntervalPlot plot{.title = "Estimates of all methods",
-                    .caption =
-                        "Bars are 95 % intervals. Methods that disagree by more than their bars contradict each "
-                        "other.",
-                    .reference_name = "truth"};
-  for (const VehicleEstimate& e : id.estimates)
-    if (e.usable) plot.methods.emplace_back(to_string(e.method));
-  for (const char* name : {"C_f", "C_r", "I_z", "understeer_gradient"}) {
-    IntervalRow row{.name = name};
-    double factor = 1.0;
-    for (const VehicleEstimate& e : id.estimates) {
-      if (!e.usable) continue;
-      const estimation::ParameterEstimate* p = e.find(name);
-      if (p == nullptr) {
-        row.estimates.push_back({kNaN, kNaN, kNaN});
-        continue;
-      }
-      factor = readable(1.0, p->unit).value;
-      row.unit = readable(1.0, p->unit).unit;
-      row.estimates.push_back({p->value * factor, p->low95 * factor, p->high95 * factor, status_of(p->status)});
-    }
-    const double truth = context.true_value(name);
-    if (std::isfinite(truth)) row.reference = truth * factor;
-    if (!row.estimates.empty()) plot.rows.push_back(std::move(row));
-  }
-  return plot;
-}
-
-Table check_table(const VehicleIdentification& id) {
-  Table table{
-      .title = "Checks",
-      .columns = {
-          {.name = "check", .align = Align::kLeft}, {.name = ""}, {.name = "what was seen", .align = Align::kLeft}}};
-  for (const estimation::HonestyCheck& c : id.checks) table.rows.push_back({.cells = check_cells(c, Status::kBad)});
-  return table;
-}
-
-Table fit_table(const DriveValidation& v, const std::string& title) {
-  Table table{.title = title,
-              .columns = {{.name = "quantity", .align = Align::kLeft},
-                          {.name = "MAE"},
-                          {.name = "RMSE"},
-                          {.name = "unit", .align = Align::kLeft},
-                          {.name = "R2"},
-                          {.name = "Theil"},
-                          {.name = "residual lag 1"}}};
-  for (const PredictedDriveQuantity& q : v.quantities) {
-    const ReadableNumber unit = readable(1.0, q.unit);
-    table.rows.push_back(
-        {.cells = {text_cell(q.name), number_cell(q.fit.mae * unit.value), number_cell(q.fit.rmse * unit.value),
-                   text_cell(unit.unit), number_cell(q.fit.r2), number_cell(q.fit.theil), number_cell(q.lag1, 2)}});
-  }
-  return table;
 }
 
 /// A quantity of all stretches of a prediction, one after the other, with a break between stretches.
@@ -190,7 +121,7 @@ TimeSeries prediction_figure(const DriveValidation& v, const std::string& title)
 }
 
 XYPlot path_plot(const DriveValidation& v) {
-  XYPlot plot{.title = "Paths of the stretches not seen",
+  XYPlot plot{.title = "Paths of the held-out stretches",
               .caption = "Each from its own beginning, heading along x there.",
               .x = {"x", "m"},
               .y = {"y", "m"},
@@ -307,22 +238,16 @@ Table origin_table(const VehicleStudy& study) {
   return table;
 }
 
-Section parameters_section(const VehicleIdentification& id, const DriveReportContext& context) {
-  Section section{.title = "Parameters"};
-  if (const VehicleEstimate* best = id.best()) section.blocks.emplace_back(parameter_table(*best, context));
-  IntervalPlot plot = interval_plot(id, context);
-  if (plot.methods.size() > 1) section.blocks.emplace_back(std::move(plot));
-  for (const VehicleEstimate& e : id.estimates) {
-    if (!e.usable)
-      section.blocks.emplace_back(Paragraph{fmt::format("{}: {}", to_string(e.method), e.message), Tone::kNote});
-  }
-  if (!id.checks.empty()) section.blocks.emplace_back(check_table(id));
+Section checks_section(const VehicleAnalysis& analysis) {
+  Section section{.title = "Checks", .id = "checks", .folded = true};
+  Table table = evidence_table(analysis);
+  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   return section;
 }
 
 Section validation_section(const DriveValidation& validation) {
-  Section section{.title = "Validation on data not seen"};
-  section.blocks.emplace_back(fit_table(validation, "Prediction of the hold-out"));
+  Section section{.title = "Validation on held-out data"};
+  section.blocks.emplace_back(prediction_table(validation.quantities, "Prediction of the hold-out"));
   section.blocks.emplace_back(prediction_figure(validation, "Measured and predicted, hold-out"));
   XYPlot path = path_plot(validation);
   if (!path.series.empty()) section.blocks.emplace_back(std::move(path));
@@ -331,7 +256,7 @@ Section validation_section(const DriveValidation& validation) {
 
 Section fit_section(const DriveValidation& fit) {
   Section section{.title = "Fit", .folded = true};
-  section.blocks.emplace_back(fit_table(fit, "On the data of the identification"));
+  section.blocks.emplace_back(prediction_table(fit.quantities, "On the data of the identification"));
   section.blocks.emplace_back(prediction_figure(fit, "Measured and predicted, identification"));
   return section;
 }
@@ -357,12 +282,6 @@ Section data_section(const VehicleStudy& study, const VehicleAnalysis& analysis)
 
 }  // namespace
 
-double DriveReportContext::true_value(std::string_view name) const {
-  for (const auto& [key, value] : truth)
-    if (key == name) return value;
-  return kNaN;
-}
-
 std::optional<double> response_speed(std::span<const double> speed) {
   for (const double least : {3.0, 0.1}) {
     double sum = 0.0;
@@ -382,14 +301,23 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       context.program);
   document.verdict = verdict(analysis);
   document.facts = facts(study, analysis);
-  document.sections.push_back(parameters_section(id, context));
-  if (!id.validation.stretches.empty()) document.sections.push_back(validation_section(id.validation));
+  const auto add = [&](Section section) {
+    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+  };
+  add(parameters_section(
+      analysis,
+      "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
+      "bars where [identify.uncertainty] gives it."));
+  if (!id.validation.stretches.empty()) add(validation_section(id.validation));
+  add(methods_section(analysis));
+  add(checks_section(analysis));
   if (!id.fit.stretches.empty()) document.sections.push_back(fit_section(id.fit));
   const VehicleParameters<double>& p = id.best() != nullptr ? id.identified : study.vehicle;
   document.sections.push_back(cornering_section(analysis, p));
   const std::optional<double> speed = response_speed(analysis.signals[DriveSignal::kSpeed].value);
   if (id.best() != nullptr && speed) document.sections.push_back(response_section(p, *speed));
   document.sections.push_back(data_section(study, analysis));
+  add(rejected_section(analysis));
   add_warnings(document, id.warnings);
   return document;
 }

@@ -15,12 +15,7 @@ namespace veridyn::report {
 /// What a drive report is to say besides the analysis.
 struct DriveReportContext {
   std::string program;
-  /// True values by parameter name, where the drive was simulated.
-  std::vector<std::pair<std::string, double>> truth = {};
-  bool validation_only = false;  ///< an estimate of other data was tried
-
-  /// NaN where it is not known.
-  [[nodiscard]] double true_value(std::string_view name) const;
+  bool validation_only = false;  ///< an estimate of other data was validated
 };
 
 /// The speed at which a drive's frequency response is shown [m/s]: the mean of what was driven faster than 3 m/s; of a
@@ -28,7 +23,7 @@ struct DriveReportContext {
 [[nodiscard]] std::optional<double> response_speed(std::span<const double> speed);
 
 /// The report of `veridyn identify` (and `validate`) of a vehicle: verdict, parameters by method with intervals,
-/// measured and predicted motion on data not seen, path, g-g diagram, understeer diagram, frequency response.
+/// measured and predicted motion on held-out data, path, g-g diagram, understeer diagram, frequency response.
 [[nodiscard]] Document drive_report(const vehicle::VehicleStudy& study, const vehicle::VehicleAnalysis& analysis,
                                     const DriveReportContext& context);
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -18,7 +20,7 @@ using namespace veridyn::vehicle;
 
 std::string name_of(TrackedAxle axle) { return std::string(kTrackedAxleNames[static_cast<std::size_t>(axle)]); }
 
-TimeSeries axle_figure(const DriveTracker& tracker, TrackedAxle axle, const DriveReportContext& context) {
+TimeSeries axle_figure(const DriveTracker& tracker, TrackedAxle axle, std::optional<double> truth) {
   const DriveTrackHistory& h = tracker.history(axle);
   const std::string name = name_of(axle);
   const ReadableNumber unit = readable(1.0, std::string(kTrackedAxleUnits[static_cast<std::size_t>(axle)]));
@@ -28,10 +30,9 @@ TimeSeries axle_figure(const DriveTracker& tracker, TrackedAxle axle, const Driv
   Panel value{.label = name, .unit = unit.unit};
   const std::vector<double> shown = scaled(h.value, unit.value);
   value.lines.push_back(followed_line(shown, scaled(h.sigma, unit.value), std::max(std::abs(shown.back()), 1e-12)));
-  const double truth = context.true_value(name);
-  if (std::isfinite(truth)) {
+  if (truth) {
     value.lines.push_back({.name = "truth at the start",
-                           .y = std::vector<double>(h.time.size(), truth * unit.value),
+                           .y = std::vector<double>(h.time.size(), *truth * unit.value),
                            .role = Role::kReference});
   }
   figure.panels.push_back(std::move(value));
@@ -79,7 +80,10 @@ Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& dr
   Section section{.title = "Over time"};
   for (std::size_t i = 0; i < kTrackedAxles; ++i) {
     const auto axle = static_cast<TrackedAxle>(i);
-    if (!tracker->history(axle).time.empty()) section.blocks.emplace_back(axle_figure(*tracker, axle, context));
+    if (tracker->history(axle).time.empty()) continue;
+    const auto truth = study.truth.find(name_of(axle));
+    section.blocks.emplace_back(
+        axle_figure(*tracker, axle, truth == study.truth.end() ? std::nullopt : std::optional(truth->second)));
   }
   document.sections.push_back(std::move(section));
   add_notes(document, drive.notes());

@@ -17,9 +17,10 @@ namespace {
 
 using namespace veridyn::muscle;
 
-/// More lines than this in one panel say nothing: the strongest muscles, the coordinates that move most.
+/// More lines than this in one panel cannot be read: the strongest muscles, the coordinates that move most.
 constexpr std::size_t kMostLines = 12;
 
+/// View of a study and its result, both of which must outlive it, and which muscles and coordinates figures show.
 struct Shown {
   const MuscleStudy& study;
   const MuscleResult& result;
@@ -41,7 +42,7 @@ std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t inde
 
 bool any(const estimation::RowMatrix& matrix) { return matrix.size() > 0 && !matrix.isZero(0.0); }
 
-/// The `most` indices of the largest sizes, in their own order.
+/// The `most` indices of the largest sizes, ascending.
 std::vector<std::size_t> largest(const std::vector<double>& size, std::size_t most) {
   std::vector<std::size_t> index(size.size());
   std::iota(index.begin(), index.end(), std::size_t{0});
@@ -92,7 +93,7 @@ std::string paths_text(const MusculoskeletalSystem& system) {
     case PathSource::kAsOpenSim:
       break;
   }
-  return "OpenSim's own wrapping, its jumps included";
+  return "OpenSim's wrapping, jumps included";
 }
 
 std::vector<Fact> facts(const Shown& shown) {
@@ -196,14 +197,14 @@ Verdict verdict(const Shown& shown) {
 TimeSeries motion_figure(const Shown& shown) {
   const MuscleTrajectory& t = shown.result.trajectory;
   TimeSeries figure{.title = "Motion", .samples = t.time};
-  const bool wish = shown.study.method == MuscleMethod::kComputedMuscleControl;
-  if (wish) figure.caption = "Dashed: the desired motion.";
+  const bool follows = shown.study.method == MuscleMethod::kComputedMuscleControl;
+  if (follows) figure.caption = "Dashed: the desired motion.";
   for (const std::size_t c : shown.coordinates) {
     const Coordinate& k = shown.model.coordinates[c];
     Panel panel{.label = k.name, .unit = unit_name(k)};
-    if (wish)
+    if (follows)
       panel.lines.push_back(
-          {.name = "desired", .y = column(shown.result.wished, c, unit_of(k)), .role = Role::kReference});
+          {.name = "desired", .y = column(shown.result.desired, c, unit_of(k)), .role = Role::kReference});
     panel.lines.push_back({.name = "motion", .y = column(t.q, c, unit_of(k))});
     figure.panels.push_back(std::move(panel));
   }
@@ -224,7 +225,7 @@ TimeSeries force_figure(const Shown& shown) {
   const bool required = shown.result.generalized_force.size() > 0, reserve = any(t.reserve);
   figure.caption = required && reserve
                        ? "Required: by gravity and inertia. Reserve: what the muscles do not give of it."
-                   : required ? "What gravity and inertia ask for; constraints are not heeded."
+                   : required ? "What gravity and inertia require, without regard to constraints."
                               : "What reserve actuators add to the muscles.";
   for (std::size_t c = 0; c < shown.model.coordinates.size() && figure.panels.size() < kMostLines; ++c) {
     const Coordinate& k = shown.model.coordinates[c];
@@ -356,7 +357,7 @@ std::vector<std::string> notes(const Shown& shown) {
                                      [](const WrapObject& w) { return w.shape == WrapShape::kEllipsoid; });
   if (ellipsoid && shown.study.system->path_source() != PathSource::kAsOpenSim) {
     list.emplace_back(
-        "Paths wrap over ellipsoids. OpenSim's own lengths jump at some poses there, by centimetres where its path "
+        "Paths wrap over ellipsoids. OpenSim's lengths jump at some poses there, by centimetres where its path "
         "takes "
         "the other side of the object; the paths here stay continuous, and their moment arms are -dL/dq. paths = "
         "\"opensim\" gives OpenSim's, for comparison.");

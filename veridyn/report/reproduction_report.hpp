@@ -9,7 +9,7 @@
 
 namespace veridyn::report {
 
-/// A published result beside ours, whatever the domain.
+/// A published result alongside ours, whatever the domain.
 struct ReproducedRow {
   std::string title = {};
   std::string finding = {};        ///< what was published, in words

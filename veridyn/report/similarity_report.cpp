@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/vehicle_figures.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
@@ -19,9 +20,9 @@ std::string percent(double value) {
   return std::abs(value) < 1e-9 ? "0 %" : fmt::format("{:+.3g} %", value);
 }
 
-Row group_row(const GroupComparison& g, double tolerance, bool apart = false) {
+Row group_row(const GroupComparison& g, double tolerance, bool separate = false) {
   const bool off = !(std::abs(g.mismatch_percent) <= tolerance);
-  const Status status = off ? (apart ? Status::kCaution : Status::kBad) : Status::kGood;
+  const Status status = off ? (separate ? Status::kCaution : Status::kBad) : Status::kGood;
   return {.cells = {text_cell(g.parameter), text_cell(g.formula), number_cell(g.prototype), number_cell(g.model),
                     status_cell(status, percent(g.mismatch_percent)), text_cell(off ? g.affects : "")},
           .status = off ? status : Status::kNone};

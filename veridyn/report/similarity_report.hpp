@@ -12,9 +12,11 @@ namespace veridyn::report {
 [[nodiscard]] Document similarity_report(const vehicle::ScaleStudy& study, const vehicle::ScaleAnalysis& analysis,
                                          const std::string& program);
 
-/// The sections of that report which other reports show too.
+/// Drives of prototype, twin and given model compared number by number; also part of other reports.
 [[nodiscard]] Section difference_section(const vehicle::ScaleAnalysis& analysis);
+/// The dimensionless groups and by how much they differ; also part of other reports.
 [[nodiscard]] Section group_section(const vehicle::ScaleAnalysis& analysis);
+/// The drives laid over each other, in similar units; also part of other reports.
 [[nodiscard]] std::vector<Section> overlay_sections(const vehicle::ScaleStudy& study,
                                                     const vehicle::ScaleAnalysis& analysis);
 

@@ -80,7 +80,7 @@ Table parameter_table(const FlightStudy& study, const FlightTracker& tracker) {
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     if (!c.tracker) continue;
     for (std::size_t i = 0; i < c.model.size(); ++i) {
-      const estimation::EstimatedParameter* p = estimate.find(c.tracker->names()[i]);
+      const estimation::Parameter* p = estimate.find(c.tracker->names()[i]);
       Row row = parameter_row(*p, 1.0, p->unit);
       if (study.true_subject) {
         const auto truth =
@@ -128,7 +128,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
                     {"Method", fmt::format("{}, {} forgetting", estimation::to_string(options.method),
                                            forgetting.variable ? "variable" : "constant")},
                     {"Rows", fmt::format("{} at {:.1f} Hz", tracker.rows(), rate)},
-                    {"Air data", flight.air_data()},
+                    {"Air data", std::string(to_string(flight.air_data()))},
                     {"Memory", fmt::format("lambda {:.6f}: a sample counts 5 % after {:.1f} s", forgetting.lambda,
                                            estimation::cut_off_time(forgetting.square_weight(), rate))}};
   if (forgetting.variable) {

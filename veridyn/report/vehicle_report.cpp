@@ -8,6 +8,7 @@
 #include <complex>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/vehicle_figures.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -123,24 +124,6 @@ Table mode_table(const std::string& title, const std::vector<AnyMode>& modes) {
 }
 
 }  // namespace
-
-ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
-  const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
-  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * kPi), "Hz"};
-  static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
-      {"rad", "deg", 1.0 / kDegree},
-      {"rad/s", "deg/s", 1.0 / kDegree},
-      {"rad/s^2", "deg/s^2", 1.0 / kDegree},
-      {"s rad", "s deg", 1.0 / kDegree},
-      {"rad s^2/m", "deg/g", kGravity / kDegree},
-      {"rad/(m/s^2)", "deg/g", kGravity / kDegree},
-      {"m/s^2/rad", "m/s^2/deg", kDegree},
-      {"m/(s^2 rad)", "m/s^2/deg", kDegree},
-  }};
-  for (const auto& [si, shown, factor] : kReadable)
-    if (unit == si) return {value * factor, shown};
-  return {value, unit == "1" ? "" : unit};
-}
 
 Table vehicle_table(const VehicleParameters<double>& parameters) {
   Table table{.title = "Numbers of the vehicle"};

@@ -15,20 +15,13 @@ namespace veridyn::report {
 /// The numbers of a vehicle as a table, with what was assumed.
 [[nodiscard]] Table vehicle_table(const vehicle::VehicleParameters<double>& parameters);
 
-/// Gain and phase of yaw rate, lateral acceleration and sideslip to steer, one line a vehicle.
+/// A linear bicycle as a line of a figure.
 struct NamedBicycle {
   std::string name;
   vehicle::LinearBicycle<double> bicycle;
   Role role = Role::kEstimate;
 };
+/// Gain and phase of yaw rate, lateral acceleration and sideslip to steer, one line per vehicle.
 [[nodiscard]] std::vector<Block> frequency_response_figures(std::span<const NamedBicycle> bicycles);
-
-/// A number in the unit that people read: angles in deg, understeer gradients in deg/g, and what its name calls a
-/// frequency or bandwidth in Hz.
-struct ReadableNumber {
-  double value = 0.0;
-  std::string unit;
-};
-[[nodiscard]] ReadableNumber readable(double value, const std::string& unit, std::string_view name = {});
 
 }  // namespace veridyn::report

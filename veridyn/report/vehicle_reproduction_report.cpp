@@ -41,7 +41,7 @@ ReproducedRow reproduced_row(const VehicleReproduction& r) {
   for (Block& block : difference_section(r.analysis).blocks) row.blocks.push_back(std::move(block));
   for (Section& section : overlay_sections(r.study, r.analysis))
     for (Block& block : section.blocks) row.blocks.push_back(std::move(block));
-  // Rows zoom apart from each other: their time axes differ.
+  // Rows zoom independently: their time axes differ.
   for (Block& block : row.blocks)
     if (auto* series = std::get_if<TimeSeries>(&block)) series->axis = r.title;
   return row;

@@ -5,8 +5,8 @@
 
 namespace veridyn::report {
 
-/// A row of `veridyn reproduce vehicle`: printed numbers beside ours, the table of groups, and all curves of prototype
-/// and model laid over each other after scaling.
+/// A row of `veridyn reproduce vehicle`: printed numbers alongside ours, the table of groups, and all curves of
+/// prototype and model laid over each other after scaling.
 [[nodiscard]] ReproducedRow reproduced_row(const vehicle::VehicleReproduction& reproduction);
 
 }  // namespace veridyn::report

@@ -36,9 +36,9 @@ MotionDifference difference(const std::string& name, const std::string& unit, co
 
 }  // namespace
 
-ScaleStudy read_scale_study(const StudyTable& root) {
+ScaleStudy read_scale_study(const StudyTable& root, const Progress& progress) {
   ScaleStudy study;
-  study.simulation = read_simulation_study(root);
+  study.simulation = read_simulation_study(root, progress);
   const double gravity = study.simulation.four_wheel.gravity;
   study.prototype = subject_of(study.simulation.vehicle, study.simulation.simulation.speed, gravity);
   if (study.simulation.manoeuvre.amplitude != 0.0) study.prototype.steer = study.simulation.manoeuvre.amplitude;
@@ -77,7 +77,7 @@ ScaleStudy read_scale_study(const StudyTable& root) {
   return study;
 }
 
-VehicleTrajectory simulate_scaled(SimulationStudy& study, const Vehicle& vehicle, const ScaleFactors& factors,
+VehicleTrajectory simulate_scaled(const SimulationStudy& study, const Vehicle& vehicle, const ScaleFactors& factors,
                                   double gravity, Progress& progress) {
   SimulationOptions simulation = study.simulation;
   simulation.duration *= factors.time();
@@ -126,12 +126,12 @@ std::vector<std::string> ScaleAnalysis::ended_early() const {
   std::vector<std::string> texts;
   if (prototype.end != SimulationEnd::kCompleted) texts.push_back("prototype: " + prototype.message());
   for (const ScaledRun& run : runs) {
-    if (run.own.end != SimulationEnd::kCompleted) texts.push_back(run.name + ": " + run.own.message());
+    if (run.trajectory.end != SimulationEnd::kCompleted) texts.push_back(run.name + ": " + run.trajectory.message());
   }
   return texts;
 }
 
-ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
+ScaleAnalysis run_scale_study(const ScaleStudy& study, Progress& progress) {
   ScaleAnalysis analysis;
   analysis.scaled = scale(study.prototype, study.request);
   const ScaleFactors& factors = analysis.scaled.factors;
@@ -146,10 +146,10 @@ ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress) {
     if (analysis.prototype.end == SimulationEnd::kInterrupted) return;
     ScaledRun run;
     run.name = name;
-    run.own = simulate_scaled(study.simulation, vehicle, f, g, progress);
-    run.rescaled = scaled(run.own, f.inverse());
+    run.trajectory = simulate_scaled(study.simulation, vehicle, f, g, progress);
+    run.rescaled = scaled(run.trajectory, f.inverse());
     run.differences = motion_differences(analysis.prototype, run.rescaled);
-    analysis.interrupted = analysis.interrupted || run.own.end == SimulationEnd::kInterrupted;
+    analysis.interrupted = analysis.interrupted || run.trajectory.end == SimulationEnd::kInterrupted;
     analysis.runs.push_back(std::move(run));
   };
   analysis.interrupted = analysis.prototype.end == SimulationEnd::kInterrupted;

@@ -15,7 +15,7 @@ struct ScaleStudy {
   SimilaritySubject prototype;
   ScaleRequest request;
   bool requested = true;         ///< false: only the given model is checked, the twin is of its length, mass, speed
-  std::optional<Vehicle> given;  ///< a model that somebody built or planned
+  std::optional<Vehicle> given;  ///< a model that is built or planned
   SimilaritySubject given_subject;
   std::vector<std::string> repeating;
 };
@@ -35,8 +35,8 @@ struct ScaleStudy {
 ///     value = "0.3 m"                # of the prototype
 ///     model = "0.06 m"               # of the given model; exactly similar when left out
 ///
-/// @throws InputError with file, line and key.
-[[nodiscard]] ScaleStudy read_scale_study(const StudyTable& root);
+/// `progress` as there. @throws InputError with file, line and key.
+[[nodiscard]] ScaleStudy read_scale_study(const StudyTable& root, const Progress& progress);
 
 /// How far a model's motion is from the prototype's, brought to the prototype's size.
 struct MotionDifference {
@@ -49,18 +49,19 @@ struct MotionDifference {
 /// One of the compared drives.
 struct ScaledRun {
   std::string name;
-  VehicleTrajectory own;       ///< in its own size
-  VehicleTrajectory rescaled;  ///< in the prototype's
+  VehicleTrajectory trajectory;  ///< in the model's size
+  VehicleTrajectory rescaled;    ///< in the prototype's
   std::vector<MotionDifference> differences;
 };
 
+/// A scaled vehicle, how similar it is, and how prototype and models drive.
 struct ScaleAnalysis {
   ScaledVehicle scaled;  ///< the exactly similar model
   Vehicle twin;          ///< the same as a vehicle with tyres
   SimilarityReport twin_report;
   std::optional<SimilarityReport> given_report;
   VehicleTrajectory prototype;
-  /// The twin under the similar gravity (must be alike to rounding), the twin under the prototype's gravity, and the
+  /// The twin under the similar gravity (must be equal to rounding), the twin under the prototype's gravity, and the
   /// given model under it.
   std::vector<ScaledRun> runs;
   bool interrupted = false;
@@ -72,14 +73,14 @@ struct ScaleAnalysis {
 };
 
 /// Scales, compares and drives. @throws InputError as `compare` and `simulate` do.
-[[nodiscard]] ScaleAnalysis run_scale_study(ScaleStudy& study, Progress& progress);
+[[nodiscard]] ScaleAnalysis run_scale_study(const ScaleStudy& study, Progress& progress);
 
 /// Differences of all quantities that both have; both on the prototype's time.
 [[nodiscard]] std::vector<MotionDifference> motion_differences(const VehicleTrajectory& prototype,
                                                                const VehicleTrajectory& rescaled);
 
-/// Drives a vehicle through a study's manoeuvre, as the model of `factors` would (1, 1, 1: the study's own size).
-[[nodiscard]] VehicleTrajectory simulate_scaled(SimulationStudy& study, const Vehicle& vehicle,
+/// Drives a vehicle through a study's manoeuvre, as the model of `factors` would (1, 1, 1: the size of the study).
+[[nodiscard]] VehicleTrajectory simulate_scaled(const SimulationStudy& study, const Vehicle& vehicle,
                                                 const ScaleFactors& factors, double gravity, Progress& progress);
 
 }  // namespace veridyn::vehicle

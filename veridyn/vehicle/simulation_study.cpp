@@ -1,5 +1,7 @@
 #include "veridyn/vehicle/simulation_study.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <variant>
 
@@ -70,7 +72,7 @@ std::vector<GripChange> read_grip(const StudyTable& drive) {
 
 std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
 
-SimulationStudy read_simulation_study(const StudyTable& root) {
+SimulationStudy read_simulation_study(const StudyTable& root, const Progress& progress) {
   SimulationStudy study;
   study.title = root.text_or("title", "drive");
   const long long seed = root.integer_or("seed", 1);
@@ -97,7 +99,7 @@ SimulationStudy read_simulation_study(const StudyTable& root) {
   const auto [C_f, C_r] = cornering_stiffnesses(study.vehicle, study.four_wheel.gravity);
   context.C_f = C_f;
   context.C_r = C_r;
-  study.manoeuvre = read_manoeuvre(drive, context);
+  study.manoeuvre = read_manoeuvre(drive, context, progress);
   s.duration = drive.positive_or("duration", "s", study.manoeuvre.default_duration);
   s.step = drive.positive_or("step", "s", s.step);
   s.output_step = drive.positive_or("output_step", "s", s.output_step);
@@ -124,7 +126,7 @@ VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model, const
   const auto geometry = model == VehicleModelKind::kBicycle ? BicycleGeometry::kExact : BicycleGeometry::kSmallAngles;
   return std::visit(
       [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) {
-        // The model of the beginning and those of the changes, made and driven alike.
+        // The model of the beginning and those of the changes, made and driven in the same way.
         const auto drive = [&](const auto& make, const auto& run) {
           using Model = decltype(make(tyres));
           std::vector<ModelChange<Model>> changes;
@@ -153,7 +155,7 @@ VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model, const
       vehicle.tyres);
 }
 
-SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress) {
+SimulationRun run_simulation_study(const SimulationStudy& study, Progress& progress) {
   SimulationRun run;
   const VehicleParameters<double>& p = study.vehicle.parameters;
   const double gravity = study.four_wheel.gravity;

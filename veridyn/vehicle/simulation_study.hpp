@@ -23,6 +23,7 @@
 
 namespace veridyn::vehicle {
 
+/// The models that a study can drive.
 enum class VehicleModelKind {
   kLinearBicycle,  ///< bicycle, small angles
   kBicycle,        ///< bicycle, exact geometry
@@ -60,8 +61,8 @@ struct SimulationStudy {
 ///     [drive]
 ///     model = "four-wheel"           # "bicycle", "linear bicycle"
 ///     speed = "100 km/h"             # kept, unless `longitudinal`; a built-in vehicle has one
-///     manoeuvre = "step steer"       # and its own keys: see read_manoeuvre
-///     duration = 20                  # [s]; the manoeuvre's own when left out
+///     manoeuvre = "step steer"       # and its keys: see read_manoeuvre
+///     duration = 20                  # [s]; that of the manoeuvre when left out
 ///     step = 0.001                   # of the integration [s]
 ///     output_step = 0.01             # of the results [s]
 ///     gravity = 9.80665              # [m/s^2]
@@ -76,7 +77,8 @@ struct SimulationStudy {
 ///
 /// Tables of the analysis (`[data]`, `[identify]` ...) are left to others.
 /// @throws InputError with file, line and key.
-[[nodiscard]] SimulationStudy read_simulation_study(const StudyTable& root);
+/// An interrupted `progress` ends the preparation of a random steer early.
+[[nodiscard]] SimulationStudy read_simulation_study(const StudyTable& root, const Progress& progress);
 
 /// Drives a vehicle with any of the models. @throws InputError for a step too long or controls out of range.
 [[nodiscard]] VehicleTrajectory simulate(const Vehicle& vehicle, VehicleModelKind model,
@@ -95,7 +97,7 @@ struct SimulationRun {
   std::vector<FourWheelMode> vehicle_modes;  ///< of the four-wheel model, where it was driven
 };
 
-/// Drives. @throws InputError for a step too long or controls out of range.
-[[nodiscard]] SimulationRun run_simulation_study(SimulationStudy& study, Progress& progress);
+/// Drives; the study's driver begins again. @throws InputError for a step too long or controls out of range.
+[[nodiscard]] SimulationRun run_simulation_study(const SimulationStudy& study, Progress& progress);
 
 }  // namespace veridyn::vehicle

@@ -101,7 +101,7 @@ estimation::Estimate TrackedDrive::estimate() const {
   return out;
 }
 
-DriveTracking track(VehicleStudy& study, Progress& progress) {
+DriveTracking track(const VehicleStudy& study, Progress& progress) {
   progress.stage("tracking");
   DriveTracking out{TrackedDrive(study), false};
   static_cast<void>(out.drive.advance(study.log.mapped, true, progress));

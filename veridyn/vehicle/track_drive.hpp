@@ -11,10 +11,11 @@
 
 namespace veridyn::vehicle {
 
-/// A drive followed on line, from a whole recording or one that is still being written: both ways take the same samples
+/// A drive tracked on line, from a whole recording or one that is still being written: both ways take the same samples
 /// of the same grid (whole multiples of its step), so the result does not depend on the pieces.
 class TrackedDrive {
  public:
+  /// @throws InputError when the estimate to begin with (`[track] estimate`) cannot be read
   explicit TrackedDrive(const VehicleStudy& study);
 
   /// Takes what the recording holds beyond what was taken before. `finished`: nothing will follow.
@@ -23,7 +24,9 @@ class TrackedDrive {
 
   /// Null before the first second of the drive: noise and rate are learned from it.
   [[nodiscard]] const DriveTracker* tracker() const { return tracker_ ? &*tracker_ : nullptr; }
+  /// What was assumed of the signals.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  /// As DriveTracker::estimate; without parameters before the first second of the drive.
   [[nodiscard]] estimation::Estimate estimate() const;
 
  private:
@@ -37,13 +40,13 @@ class TrackedDrive {
   std::vector<std::string> notes_;
 };
 
-/// What became of a drive that was followed.
+/// A tracked drive.
 struct DriveTracking {
   TrackedDrive drive;
   bool interrupted = false;
 };
-/// Follows the study's recording from its beginning to its end. @throws InputError when channels are missing
-[[nodiscard]] DriveTracking track(VehicleStudy& study, Progress& progress);
+/// Tracks the study's recording from its beginning to its end. @throws InputError when channels are missing
+[[nodiscard]] DriveTracking track(const VehicleStudy& study, Progress& progress);
 
 /// History as a recording: `C_f`, `sigma_C_f`, `held_C_f`, `suspicion_C_f`, ...
 [[nodiscard]] Recording history_recording(const DriveTracker& tracker);

@@ -76,40 +76,42 @@ PublishedNumber read_number(const StudyTable& table, const ScaleAnalysis& analys
   n.tolerance = printed.half_digit;
   n.unit = printed.unit;
   const bool twin = n.run == "exact twin";
-  const VehicleTrajectory& t = twin ? exact_twin(analysis)->own : analysis.prototype;
+  const VehicleTrajectory& t = twin ? exact_twin(analysis)->trajectory : analysis.prototype;
   const auto [values, si] = quantity_of(table, t, n.quantity);
   const Unit unit = parse_unit_like(printed.unit, parse_unit(si));
-  const double wanted = twin ? n.time * analysis.scaled.factors.time() : n.time;
+  const double at = twin ? n.time * analysis.scaled.factors.time() : n.time;
   std::size_t k = 0;
-  while (k + 1 < t.size() && t.time[k] < wanted - 1e-9) ++k;
-  if (t.size() == 0 || std::abs(t.time[k] - wanted) > 1e-9)
+  while (k + 1 < t.size() && t.time[k] < at - 1e-9) ++k;
+  if (t.size() == 0 || std::abs(t.time[k] - at) > 1e-9)
     table.fail("time", fmt::format("{:g} s is no sample of the drive", n.time));
   n.ours = unit.from_si(values[k]);
   return n;
 }
 
-void check_groups(const StudyTable& expect, const ScaleAnalysis& a, std::vector<Check>& checks) {
-  if (!expect.has("mismatch")) return;
+std::vector<Check> check_groups(const StudyTable& expect, const ScaleAnalysis& a) {
+  std::vector<Check> checks;
+  if (!expect.has("mismatch")) return checks;
   const StudyTable table = expect.table("mismatch");
   if (!a.given_report) expect.fail("mismatch", "needs a [scale.model]");
-  std::map<std::string, double> wanted;
-  for (const std::string& key : table.keys()) wanted[key] = table.number(key, "1");
+  std::map<std::string, double> expected;
+  for (const std::string& key : table.keys()) expected[key] = table.number(key, "1");
   double largest_other = 0.0;
   std::string other;
   for (const GroupComparison& g : a.given_report->groups) {
-    if (const auto found = wanted.find(g.parameter); found != wanted.end()) {
+    if (const auto found = expected.find(g.parameter); found != expected.end()) {
       checks.push_back(
           {std::abs(g.mismatch_percent - found->second) <= 0.05,
            fmt::format("{}: mismatch {:+.3f} %, expected {:+.1f} %", g.formula, g.mismatch_percent, found->second)});
-      wanted.erase(found);
+      expected.erase(found);
     } else if (!(std::abs(g.mismatch_percent) <= largest_other)) {
       largest_other = std::abs(g.mismatch_percent);
       other = g.formula;
     }
   }
-  for (const auto& [name, value] : wanted) table.fail(name, "is no group of these vehicles");
+  for (const auto& [name, value] : expected) table.fail(name, "is no group of these vehicles");
   checks.push_back({largest_other <= 0.1, fmt::format("no other group is off by more than 0.1 %: at most {:.2g} % ({})",
                                                       largest_other, other.empty() ? "none" : other)});
+  return checks;
 }
 
 }  // namespace
@@ -122,7 +124,7 @@ VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress
   VehicleReproduction r;
   r.title = root.text_or("title", "vehicle");
   r.finding = root.text_or("finding", "");
-  r.study = read_scale_study(root);
+  r.study = read_scale_study(root, progress);
   const StudyTable expect = root.table_or_empty("expect");
   progress.stage(r.title);
   r.analysis = run_scale_study(r.study, progress);
@@ -133,14 +135,15 @@ VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress
     r.checks.push_back({n.passed(), fmt::format("{}, {} at {:g} s: published {}, ours {:.8g} {}", n.run, n.quantity,
                                                 n.time, n.printed, n.ours, n.unit)});
   }
-  check_groups(expect, r.analysis, r.checks);
+  const std::vector<Check> groups = check_groups(expect, r.analysis);
+  r.checks.insert(r.checks.end(), groups.begin(), groups.end());
   if (expect.has("gravity")) {
     const SimilarityReport& report = r.analysis.judged();
-    const double wanted = expect.number("gravity", "1");
+    const double expected = expect.number("gravity", "1");
     r.checks.push_back(
-        {std::abs(report.gravity.mismatch_percent - wanted) <= 0.5,
+        {std::abs(report.gravity.mismatch_percent - expected) <= 0.5,
          fmt::format("{}: {:.4f} and {:.4f}, mismatch {:+.1f} %, expected {:+.0f} %", report.gravity.formula,
-                     report.gravity.prototype, report.gravity.model, report.gravity.mismatch_percent, wanted)});
+                     report.gravity.prototype, report.gravity.model, report.gravity.mismatch_percent, expected)});
   }
   if (expect.has("twin_within")) {
     const double within = expect.positive("twin_within", "1");
@@ -154,7 +157,7 @@ VehicleReproduction reproduce_vehicle(const StudyTable& root, Progress& progress
       }
     }
     r.checks.push_back({largest <= within, fmt::format("{} moves as the prototype: largest difference {:.2g} ({}), "
-                                                       "asked for {:g}",
+                                                       "tolerance {:g}",
                                                        exact_twin(r.analysis)->name, largest, where, within)});
   }
   return r;

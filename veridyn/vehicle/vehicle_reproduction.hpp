@@ -9,9 +9,9 @@
 
 namespace veridyn::vehicle {
 
-/// A printed number beside ours.
+/// A printed number and ours.
 struct PublishedNumber {
-  std::string run;       ///< "prototype" or "exact twin", each in its own size
+  std::string run;       ///< "prototype" or "exact twin", each in its size
   std::string quantity;  ///< "yaw_rate", "lateral_force_fl", "radius"
   double time = 0.0;     ///< on the prototype's clock [s]
   std::string printed;   ///< "34.9515 deg/s"
@@ -19,10 +19,11 @@ struct PublishedNumber {
   double published = 0.0;
   double ours = 0.0;       ///< in that unit
   double tolerance = 0.0;  ///< half a unit of the last printed digit
+  /// Within half a unit of the last printed digit.
   [[nodiscard]] bool passed() const { return std::abs(ours - published) <= tolerance; }
 };
 
-/// A published result beside ours: one row of `veridyn reproduce vehicle`, described by a study of its own
+/// A published result compared with ours: one row of `veridyn reproduce vehicle`, described by one study
 /// (examples/reproduce/vehicle): that of `veridyn scale`, and
 ///
 ///     finding = "what was published, in words"
@@ -31,7 +32,7 @@ struct PublishedNumber {
 ///     time = 10                      # [s]
 ///     value = "34.9515 deg/s"        # must be met to its last printed digit
 ///     run = "prototype"              # or "exact twin"
-///     [expect]                       # what must be seen; every key is optional
+///     [expect]                       # what must come out; every key is optional
 ///     mismatch = { C_f = 4.2, I_x = -0.4 }  # of the given model's groups [%], to the printed digit; nothing else
 ///                                    # above 0.1 %
 ///     gravity = 400                  # of the gravity group [%], to the printed digit
@@ -45,6 +46,7 @@ struct VehicleReproduction {
   std::vector<PublishedNumber> numbers;
   std::vector<Check> checks;
 
+  /// All checks.
   [[nodiscard]] bool passed() const;
 };
 

@@ -42,7 +42,7 @@ VehicleStudy read_tables(const Study& study) {
   return out;
 }
 
-std::vector<std::string> own_warnings(const VehicleStudy& study, const DriveSignals& signals) {
+std::vector<std::string> warnings_of(const VehicleStudy& study, const DriveSignals& signals) {
   std::vector<std::string> warnings = study.log.mapped.recording.warnings;
   const auto add = [&](const std::vector<std::string>& more) {
     warnings.insert(warnings.end(), more.begin(), more.end());
@@ -62,7 +62,7 @@ struct GivenModel {
 GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& study) {
   GivenModel given{study.vehicle, study.identify.model};
   const auto take = [&](std::string_view name, double& to) {
-    const estimation::EstimatedParameter* e = estimate.find(std::string(name));
+    const estimation::Parameter* e = estimate.find(std::string(name));
     const bool known = e != nullptr && std::isfinite(e->value);
     if (known) to = e->value;
     return known;
@@ -94,8 +94,8 @@ VehicleEstimate given_estimate(const estimation::Estimate& estimate) {
   given.method = vehicle_method(estimate.method);
   given.usable = true;
   given.covariance = estimate.covariance;
-  for (const estimation::EstimatedParameter& e : estimate.parameters) {
-    estimation::ParameterEstimate q;
+  for (const estimation::Parameter& e : estimate.parameters) {
+    estimation::Parameter q;
     q.name = e.name;
     q.unit = e.unit;
     q.value = e.value;
@@ -137,6 +137,15 @@ std::vector<TimeSpan> validation_spans(const DriveSegments& segments, bool holdo
   return spans;
 }
 
+/// The results in the terms that all domains share.
+VehicleAnalysis with_results(VehicleAnalysis analysis, const VehicleStudy& study) {
+  analysis.estimate = make_vehicle_estimate(analysis.identification, study.subject_name);
+  analysis.groups = {parameter_group(analysis.identification, study.subject_name)};
+  analysis.predictions = analysis.identification.validation.quantities;
+  analysis.truth = study.truth;
+  return analysis;
+}
+
 }  // namespace
 
 VehicleStudy read_study(const Study& study, Progress& progress) {
@@ -158,14 +167,14 @@ VehicleStudy read_study(const Study& study, const Recording& recording, Progress
   return out;
 }
 
-VehicleAnalysis identify(VehicleStudy& study, Progress& progress) {
+VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   VehicleAnalysis out;
   out.signals = prepare_drive_signals(study.log.mapped, study.signals);
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
   out.identification =
       identify_parameters({out.signals, out.segments, study.vehicle, study.signals, study.identify}, progress);
   out.interrupted = out.identification.interrupted;
-  std::vector<std::string> warnings = own_warnings(study, out.signals);
+  std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
       !study.identify.model.free[static_cast<std::size_t>(DriveUnknown::kAccelYScale)]) {
     warnings.emplace_back(
@@ -174,11 +183,10 @@ VehicleAnalysis identify(VehicleStudy& study, Progress& progress) {
   }
   warnings.insert(warnings.end(), out.identification.warnings.begin(), out.identification.warnings.end());
   out.identification.warnings = std::move(warnings);
-  out.estimate = make_vehicle_estimate(out.identification, study.subject_name);
-  return out;
+  return with_results(std::move(out), study);
 }
 
-VehicleAnalysis validate(VehicleStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& estimate, Progress& progress) {
   VehicleAnalysis out;
   out.signals = prepare_drive_signals(study.log.mapped, study.signals);
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
@@ -190,22 +198,23 @@ VehicleAnalysis validate(VehicleStudy& study, const estimation::Estimate& estima
   id.estimates.push_back(given_estimate(estimate));
   id.chosen = id.estimates.back().method;
   if (spans.empty()) {
-    id.verdict = VehicleVerdict::kNotExcited;
+    id.verdict = estimation::GroupVerdict::kNotExcited;
     id.reason = fmt::format("the estimate cannot be judged: {}", out.segments.text);
   } else {
-    const Eigen::VectorXd theta = fit_drive_biases(out.signals, spans, given.vehicle, given.options);
-    id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, drive_covariance(estimate));
-    const PredictedDriveQuantity* r = id.validation.find("yaw_rate");
+    const DriveTheta theta{fit_drive_biases(out.signals, spans, given.vehicle, given.options, progress),
+                           drive_covariance(estimate)};
+    id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, progress);
+    const estimation::PredictedQuantity* r = id.validation.find("yaw_rate");
     const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2;
-    id.verdict = holds ? VehicleVerdict::kIdentified : VehicleVerdict::kRejected;
+    id.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
     id.reason = r == nullptr ? fmt::format("does not hold: {}", id.validation.text)
                              : fmt::format("{}: it explains {:.1f} % of the yaw rate's variance of this drive",
                                            holds ? "holds" : "does not hold", 100.0 * std::max(0.0, r->fit.r2));
   }
-  id.warnings = own_warnings(study, out.signals);
+  id.warnings = warnings_of(study, out.signals);
   id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");
   out.interrupted = progress.interrupted();
-  out.estimate = make_vehicle_estimate(id, study.subject_name);
+  out = with_results(std::move(out), study);
   out.estimate.parameters = estimate.parameters;
   out.estimate.covariance = estimate.covariance;
   out.estimate.method = estimate.method;

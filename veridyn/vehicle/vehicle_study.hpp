@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +45,7 @@ struct VehicleStudy {
   bool validate_on_holdout_only = false;
   std::vector<std::filesystem::path> inputs;  ///< files that were read
   std::vector<std::string> notes;
+  std::map<std::string, double, std::less<>> truth;  ///< of a simulated drive, by parameter name; empty otherwise
 };
 
 /// Reads every table of the study and its recording. Tables `[drive]`, `[road]` and `[sensors]` are left for the
@@ -54,20 +57,19 @@ struct VehicleStudy {
 [[nodiscard]] VehicleStudy read_study(const Study& study, const Recording& recording, Progress& progress);
 
 /// What identification or validation made of a drive.
-struct VehicleAnalysis {
+struct VehicleAnalysis : estimation::Analysis {
   DriveSignals signals;
   DriveSegments segments;
   VehicleIdentification identification;
-  estimation::Estimate estimate;
-  bool interrupted = false;
 };
 
 /// The full pipeline: signals, segments, equation error, output error, hold-out, verdict.
 /// @throws InputError when a channel that it needs is missing, or the vehicle never drives.
-[[nodiscard]] VehicleAnalysis identify(VehicleStudy& study, Progress& progress);
+[[nodiscard]] VehicleAnalysis identify(const VehicleStudy& study, Progress& progress);
 
-/// An estimate against the drive of a study, which it has not seen: `identification.validation` and the verdict are
+/// An estimate validated on the drive of a study, held-out data to it: `identification.validation` and the verdict are
 /// new, parameters are those of the estimate.
-[[nodiscard]] VehicleAnalysis validate(VehicleStudy& study, const estimation::Estimate& estimate, Progress& progress);
+[[nodiscard]] VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& estimate,
+                                       Progress& progress);
 
 }  // namespace veridyn::vehicle

@@ -1,5 +1,10 @@
 const kMinus = '\u2212';
 
+/** Text with true minus signs in front of its numbers. */
+export function with_minus(text: string): string {
+  return text.replace(/(^|[\s([])-(?=[\d.])/g, `$1${kMinus}`);
+}
+
 /** A number with `digits` significant digits and a true minus sign, for legends and labels. */
 export function format_number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';

@@ -1,5 +1,6 @@
 import type { Cell, Column, Table } from './document';
 import { h, icon, scroller } from './dom';
+import { with_minus } from './numbers';
 import { badge, status_label, status_tone } from './status';
 
 const kCopyIcon = 'M9 9h11v11H9zM5 15H4V4h11v1';
@@ -23,7 +24,8 @@ function compare(a: Cell | undefined, b: Cell | undefined): number {
 }
 
 function draw_cell(cell: Cell, column: Column | undefined): HTMLElement {
-  const content = cell.s === undefined || cell.s === '' ? (cell.t ?? '') : badge(cell.s, cell.t);
+  const text = cell.t === undefined ? undefined : with_minus(cell.t);
+  const content = cell.s === undefined || cell.s === '' ? (text ?? '') : badge(cell.s, text);
   return h('td', { class: column?.align ?? 'left' }, content);
 }
 

@@ -130,6 +130,34 @@ describe('a figure', { skip }, () => {
     await close();
   });
 
+  test('shows the labels of a row of estimates in full, and breaks long names at an underscore only', async () => {
+    const row = (name, value) => ({ name, unit: 'm', reference: null, estimates: [{ method: 0, value, low: value - 0.0011, high: value + 0.0011, status: 'identified' }] });
+    const { page, close } = await open_sections(
+      one({ kind: 'intervals', title: 'Estimates', caption: '', methods: ['OLS'], reference: 'truth', shared_scale: false, rows: [row('understeer_gradient', -0.001), row('a', 0.0014), row('b', -123.4561)] }),
+    );
+    await page.waitForTimeout(150);
+    const cut = await page.evaluate(() =>
+      [...document.querySelectorAll('.interval-picture svg')].flatMap((picture) => {
+        const frame = picture.getBoundingClientRect();
+        return [...picture.querySelectorAll('.tick')].filter((tick) => tick.getBoundingClientRect().left < frame.left || tick.getBoundingClientRect().right > frame.right).map((tick) => tick.textContent);
+      }),
+    );
+    assert.deepEqual(cut, []);
+    const lines = await page.evaluate(() => {
+      const texts = document.querySelector('.interval-name span').childNodes;
+      return [...texts].filter((each) => each.nodeType === Node.TEXT_NODE).map((each) => { const range = document.createRange(); range.selectNode(each); return range.getClientRects().length; });
+    });
+    assert.deepEqual(lines, [1, 1]);
+    await close();
+  });
+
+  test('writes true minus signs in the texts of a table too, and leaves other hyphens', async () => {
+    const columns = ['change', 'day'].map((name) => ({ name, unit: '', align: 'right', group: '' }));
+    const { page, close } = await open_sections(one({ kind: 'table', title: 'Changes', caption: '', columns, sortable: false, rows: [{ status: '', cells: [{ t: '-4 %' }, { t: '2022-07-21, g-g' }] }] }));
+    assert.deepEqual(await page.locator('tbody td').allInnerTexts(), ['\u22124 %', '2022-07-21, g-g']);
+    await close();
+  });
+
   test('switches series off and on by its legend, with the keyboard too', async () => {
     const x = steps(0, 10, 50);
     const lines = [{ name: 'small', y: x.map((t) => t) }, { name: 'large', y: x.map((t) => 20 * t) }];

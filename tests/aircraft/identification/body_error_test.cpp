@@ -50,7 +50,7 @@ CoefficientResult identified_cm(const Subject& subject, const FlightSignals& sig
   }
   IdentifyOptions options;
   options.coefficients = {Coefficient::kCm};
-  options.method = "OLS";
+  options.method = estimation::Method::kOls;
   Progress silent;
   return identify_coefficients(signals, segments, subject, options, silent).at(0);
 }
@@ -59,7 +59,7 @@ TEST(BodyError, OfTheMomentOfInertiaIsACommonFactorOfItsDerivatives) {
   Subject subject = builtin_subject("thor");
   const FlightSignals signals = pitching(subject);
   const CoefficientResult without = identified_cm(subject, signals);
-  ASSERT_EQ(without.verdict, CoefficientVerdict::kIdentified) << without.reason;
+  ASSERT_EQ(without.verdict, estimation::GroupVerdict::kIdentified) << without.reason;
   const double e = 0.1;
   subject.sigma.Jy = e * subject.inertia->Jy;
   const CoefficientResult with = identified_cm(subject, signals);
@@ -106,7 +106,7 @@ TEST(BodyError, IsSharedByTheCoefficientsOfAnEstimate) {
   Subject subject = builtin_subject("thor");
   CoefficientResult a, b;
   for (CoefficientResult* r : {&a, &b}) {
-    r->verdict = CoefficientVerdict::kIdentified;
+    r->verdict = estimation::GroupVerdict::kIdentified;
     r->model = coefficient_model(Coefficient::kCl, std::vector<std::pair<std::string_view, double>>{{"beta", 1.0}});
     r->chosen.emplace();
     r->chosen->theta = Eigen::VectorXd::Ones(1);
@@ -132,7 +132,7 @@ TEST(PerUnitInertia, GivesTheDerivativesOverTheMomentOfInertia) {
   const CoefficientResult known = identified_cm(subject, signals);
   subject.inertia.reset();
   const CoefficientResult result = identified_cm(subject, signals);
-  ASSERT_EQ(result.verdict, CoefficientVerdict::kIdentified) << result.reason;
+  ASSERT_EQ(result.verdict, estimation::GroupVerdict::kIdentified) << result.reason;
   EXPECT_EQ(result.name, "Cm/Jy");
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& p = result.chosen->parameters[i];

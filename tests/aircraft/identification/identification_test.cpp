@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -12,22 +14,17 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(Identification, SaysHowMuchLargerTheResidualIsThanTheSensorsLeave) {
-  CoefficientResult result;
-  result.error_ratio = 9.0;
-  result.unmodelled_share = 0.25;
-  EXPECT_THAT(unmodelled_text(result), HasSubstr("25 % of its variance"));
-  EXPECT_THAT(unmodelled_text(result), HasSubstr("residual 3.0 times"));
+  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("25 % of its variance"));
+  EXPECT_THAT(unmodelled_text(9.0, 0.25), HasSubstr("residual 3.0 times"));
 }
 
 // Where the errors of the regressors leave no signal, the ratio is unknown or, as a difference of variances, negative:
 // this used to print "residual -nan times".
 TEST(Identification, PrintsNoRatioWhereTheRegressorsLeaveNoSignal) {
   for (const double ratio : {kNaN, -0.4, 0.0}) {
-    CoefficientResult result;
-    result.error_ratio = ratio;
-    result.unmodelled_share = ratio == ratio ? 1.2 : kNaN;
-    EXPECT_THAT(unmodelled_text(result), Not(HasSubstr("nan"))) << ratio;
-    EXPECT_THAT(unmodelled_text(result), HasSubstr("leave no signal")) << ratio;
+    const std::string text = unmodelled_text(ratio, ratio == ratio ? 1.2 : kNaN);
+    EXPECT_THAT(text, Not(HasSubstr("nan"))) << ratio;
+    EXPECT_THAT(text, HasSubstr("leave no signal")) << ratio;
   }
 }
 
@@ -36,6 +33,41 @@ TEST(Identification, AxisOfACoefficientIsWhatItsMotionIs) {
     EXPECT_EQ(axis_of(c), Axis::kLongitudinal);
   for (const Coefficient c : {Coefficient::kCY, Coefficient::kCl, Coefficient::kCn})
     EXPECT_EQ(axis_of(c), Axis::kLateral);
+}
+
+TEST(IdentifyOptions, RefuseValuesThatMakeNoSense) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      const Study study = Study::parse("[identify]\n" + text, "study.toml");
+      static_cast<void>(IdentifyOptions::read(study.root().table("identify")));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("bootstrap = 10"),
+            "study.toml:2: identify.bootstrap: = 10 must be 0 (none) or from 50 to 1000000 replicates");
+  EXPECT_THAT(message("frequency_band = [2, 0.1]"), ::testing::HasSubstr("0 < low < high"));
+  EXPECT_THAT(message("frequency_band = [\"0.1 kg\", \"2 Hz\"]"), ::testing::HasSubstr("kg"));
+  EXPECT_THAT(message("structure = \"stepwize\""), ::testing::HasSubstr("stepwise"));
+  EXPECT_THAT(message("[identify.candidates]\nCL = [\"1\", \"alpha\"]"), ::testing::HasSubstr("needs structure"));
+  EXPECT_THAT(message("structure = \"stepwise\"\n[identify.candidates]\nCL = [\"alfa\"]"),
+              ::testing::HasSubstr("alpha"));
+  EXPECT_THAT(message("structure = \"stepwise\"\n[identify.candidates]\nCL = [\"alpha\", \"alpha\"]"),
+              ::testing::HasSubstr("twice"));
+}
+
+TEST(IdentifyOptions, AreEnumerationsOfTheStudysWords) {
+  const auto read = [](const std::string& text) {
+    return IdentifyOptions::read(Study::parse("[identify]\n" + text, "study.toml").root().table("identify"));
+  };
+  EXPECT_FALSE(read("").method.has_value());
+  EXPECT_FALSE(read("method = \"auto\"").method.has_value());
+  EXPECT_EQ(read("method = \"PCA-GTLS\"").method, estimation::Method::kPcaGtls);
+  EXPECT_FALSE(read("structure = \"given\"").structure.has_value());
+  EXPECT_EQ(read("structure = \"orthogonal\"").structure, estimation::StructureMethod::kOrthogonal);
+  EXPECT_EQ(read("structure = \"stepwise\"").structure, estimation::StructureMethod::kStepwise);
+  EXPECT_THROW(static_cast<void>(read("method = \"LS\"")), InputError);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace veridyn::aircraft {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kStep = 0.02;
 
@@ -58,7 +58,7 @@ TEST(Segments, FindTheFlightAndTheManoeuvresOfEachAxis) {
   EXPECT_NEAR(found.lateral.excited[0].begin, 120.0, 2.0);
 }
 
-TEST(Segments, DealTheChosenShareToTheHoldoutWithoutOverlap) {
+TEST(Segments, AssignTheChosenShareToTheHoldoutWithoutOverlap) {
   const Flight flight;
   const Segments found = find_segments(flight.signals(), options());
   double held = 0.0;

@@ -30,5 +30,20 @@ TEST(StandardAtmosphere, IsInHydrostaticEquilibriumInBothLayersAndContinuousBetw
   EXPECT_NEAR(standard_atmosphere(11000.0 - 1e-6).pressure, standard_atmosphere(11000.0).pressure, 1e-4);
 }
 
+// ISO 2533, table values at geopotential altitude.
+TEST(StandardAtmosphere, HasTheDensityAndPressureOfIso2533) {
+  const auto sea = standard_atmosphere(0.0);
+  EXPECT_NEAR(sea.density, 1.225, 1e-5);
+  EXPECT_NEAR(sea.temperature, 288.15, 1e-12);
+  const auto five = standard_atmosphere(5000.0);
+  EXPECT_NEAR(five.pressure, 54019.9, 0.1);
+  EXPECT_NEAR(five.density, 0.736116, 1e-6);
+  const auto eleven = standard_atmosphere(11000.0);
+  EXPECT_NEAR(eleven.pressure, 22632.0, 0.1);
+  const auto fifteen = standard_atmosphere(15000.0);
+  EXPECT_NEAR(fifteen.pressure, 12044.5, 0.3);
+  EXPECT_NEAR(fifteen.density, 0.193674, 1e-5);
+}
+
 }  // namespace
 }  // namespace veridyn::aircraft

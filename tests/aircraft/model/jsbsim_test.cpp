@@ -9,6 +9,7 @@
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/ode.hpp"
 
@@ -248,7 +249,7 @@ TEST(Jsbsim, BothModelsFlyTheSameTenSeconds) {
 
 TEST(Jsbsim, WhatCannotFlyIsRefusedByName) {
   Subject s = builtin_subject("aerosonde");
-  s.model.at(Coefficient::kCm).values[0] = kUnknown;
+  s.model.at(Coefficient::kCm).values[0] = kNaN;
   try {
     (void)write_jsbsim(s);
     FAIL();

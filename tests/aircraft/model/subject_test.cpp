@@ -6,7 +6,7 @@
 namespace veridyn::aircraft {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 Subject parsed_subject(std::string_view text) {
   const Study study = Study::parse(text, "s.toml");
@@ -26,7 +26,7 @@ std::string message(std::string_view text) {
 
 constexpr std::string_view kGeometry = "[subject]\nmass = 2\nwing_area = 0.45\nspan = 1.88\nchord = 0.24\n";
 
-TEST(Subject, EveryBuiltInOneReadsBackEqualFromItsOwnFile) {
+TEST(Subject, EveryBuiltInOneReadsBackEqualFromItsFile) {
   for (const std::string& name : builtin_subject_names()) {
     const Subject s = builtin_subject(name);
     EXPECT_TRUE(parsed_subject(write_subject_toml(s)) == s) << write_subject_toml(s);
@@ -45,7 +45,7 @@ TEST(Subject, SaysThatThePublishedInertiaOfX8AndThorIsImpossible) {
               HasSubstr("0.1045, 0.1702, 2.005 kg m^2: the largest exceeds the sum of the others"));
 }
 
-TEST(Subject, OverridesWhatABuiltInOneSays) {
+TEST(Subject, OverridesValuesOfABuiltInOne) {
   const Subject s = parsed_subject(
       "[subject]\nbuiltin = \"unatrap\"\nname = \"mine\"\nmass = \"27.8 lb\"\n[subject.model]\nCm = [\"1\", "
       "\"alpha\"]\n"
@@ -82,24 +82,6 @@ TEST(Subject, RefusesWrongValuesWithPlaceAndRule) {
   EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"momentum\"\n"), HasSubstr("S_prop: is missing"));
   EXPECT_THAT(message(base + "[subject.propulsion]\nkind = \"polynomial\"\npolynomial = { thrust = 2 }\n"),
               HasSubstr("is not a product of throttle^i and Va^j"));
-}
-
-// Beard & McLain 2012 eq. 4.15 and the propeller definition, worked out by hand here.
-TEST(Propulsion, FollowsItsPublishedFormulas) {
-  const Propulsion p = builtin_subject("skywalker_2013").propulsion;
-  EXPECT_NEAR(p.load(0.6, 15.0, 1.225, 0.0).thrust, 0.5 * 1.225 * 0.33 * (18.0 * 18.0 - 225.0), 1e-12);
-  EXPECT_DOUBLE_EQ(p.load(0.1, 15.0, 1.225, 0.0).thrust, 0.0);
-
-  const Propulsion map = builtin_subject("skywalker_2013_mod").propulsion;
-  const double omega = 800.0, n = omega / (2 * M_PI), J = 15.0 / (n * 0.28);
-  const auto load = map.load(0.0, 15.0, 1.225, omega);
-  EXPECT_NEAR(load.thrust, 1.225 * n * n * std::pow(0.28, 4) * (0.1133 - 0.0740 * J - 0.1849 * J * J), 1e-12);
-  EXPECT_NEAR(load.torque, -1.225 * n * n * std::pow(0.28, 5) * (0.0440 + 0.0059 * J - 0.0732 * J * J) / (2 * M_PI),
-              1e-13);
-  EXPECT_DOUBLE_EQ(map.load(0.0, 15.0, 1.225, 0.0).thrust, 0.0);
-
-  const Propulsion line = builtin_subject("unatrap").propulsion;
-  EXPECT_NEAR(line.load(0.5, 20.0, 1.225, 0.0).thrust, 55.0 - 12.0, 1e-12);
 }
 
 }  // namespace

@@ -81,12 +81,12 @@ TEST(Trim, SaysWhenTheAircraftCannotFlyThere) {
   EXPECT_FALSE(slow.usable());
   const Trim fast = find_trim(s, {.airspeed = 60.0});
   EXPECT_EQ(fast.end, TrimEnd::kLimits);
-  EXPECT_THAT(fast.message(), testing::HasSubstr("needs more than the controls have"));
+  EXPECT_THAT(fast.message(), ::testing::HasSubstr("needs more than the controls have"));
   Subject glider = s;
   glider.propulsion = {};
   const Trim no_engine = find_trim(glider, {.airspeed = 20.0});
   EXPECT_EQ(no_engine.end, TrimEnd::kNoSolution);
-  EXPECT_THAT(no_engine.message(), testing::HasSubstr("does not exist for this aircraft"));
+  EXPECT_THAT(no_engine.message(), ::testing::HasSubstr("does not exist for this aircraft"));
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
   EXPECT_NEAR(std::sqrt(smoother_square / 2e5) / bound.alpha.smoother, 1.0, 0.02);
 }
 
-// --- With the aircraft's own derivatives
+// --- With the aircraft's derivatives
 // ------------------------------------------------------------------------------
 
 Subject unatrap_without_stall() {
@@ -155,9 +155,9 @@ TEST(InformationBound, ReproducesTheSpecificationsValuesForAKnownAircraft) {
   EXPECT_NEAR(at20.angles.beta.smoother / kDegree, 0.17, 0.005);
 }
 
-// An accelerometer that tells nothing leaves the bound of who does not know the aircraft, computed by the other
+// An accelerometer of infinite noise leaves the bound of who does not know the aircraft, computed by the other
 // recursion.
-TEST(InformationBound, IsTheModelFreeOneWhenTheAccelerometerTellsNothing) {
+TEST(InformationBound, IsTheModelFreeOneWithoutAnAccelerometer) {
   const auto b = information_bound(kModerate, unatrap_without_stall(), 20.0,
                                    {.accelerometer = 1e6, .dynamic_pressure = 0.0, .airspeed_known = true});
   const auto free = information_bound(kModerate, 20.0, 0.6 * kDegree, 100.0);

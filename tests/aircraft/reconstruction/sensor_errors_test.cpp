@@ -54,8 +54,8 @@ std::map<std::string, double> normalised_errors(int seeds, double duration, bool
     add("dynamic_pressure",
         [&](std::size_t i) { return truth.at("pitot_scale") * 0.6 * f.airspeed[i] * f.airspeed[i]; });
     ReconstructOptions o;
-    o.sensors = "reference";
-    o.turbulence = "low_moderate";
+    o.sensors = NoiseSource::kReference;
+    o.turbulence = named_turbulence("low_moderate");
     o.keep_filter = false;
     o.alpha_bias = o.pitot_scale = true;
     o.beta_bias = beta;
@@ -75,11 +75,11 @@ std::map<std::string, double> normalised_errors(int seeds, double duration, bool
 
 // As states of the filter these ratios were 3.0, 4.3 and 3.5. With three seeds 95 % of sound ratios lie below 1.61
 // (chi-square); the margin above that is for the 1.2 to 1.3 that many seeds show.
-TEST(SensorErrors, HaveHonestSigmasInTurbulence) {
+TEST(SensorErrors, HaveRealisticSigmasInTurbulence) {
   for (const auto& [name, ratio] : normalised_errors(3, 60.0, false)) EXPECT_LT(ratio, 2.1) << name;
 }
 
-TEST(SensorErrorsSoak, HaveHonestSigmasOverManySeeds) {
+TEST(SensorErrorsSoak, HaveRealisticSigmasOverManySeeds) {
   if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
   for (const auto& [name, ratio] : normalised_errors(24, 120.0, true)) {
     EXPECT_LT(ratio, 1.6) << name;
@@ -87,14 +87,14 @@ TEST(SensorErrorsSoak, HaveHonestSigmasOverManySeeds) {
   }
 }
 
-TEST(SensorErrors, OfInertialSensorsAreStatesWithTheirOwnVerdict) {
+TEST(SensorErrors, OfInertialSensorsAreStatesWithAVerdictEach) {
   MadeFlight f = make_flight({.duration = 60.0});
   Channel c = f.recording.at("accel_z");
   for (double& v : c.value) v = 1.02 * v + 0.1;
   f.recording.set(c);
   ReconstructOptions o;
-  o.sensors = "reference";
-  o.turbulence = "low_moderate";
+  o.sensors = NoiseSource::kReference;
+  o.turbulence = named_turbulence("low_moderate");
   o.gyro_bias = o.accel_bias = o.accel_scale = true;
   Progress quiet;
   const Reconstruction r = reconstruct(f.recording, o, quiet);
@@ -103,7 +103,7 @@ TEST(SensorErrors, OfInertialSensorsAreStatesWithTheirOwnVerdict) {
   };
   EXPECT_EQ(r.sensor_errors.size(), 9U);
   EXPECT_EQ(find("gyro_bias_x").observability, Observability::kObservable);
-  // Level flight loads the z axis almost constantly: bias and scale are told apart by the loads of turns alone.
+  // Level flight loads the z axis almost constantly: bias and scale are distinguished by the loads of turns alone.
   EXPECT_GT(std::abs(find("accel_scale_z").correlation), 0.8);
   EXPECT_NEAR(find("accel_scale_z").value, 0.02, 4.0 * find("accel_scale_z").sigma);
   EXPECT_NEAR(find("accel_bias_z").value, 0.1, 4.0 * find("accel_bias_z").sigma);

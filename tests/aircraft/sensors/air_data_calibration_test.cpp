@@ -16,9 +16,9 @@ namespace veridyn::aircraft {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class Calibration : public testing::Test {
+class Calibration : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("veridyn_calibration_" + std::to_string(::getpid()));
@@ -104,7 +104,7 @@ TEST_F(Calibration, SaysWhatAStraightLineDoesNotShow) {
   EXPECT_THAT(sticky.findings.front(), HasSubstr("hysteresis: rising reads"));
 }
 
-TEST_F(Calibration, KeepsTheScaleWhereThePointsDoNotTellIt) {
+TEST_F(Calibration, KeepsTheScaleWhereThePointsDoNotDetermineIt) {
   const SensorFit narrow = vane({.range = 0.1}).sensors[0];
   EXPECT_EQ(narrow.calibration.scale, 1.0);
   EXPECT_THAT(narrow.findings.front(), HasSubstr("changes too little to tell a scale"));

@@ -12,9 +12,9 @@
 namespace veridyn::aircraft {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 Channel channel(std::string name, std::string_view unit, std::vector<double> value) {
   std::vector<double> time(value.size());
@@ -126,14 +126,14 @@ TEST(ArduPilotMap, PassesOverASensorThatNeverChanges) {
       map(log_with({channel("IMU.AccX", "m/s^2", {0, 1}), channel("ARSP.Airspeed", "m/s", {0, 0}),
                     channel("CTUN.As", "m/s", {14, 15})}));
   EXPECT_THAT(mapped.recording.at("airspeed").value, ElementsAre(14, 15));
-  EXPECT_THAT(mapped.notes, testing::Contains(HasSubstr("ARSP.Airspeed is 0 throughout")));
+  EXPECT_THAT(mapped.notes, ::testing::Contains(HasSubstr("ARSP.Airspeed is 0 throughout")));
 }
 
 TEST(ArduPilotMap, DoesNotTakeTheEstimateAoaForAVane) {
   const MappedRecording mapped =
       map(log_with({channel("IMU.AccX", "m/s^2", {0, 1}), channel("AOA.AOA", "deg", {1, 2})}));
   EXPECT_FALSE(mapped.recording.has("alpha"));
-  EXPECT_THAT(mapped.notes, testing::Contains(HasSubstr("not a vane")));
+  EXPECT_THAT(mapped.notes, ::testing::Contains(HasSubstr("not a vane")));
 }
 
 // A 30 deg roll to the right: q = (cos 15 deg, sin 15 deg, 0, 0).

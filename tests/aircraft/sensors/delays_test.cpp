@@ -55,20 +55,19 @@ class Stopped : public Progress {
 };
 
 TEST(AlignDelays, TakesTheLatenessOfTheGpsOffItsStamps) {
-  MappedRecording mapped = flight();
-  const std::vector<DelayReport> reports = align_delays(mapped, {});
-  const DelayReport* gps = find(reports, "gps");
+  const AlignedRecording aligned = align_delays(flight(), {});
+  const DelayReport* gps = find(aligned.delays, "gps");
   ASSERT_NE(gps, nullptr);
   EXPECT_TRUE(gps->applied) << gps->text;
   EXPECT_NEAR(gps->delay_s, kLate_s, 0.01);
-  EXPECT_NEAR(mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
+  EXPECT_NEAR(aligned.mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
 }
 
 TEST(AlignDelays, StampsInMillisecondsCalledSecondsCostNoTime) {
   // Five fixes a second become one in 200 s: the filter that they would need has millions of taps.
-  MappedRecording mapped = flight(1000.0);
+  const MappedRecording mapped = flight(1000.0);
   const auto begin = std::chrono::steady_clock::now();
-  const std::vector<DelayReport> reports = align_delays(mapped, {});
+  const std::vector<DelayReport> reports = align_delays(mapped, {}).delays;
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
   const DelayReport* gps = find(reports, "gps");
   ASSERT_NE(gps, nullptr);
@@ -77,19 +76,18 @@ TEST(AlignDelays, StampsInMillisecondsCalledSecondsCostNoTime) {
 }
 
 TEST(AlignDelays, StopsWhenItIsInterrupted) {
-  MappedRecording mapped = flight();
   Stopped progress;
-  EXPECT_THAT(align_delays(mapped, {}, progress), IsEmpty());
-  EXPECT_EQ(mapped.recording.at("vel_north").times().front(), 0.0);
+  const AlignedRecording aligned = align_delays(flight(), {}, progress);
+  EXPECT_THAT(aligned.delays, IsEmpty());
+  EXPECT_EQ(aligned.mapped.recording.at("vel_north").times().front(), 0.0);
 }
 
 TEST(AlignDelays, GivenOnesAreAppliedAndNothingElseWithoutTheAutomatic) {
   const Study study = Study::parse("[delays]\nautomatic = false\ngps = '50 ms'\n", "study.toml", ".");
-  MappedRecording mapped = flight();
-  const std::vector<DelayReport> reports = align_delays(mapped, DelayAlignment::read(study.root().table("delays")));
-  ASSERT_EQ(reports.size(), 1u);
-  EXPECT_EQ(reports[0].text, "given in the study");
-  EXPECT_DOUBLE_EQ(mapped.recording.at("vel_east").times().front(), -0.05);
+  const AlignedRecording aligned = align_delays(flight(), DelayAlignment::read(study.root().table("delays")));
+  ASSERT_EQ(aligned.delays.size(), 1u);
+  EXPECT_EQ(aligned.delays[0].text, "given in the study");
+  EXPECT_DOUBLE_EQ(aligned.mapped.recording.at("vel_east").times().front(), -0.05);
 }
 
 }  // namespace

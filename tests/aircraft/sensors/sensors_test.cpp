@@ -4,9 +4,6 @@
 
 #include <cmath>
 
-#include "veridyn/aircraft/sensors/servo.hpp"
-#include "veridyn/aircraft/simulation/flight_plan.hpp"
-
 namespace veridyn::aircraft {
 namespace {
 
@@ -29,11 +26,11 @@ Recording watch(std::string_view name, const SensorSettings& s, double duration,
     sensor.observe(t, x);
   }
   Recording r;
-  sensor.give(r);
+  sensor.move_into(r);
   return r;
 }
 
-TEST(Sensor, TakesItsOwnRateBetweenTheSteps) {
+TEST(Sensor, SamplesAtItsRateBetweenTheSteps) {
   // 30 Hz is no divisor of 400 Hz; a rate of t is a straight line, so interpolation is exact.
   const Recording r = watch("gyro", {.rate = 30.0}, 2.0, [](double) { return 0.0; });
   const Channel& c = r.at("gyro_x");
@@ -69,7 +66,7 @@ TEST(Sensor, AppliesBiasScaleAndQuantisation) {
   }
 }
 
-TEST(Sensor, HasTheNoiseAndWalkThatWereAsked) {
+TEST(Sensor, HasTheGivenNoiseAndWalk) {
   // Roll axis: truth 0. 30001 samples: relative standard error of a variance sqrt(2/30000) = 0.8 %.
   const Channel c =
       watch("ahrs", {.rate = 100.0, .sigma = {0.2, 0, 0, 0}}, 300.0, [](double) { return 0.0; }).at("roll");
@@ -93,7 +90,7 @@ TEST(Sensor, HasTheNoiseAndWalkThatWereAsked) {
   EXPECT_NEAR(std::sqrt(walk / 400), 0.02, 4 * 0.035 * 0.02);
 }
 
-TEST(Sensor, LosesTheShareOfSamplesThatWasAsked) {
+TEST(Sensor, DropsTheGivenShareOfSamples) {
   for (const double length : {0.0, 0.5}) {
     const Channel c = watch("gyro", {.rate = 100.0, .dropout = 0.2, .dropout_duration = length}, 2000.0, [](double) {
                         return 0.0;
@@ -152,64 +149,6 @@ TEST(Sensor, HasTheQuantisationNoiseOfAUniformError) {
   const auto n = static_cast<double>(c.size());
   EXPECT_NEAR(sum / n, 0.0, 4.0 * 0.05 / std::sqrt(12.0 * n));
   EXPECT_NEAR(squares / n, 0.05 * 0.05 / 12.0, 0.02 * 0.05 * 0.05 / 12.0);
-}
-
-TEST(Servo, FollowsAStepAsItsClosedFormSays) {
-  const Actuator a{.lower = -1, .upper = 1, .time_constant = 0.05, .delay = 0.01};
-  Servo servo(a, 0.0, 0.0025);
-  for (int k = 1; k <= 100; ++k) {
-    servo.advance(0.5);
-    const double t = 0.0025 * k - 0.01;
-    EXPECT_NEAR(servo.position(), t > 0 ? 0.5 * (1 - std::exp(-t / 0.05)) : 0.0, 1e-12);
-  }
-  Servo fast({.lower = -1, .upper = 0.3, .rate_limit = 2.0}, 0.0, 0.0025);
-  for (int k = 1; k <= 100; ++k) {
-    fast.advance(5.0);
-    EXPECT_NEAR(fast.position(), std::min(0.3, 2.0 * 0.0025 * k), 1e-12);
-  }
-}
-
-TEST(Multisine, SignalsAreOrthogonalStartAtZeroAndHaveALowPeak) {
-  const auto sines = make_multisines(3, 30.0, 0.1, 2.0);
-  constexpr int kN = 6000;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = a; b < 3; ++b) {
-      double dot = 0, largest = 0;
-      for (int i = 0; i < kN; ++i) {
-        const double t = 30.0 * i / kN;
-        dot += sines[a].value(t) * sines[b].value(t) / kN;
-        largest = std::max(largest, std::abs(sines[a].value(t)));
-      }
-      if (a != b) {
-        EXPECT_NEAR(dot, 0.0, 1e-12);
-      } else {
-        EXPECT_NEAR(largest, 1.0, 0.01);
-        // Relative peak factor: 1 for a single sine. Schroeder's phases alone reach about 1.2.
-        EXPECT_LT(1.0 / std::sqrt(2.0 * dot), 1.2);
-      }
-    }
-    EXPECT_NEAR(sines[a].value(0.0), 0.0, 1e-9);
-  }
-}
-
-TEST(Excitation, FliesTheShapesItIsAskedFor) {
-  const Excitation e({{.kind = ManoeuvreKind::k3211,
-                       .start = 10,
-                       .surfaces = {Surface::kElevator, Surface::kRudder},
-                       .amplitude = {0.1, 0.2},
-                       .pulse = 0.5},
-                      {.kind = ManoeuvreKind::kTurn, .start = 40, .duration = 5, .bank = 0.4}});
-  EXPECT_EQ(e.at(9.9)[0], 0.0);
-  EXPECT_EQ(e.at(11.4)[0], 0.1);
-  EXPECT_EQ(e.at(11.6)[0], -0.1);
-  EXPECT_EQ(e.at(12.6)[0], 0.1);
-  EXPECT_EQ(e.at(13.1)[0], -0.1);
-  EXPECT_EQ(e.at(13.6)[0], 0.0);
-  EXPECT_EQ(e.at(15.6)[2], 0.2);  // 3.5 s and a pause of 2 s later
-  EXPECT_TRUE(e.excited(12.0)[2]);
-  EXPECT_FALSE(e.excited(12.0)[1]);
-  EXPECT_TRUE(std::isnan(e.bank(39.0)));
-  EXPECT_EQ(e.bank(41.0), 0.4);
 }
 
 }  // namespace

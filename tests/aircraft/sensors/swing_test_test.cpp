@@ -16,7 +16,7 @@ namespace veridyn::aircraft {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 Recording quaternions(double amplitude, double w, double wobble = 0.0) {
   std::vector<double> t, x, y, z, s;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "veridyn/aircraft/simulation/wind.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -194,7 +193,7 @@ TEST(DrydenSoak, KeepsItsSpectrumAndCovarianceOverALongRun) {
   for (std::size_t k = 3; k < 6; ++k) EXPECT_NEAR(sum[k], 0.0, 4.0 * 2.8 / std::sqrt(4e5));
 }
 
-TEST(Dryden, ReadsPublishedAndOwnSettings) {
+TEST(Dryden, ReadsNamedSettingsAndNumbers) {
   const Study study = Study::parse(
       "a = \"low_moderate\"\nb = { Lu = 100, Lw = 30, sigma_u = 2, sigma_w = \"3.6 km/h\" }\nc = \"low_moderat\"\n",
       "s.toml");
@@ -210,25 +209,6 @@ TEST(Dryden, ReadsPublishedAndOwnSettings) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(), "s.toml:3: c: unknown turbulence 'low_moderat' (did you mean 'low_moderate'?)");
   }
-}
-
-TEST(Wind, GrowsWithHeightAndDriftsWithItsVariance) {
-  WindSettings s;
-  s.mean = {7, 0, 0};
-  s.shear_exponent = 1.0 / 7.0;
-  EXPECT_NEAR(Wind(s, numerics::RandomStream(1, "w")).at(80.0).x(), 7 * std::pow(8.0, 1.0 / 7.0), 1e-12);
-  s.shear_exponent = 0.0;
-  s.drift_sigma = 0.5;
-  s.drift_time = 10.0;
-  // 4000 independent ends: relative standard error of the variance sqrt(2/8000) = 1.6 % with both components.
-  double sum = 0;
-  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
-    Wind wind(s, numerics::RandomStream(seed, "w"));
-    for (int i = 0; i < 20; ++i) wind.advance(5.0);
-    const Eigen::Vector3d w = wind.at(50.0);
-    sum += (w.x() - 7) * (w.x() - 7) + w.y() * w.y();
-  }
-  EXPECT_NEAR(sum / 8000, 0.25, 4 * 0.016 * 0.25);
 }
 
 }  // namespace

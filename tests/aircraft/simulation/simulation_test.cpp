@@ -1,17 +1,17 @@
 #include "veridyn/aircraft/simulation/simulation.hpp"
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
-#include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
 namespace {
-
-using testing::HasSubstr;
 
 SimulationOptions calm(std::string_view name, double duration) {
   SimulationOptions o;
@@ -208,58 +208,43 @@ TEST(Simulation, EndsWithAReportWhenTheFlightFails) {
   EXPECT_TRUE(broken.end == SimulationEnd::kDiverged || broken.end == SimulationEnd::kUpset) << broken.message();
 }
 
+/// Asks to stop at its n-th update.
+class StopsAtUpdate : public Progress {
+ public:
+  explicit StopsAtUpdate(int n) : left_(n) {}
+  bool update(double) override { return --left_ > 0; }
+
+ private:
+  int left_;
+};
+
+// 80,000 s with the default plan: the answer must come within seconds, before the flight and during it.
+TEST(Simulation, EndsSoonWhenItIsInterrupted) {
+  SimulationOptions o = calm("unatrap", 80000);
+  for (const int update : {1, 3}) {
+    StopsAtUpdate progress(update);
+    const auto begin = std::chrono::steady_clock::now();
+    const SimulatedFlight flight = simulate(o, progress);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5.0);
+    EXPECT_EQ(flight.end, SimulationEnd::kInterrupted);
+    EXPECT_FALSE(flight.usable());
+    EXPECT_LT(flight.end_time, 20.0);
+    EXPECT_EQ(flight.message(), fmt::format("interrupted at {:.1f} s", flight.end_time));
+  }
+}
+
 TEST(Simulation, RefusesASubjectThatCannotFly) {
   SimulationOptions o = calm("unatrap", 1);
   o.subject.inertia.reset();
   EXPECT_THROW(static_cast<void>(fly(o)), InputError);
   o = calm("unatrap", 1);
-  o.subject.model.at(Coefficient::kCm).values[1] = kUnknown;
+  o.subject.model.at(Coefficient::kCm).values[1] = kNaN;
   try {
     static_cast<void>(fly(o));
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(), "subject 'unatrap': has no values for Cm_alpha: a simulation needs them");
   }
-}
-
-std::string message(std::string_view text) {
-  const Study study = Study::parse(text, "s.toml");
-  try {
-    static_cast<void>(read_simulation(study.root()));
-    study.root().finish();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
-TEST(SimulateStudy, ReadsEveryKeyAndRefusesWrongOnes) {
-  const std::string base = "[subject]\nbuiltin = \"unatrap\"\n";
-  EXPECT_EQ(
-      message("seed = 4\n" + base +
-              "[flight]\nduration = \"5 min\"\naltitude = 200\nground = 20\nairspeed = \"70 km/h\"\nheading = \"90 "
-              "deg\"\nstep = 0.0025\ntruth_rate = 50\ngravity = 9.81\nwind = [1, 2, 0]\nwind_shear = "
-              "0.14\nwind_shear_reference = 10\nwind_drift = 0.1\nwind_drift_time = 60\nturbulence = "
-              "\"low_light\"\nexcitation_gain = 0.5\nplan = \"none\"\n[[flight.manoeuvre]]\nkind = "
-              "\"multisine\"\nstart = 10\nduration = 20\nsurfaces = [\"elevator\", \"rudder\"]\namplitude = [\"2 "
-              "deg\", \"3 deg\"]\nband = [0.1, 1.5]\n[[flight.manoeuvre]]\nkind = \"3211\"\nstart = "
-              "40\nsurfaces = [\"aileron\"]\npulse = 0.3\n[[flight.manoeuvre]]\nkind = \"turn\"\nstart = "
-              "50\nduration = 10\nbank = \"20 deg\"\n[sensors]\nset = \"perfect\"\n[sensors.gyro]\ntwo_sigma = "
-              "\"1 deg/s\"\nbias = [0.1, 0, 0]\nrate = 50\ndelay = 0.02\n[sensors.pitot]\nenabled = false\n"),
-      "no error");
-  EXPECT_THAT(message(base + "[flight]\nduration = 0\n"), HasSubstr("flight.duration: = 0 must be > 0"));
-  EXPECT_THAT(message(base + "[flight]\nstep = 0.1\n"), HasSubstr("above 0.02 s"));
-  EXPECT_THAT(message(base + "[flight]\nwind = [1, 2]\n"), HasSubstr("has 2 numbers, expected 3"));
-  EXPECT_THAT(message(base + "[flight]\naltitude = 10\nground = 10\n"), HasSubstr("is not below the altitude"));
-  EXPECT_THAT(message(base + "[flight]\nspeed = 10\n"), HasSubstr("speed"));
-  EXPECT_THAT(message(base + "[sensors.gyros]\nrate = 10\n"), HasSubstr("unknown sensor (did you mean 'gyro'?)"));
-  EXPECT_THAT(message(base + "[sensors.gyro]\nsigma = \"1 m\"\n"), HasSubstr("sensors.gyro.sigma"));
-  EXPECT_THAT(message(base + "[sensors.gyro]\nbias = [1, 2]\n"), HasSubstr("expected 1 or 3"));
-  EXPECT_THAT(message(base + "[sensors.gyro]\ndropout = 1\n"), HasSubstr("must be >= 0 and < 1"));
-  EXPECT_THAT(message(base + "[[flight.manoeuvre]]\nkind = \"loop\"\nstart = 1\n"), HasSubstr("kind"));
-  EXPECT_THAT(message(base + "[[flight.manoeuvre]]\nkind = \"doublet\"\nstart = 1\nsurfaces = [\"elevater\"]\n"),
-              HasSubstr("did you mean 'elevator'?"));
-  EXPECT_THAT(message("[flight]\nduration = 3\n"), HasSubstr("subject"));
 }
 
 }  // namespace

@@ -7,153 +7,14 @@
 #include <cmath>
 #include <random>
 
-#include "tests/estimation/simulated_regression.hpp"
+#include "tests/estimation/output_error/example_models.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/estimation/output_error/residual_spectrum.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-using testing_support::coloured_noise;
-
-template <typename Scalar>
-using Column = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
-template <typename Scalar>
-using Table = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// x' = -a x + b u with u held over each step, sampled exactly; outputs x and its rate. Diverges for a < 0 when told
-/// to.
-class FirstOrder : public AutodiffModel<FirstOrder, 2> {  // stride 2: three unknowns take two passes
- public:
-  FirstOrder(std::vector<VectorXd> inputs, double dt) : inputs_(std::move(inputs)), dt_(dt) {
-    for (std::size_t s = 0; s < inputs_.size(); ++s) initial_.push_back({ModelParameter{.name = "x0"}});
-  }
-  std::vector<ModelParameter> unknowns{{.name = "a", .unit = "1/s", .start = 1.0}, {.name = "b", .start = 1.0}};
-  bool refuses_growth = false;
-
-  std::span<const ModelParameter> parameters() const override { return unknowns; }
-  std::span<const ModelOutput> outputs() const override { return outputs_; }
-  std::size_t segments() const override { return inputs_.size(); }
-  Index samples(std::size_t s) const override { return inputs_[s].size(); }
-  std::span<const ModelParameter> initial_conditions(std::size_t s) const override { return initial_[s]; }
-
-  template <typename Scalar>
-  bool simulate(std::size_t s, const Column<Scalar>& theta, Table<Scalar>& y) const {
-    using std::exp;
-    const Scalar &a = theta(0), &b = theta(1);
-    if (refuses_growth && a < Scalar(0.0)) return false;
-    Scalar x = theta(2);
-    const Scalar decay = exp(-a * Scalar(dt_));
-    for (Index k = 0; k < y.rows(); ++k) {
-      const double u = inputs_[s](k);
-      y(k, 0) = x;
-      y(k, 1) = -a * x + b * Scalar(u);
-      x = decay * x + (Scalar(1.0) - decay) * b * Scalar(u) / a;
-    }
-    return true;
-  }
-
- private:
-  std::vector<VectorXd> inputs_;
-  double dt_;
-  std::vector<ModelOutput> outputs_{{"x", "m"}, {"rate", "m/s"}};
-  std::vector<std::vector<ModelParameter>> initial_;
-};
-
-/// y_j = X_j theta: no dynamics, no initial conditions.
-class Static : public AutodiffModel<Static, 4> {
- public:
-  explicit Static(std::vector<std::vector<RowMatrix>> regressors) : X_(std::move(regressors)) {
-    for (Index i = 0; i < X_[0][0].cols(); ++i) unknowns.push_back({.name = "theta" + std::to_string(i)});
-    for (std::size_t j = 0; j < X_[0].size(); ++j) outputs_.push_back({"y" + std::to_string(j), "1"});
-  }
-  std::vector<ModelParameter> unknowns;
-  std::span<const ModelParameter> parameters() const override { return unknowns; }
-  std::span<const ModelOutput> outputs() const override { return outputs_; }
-  std::size_t segments() const override { return X_.size(); }
-  Index samples(std::size_t s) const override { return X_[s][0].rows(); }
-  std::span<const ModelParameter> initial_conditions(std::size_t) const override { return {}; }
-  template <typename Scalar>
-  bool simulate(std::size_t s, const Column<Scalar>& theta, Table<Scalar>& y) const {
-    for (std::size_t j = 0; j < X_[s].size(); ++j) {
-      for (Index k = 0; k < y.rows(); ++k) {
-        Scalar sum(0.0);
-        for (Index i = 0; i < X_[s][j].cols(); ++i) sum += Scalar(X_[s][j](k, i)) * theta(i);
-        y(k, static_cast<Index>(j)) = sum;
-      }
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::vector<RowMatrix>> X_;
-  std::vector<ModelOutput> outputs_;
-};
-
-std::vector<VectorXd> doublets(std::size_t segments, Index samples) {
-  std::vector<VectorXd> inputs;
-  for (std::size_t s = 0; s < segments; ++s) {
-    VectorXd u = VectorXd::Zero(samples);
-    const Index first = samples / 10 + static_cast<Index>(3 * s), width = samples / 5;
-    u.segment(first, width).setConstant(1.0);
-    u.segment(first + width, width).setConstant(-1.0);
-    inputs.push_back(u);
-  }
-  return inputs;
-}
-
-constexpr double kA = 1.7, kB = 2.4;
-
-std::vector<RowMatrix> truth_of(const FirstOrder& model) {
-  std::vector<RowMatrix> y;
-  for (std::size_t s = 0; s < model.segments(); ++s) {
-    ModelResponse r;
-    EXPECT_TRUE(model.respond(s, Eigen::Vector3d(kA, kB, 0.3 + 0.1 * static_cast<double>(s)), {}, r));
-    y.push_back(r.output);
-  }
-  return y;
-}
-
-void add_noise(std::vector<RowMatrix>& z, std::mt19937_64& generator, double sd0, double sd1, double rho = 0.0) {
-  for (RowMatrix& m : z) {
-    m.col(0) += sd0 * coloured_noise(generator, m.rows(), rho);
-    m.col(1) += sd1 * coloured_noise(generator, m.rows(), rho);
-  }
-}
-
-TEST(ParametricModel, SensitivitiesAreThoseOfTheClosedForm) {
-  // u = 0: x = x0 exp(-a t), so dx/da = -t x, dx/dx0 = exp(-a t), dx/db = 0; rate = -a x.
-  const FirstOrder model({VectorXd::Zero(50)}, 0.05);
-  const std::vector<Index> active{2, 0, 1};
-  ModelResponse r;
-  ASSERT_TRUE(model.respond(0, Eigen::Vector3d(kA, kB, 0.8), active, r));
-  for (Index k = 0; k < 50; ++k) {
-    const double t = 0.05 * static_cast<double>(k), x = 0.8 * std::exp(-kA * t);
-    EXPECT_NEAR(r.output(k, 0), x, 1e-13);
-    EXPECT_NEAR(r.sensitivity(2 * k, 0), std::exp(-kA * t), 1e-13);
-    EXPECT_NEAR(r.sensitivity(2 * k, 1), -t * x, 1e-13);
-    EXPECT_NEAR(r.sensitivity(2 * k, 2), 0.0, 1e-15);
-    EXPECT_NEAR(r.sensitivity(2 * k + 1, 1), -x + kA * t * x, 1e-13);
-  }
-}
-
-TEST(ParametricModel, SensitivitiesAreThoseOfCentralDifferences) {
-  const FirstOrder model(doublets(1, 80), 0.05);
-  const VectorXd theta = Eigen::Vector3d(kA, kB, 0.4);
-  const std::vector<Index> active{0, 1, 2};
-  ModelResponse r, low, high;
-  ASSERT_TRUE(model.respond(0, theta, active, r));
-  for (Index i = 0; i < 3; ++i) {
-    const double h = 1e-5;  // error of the differences: h^2 f'''/6 and 1e-16/h, both about 1e-10
-    ASSERT_TRUE(model.respond(0, theta + h * VectorXd::Unit(3, i), {}, high));
-    ASSERT_TRUE(model.respond(0, theta - h * VectorXd::Unit(3, i), {}, low));
-    const RowMatrix difference = (high.output - low.output) / (2.0 * h);
-    for (Index k = 0; k < difference.size(); ++k) EXPECT_NEAR(r.sensitivity(k, i), difference.data()[k], 1e-9);
-  }
-}
+using namespace testing_support;
 
 TEST(OutputError, FindsTheParametersOfNoiselessDataToRounding) {
   const FirstOrder model(doublets(3, 120), 0.05);
@@ -222,7 +83,7 @@ TEST(OutputError, UnknownsOfASegmentAreEliminatedAsTheirColumnsWouldBe) {
   ASSERT_TRUE(oe.usable()) << oe.message;
   ASSERT_GT(oe.lag_window, 0);
   for (Index i = 0; i < 2; ++i) {
-    const ParameterEstimate& p = ols.parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = ols.parameters[static_cast<std::size_t>(i)];
     EXPECT_NEAR(oe.theta(i), ols.theta(i), 1e-5 * p.sigma);
     EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma, p.sigma, 1e-6 * p.sigma);
     EXPECT_NEAR(oe.parameters[static_cast<std::size_t>(i)].sigma_white, p.sigma_white, 1e-6 * p.sigma);
@@ -342,15 +203,15 @@ double coverage(double rho, CovarianceKind kind, int seeds) {
   return held / (2.0 * seeds);
 }
 
-TEST(OutputError, IntervalsHoldTheTruthInNinetyFivePercentWithWhiteNoise) {
+TEST(OutputError, IntervalsCoverTheTruthInNinetyFivePercentUnderWhiteNoise) {
   // Standard error of the share over 2 x 150 trials: 0.013.
   EXPECT_NEAR(coverage(0.0, CovarianceKind::kWhite, 150), 0.95, 0.04);
-  EXPECT_NEAR(coverage(0.0, CovarianceKind::kColoured, 150), 0.95, 0.04);
+  EXPECT_NEAR(coverage(0.0, CovarianceKind::kAutocorrelated, 150), 0.95, 0.04);
 }
 
-TEST(OutputError, IntervalsHoldTheTruthWithColouredNoiseOnlyWhenCorrectedForIt) {
+TEST(OutputError, IntervalsCoverTheTruthUnderColouredNoiseOnlyWhenCorrectedForIt) {
   EXPECT_LT(coverage(0.9, CovarianceKind::kWhite, 60), 0.75);
-  EXPECT_NEAR(coverage(0.9, CovarianceKind::kColoured, 150), 0.95, 0.04);
+  EXPECT_NEAR(coverage(0.9, CovarianceKind::kAutocorrelated, 150), 0.95, 0.04);
 }
 
 TEST(OutputError, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -503,37 +364,6 @@ TEST(OutputError, TooFewValuesAreSaidToBe) {
   const OutputErrorEstimate e = output_error(model, {RowMatrix::Ones(2, 1)});
   EXPECT_EQ(e.termination, OutputErrorTermination::kTooFewSamples);
   EXPECT_EQ(e.message, "2 measured values for 3 unknowns");
-}
-
-TEST(ResidualSpectrum, ItsSumIsTheDoubleSumOverLags) {
-  // Against the double sum written out, two outputs with cross-correlation.
-  std::mt19937_64 generator(9);
-  RowMatrix w(400, 2);
-  w.col(0) = coloured_noise(generator, 400, 0.6);
-  w.col(1).tail(398) = (0.6 * w.col(0).head(398) + 0.8 * coloured_noise(generator, 398, 0.3)).eval();
-  w.col(1).head(2).setZero();
-  const ResidualSpectrum spectrum = residual_spectrum({w}, 20);
-  ASSERT_GT(spectrum.window, 0);
-  const Index m = 2 * spectrum.window;
-  const auto gamma = [&](Index a, Index b, Index lag) {  // E[w_a(k + lag) w_b(k)]
-    double sum = 0.0;
-    for (Index k = 0; k < 400; ++k)
-      if (k + lag >= 0 && k + lag < 400) sum += w(k + lag, a) * w(k, b);
-    const double weight =
-        std::min(1.0, 2.0 - static_cast<double>(std::abs(lag)) / static_cast<double>(spectrum.window));
-    return (lag == 0 ? 1.0 : weight) * sum / 400.0;
-  };
-  RowMatrix S(2 * 60, 3);
-  for (Index j = 0; j < 3; ++j) S.col(j) = coloured_noise(generator, 120, 0.5);
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
-  for (Index i = 0; i < 60; ++i) {
-    for (Index j = 0; j < 60; ++j) {
-      if (std::abs(i - j) >= m) continue;
-      for (Index a = 0; a < 2; ++a)
-        for (Index b = 0; b < 2; ++b) expected += S.row(2 * i + a).transpose() * gamma(a, b, i - j) * S.row(2 * j + b);
-    }
-  }
-  EXPECT_LT((coloured_information(spectrum, S, 2) - expected).norm(), 1e-10 * expected.norm());
 }
 
 }  // namespace

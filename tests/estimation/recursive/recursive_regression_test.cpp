@@ -241,7 +241,7 @@ TEST(RecursiveRegression, CoversTheTruthWhenTheResidualIsColoured) {
     feed(recursive, d);
     const RegressionEstimate e = recursive.estimate();
     for (Eigen::Index i = 0; i < 3; ++i) {
-      const ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
       held += truth(i) > p.low95 && truth(i) < p.high95;
       white_held += std::abs(truth(i) - p.value) < 1.96 * p.sigma_white;
       ++all;

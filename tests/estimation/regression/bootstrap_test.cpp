@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <atomic>
+#include <chrono>
 #include <random>
+#include <thread>
 
 #include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
@@ -79,6 +82,24 @@ TEST(BlockBootstrap, GivesTheSameBitsOnAnyNumberOfThreads) {
   const Bootstrap other =
       block_bootstrap(data, point_estimator(Method::kOls), {.replicates = 100, .seed = 6, .threads = 1});
   EXPECT_NE(one.replicates, other.replicates);
+}
+
+TEST(BlockBootstrap, UsesTheThreadsOfItsProgress) {
+  struct OneThread : Progress {
+    [[nodiscard]] int threads() const override { return 1; }
+  } progress;
+  const auto caller = std::this_thread::get_id();
+  std::atomic<int> elsewhere = 0;
+  const PointEstimator look = [&](const RegressionData&) -> std::optional<Eigen::VectorXd> {
+    if (std::this_thread::get_id() != caller) ++elsewhere;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return Eigen::VectorXd::Zero(3);
+  };
+  const RegressionData data = rows_with(2, 0.9, 0.5, 600);
+  static_cast<void>(block_bootstrap(data, look, {.replicates = 60}, progress));
+  EXPECT_EQ(elsewhere, 0);
+  static_cast<void>(block_bootstrap(data, look, {.replicates = 60, .threads = 2}, progress));
+  EXPECT_GT(elsewhere, 0);
 }
 
 TEST(BlockBootstrap, MovesBlocksInsideTheirSegmentsOnly) {

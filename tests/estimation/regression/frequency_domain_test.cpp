@@ -125,13 +125,13 @@ double coverage(double rho, int seeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     const FrequencyEstimate f = frequency_equation_error(flight_like(static_cast<unsigned>(100 + seed), 0.5, rho), 0.02,
                                                          {.low_Hz = 0.1, .high_Hz = 4.0});
-    const ParameterEstimate &a = *f.estimate.find("a"), &b = *f.estimate.find("b");
+    const Parameter &a = *f.estimate.find("a"), &b = *f.estimate.find("b");
     held += (a.low95 < -1.1 && -1.1 < a.high95) + (b.low95 < 0.6 && 0.6 < b.high95);
   }
   return held / (2.0 * seeds);
 }
 
-TEST(FrequencyEquationError, IntervalsHoldTheTruthWithWhiteAndColouredResiduals) {
+TEST(FrequencyEquationError, IntervalsCoverTheTruthUnderWhiteAndColouredResiduals) {
   // Standard error of the share over 2 x 150 trials: 0.013.
   EXPECT_NEAR(coverage(0.0, 150), 0.95, 0.04);
   EXPECT_NEAR(coverage(0.95, 150), 0.95, 0.04);

@@ -70,7 +70,7 @@ TEST(OrdinaryLeastSquares, SaysWhenRegressorsAreDependent) {
 }
 
 // Double sum of Morelli & Klein, term by term.
-TEST(ColouredNormalMatrix, EqualsTheDoubleSumOverRowsOfEverySegment) {
+TEST(AutocorrelatedNormalMatrix, EqualsTheDoubleSumOverRowsOfEverySegment) {
   const Eigen::Index N = 60, window = 4;
   const RowMatrix X = RowMatrix::Random(N, 3);
   Eigen::VectorXd r = Eigen::VectorXd::Random(N);
@@ -92,7 +92,7 @@ TEST(ColouredNormalMatrix, EqualsTheDoubleSumOverRowsOfEverySegment) {
     }
   }
   expected /= 1.0 - weight_sum / static_cast<double>(N);
-  const LongRunCovariance result = coloured_normal_matrix(X, r, segments, window);
+  const LongRunCovariance result = autocorrelated_normal_matrix(X, r, segments, window);
   EXPECT_LT((result.matrix - expected).norm(), 1e-12 * expected.norm());
 }
 
@@ -138,7 +138,7 @@ TEST(OrdinaryLeastSquares, IntervalsCoverUnderColouredResiduals) {
                                        {.rows = 3000, .regressor_rho = 0.95, .error_rho = 0.9});
     const RegressionEstimate e = estimate(s.data, Method::kOls);
     for (Eigen::Index i = 0; i < 4; ++i) {
-      const ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
       covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
       covered_white += std::abs(p.value - theta(i)) < 1.96 * p.sigma_white ? 1.0 : 0.0;
       ratio += p.sigma / p.sigma_white;

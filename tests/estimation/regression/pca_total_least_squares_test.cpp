@@ -146,7 +146,7 @@ TEST(PcaTotalLeastSquares, ExcitedPartKeepsItsCoverage) {
     const auto s = collinear(static_cast<unsigned>(100 + m));
     const RegressionEstimate e = estimate(s.data, Method::kPcaGtls);
     ASSERT_EQ(e.unexcited.size(), 1U);
-    const ParameterEstimate& p = e.parameters[3];
+    const Parameter& p = e.parameters[3];
     covered_parameter += p.low95 < -1.2 && -1.2 < p.high95 ? 1.0 : 0.0;
     // Combinations orthogonal to the direction that was not excited are free of its bound: theta1 + theta2 and theta3,
     // nearly.

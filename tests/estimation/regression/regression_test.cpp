@@ -61,7 +61,7 @@ TEST(Compare, EstimatesEquationErrorWhenAsked) {
   ASSERT_TRUE(c.recommends) << c.reason;
   EXPECT_EQ(c.recommended, Method::kGtls);
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const ParameterEstimate& p = c.best()->parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = c.best()->parameters[static_cast<std::size_t>(i)];
     EXPECT_NEAR(p.value, true_theta()(i), 3.5 * p.sigma);
   }
 }
@@ -137,7 +137,7 @@ TEST(PublishedTables, OlsWithExactRegressorsIsUnbiasedAndCovers) {
       const Lateral s = lateral(static_cast<unsigned>(m + 1), c.theta, c.snr, 0.0, 400);
       const RegressionEstimate e = estimate(s.data, Method::kOls, {.covariance = CovarianceKind::kWhite});
       for (Eigen::Index i = 0; i < 6; ++i) {
-        const ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+        const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
         mean_error(i) += (p.value - c.theta(i)) / runs;
         sigma(i) += p.sigma / runs;
         covered += p.low95 < c.theta(i) && c.theta(i) < p.high95 ? 1.0 : 0.0;
@@ -170,7 +170,7 @@ TEST(PublishedTables, NoiseOnRegressorsBiasesOlsAndNotGtls) {
     mean_ols += ols.theta / runs;
     mean_gtls += gtls.theta / runs;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      const ParameterEstimate& p = gtls.parameters[static_cast<std::size_t>(i)];
+      const Parameter& p = gtls.parameters[static_cast<std::size_t>(i)];
       covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
     }
   }

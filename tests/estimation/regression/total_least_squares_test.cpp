@@ -234,7 +234,7 @@ TEST_P(TlsCoverage, IntervalsHoldWhatTheyPromise) {
       const RegressionEstimate e = estimate(s.data, Method::kGtls);
       ASSERT_TRUE(e.usable());
       for (Eigen::Index i = 0; i < 4; ++i) {
-        const ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+        const Parameter& p = e.parameters[static_cast<std::size_t>(i)];
         covered += p.low95 < theta(i) && theta(i) < p.high95 ? 1.0 : 0.0;
         deviation += std::pow((p.value - theta(i)) / p.sigma, 2);
       }

@@ -83,7 +83,7 @@ TEST(MonteCarlo, IsTheSameToTheLastBitForAnyNumberOfThreads) {
     y[1] = x[1] / x[0];
   };
   const MonteCarloResult one = propagate_errors(inputs, 2, f, {.draws = 10007, .seed = 5, .threads = 1});
-  for (const unsigned threads : {2U, 3U, 7U, 100U}) {
+  for (const int threads : {2, 3, 7, 100}) {
     const MonteCarloResult many = propagate_errors(inputs, 2, f, {.draws = 10007, .seed = 5, .threads = threads});
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_EQ(one.outputs[i].low, many.outputs[i].low);

@@ -9,6 +9,7 @@
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -115,7 +116,7 @@ TEST(RealMat, TheFlightOfThorAgreesWithItsExport) {
   ASSERT_NE(flight, nullptr);
   EXPECT_EQ(flight->size(), 34812U);
   const auto& time = *flight->time;
-  const auto row = static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), 200.0009) - time.begin());
+  const auto row = at(std::lower_bound(time.begin(), time.end(), 200.0009) - time.begin());
   // First row of the export: 200.001,1,0.0097528,-0.0051831,-0.015915,1.513,-0.19663,-9.7167,...
   EXPECT_NEAR(time[row], 200.001, 6e-4);
   EXPECT_NEAR(flight->find("p")->value(row), 0.0097528, 1e-7);

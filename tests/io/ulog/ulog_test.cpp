@@ -87,7 +87,7 @@ TEST(ULog, GoesOnAtAppendedDataThoughTheMessageBeforeIsCut) {
   EXPECT_EQ(result.damage.records_lost, 1U);
 }
 
-TEST(ULog, CountsDataThatAreTooShortOrThatNobodySubscribed) {
+TEST(ULog, CountsDataThatAreTooShortOrWithoutASubscription) {
   ULogWriter log;
   log.format("a:uint64_t timestamp;float x;");
   log.subscribe(0, "a");
@@ -99,7 +99,7 @@ TEST(ULog, CountsDataThatAreTooShortOrThatNobodySubscribed) {
   EXPECT_EQ(result.find("a")->size(), 6U);
   EXPECT_EQ(result.damage.records_lost, 2U);
   EXPECT_THAT(result.damage.notes, Contains(HasSubstr("1 messages of a are shorter than their format (12 bytes)")));
-  EXPECT_THAT(result.damage.notes, Contains(HasSubstr("1 data messages of ids that nobody subscribed")));
+  EXPECT_THAT(result.damage.notes, Contains(HasSubstr("1 data messages of ids without a subscription")));
 }
 
 TEST(ULog, ResynchronisesAfterRubbishAndCountsIt) {

@@ -168,22 +168,22 @@ TEST(ReducedDynamics, ACoupledTranslationIsASplineJoint) {
   test::add_joint(knee, test::TreeJoint::kPlanar, 0, 1, random);
   // One model: the rotation drives the two translations by couplers. The other: by the joint's own functions.
   const numerics::PiecewisePolynomial x = spline(0.1, random), y = spline(0.1, random);
-  Model coupled = knee, own = knee;
-  for (Model* model : {&coupled, &own}) {
+  Model coupled = knee, built_in = knee;
+  for (Model* model : {&coupled, &built_in}) {
     for (TransformAxis& axis : model->joints[0].translation) {
       if (axis.coordinate >= 0) axis.function = numerics::PiecewisePolynomial::linear(1.0, 0.0);
     }
   }
   coupled.couplers = {coupler(0, 1, x), coupler(0, 2, y)};
-  own.joints[0].translation[0].coordinate = own.joints[0].translation[1].coordinate = 0;
-  own.joints[0].translation[0].function = x;
-  own.joints[0].translation[1].function = y;
-  own.joints[0].coordinates.resize(1);
-  own.coordinates.resize(1);
-  const Mechanism coupled_mechanism(coupled), own_mechanism(own);
+  built_in.joints[0].translation[0].coordinate = built_in.joints[0].translation[1].coordinate = 0;
+  built_in.joints[0].translation[0].function = x;
+  built_in.joints[0].translation[1].function = y;
+  built_in.joints[0].coordinates.resize(1);
+  built_in.coordinates.resize(1);
+  const Mechanism coupled_mechanism(coupled), built_in_mechanism(built_in);
   const CoordinateReduction reduction(coupled);
   ReducedDynamics<double> reduced(coupled_mechanism, reduction);
-  Dynamics<double> direct(own_mechanism);
+  Dynamics<double> direct(built_in_mechanism);
   for (const double q : {-0.9, -0.2, 0.5, 1.4}) {
     const double speed = 1.7;
     const Eigen::Vector3d tau(2.0, 0.0, 0.0);

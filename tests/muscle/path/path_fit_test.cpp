@@ -23,7 +23,7 @@ struct Fit {
   FittedPaths fitted;
 };
 
-/// Lengths and slopes of both at random poses that neither the fit nor its own check used.
+/// Lengths of both at random poses that neither the fit nor its check used.
 void expect_stated_errors(const Fit& fit) {
   Kinematics<double> kinematics(fit.mechanism);
   PathWorkspace<double> workspace(fit.exact);
@@ -102,7 +102,7 @@ TEST(FittedPaths, SayWhenACoordinateIsOutsideItsRange) {
   for (const double l : length) EXPECT_TRUE(std::isfinite(l));
 }
 
-/// A path between two bodies on a ball-like chain: three coordinates that cannot be parted.
+/// A path between two bodies on a ball-like chain: three coordinates that cannot be separated.
 TEST(FittedPaths, OfThreeCoordinatesFollowTheStraightLine) {
   Model model;
   model.bodies = {Body{.name = "ground"}};

@@ -29,9 +29,9 @@ MotionSegment segment_of(const MusculoskeletalSystem& system, double elbow, cons
   return segment;
 }
 
-class MuscleParameters_ : public ::testing::TestWithParam<PathSource> {};
+class MuscleSensitivities : public ::testing::TestWithParam<PathSource> {};
 
-TEST_P(MuscleParameters_, SensitivitiesAreThoseOfCentralDifferences) {
+TEST_P(MuscleSensitivities, AreThoseOfCentralDifferences) {
   const MusculoskeletalSystem system(load_model("arm").model(), {.paths = GetParam()});
   std::vector<MuscleParameterName> names;
   for (const char* name : {"biceps_long.max_isometric_force", "biceps_long.optimal_fiber_length",
@@ -79,7 +79,7 @@ TEST_P(MuscleParameters_, SensitivitiesAreThoseOfCentralDifferences) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, MuscleParameters_, ::testing::Values(PathSource::kExact, PathSource::kFitted));
+INSTANTIATE_TEST_SUITE_P(Paths, MuscleSensitivities, ::testing::Values(PathSource::kExact, PathSource::kFitted));
 
 TEST(MuscleParametricModel, IsTheForwardSimulation) {
   const MusculoskeletalSystem system(load_model("arm").model());
@@ -98,19 +98,19 @@ TEST(MuscleParametricModel, IsTheForwardSimulation) {
 }
 
 TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameters) {
-  // The person: the built-in arm with a longer biceps tendon and a stronger brachialis. Two motions tell them apart.
-  Model person = load_model("arm").model();
-  auto& biceps = person.muscles[static_cast<std::size_t>(person.muscle("biceps_long"))].parameters.musculotendon;
-  auto& brachialis = person.muscles[static_cast<std::size_t>(person.muscle("brachialis"))].parameters.musculotendon;
+  // The subject: the built-in arm with a longer biceps tendon and a stronger brachialis, which two motions distinguish.
+  Model subject = load_model("arm").model();
+  auto& biceps = subject.muscles[static_cast<std::size_t>(subject.muscle("biceps_long"))].parameters.musculotendon;
+  auto& brachialis = subject.muscles[static_cast<std::size_t>(subject.muscle("brachialis"))].parameters.musculotendon;
   biceps.tendon_slack_length *= 1.03;
   brachialis.max_isometric_force *= 1.15;
-  const MusculoskeletalSystem truth(person, {.paths = PathSource::kFitted});
-  const MusculoskeletalSystem guess(load_model("arm").model(), {.paths = PathSource::kFitted});
+  const MusculoskeletalSystem subject_system(subject, {.paths = PathSource::kFitted});
+  const MusculoskeletalSystem generic(load_model("arm").model(), {.paths = PathSource::kFitted});
   const std::vector<double> lift{0.05, 0.05, 0.05, 0.4, 0.2, 0.1}, other{0.1, 0.05, 0.05, 0.05, 0.05, 0.4};
   const auto segments = [&](const MusculoskeletalSystem& system) {
-    return std::vector<MotionSegment>{segment_of(system, 0.5, lift, 0.4), segment_of(system, 1.0, other, 0.4)};
+    return std::vector<MotionSegment>{segment_of(system, 0.5, lift, 0.3), segment_of(system, 1.0, other, 0.3)};
   };
-  const MuscleParametricModel recorded(truth, {}, segments(truth));
+  const MuscleParametricModel recorded(subject_system, {}, segments(subject_system));
   constexpr double kNoise = 1e-3;
   numerics::RandomStream random(7, "noise of the angles");
   std::vector<estimation::RowMatrix> measured;
@@ -122,10 +122,10 @@ TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameter
     for (double& angle : response.output.reshaped()) angle += kNoise * random.normal();
     measured.push_back(response.output);
   }
-  const MuscleParametricModel model(guess,
-                                    {parse_parameter_name(guess.model(), "biceps_long.tendon_slack_length", "test"),
-                                     parse_parameter_name(guess.model(), "brachialis.max_isometric_force", "test")},
-                                    segments(guess));
+  const MuscleParametricModel model(generic,
+                                    {parse_parameter_name(generic.model(), "biceps_long.tendon_slack_length", "test"),
+                                     parse_parameter_name(generic.model(), "brachialis.max_isometric_force", "test")},
+                                    segments(generic));
   const estimation::OutputErrorEstimate estimate =
       estimation::output_error(model, measured,
                                {.noise = estimation::OutputNoise::kGiven,
@@ -137,7 +137,7 @@ TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameter
   for (Eigen::Index i = 0; i < 2; ++i) {
     const double sigma = std::sqrt(estimate.covariance(i, i));
     EXPECT_LT(std::abs(estimate.theta(i) - hidden(i)), 4.0 * sigma);
-    // The data tell the person from the generic model, beyond doubt.
+    // The data distinguish the subject from the generic model.
     EXPECT_GT(std::abs(model.parameters()[static_cast<std::size_t>(i)].start - hidden(i)), 10.0 * sigma);
   }
 }

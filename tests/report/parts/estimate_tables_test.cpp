@@ -9,8 +9,7 @@ namespace veridyn::report {
 namespace {
 
 TEST(ParameterRow, ShowsTheParameterInTheUnitOfTheReader) {
-  const estimation::EstimatedParameter p{
-      "bias", 0.02, 0.001, 0.018, 0.022, "rad", estimation::ParameterStatus::kIdentified};
+  const estimation::Parameter p{"bias", 0.02, 0.001, 0.018, 0.022, "rad", estimation::ParameterStatus::kIdentified};
   const Row row = parameter_row(p, 100.0, "crad");
   const std::vector<Column> columns = parameter_columns(false);
   ASSERT_EQ(row.cells.size(), columns.size());

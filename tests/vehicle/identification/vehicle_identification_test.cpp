@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 #include <map>
-#include <numeric>
 
+#include "tests/vehicle/interrupting_progress.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -17,21 +17,21 @@ namespace {
 using estimation::ParameterStatus;
 using testing::drive_bicycle;
 using testing::family_car;
+using testing::InterruptingProgress;
 using testing::lively_drive;
 using testing::mapped;
 using testing::WanderingSteer;
 
 VehicleIdentification identify(const VehicleTrajectory& trajectory, const DriveSensorSet& sensors, std::uint64_t seed,
                                const VehicleIdentifyOptions& options = {},
-                               VehicleParameters<double> start = family_car()) {
+                               VehicleParameters<double> start = family_car(), Progress&& progress = {}) {
   start.C_f = 80000.0;
   start.C_r = 80000.0;
   start.I_z = 2000.0;
   const DriveSignalOptions signal_options;
   const DriveSignals signals = prepare_drive_signals(mapped(record_drive(trajectory, sensors, seed)), signal_options);
   const DriveSegments segments = find_drive_segments(signals, {});
-  Progress silent;
-  return identify_parameters({signals, segments, start, signal_options, options}, silent);
+  return identify_parameters({signals, segments, start, signal_options, options}, progress);
 }
 
 double relative(const VehicleIdentification& id, VehicleMethod method, const char* name, double truth) {
@@ -46,7 +46,7 @@ TEST(VehicleIdentification, RecoversTheTruthFromAPerfectLogByOutputError) {
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_r", p.C_r), 1e-6);
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "I_z", p.I_z), 1e-6);
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "understeer_gradient", understeer_gradient(p)), 1e-6);
-  EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << id.reason;
+  EXPECT_EQ(id.verdict, estimation::GroupVerdict::kIdentified) << id.reason;
   // Small angles: alpha^2/3 of slip angles up to 6 deg.
   EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_f", p.C_f), 0.004);
   EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_r", p.C_r), 0.004);
@@ -77,7 +77,7 @@ TEST(VehicleIdentification, RecoversTheTruthWithMeasuredLateralVelocity) {
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 1e-6);
 }
 
-/// How often intervals of drives with the reference sensors, their biases drawn anew each time, hold the truth.
+/// How often intervals of drives with the reference sensors, their biases drawn each time, contain the true value.
 std::map<std::string, int> intervals_that_hold(int drives, double duration) {
   const VehicleParameters<double> p = family_car();
   const std::map<std::string, double> truth{
@@ -86,10 +86,10 @@ std::map<std::string, int> intervals_that_hold(int drives, double duration) {
   for (int seed = 1; seed <= drives; ++seed) {
     const auto s = static_cast<std::uint64_t>(seed);
     const VehicleIdentification id = identify(lively_drive(p, s, 0.02, duration), reference_drive_sensors(), s);
-    EXPECT_EQ(id.verdict, VehicleVerdict::kIdentified) << seed << ": " << id.reason;
+    EXPECT_EQ(id.verdict, estimation::GroupVerdict::kIdentified) << seed << ": " << id.reason;
     for (const VehicleMethod method : {VehicleMethod::kGtls, VehicleMethod::kOutputError}) {
       for (const auto& [name, value] : truth) {
-        const estimation::ParameterEstimate* e = id.find(method)->find(name);
+        const estimation::Parameter* e = id.find(method)->find(name);
         if (e == nullptr) continue;
         held[std::string(to_string(method)) + " " + name] += e->low95 <= value && value <= e->high95 ? 1 : 0;
       }
@@ -122,7 +122,7 @@ TEST(VehicleIdentification, FindsTheBiasesOfTheSensors) {
   VehicleIdentifyOptions options;
   options.model.prior.fill(std::numeric_limits<double>::infinity());
   const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
-  // The speed varies by 10 %, which tells the three apart when there is no noise.
+  // The speed varies by 10 %, which makes the three distinguishable without noise.
   EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("steer_bias")->value, 0.004, 1e-6);
   EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("yaw_rate_bias")->value, -0.006, 1e-6);
   EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("accel_y_bias")->value, 0.15, 1e-5);
@@ -143,7 +143,7 @@ TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
 TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   const VehicleParameters<double> p = family_car();
   const VehicleIdentification id = identify(lively_drive(p, 1, 1e-4), reference_drive_sensors(), 1);
-  EXPECT_EQ(id.verdict, VehicleVerdict::kNotExcited);
+  EXPECT_EQ(id.verdict, estimation::GroupVerdict::kNotExcited);
   ASSERT_NE(id.best(), nullptr);
   for (const auto& e : id.best()->parameters) EXPECT_EQ(e.status, ParameterStatus::kNotExcited) << e.name;
   const estimation::Estimate estimate = make_vehicle_estimate(id, "car");
@@ -214,7 +214,7 @@ TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
 
 TEST(VehicleIdentification, NoticesThatTheLinearModelIsWrongForSaturatingTyres) {
   const VehicleIdentification id = identify(magic_drive(family_car(), 0.7, 0.05), reference_drive_sensors(), 1);
-  const bool rejected = id.verdict == VehicleVerdict::kRejected;
+  const bool rejected = id.verdict == estimation::GroupVerdict::kRejected;
   const bool warned = std::any_of(id.checks.begin(), id.checks.end(), [](const auto& c) { return !c.passed; });
   EXPECT_TRUE(rejected || warned) << id.reason;
   EXPECT_FALSE(id.warnings.empty());
@@ -235,62 +235,18 @@ TEST(VehicleIdentification, UncertaintyOfTheMassGoesIntoTheErrorBars) {
               sure.find(VehicleMethod::kGtls)->find("understeer_gradient")->sigma, 1e-12);
 }
 
-TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
-  const VehicleParameters<double> p = family_car();
-  for (const DriveTyre tyre : {DriveTyre::kLinear, DriveTyre::kMagicFormula}) {
-    DriveSensorSet sensors = testing::perfect_sensors();
-    sensors[DriveSensorKind::kLateralVelocity].enabled = true;
-    DriveSignals signals = prepare_drive_signals(mapped(record_drive(lively_drive(p, 1, 0.02, 12.0), sensors, 1)), {});
-    signals.accel_position = {0.3, -0.2, 0.1};
-    DriveModelOptions options;
-    options.tyre = tyre;
-    options.free.fill(true);
-    options.start[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] = 0.013;
-    options.start[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = 0.017;
-    // At no delay the ends, where nothing lies beyond, have one-sided derivatives.
-    options.start[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)] = 0.009;
-    const std::vector<TimeSpan> spans{{4.0, 8.0}};
-    const DriveParametricModel model(signals, spans, p, options);
-    Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns) + 2);
-    for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
-    for (std::size_t i = 0; i < 2; ++i)
-      theta(static_cast<Eigen::Index>(kDriveUnknowns + i)) = model.initial_conditions(0)[i].start;
-    std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
-    std::iota(active.begin(), active.end(), Eigen::Index{0});
-    estimation::ModelResponse exact, above, below;
-    ASSERT_TRUE(model.respond(0, theta, active, exact));
-    const Eigen::VectorXd size = theta.cwiseAbs().cwiseMax(0.01);
-    for (const Eigen::Index i : active) {
-      const double h = 1e-5 * size(i);
-      Eigen::VectorXd moved = theta;
-      moved(i) += h;
-      ASSERT_TRUE(model.respond(0, moved, {}, above));
-      moved(i) -= 2.0 * h;
-      ASSERT_TRUE(model.respond(0, moved, {}, below));
-      const estimation::RowMatrix difference = (above.output - below.output) / (2.0 * h);
-      const Eigen::Map<const Eigen::VectorXd> flat(difference.data(), difference.size());
-      const double scale = std::max(flat.cwiseAbs().maxCoeff(), 1e-6 / size(i));
-      EXPECT_LT((flat - exact.sensitivity.col(i)).cwiseAbs().maxCoeff() / scale, 2e-5)
-          << "unknown " << i << " tyre " << static_cast<int>(tyre);
-    }
-  }
-}
-
-TEST(DriveValidation, PredictsTheDriveOfAKnownVehicleAndItsPath) {
-  const VehicleParameters<double> p = family_car();
-  DriveSensorSet sensors = testing::perfect_sensors();
-  sensors[DriveSensorKind::kPosition] = {.enabled = true, .rate_Hz = 100.0};
-  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(lively_drive(p, 7), sensors, 1)), {});
-  const std::vector<TimeSpan> spans{{10.0, 20.0}, {30.0, 40.0}};
-  Eigen::VectorXd theta = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kDriveUnknowns));
-  theta.head(4) << p.C_f, p.C_r, p.I_z, p.a;
-  const DriveValidation v = predict_drive(signals, spans, p, {}, theta);
-  ASSERT_NE(v.find("yaw_rate"), nullptr);
-  EXPECT_GT(v.find("yaw_rate")->fit.r2, 1.0 - 1e-9);
-  EXPECT_GT(v.find("accel_y")->fit.r2, 1.0 - 1e-9);
-  ASSERT_NE(v.find("path"), nullptr);
-  // 200 m of path; trapezoids at 10 ms.
-  EXPECT_LT(v.find("path")->fit.rmse, 0.05);
+TEST(VehicleIdentification, StopsSoonWhereverItIsInterrupted) {
+  const VehicleTrajectory drive = lively_drive(family_car(), 1, 0.02, 30.0);
+  const auto asked = [&](long n) {
+    InterruptingProgress progress(n);
+    const VehicleIdentification id =
+        identify(drive, testing::perfect_sensors(), 1, {}, family_car(), std::move(progress));
+    EXPECT_EQ(id.interrupted, progress.questions() >= n);
+    return progress.questions();
+  };
+  const long all = asked(1000000);
+  ASSERT_GT(all, 20);
+  for (const long n : {1L, all / 4, all / 2, 3 * all / 4, all}) EXPECT_LE(asked(n), n + 8) << n << " of " << all;
 }
 
 TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {

@@ -8,8 +8,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-PredictedDriveQuantity yaw_rate(double r2, double rmse, double lag1 = 0.0) {
-  PredictedDriveQuantity q{.name = "yaw_rate", .unit = "rad/s", .fit = {}, .lag1 = lag1};
+estimation::PredictedQuantity yaw_rate(double r2, double rmse, double lag1 = 0.0) {
+  estimation::PredictedQuantity q{.name = "yaw_rate", .unit = "rad/s", .fit = {}, .lag1 = lag1};
   q.fit.r2 = r2;
   q.fit.rmse = rmse;
   return q;
@@ -29,7 +29,7 @@ struct Case {
     signals[DriveSignal::kYawRate].sigma = 0.01;
     estimate.method = VehicleMethod::kOutputError;
     for (const char* name : {"C_f", "C_r", "steer_bias"}) {
-      estimation::ParameterEstimate p;
+      estimation::Parameter p;
       p.name = name;
       p.status = estimation::ParameterStatus::kIdentified;
       estimate.parameters.push_back(p);
@@ -45,7 +45,7 @@ struct Case {
 
 TEST(VehicleJudgement, EstimateThatPredictsTheHoldOutIsIdentified) {
   const VehicleJudgement found = Case().judge();
-  EXPECT_EQ(found.verdict, VehicleVerdict::kIdentified);
+  EXPECT_EQ(found.verdict, estimation::GroupVerdict::kIdentified);
   EXPECT_EQ(found.reason, "C_f, C_r identified by output error: 98.0 % of the yaw rate's variance on the hold-out");
   EXPECT_TRUE(found.warnings.empty());
 }
@@ -54,7 +54,7 @@ TEST(VehicleJudgement, PoorPredictionOfTheHoldOutRejects) {
   Case c;
   c.validation.quantities = {yaw_rate(0.4, 0.011)};
   const VehicleJudgement found = c.judge();
-  EXPECT_EQ(found.verdict, VehicleVerdict::kRejected);
+  EXPECT_EQ(found.verdict, estimation::GroupVerdict::kRejected);
   EXPECT_EQ(found.reason, "rejected: it explains 40 % of the yaw rate's variance on the hold-out, less than 50 %");
   EXPECT_THAT(found.warnings, ElementsAre("it explains 40.0 % of the yaw rate's variance on the hold-out"));
 }
@@ -63,7 +63,7 @@ TEST(VehicleJudgement, PowerThatIsNeitherModelledNorNoiseRejects) {
   Case c;
   c.fit.quantities = {yaw_rate(0.7, 0.2, 0.9)};
   const VehicleJudgement found = c.judge();
-  EXPECT_EQ(found.verdict, VehicleVerdict::kRejected);
+  EXPECT_EQ(found.verdict, estimation::GroupVerdict::kRejected);
   EXPECT_THAT(found.reason, HasSubstr("30 % of the variance of yaw_rate is neither modelled nor noise"));
 }
 
@@ -71,21 +71,21 @@ TEST(VehicleJudgement, TheSameResidualIsAllowedWhereNoisyInputsExplainIt) {
   Case c;
   c.fit.quantities = {yaw_rate(0.7, 0.2, 0.9)};
   c.by_noise.quantities = {yaw_rate(0.0, 0.19)};
-  EXPECT_EQ(c.judge().verdict, VehicleVerdict::kIdentified);
+  EXPECT_EQ(c.judge().verdict, estimation::GroupVerdict::kIdentified);
 }
 
 TEST(VehicleJudgement, DriveThatDeterminesNoParameterOfTheVehicleIsNotExcited) {
   Case c;
   for (std::size_t i = 0; i < 2; ++i) c.estimate.parameters[i].status = estimation::ParameterStatus::kNotExcited;
   const VehicleJudgement found = c.judge();
-  EXPECT_EQ(found.verdict, VehicleVerdict::kNotExcited);
+  EXPECT_EQ(found.verdict, estimation::GroupVerdict::kNotExcited);
   EXPECT_EQ(found.reason, "not excited: the drive does not determine C_f, C_r");
 }
 
 TEST(VehicleJudgement, ModelThatCannotBeSimulatedIsRejectedAndAMissingHoldOutIsSaid) {
   Case c;
   c.validation.quantities.clear();
-  EXPECT_EQ(c.judge().verdict, VehicleVerdict::kIdentified);
+  EXPECT_EQ(c.judge().verdict, estimation::GroupVerdict::kIdentified);
   EXPECT_THAT(c.judge().warnings, ElementsAre("there was no hold-out to validate on"));
   c.fit.quantities.clear();
   EXPECT_EQ(c.judge().reason, "rejected: the identified model cannot be simulated over the drive");
@@ -105,11 +105,11 @@ TEST(VehicleJudgement, RegressionsThatBelongToNoBicycleReject) {
                                  .fit = c.fit,
                                  .validation = c.validation,
                                  .by_noise = c.by_noise};
-  EXPECT_EQ(judge_vehicle(problem, findings).verdict, VehicleVerdict::kRejected);
+  EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kRejected);
   EXPECT_THAT(judge_vehicle(problem, findings).reason, HasSubstr("belong to no bicycle (p = 1.0e-06)"));
   // Equation error knows linear tyres only.
   c.options.model.tyre = DriveTyre::kMagicFormula;
-  EXPECT_EQ(judge_vehicle(problem, findings).verdict, VehicleVerdict::kIdentified);
+  EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kIdentified);
 }
 
 TEST(VehicleMethod, NamesAreThoseOfTheStudy) {

@@ -13,7 +13,6 @@
 #include "veridyn/vehicle/similarity/similarity.hpp"
 #include "veridyn/vehicle/simulation/manoeuvre_metrics.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
@@ -57,7 +56,7 @@ TEST(DriverModel, FollowsACircleWithoutErrorWhereItsModelIsPerfect) {
   EXPECT_NEAR(t.steer.back(), 1.0 / (60.0 * c.curvature_gain), 1e-3 / (60.0 * c.curvature_gain));
 }
 
-TEST(DriverModel, TurnsLeftAndRightAlike) {
+TEST(DriverModel, TurnsLeftAndRightEqually) {
   const auto car = linear_car();
   PreviewDriver left(linearise(car, 15.0), std::make_shared<const Path>(Path::circle(60.0, 1)));
   PreviewDriver right(linearise(car, 15.0), std::make_shared<const Path>(Path::circle(60.0, -1)));
@@ -65,7 +64,7 @@ TEST(DriverModel, TurnsLeftAndRightAlike) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a.y[i], -b.y[i], 1e-9);
 }
 
-// A step in the path's curvature is seen a preview time ahead, and nothing happens before the delay has passed.
+// A step in the path's curvature is answered a preview time ahead, and nothing happens before the delay has passed.
 TEST(DriverModel, ActsAfterItsDelayAndBeforeTheBend) {
   auto path = std::make_shared<Path>();
   path->append_line(100.0).append_arc(100.0, 0.02);
@@ -97,7 +96,7 @@ TEST(DriverModel, KeepsItsLimits) {
   EXPECT_NEAR(fastest, 0.2, 1e-6);
 }
 
-// Looking at an earlier time begins a new drive: the same driver drives twice alike.
+// Looking at an earlier time begins a new drive: the same driver drives twice in the same way.
 TEST(DriverModel, DrivesTheSameWayAgain) {
   const auto car = linear_car();
   PreviewDriver driver(linearise(car, 15.0), std::make_shared<const Path>(Path::circle(60.0)));
@@ -123,7 +122,7 @@ TEST(DriverModel, KeepsTheLanesOfTheDoubleLaneChangeAt80AndLeavesThemTooFast) {
 }
 
 // The same driver in the exactly similar small car on the small course: every margin one fifth.
-TEST(DriverModel, DrivesTheScaledCarThroughTheScaledCourseAlike) {
+TEST(DriverModel, DrivesTheScaledCarThroughTheScaledCourse) {
   const SimilaritySubject prototype{.parameters = {}, .speed = 80.0 / 3.6};
   const ScaledVehicle twin = scale(prototype, {.length_ratio = 0.2});
   const auto pass = [](const SimilaritySubject& subject, double size) {
@@ -139,7 +138,7 @@ TEST(DriverModel, DrivesTheScaledCarThroughTheScaledCourseAlike) {
 }
 
 // ISO 4138 at constant radius: the driver holds the circle while drive torque raises the speed; the understeer gradient
-// measured so is that of the linear tyres. Linear tyres do not feel their load, and the drive is at the rear, whose
+// measured so is that of the linear tyres. Their load does not act on linear tyres, and the drive is at the rear, whose
 // torque is small.
 TEST(DriverModel, MeasuresTheUndersteerGradientOnACircle) {
   VehicleParameters<double> p;
@@ -170,7 +169,7 @@ TEST(DriverModel, RefusesOptionsThatMakeNoSense) {
   EXPECT_THROW(with({.decision_interval = 2.0}), InputError);
 }
 
-// A point mass under the controller: a step of the wanted speed is reached within its limits, and the integral takes
+// A point mass under the controller: a step of the desired speed is reached within its limits, and the integral takes
 // up a steady resistance.
 TEST(SpeedController, ReachesItsSpeedAndHoldsItAgainstDrag) {
   const SpeedControllerOptions options{.mass = 1000.0, .wheel_radius = 0.3};

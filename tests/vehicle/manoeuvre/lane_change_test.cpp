@@ -45,10 +45,10 @@ TEST(LaneChange, SeesABodyThatTouchesACone) {
   const DoubleLaneChange course = iso_double_lane_change(1.75);
   const BodyOutline body{1.25, 1.0, 1.75};
   // In the first lane there are (0.1 w + 0.25)/2 on either side of a vehicle in its middle.
-  const double room = 0.5 * (0.1 * 1.75 + 0.25);
+  const double clearance = 0.5 * (0.1 * 1.75 + 0.25);
   Path straight;
   straight.append_line(60.0);
-  const LaneCheck touching = check_lanes(along(straight, -room - 0.01), course, body);
+  const LaneCheck touching = check_lanes(along(straight, -clearance - 0.01), course, body);
   EXPECT_FALSE(touching.within);
   EXPECT_NEAR(touching.margin, -0.01, 1e-9);
   EXPECT_EQ(touching.lane, 1);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/support/refusal.hpp"
+#include "tests/vehicle/interrupting_progress.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/spectral_response.hpp"
 
@@ -74,6 +75,15 @@ TEST(Manoeuvre, RandomSteerIsBandLimitedAndReproducible) {
   EXPECT_LT(beyond, 1e-3 * within);
 }
 
+TEST(Manoeuvre, PreparingARandomSteerStopsWhenInterrupted) {
+  testing::InterruptingProgress progress(1000);
+  const Manoeuvre m = random_steer(0.03, 0.2, 2.0, 60.0, 5, 1.0, progress);
+  // 100 samples a second, of which 999 were made.
+  EXPECT_NE(steer(m, 1.0 + 9.9), 0.0);
+  EXPECT_EQ(steer(m, 1.0 + 10.0), 0.0);
+  EXPECT_EQ(m.default_duration, 63.0);
+}
+
 TEST(Manoeuvre, FishhookTurnsIn720DegreesASecondOfTheHandWheel) {
   const Manoeuvre m = fishhook(0.15, 0.75, 1.0, 0.25);
   EXPECT_NEAR(steer(m, 1.1), 0.075, 1e-12);
@@ -86,7 +96,7 @@ TEST(Manoeuvre, FishhookTurnsIn720DegreesASecondOfTheHandWheel) {
 Manoeuvre read(const std::string& text, const ManoeuvreContext& context = {}) {
   const Study study = Study::parse("[drive]\n" + text, "study.toml", std::filesystem::temp_directory_path());
   const StudyTable drive = study.root().table("drive");
-  Manoeuvre m = read_manoeuvre(drive, context);
+  Manoeuvre m = read_manoeuvre(drive, context, Progress());
   drive.finish();
   return m;
 }

@@ -106,7 +106,7 @@ const char* const kBezier = R"(3 9
  60 4 0.1  70 4 0.1  60 4 0.1
 )";
 
-// Bezier's own construction at the middle: (P0 + 3 P1 + 3 P2 + P3)/8.
+// Bezier's construction at the middle: (P0 + 3 P1 + 3 P2 + P3)/8.
 TEST(Path, ReadsBezierKnots) {
   const Path path = parse_bezier_path(kBezier, "path.txt");
   const double s = path.nearest((0.0 + 30.0 + 60.0 + 30.0) / 8.0, (0.0 + 0.0 + 12.0 + 4.0) / 8.0);
@@ -138,7 +138,7 @@ TEST(Path, ReadsTablesOfPoints) {
 
 TEST(Path, ReadsTheLaneChangesOfProjectChrono) {
   const std::filesystem::path folder = test::shared_folder() / "data/vehicle/chrono";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recorded data beside the sources: " << folder;
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no recorded data next to the sources: " << folder;
   for (const char* name :
        {"ISO_double_lane_change.txt", "ISO_double_lane_change2.txt", "NATO_double_lane_change.txt"}) {
     const Path path = read_path(folder / name);

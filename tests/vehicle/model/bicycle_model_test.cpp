@@ -76,7 +76,7 @@ TEST(BicycleModel, ExactGeometryDiffersFromTheLinearInThirdOrderOfTheAngles) {
     const double v = 0.3 * scale, r = 0.2 * scale, delta = 0.05 * scale;
     return exact.rates(v, r, delta, 20.0).dr - linear.rates(v, r, delta, 20.0).dr;
   };
-  EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.002);  // no even orders: left and right are alike
+  EXPECT_NEAR(difference(0.5) / difference(1.0), 0.125, 0.002);  // no even orders: left and right are equal
 }
 
 }  // namespace

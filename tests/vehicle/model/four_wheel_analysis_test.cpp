@@ -41,7 +41,7 @@ TEST(FourWheelAnalysis, WithoutHeightItIsTheLinearBicycle) {
   }
 }
 
-// Linear tyres do not feel load transfer: in steady cornering the gain is the bicycle's.
+// Load transfer does not act on linear tyres: in steady cornering the gain is the bicycle's.
 TEST(FourWheelAnalysis, SteadyYawRateIsTheBicyclesAndRollBalancesTheSprings) {
   const VehicleParameters<double> p = road_car();
   const LinearFourWheel linear = linearise(car_of(p), 25.0);
@@ -61,7 +61,8 @@ TEST(FourWheelAnalysis, SteadyYawRateIsTheBicyclesAndRollBalancesTheSprings) {
   EXPECT_NEAR(steady.roll.real(), expected, 1e-5 * expected);
 }
 
-// A car that is alike in front and behind: heave and wheel hop are those of a quarter of it, eigenvalues of two masses.
+// A car that is the same in front and behind: heave and wheel hop are those of a quarter of it, eigenvalues of two
+// masses.
 TEST(FourWheelAnalysis, ASymmetricCarBouncesAsItsQuarter) {
   VehicleParameters<double> p = road_car();
   p.a = p.b = 1.2;

@@ -51,8 +51,8 @@ TEST(Trigonometry, GivesArcTangentsAsLongDoubleDoes) {
       const WheelArray<double> x(any(generator), any(generator), any(generator), any(generator));
       const WheelArray<double> angles = arc_tangents<double>(x), reflected = arc_tangents<double>(-x);
       for (Eigen::Index i = 0; i < 4; ++i) {
-        const long double wanted = std::atan(static_cast<long double>(x[i]));
-        worst = std::max(worst, static_cast<double>(std::abs((angles[i] - wanted) / wanted)));
+        const long double exact = std::atan(static_cast<long double>(x[i]));
+        worst = std::max(worst, static_cast<double>(std::abs((angles[i] - exact) / exact)));
         EXPECT_EQ(reflected[i], -angles[i]);
       }
     }

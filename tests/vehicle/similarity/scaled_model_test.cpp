@@ -10,7 +10,6 @@
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/similarity/scaled_drive.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
-#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -70,7 +69,7 @@ FourWheelModel<double, SimpleMagicFormulaTyre<double>> load_dependent_car() {
 }
 
 // Lift-off, load transfer and friction included: all of it scales where gravity does.
-TEST(ScaledModel, ATwinUnderScaledGravityMovesAlike) {
+TEST(ScaledModel, ATwinUnderScaledGravityMovesSimilarly) {
   const VehicleParameters<double> p = road_car();
   const LinearTyre<double> front{.stiffness = p.C_f, .mu = 0.9}, rear{.stiffness = p.C_r, .mu = 0.9};
   const FourWheelModel<double, LinearTyre<double>> car(p, {front, front, rear, rear});
@@ -80,7 +79,7 @@ TEST(ScaledModel, ATwinUnderScaledGravityMovesAlike) {
   EXPECT_LT(largest_difference(car, model, twin.factors), 1e-9);
 }
 
-TEST(ScaledModel, AFroudeTwinWithLoadScaledTyresMovesAlikeUnderOurGravity) {
+TEST(ScaledModel, AFroudeTwinWithLoadScaledTyresMovesSimilarlyUnderOurGravity) {
   const ScaledVehicle twin = scale({.parameters = road_car()}, {.length_ratio = 0.2, .froude = true});
   const auto car = load_dependent_car();
   const auto model = scaled(car, twin.factors);
@@ -88,15 +87,15 @@ TEST(ScaledModel, AFroudeTwinWithLoadScaledTyresMovesAlikeUnderOurGravity) {
   EXPECT_LT(largest_difference(car, model, twin.factors), 1e-9);
 }
 
-// The same twin at equal times under real gravity: not alike, as the gravity group says.
+// The same twin at equal times under real gravity: not similar, by the gravity group.
 TEST(ScaledModel, UnderRealGravityATwinAtEqualTimesIsAnotherCar) {
   const ScaledVehicle twin = scale({.parameters = road_car()}, {.length_ratio = 0.2});
   const auto car = load_dependent_car();
   FourWheelOptions options = scaled(car.options(), twin.factors);
   options.gravity = 9.80665;
-  const auto alike = scaled(car, twin.factors);
-  const FourWheelModel<double, SimpleMagicFormulaTyre<double>> real(alike.parameters(), alike.tyres(), options);
-  EXPECT_LT(largest_difference(car, alike, twin.factors), 1e-9);
+  const auto similar = scaled(car, twin.factors);
+  const FourWheelModel<double, SimpleMagicFormulaTyre<double>> real(similar.parameters(), similar.tyres(), options);
+  EXPECT_LT(largest_difference(car, similar, twin.factors), 1e-9);
   EXPECT_GT(largest_difference(car, real, twin.factors), 0.1);
 }
 

@@ -26,7 +26,7 @@ SimilaritySubject subject_of(std::string_view name) {
 
 using State = Eigen::Matrix<double, 5, 1>;  // v, r, yaw, x, y
 
-/// The reference manoeuvre of the linear bicycle with `step` [s] of its own time, until 20 of them in units of `time`.
+/// The reference manoeuvre of the linear bicycle with `step` [s] of its time, until 20 of them in units of `time`.
 State reference_run(const VehicleParameters<double>& p, double u, double time, double until) {
   const BicycleModel<double, LinearTyre<double>> model{
       p, {.stiffness = p.C_f}, {.stiffness = p.C_r}, 9.80665, BicycleGeometry::kSmallAngles};
@@ -124,7 +124,7 @@ TEST(Similarity, GroupsDoNotDependOnTheSystemOfUnits) {
     for (SimilarityParameter& p : changed) {
       for (std::size_t i = 0; i < 3; ++i) p.value *= std::pow(unit[i], p.unit.dimension[i]);
     }
-    const auto groups = internal::similarity_groups(changed, default_repeating_variables(), nullptr);
+    const auto groups = internal::similarity_groups(changed, default_repeating_variables()).groups;
     ASSERT_EQ(groups.size(), reference.size());
     for (std::size_t i = 0; i < groups.size(); ++i) {
       EXPECT_NEAR(groups[i].value, reference[i].value, 1e-12 * std::abs(reference[i].value)) << groups[i].formula;
@@ -165,8 +165,8 @@ TEST(Similarity, TheTwinDrivesTheReferenceManoeuvreAtOneFifthTheSize) {
   EXPECT_NEAR(small(4) * 5.0, full(4), 1e-9);
 }
 
-// Any ratios: the twin runs on its own time axis L/u.
-TEST(Similarity, TwinsOfAnyLengthMassAndSpeedMoveAlike) {
+// Any ratios: the twin runs on the time axis L/u.
+TEST(Similarity, TwinsOfAnyLengthMassAndSpeedMoveSimilarly) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> exponent(-1.0, 1.0);
   const SimilaritySubject prototype = subject_of("reference");

@@ -1,4 +1,4 @@
-// Counts calls of operator new, hence in a file of its own: a longer drive with the same samples must not call it more.
+// Counts calls of operator new, hence in a separate file: a longer drive with the same samples must not call it more.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
   const BicycleModel<double, LinearTyre<double>> bicycle{p, tyre, tyre};
   Slalom driver;
   const Waves road;
-  Progress nobody;
+  Progress silent;
   const auto allocated = [&](const auto& run, double duration) {
     const SimulationOptions options{.duration = duration, .output_step = duration / 10.0};
     const long before = allocations;
@@ -38,9 +38,9 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
     return allocations - before;
   };
   const auto check = [&](const auto& run) { EXPECT_EQ(allocated(run, 1.0), allocated(run, 4.0)); };
-  check([&](const SimulationOptions& o) { return simulate(constant_speed, driver, &road, o, nobody); });
-  check([&](const SimulationOptions& o) { return simulate(driven, driver, &road, o, nobody); });
-  check([&](const SimulationOptions& o) { return simulate(bicycle, driver, o, nobody); });
+  check([&](const SimulationOptions& o) { return simulate(constant_speed, driver, &road, o, silent); });
+  check([&](const SimulationOptions& o) { return simulate(driven, driver, &road, o, silent); });
+  check([&](const SimulationOptions& o) { return simulate(bicycle, driver, o, silent); });
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
     EXPECT_NEAR(tracker.value(TrackedAxle::kFront), 0.6 * p.C_f, 0.02 * p.C_f) << seed;
     EXPECT_NEAR(tracker.value(TrackedAxle::kRear), 0.6 * p.C_r, 0.02 * p.C_r) << seed;
     EXPECT_NEAR(tracker.value(TrackedAxle::kUndersteer), understeer_gradient(p) / 0.6, 2e-4) << seed;
-    // Ten seconds after the change, and before it, the history is where the truth is.
+    // Ten seconds after the change, and before it, the history is at the true value.
     const DriveTrackHistory& h = tracker.history(TrackedAxle::kFront);
     for (std::size_t i = 0; i < h.time.size(); ++i) {
       const bool dry = h.time[i] > 20.0 && h.time[i]<59.5, wet = h.time[i]> 72.0;

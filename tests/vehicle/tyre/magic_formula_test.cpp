@@ -29,7 +29,7 @@ MagicFormulaTyre<double> load_independent(MagicFormulaTyre<double> tyre) {
   // 2 x/(1 + x^2) with x = F_z/(PKY2 F_z0): for a large PKY2 that is 2 x to 1e-12.
   c.PKY1 *= 0.5e6;
   c.PKY2 = 1e6;
-  // The file has no combined slip; these are the program's own.
+  // The file has no combined slip; these are the program's.
   c.RBX1 = 13.276;
   c.RBX2 = -13.778;
   c.RCX1 = 1.2568;

@@ -29,7 +29,7 @@ namespace veridyn::aircraft {
                                                const std::function<Eigen::VectorXd(const Subject&)>& estimate);
 
 /// Adds G G' to the covariance of an estimate, its standard deviations, intervals and t-tests; a parameter that is then
-/// no longer told apart from zero becomes insignificant. `covariance_white` stays that of the noise alone.
+/// no longer distinguishable from zero becomes insignificant. `covariance_white` stays that of the noise alone.
 void widen(estimation::RegressionEstimate& estimate, const Eigen::MatrixXd& sensitivity, double significance);
 
 /// "Jy (14 %)" when that constant makes up more than half of the variance of some parameter that was identified, else

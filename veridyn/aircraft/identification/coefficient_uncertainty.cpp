@@ -145,7 +145,7 @@ estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, con
 }
 
 UncertaintyReport coefficient_uncertainty(const estimation::UncertainInputs& inputs, const Subject& subject,
-                                          const UncertaintyOptions& options, std::uint64_t seed, unsigned threads) {
+                                          const UncertaintyOptions& options, std::uint64_t seed, int threads) {
   UncertaintyReport report;
   report.inputs = inputs;
   if (!options.enabled || inputs.names.size() != kCoefficientInputs) return report;
@@ -166,7 +166,7 @@ UncertaintyReport coefficient_uncertainty(const estimation::UncertainInputs& inp
     return estimation::linear_error_propagation(part, kCoefficients, jacobian, 500, seed);
   };
   const Eigen::VectorXd all = linear(true, true), sensors = linear(true, false), body = linear(false, true);
-  // The coefficient's own spread: what the error is to be compared with.
+  // The coefficient's spread: what the error is to be compared with.
   estimation::UncertainInputs spread = inputs;
   const Eigen::VectorXd width = inputs.high - inputs.low;
   spread.low = spread.high = 0.5 * (inputs.low + inputs.high);

@@ -43,6 +43,7 @@ struct CoefficientUncertainty {
   double range = 0.0;                   ///< standard deviation of the coefficient itself over the operating range
 };
 
+/// Uncertainty of all measured coefficients, and what it was computed from.
 struct UncertaintyReport {
   estimation::UncertainInputs inputs;  ///< in the order of `kFlightSignalNames`, air_density, `kBodyConstantNames`
   std::vector<CoefficientUncertainty> coefficients;  ///< that can be measured: without inertia the forces only
@@ -66,7 +67,7 @@ using CalibrationSigma = std::vector<std::pair<std::string, double>>;
 /// Errors of the coefficients that the subject allows for, by Monte Carlo and linearly.
 [[nodiscard]] UncertaintyReport coefficient_uncertainty(const estimation::UncertainInputs& inputs,
                                                         const Subject& subject, const UncertaintyOptions& options,
-                                                        std::uint64_t seed, unsigned threads = 0);
+                                                        std::uint64_t seed, int threads = 0);
 
 /// As a table: coefficient, mc_sigma, low95, high95, mean, linear_sigma, sensor_sigma, body_sigma, range_sd.
 [[nodiscard]] std::string to_csv(const UncertaintyReport& report);

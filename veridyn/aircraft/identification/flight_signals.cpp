@@ -19,6 +19,7 @@ using recording::on_grid;
 
 constexpr double kDefaultPass_Hz = 10.0;
 
+/// View of what flight signals are made from.
 class Preparation {
  public:
   Preparation(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
@@ -66,8 +67,8 @@ class Preparation {
       if (name == "beta") return known_->beta;
     }
     const double rate = out_.filter.rate_Hz;
-    // A channel that is slower than the grid was interpolated: its noise is not white there and is measured at its own
-    // rate.
+    // A channel that is slower than the grid was interpolated: its noise is not white there and is measured as
+    // recorded.
     const Channel& channel = mapped_.recording.at(name);
     return channel.rate_Hz() < 0.8 * rate ? recording::noise_floor(channel) : recording::noise_floor(raw, rate);
   }
@@ -84,11 +85,11 @@ class Preparation {
     signal.origin = std::move(origin);
   }
 
-  /// Noise that is left when white noise sampled at the channel's own rate has passed the filter. A channel slower than
+  /// Noise that is left when white noise sampled at the channel's rate has passed the filter. A channel slower than
   /// the grid was interpolated, so that more of its noise lies in the pass band.
   double left_by(const FirKernel& kernel, const std::string& name, double sd) const {
-    const double own = mapped_.recording.at(name).rate_Hz();
-    const double per_grid_sample = std::max(1.0, out_.filter.rate_Hz / own);
+    const double recorded = mapped_.recording.at(name).rate_Hz();
+    const double per_grid_sample = std::max(1.0, out_.filter.rate_Hz / recorded);
     return sd * std::sqrt(kernel.noise_gain() * per_grid_sample);
   }
 
@@ -157,11 +158,11 @@ class Preparation {
 
   void flow_angle(FlightSignal which, const char* name, const std::vector<double>& smoothed) {
     const Channel* vane = mapped_.recording.find(name);
-    if (options_.flow_angles == "vane" && vane == nullptr) {
+    if (options_.flow_angles == FlowAngles::kVane && vane == nullptr) {
       throw InputError(mapped_.recording.source,
                        fmt::format("has no {} vane, which signals.flow_angles = \"vane\" asks for", name));
     }
-    if (vane == nullptr || options_.flow_angles == "smoothed") {
+    if (vane == nullptr || options_.flow_angles == FlowAngles::kSmoothed) {
       // The smoother follows what the filter cannot: the same pass band for all regressors.
       put(which, numerics::filter(smoothed, smooth_), typical_sigma(fmt::format("sigma_{}", name).c_str()),
           ErrorKind::kBerkson, "smoother");
@@ -175,7 +176,7 @@ class Preparation {
     if (bias != nullptr && !bias->empty()) {
       const double b = numerics::median(bias->value);
       for (double& v : value) v -= b;
-      out_.notes.push_back(fmt::format("{} vane: estimated bias of {:.2f} deg taken off", name, b * 180.0 / M_PI));
+      out_.notes.push_back(fmt::format("{} vane: estimated bias of {:.2f} deg taken off", name, b * 180.0 / kPi));
     }
     put(which, std::move(value), left_by(smooth_, name, sd), ErrorKind::kClassical, "filtered vane");
   }
@@ -263,7 +264,10 @@ SignalOptions SignalOptions::read(const StudyTable& table) {
   options.rate_Hz = table.has("rate") ? table.positive("rate", "Hz") : 0.0;
   options.pass_Hz = table.has("pass_band") ? table.positive("pass_band", "Hz") : 0.0;
   const std::vector<std::string> choices{"auto", "vane", "smoothed"};
-  options.flow_angles = table.choice_or("flow_angles", choices, options.flow_angles);
+  const std::string angles = table.choice_or("flow_angles", choices, "auto");
+  options.flow_angles = angles == "vane"       ? FlowAngles::kVane
+                        : angles == "smoothed" ? FlowAngles::kSmoothed
+                                               : FlowAngles::kAuto;
   options.noise = recording::read_noise(table.table_or_empty("noise"), standard_channels());
   return options;
 }

@@ -14,14 +14,18 @@
 
 namespace veridyn::aircraft {
 
+/// What flow angles coefficients are regressed on.
+enum class FlowAngles {
+  kAuto,     ///< a vane's where there is one, else the smoother's
+  kVane,     ///< the filtered vane: its error is independent of the truth, and total least squares corrects for it
+  kSmoothed  ///< the smoother's: their error is independent of the estimate, so that least squares needs no correction
+};
+
 /// How recorded channels become signals for regression. Study table `[signals]`.
 struct SignalOptions {
   double rate_Hz = 0.0;  ///< `rate`: of the common grid; 0 takes the gyro's rate, at most 100 Hz
   double pass_Hz = 0.0;  ///< `pass_band`: kept unchanged; 0 takes 10 Hz or a fifth of the rate, whichever is less
-  /// `flow_angles`: "vane" regresses on the filtered vane, whose error is independent of the truth and is what total
-  /// least squares corrects for; "smoothed" on the smoother's estimate, whose error is independent of the estimate, so
-  /// that least squares needs no correction; "auto" takes a vane where there is one.
-  std::string flow_angles = "auto";
+  FlowAngles flow_angles = FlowAngles::kAuto;  ///< `flow_angles`: "auto", "vane", "smoothed"
   /// `[signals.noise]`: standard deviation of a channel's white noise per sample, by standard channel name; channels
   /// that are not given are measured from their content above the pass band.
   recording::GivenNoise noise;

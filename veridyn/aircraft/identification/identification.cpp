@@ -25,11 +25,12 @@ using estimation::RegressionComparison;
 using estimation::RegressionData;
 using estimation::RegressionEstimate;
 using estimation::RegressionOptions;
+using estimation::StructureMethod;
 using internal::complete;
 using internal::needed_signals;
 
-/// Factor within which the noise of the sensors is known.
-constexpr double kNoiseDoubt = 2.0;
+/// Factor on the standard deviation within which the noise of the sensors is known.
+constexpr double kNoiseTolerance = 2.0;
 
 /// Variance of z that neither the model nor the errors of the regressors explain: z'z/N - W_.. of the moment equations
 /// (Fuller 1987, sec. 2.2), or NaN where the regressors' errors leave no signal.
@@ -63,18 +64,17 @@ numerics::FitMeasures fit_on(const RegressionData& data, const Eigen::VectorXd& 
                                 {model.data(), static_cast<std::size_t>(model.size())});
 }
 
-const RegressionEstimate* choose(const RegressionComparison& comparison, const std::string& method) {
-  if (method == "auto") {
-    if (const RegressionEstimate* best = comparison.best()) return best;
-    // What it would have been, so that the refusal can be seen beside it.
-    for (const Method fallback : {Method::kPcaGtls, Method::kGtls, Method::kOls}) {
-      const RegressionEstimate* estimate = comparison.find(fallback);
-      if (estimate != nullptr && estimate->usable()) return estimate;
-    }
-    return nullptr;
-  }
-  for (const RegressionEstimate& estimate : comparison.estimates) {
-    if (estimation::to_string(estimate.method) == method && estimate.usable()) return &estimate;
+/// The estimate by the given method, or the recommended one; null where there is none.
+const RegressionEstimate* choose(const RegressionComparison& comparison, std::optional<Method> method) {
+  const auto usable = [&](Method m) {
+    const RegressionEstimate* estimate = comparison.find(m);
+    return estimate != nullptr && estimate->usable() ? estimate : nullptr;
+  };
+  if (method) return usable(*method);
+  if (const RegressionEstimate* best = comparison.best()) return best;
+  // What it would have been, so that the report can show it with the reason for its rejection.
+  for (const Method fallback : {Method::kPcaGtls, Method::kGtls, Method::kOls}) {
+    if (const RegressionEstimate* estimate = usable(fallback)) return estimate;
   }
   return nullptr;
 }
@@ -84,288 +84,369 @@ double contradiction_p(const RegressionEstimate& a, const RegressionEstimate& b)
   return estimation::agreement_p(a.theta - b.theta, a.covariance + b.covariance);
 }
 
-/// The way of one coefficient from rows to verdict. A view of what it was made from.
-class CoefficientIdentification {
- public:
-  CoefficientIdentification(const FlightSignals& signals, const Segments& segments, const Subject& subject,
-                            const IdentifyOptions& options)
-      : signals_(&signals), segments_(&segments), subject_(&subject), options_(&options) {}
+/// View of what coefficients are identified from, and how.
+struct FlightView {
+  const FlightSignals& signals;
+  const Segments& segments;
+  const Subject& subject;
+  const IdentifyOptions& options;
 
-  CoefficientResult run(const CoefficientModel& structure) {
-    CoefficientResult result = begin(structure);
-    if (!result.reason.empty()) return result;
-    if (options_->structure != "given") choose_structure(result);
-    estimate(result);
-    if (result.chosen && options_->refit_significant) refit(result);
-    judge(result);
-    series(result);
-    return result;
+  [[nodiscard]] const AxisSegments& axis_of_model(const CoefficientModel& model) const {
+    return segments.of(axis_of(model.coefficient));
   }
-
-  /// A given estimate instead of an own one.
-  CoefficientResult evaluate(const CoefficientModel& model) {
-    CoefficientResult result = begin(model);
-    if (!result.reason.empty()) return result;
-    const std::string& name = result.name;
-    const AxisSegments& axis = segments_->of(result.axis);
-    const RegressionData data = coefficient_data(model, *signals_, axis.excited, *subject_);
-    if (data.rows() < static_cast<Eigen::Index>(10 * model.size())) {
-      result.verdict = CoefficientVerdict::kNotExcited;
-      result.reason = fmt::format("{} cannot be judged: {}", name, axis.text);
-      return result;
-    }
-    const Eigen::VectorXd theta =
-        Eigen::Map<const Eigen::VectorXd>(model.values.data(), static_cast<Eigen::Index>(model.size()));
-    result.holdout_fit = fit_on(data, theta);
-    const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
-    const bool holds = result.holdout_fit.r2 >= options_->min_holdout_r2;
-    result.verdict = holds ? CoefficientVerdict::kIdentified : CoefficientVerdict::kRejected;
-    result.reason =
-        holds ? fmt::format("{} holds: it explains {:.0f} % of this flight", name, explained)
-              : fmt::format(
-                    "{} does not hold: it explains {:.0f} % of the coefficient's variance in this flight, less than "
-                    "{:.0f} %",
-                    name, explained, 100.0 * options_->min_holdout_r2);
-    series(result);
-    return result;
+  [[nodiscard]] RegressionOptions regression_options() const {
+    RegressionOptions regression;
+    regression.significance = options.significance;
+    regression.signal_to_noise = options.signal_to_noise;
+    return regression;
   }
-
- private:
-  CoefficientResult begin(const CoefficientModel& model) const {
-    CoefficientResult result;
-    result.coefficient = model.coefficient;
-    result.name = regressed_name(model.coefficient, *subject_);
-    result.per_unit_inertia = per_unit_inertia(model.coefficient, *subject_);
-    result.axis = axis_of(model.coefficient);
-    result.model = model;
-    result.row_interval_s = signals_->grid.step * static_cast<double>(signals_->stride);
-    result.reason = identification_obstacle(model, *signals_, *subject_);
-    return result;
-  }
-
-  RegressionOptions regression_options() const {
-    RegressionOptions options;
-    options.significance = options_->significance;
-    options.signal_to_noise = options_->signal_to_noise;
-    return options;
-  }
-
-  /// The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the
-  /// sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
-  /// (equation error). Returns that variance over what the sensors explain.
-  static double assign_equation_error(RegressionData& data) {
-    const double unexplained = unexplained_variance(data);
-    const auto n = data.parameters();
-    const double by_sensors = data.error_covariance(n, n);
-    if (unexplained > least_response_variance(data.error_covariance)) data.error_covariance(n, n) = unexplained;
-    return unexplained / by_sensors;
-  }
-
-  /// What is not known of mass, geometry and inertia goes into the error bars; returns the constant that makes up most.
-  std::string widen_by_body_errors(CoefficientResult& result) const {
-    const auto again = [&](const Subject& changed) {
-      RegressionData data =
-          coefficient_data(result.model, *signals_, segments_->of(result.axis).identification, changed);
-      static_cast<void>(assign_equation_error(data));
-      const RegressionEstimate estimate = estimation::estimate(data, result.chosen->method, regression_options());
-      return estimate.usable() ? estimate.theta : Eigen::VectorXd();
-    };
-    result.body_sensitivity = body_sensitivity(*subject_, result.chosen->theta.size(), again);
-    widen(*result.chosen, result.body_sensitivity, options_->significance);
-    return dominant_constant(*result.chosen, result.body_sensitivity, *subject_);
-  }
-
-  void estimate(CoefficientResult& result) const {
-    const AxisSegments& axis = segments_->of(result.axis);
-    result.data = coefficient_data(result.model, *signals_, axis.identification, *subject_);
-    const auto minimum = static_cast<Eigen::Index>(10 * result.model.size());
-    if (result.data.rows() < minimum) {
-      result.verdict = CoefficientVerdict::kNotExcited;
-      result.reason = axis.excited.empty() ? fmt::format("{} is not excited: {}", result.name, axis.text)
-                                           : fmt::format("{} has only {} usable samples on its segments, {} are needed",
-                                                         result.name, result.data.rows(), minimum);
-      return;
-    }
-    result.error_ratio = assign_equation_error(result.data);
-    result.comparison = estimation::compare(result.data, regression_options());
-    if (const RegressionEstimate* chosen = choose(result.comparison, options_->method)) {
-      result.chosen = *chosen;
-      for (std::size_t i = 0; i < result.model.size(); ++i)
-        result.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
-    }
-  }
-
-  /// The terms of the model chosen among the candidates, by least squares on the identification rows.
-  void choose_structure(CoefficientResult& result) const {
-    CoefficientModel all{result.coefficient, options_->candidates[static_cast<std::size_t>(result.coefficient)], {}};
-    if (all.terms.empty()) all.terms = default_candidates(result.model);
-    // What the log does not have cannot be chosen.
-    std::erase_if(all.terms, [&](const Term& term) {
-      const CoefficientModel single{result.coefficient, {term}, {kUnknown}};
-      return !identification_obstacle(single, *signals_, *subject_).empty();
-    });
-    all.values.assign(all.terms.size(), kUnknown);
-    const RegressionData data = coefficient_data(all, *signals_, segments_->of(result.axis).identification, *subject_);
-    if (all.terms.empty() || data.rows() < static_cast<Eigen::Index>(10 * all.size())) return;
-    estimation::StructureOptions search;
-    search.method = options_->structure == "stepwise" ? estimation::StructureMethod::kStepwise
-                                                      : estimation::StructureMethod::kOrthogonal;
-    search.significance = options_->significance;
-    result.structure = estimation::search_structure(data, search);
-    if (result.structure->selected.empty()) return;
-    result.model.terms.clear();
-    for (const Eigen::Index j : result.structure->selected)
-      result.model.terms.push_back(all.terms[static_cast<std::size_t>(j)]);
-    result.model.values.assign(result.model.terms.size(), kUnknown);
-  }
-
-  /// Once more with the significant parameters only, the constant always kept.
-  void refit(CoefficientResult& result) const {
-    CoefficientModel kept{result.coefficient, {}, {}};
-    for (std::size_t i = 0; i < result.model.size(); ++i) {
-      const bool significant = result.chosen->parameters[i].status == ParameterStatus::kIdentified;
-      if (!significant && !result.model.terms[i].constant()) continue;
-      kept.terms.push_back(result.model.terms[i]);
-      kept.values.push_back(kUnknown);
-    }
-    if (kept.size() == result.model.size() || kept.size() == 0) return;
-    result.model = kept;
-    result.chosen.reset();
-    estimate(result);
-  }
-
-  void judge(CoefficientResult& result) const {
-    if (result.verdict == CoefficientVerdict::kNotExcited) return;
-    const std::string& name = result.name;
-    const auto reject = [&](std::string reason) {
-      result.verdict = CoefficientVerdict::kRejected;
-      result.reason = std::move(reason);
-      if (result.chosen) estimation::reject(*result.chosen);
-    };
-    if (!result.chosen) return reject(fmt::format("{}: {}", name, result.comparison.reason));
-    const RegressionEstimate& chosen = *result.chosen;
-    result.identification_fit = fit_on(result.data, chosen.theta);
-    // What sensors leave is trusted within a factor of two in standard deviation.
-    const double beyond_sensors = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt / result.error_ratio);
-    result.unmodelled_share = (1.0 - result.identification_fit.r2) * beyond_sensors;
-    residual_diagnostics(result);
-
-    const AxisSegments& axis = segments_->of(result.axis);
-    RegressionData unseen = coefficient_data(result.model, *signals_, axis.holdout, *subject_);
-    const bool has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * result.model.size());
-    if (has_holdout) {
-      result.holdout_fit = fit_on(unseen, chosen.theta);
-      const auto n = unseen.parameters();
-      unseen.error_covariance(n, n) = result.data.error_covariance(n, n);
-      const RegressionEstimate again = estimation::estimate(unseen, chosen.method, regression_options());
-      if (again.usable()) result.contradiction_p = contradiction_p(chosen, again);
-    }
-    if (options_->method == "auto" && !result.comparison.recommends) {
-      return reject(fmt::format("{} is rejected: {}", name, result.comparison.reason));
-    }
-    if (!(result.unmodelled_share <= options_->max_unmodelled)) {
-      return reject(fmt::format("{} is rejected: {}", name, unmodelled_text(result)));
-    }
-    if (has_holdout && !(result.holdout_fit.r2 >= options_->min_holdout_r2)) {
-      return reject(fmt::format(
-          "{} is rejected: it explains {:.0f} % of the coefficient's variance on the hold-out, less than {:.0f} %",
-          name, 100.0 * std::max(0.0, result.holdout_fit.r2), 100.0 * options_->min_holdout_r2));
-    }
-    if (has_holdout && !(result.contradiction_p >= options_->contradiction_level)) {
-      return reject(fmt::format(
-          "{} is rejected: estimates from two parts of the flight contradict each other beyond their error bars "
-          "(p = {:.1e})",
-          name, result.contradiction_p));
-    }
-    const std::string dominant = widen_by_body_errors(result);
-    const auto is = [&](ParameterStatus status) {
-      std::vector<std::string> names;
-      for (const auto& p : chosen.parameters) {
-        if (p.status == status) names.push_back(p.name);
-      }
-      return names;
-    };
-    const std::vector<std::string> identified = is(ParameterStatus::kIdentified);
-    const std::vector<std::string> unexcited = is(ParameterStatus::kNotExcited);
-    const std::vector<std::string> insignificant = is(ParameterStatus::kInsignificant);
-    if (identified.empty() && !unexcited.empty()) {
-      result.verdict = CoefficientVerdict::kNotExcited;
-      result.reason = fmt::format("{} is not excited: {}", name, chosen.message);
-      return;
-    }
-    result.verdict = CoefficientVerdict::kIdentified;
-    result.reason = has_holdout ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name,
-                                              estimation::to_string(chosen.method), 100.0 * result.holdout_fit.r2)
-                                : fmt::format("{} is identified by {}, but there was no hold-out to validate it on",
-                                              name, estimation::to_string(chosen.method));
-    if (!dominant.empty()) result.reason += fmt::format("; its error bars are mostly those of {}", dominant);
-    if (result.per_unit_inertia)
-      result.reason += "; per unit inertia, which is not given (inertial coupling of a flat body assumed)";
-    if (!insignificant.empty())
-      result.reason += fmt::format("; not distinguishable from zero: {}", fmt::join(insignificant, ", "));
-    if (!unexcited.empty()) result.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
-  }
-
-  void residual_diagnostics(CoefficientResult& result) const {
-    const Eigen::VectorXd residual = result.data.regressand - result.data.regressors * result.chosen->theta;
-    const auto lags = static_cast<std::size_t>(std::clamp(3.0 / result.row_interval_s, 10.0, 200.0));
-    result.residual_autocorrelation = numerics::autocorrelation(
-        {residual.data(), static_cast<std::size_t>(residual.size())}, lags, result.data.segment);
-  }
-
-  void series(CoefficientResult& result) const {
-    const std::vector<FlightSignal> needed = needed_signals(result.model);
-    const bool estimated = result.model.known();
-    for (const TimeSpan& span : segments_->airborne) {
-      const auto [begin, end] = signals_->indices(span);
-      for (std::size_t k = begin; k < end; k += signals_->stride) {
-        const FlightSample<double> sample = signals_->sample(k);
-        result.time.push_back(signals_->grid.at(k));
-        if (!complete(sample, needed)) {
-          result.measured.push_back(kNaN);
-          result.modelled.push_back(kNaN);
-          continue;
-        }
-        const double torque = signals_->torque.empty() ? 0.0 : signals_->torque[k];
-        const double rho = signals_->air_density[k];
-        result.measured.push_back(select(regressed_coefficients(sample, *subject_, rho, torque), result.coefficient));
-        result.modelled.push_back(estimated ? result.model.linear(aero_variables(sample, *subject_, rho)) : kNaN);
-      }
-    }
-  }
-
-  const FlightSignals* signals_;
-  const Segments* segments_;
-  const Subject* subject_;
-  const IdentifyOptions* options_;
 };
+
+/// What is known of a coefficient before anything is estimated; `reason` is empty unless nothing can be.
+CoefficientResult describe_coefficient(const CoefficientModel& model, const FlightView& flight) {
+  CoefficientResult result;
+  result.coefficient = model.coefficient;
+  result.name = regressed_name(model.coefficient, flight.subject);
+  result.per_unit_inertia = per_unit_inertia(model.coefficient, flight.subject);
+  result.axis = axis_of(model.coefficient);
+  result.model = model;
+  result.row_interval_s = flight.signals.grid.step * static_cast<double>(flight.signals.stride);
+  result.reason = identification_obstacle(model, flight.signals, flight.subject);
+  return result;
+}
+
+/// A model whose terms were chosen among candidates; without a search where there was too little to choose from.
+struct ChosenTerms {
+  CoefficientModel model;
+  std::optional<estimation::StructureSearch> search;
+};
+
+/// By least squares on the identification rows.
+ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, const FlightView& flight) {
+  const Coefficient c = given.coefficient;
+  CoefficientModel all{c, flight.options.candidates[static_cast<std::size_t>(c)], {}};
+  if (all.terms.empty()) all.terms = default_candidates(given);
+  // What the log does not have cannot be chosen.
+  std::erase_if(all.terms, [&](const Term& term) {
+    const CoefficientModel single{c, {term}, {kNaN}};
+    return !identification_obstacle(single, flight.signals, flight.subject).empty();
+  });
+  all.values.assign(all.terms.size(), kNaN);
+  const RegressionData data =
+      coefficient_data(all, flight.signals, flight.axis_of_model(given).identification, flight.subject);
+  if (all.terms.empty() || data.rows() < static_cast<Eigen::Index>(10 * all.size())) return {given, std::nullopt};
+  estimation::StructureOptions options;
+  options.method = method;
+  options.significance = flight.options.significance;
+  estimation::StructureSearch search = estimation::search_structure(data, options);
+  if (search.selected.empty()) return {given, std::move(search)};
+  CoefficientModel chosen{c, {}, {}};
+  for (const Eigen::Index j : search.selected) chosen.terms.push_back(all.terms[static_cast<std::size_t>(j)]);
+  chosen.values.assign(chosen.terms.size(), kNaN);
+  return {std::move(chosen), std::move(search)};
+}
+
+/// Error variance of z, and the unexplained variance over what the sensors explain.
+struct EquationError {
+  double variance;
+  double ratio;
+};
+
+/// The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the
+/// sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
+/// (equation error).
+EquationError equation_error(const RegressionData& data) {
+  const double unexplained = unexplained_variance(data);
+  const auto n = data.parameters();
+  const double by_sensors = data.error_covariance(n, n);
+  const bool possible = unexplained > least_response_variance(data.error_covariance);
+  return {possible ? unexplained : by_sensors, unexplained / by_sensors};
+}
+
+/// The parameters of a model by all methods on the identification rows.
+struct CoefficientFit {
+  CoefficientModel model;  ///< values are the chosen estimate's, where there is one
+  RegressionData data;
+  RegressionComparison comparison;
+  std::optional<RegressionEstimate> chosen;
+  double error_ratio = 0.0;
+  bool enough_rows = false;
+};
+
+CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& flight) {
+  CoefficientFit fit;
+  fit.model = std::move(model);
+  fit.data =
+      coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).identification, flight.subject);
+  fit.enough_rows = fit.data.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
+  if (!fit.enough_rows) return fit;
+  const auto n = fit.data.parameters();
+  const EquationError error = equation_error(fit.data);
+  fit.data.error_covariance(n, n) = error.variance;
+  fit.error_ratio = error.ratio;
+  fit.comparison = estimation::compare(fit.data, flight.regression_options());
+  if (const RegressionEstimate* chosen = choose(fit.comparison, flight.options.method)) {
+    fit.chosen = *chosen;
+    for (std::size_t i = 0; i < fit.model.size(); ++i)
+      fit.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
+  }
+  return fit;
+}
+
+/// The terms whose parameters are significant, the constant always among them.
+CoefficientModel significant_terms(const CoefficientModel& model, const RegressionEstimate& estimate) {
+  CoefficientModel kept{model.coefficient, {}, {}};
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const bool significant = estimate.parameters[i].status == ParameterStatus::kIdentified;
+    if (!significant && !model.terms[i].constant()) continue;
+    kept.terms.push_back(model.terms[i]);
+    kept.values.push_back(kNaN);
+  }
+  return kept;
+}
+
+/// Figures by which an estimate is judged; see CoefficientResult.
+struct CoefficientChecks {
+  numerics::FitMeasures identification_fit, holdout_fit;
+  double unmodelled_share = 0.0;
+  double contradiction_p = 1.0;
+  bool has_holdout = false;
+  numerics::Autocorrelation residual_autocorrelation;
+};
+
+CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_s, const FlightView& flight) {
+  const RegressionEstimate& chosen = *fit.chosen;
+  CoefficientChecks checks;
+  checks.identification_fit = fit_on(fit.data, chosen.theta);
+  const double beyond_sensors = std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
+  checks.unmodelled_share = (1.0 - checks.identification_fit.r2) * beyond_sensors;
+  const Eigen::VectorXd residual = fit.data.regressand - fit.data.regressors * chosen.theta;
+  const auto lags = static_cast<std::size_t>(std::clamp(3.0 / row_interval_s, 10.0, 200.0));
+  checks.residual_autocorrelation =
+      numerics::autocorrelation({residual.data(), static_cast<std::size_t>(residual.size())}, lags, fit.data.segment);
+
+  RegressionData unseen =
+      coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).holdout, flight.subject);
+  checks.has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
+  if (!checks.has_holdout) return checks;
+  checks.holdout_fit = fit_on(unseen, chosen.theta);
+  const auto n = unseen.parameters();
+  unseen.error_covariance(n, n) = fit.data.error_covariance(n, n);
+  const RegressionEstimate again = estimation::estimate(unseen, chosen.method, flight.regression_options());
+  if (again.usable()) checks.contradiction_p = contradiction_p(chosen, again);
+  return checks;
+}
+
+/// Why an estimate must not be used; empty where it may be.
+std::string rejection(const std::string& name, const CoefficientFit& fit, const CoefficientChecks& checks,
+                      const IdentifyOptions& options) {
+  if (!options.method && !fit.comparison.recommends)
+    return fmt::format("{} is rejected: {}", name, fit.comparison.reason);
+  if (!(checks.unmodelled_share <= options.max_unmodelled))
+    return fmt::format("{} is rejected: {}", name, unmodelled_text(fit.error_ratio, checks.unmodelled_share));
+  if (!checks.has_holdout) return {};
+  if (!(checks.holdout_fit.r2 >= options.min_holdout_r2)) {
+    return fmt::format(
+        "{} is rejected: it explains {:.0f} % of the coefficient's variance on the hold-out, less than {:.0f} %", name,
+        100.0 * std::max(0.0, checks.holdout_fit.r2), 100.0 * options.min_holdout_r2);
+  }
+  if (!(checks.contradiction_p >= options.contradiction_level)) {
+    return fmt::format(
+        "{} is rejected: estimates from two parts of the flight contradict each other beyond their error bars "
+        "(p = {:.1e})",
+        name, checks.contradiction_p);
+  }
+  return {};
+}
+
+/// See body_sensitivity: each of the aircraft's constants is changed and the parameters estimated again.
+Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView& flight) {
+  return body_sensitivity(flight.subject, fit.chosen->theta.size(), [&](const Subject& changed) {
+    RegressionData data =
+        coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).identification, changed);
+    const auto n = data.parameters();
+    data.error_covariance(n, n) = equation_error(data).variance;
+    const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, flight.regression_options());
+    return estimate.usable() ? estimate.theta : Eigen::VectorXd();
+  });
+}
+
+/// A verdict and the sentence that explains it.
+struct ExplainedVerdict {
+  estimation::GroupVerdict verdict;
+  std::string reason;
+};
+
+/// Of an estimate that may be used. `dominant` is the constant of the aircraft that makes up most of its error bars.
+ExplainedVerdict explain(const CoefficientResult& described, const RegressionEstimate& chosen,
+                         const CoefficientChecks& checks, const std::string& dominant) {
+  const std::string& name = described.name;
+  const auto with_status = [&](ParameterStatus status) {
+    std::vector<std::string> names;
+    for (const auto& p : chosen.parameters) {
+      if (p.status == status) names.push_back(p.name);
+    }
+    return names;
+  };
+  const std::vector<std::string> unexcited = with_status(ParameterStatus::kNotExcited);
+  const std::vector<std::string> insignificant = with_status(ParameterStatus::kInsignificant);
+  if (with_status(ParameterStatus::kIdentified).empty() && !unexcited.empty())
+    return {estimation::GroupVerdict::kNotExcited, fmt::format("{} is not excited: {}", name, chosen.message)};
+  std::string reason = checks.has_holdout
+                           ? fmt::format("{} is identified by {}: it explains {:.0f} % of the hold-out", name,
+                                         estimation::to_string(chosen.method), 100.0 * checks.holdout_fit.r2)
+                           : fmt::format("{} is identified by {}, but there was no hold-out to validate it on", name,
+                                         estimation::to_string(chosen.method));
+  if (!dominant.empty()) reason += fmt::format("; its error bars are mostly those of {}", dominant);
+  if (described.per_unit_inertia)
+    reason += "; per unit inertia, which is not given (inertial coupling of a flat body assumed)";
+  if (!insignificant.empty())
+    reason += fmt::format("; not distinguishable from zero: {}", fmt::join(insignificant, ", "));
+  if (!unexcited.empty()) reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
+  return {estimation::GroupVerdict::kIdentified, std::move(reason)};
+}
+
+ExplainedVerdict not_excited(const std::string& name, const CoefficientFit& fit, const AxisSegments& axis) {
+  return {estimation::GroupVerdict::kNotExcited,
+          axis.excited.empty() ? fmt::format("{} is not excited: {}", name, axis.text)
+                               : fmt::format("{} has only {} usable samples on its segments, {} are needed", name,
+                                             fit.data.rows(), 10 * fit.model.size())};
+}
+
+/// Measured and modelled coefficient while airborne; see CoefficientResult.
+struct CoefficientSeries {
+  std::vector<double> time, measured, modelled;
+};
+
+CoefficientSeries series_of(const CoefficientModel& model, const FlightView& flight) {
+  CoefficientSeries series;
+  const FlightSignals& signals = flight.signals;
+  const std::vector<FlightSignal> needed = needed_signals(model);
+  const bool estimated = model.known();
+  for (const TimeSpan& span : flight.segments.airborne) {
+    const auto [begin, end] = signals.indices(span);
+    for (std::size_t k = begin; k < end; k += signals.stride) {
+      const FlightSample<double> sample = signals.sample(k);
+      series.time.push_back(signals.grid.at(k));
+      if (!complete(sample, needed)) {
+        series.measured.push_back(kNaN);
+        series.modelled.push_back(kNaN);
+        continue;
+      }
+      const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
+      const double rho = signals.air_density[k];
+      series.measured.push_back(select(regressed_coefficients(sample, flight.subject, rho, torque), model.coefficient));
+      series.modelled.push_back(estimated ? model.linear(aero_variables(sample, flight.subject, rho)) : kNaN);
+    }
+  }
+  return series;
+}
+
+CoefficientResult with_series(CoefficientResult result, CoefficientSeries series) {
+  result.time = std::move(series.time);
+  result.measured = std::move(series.measured);
+  result.modelled = std::move(series.modelled);
+  return result;
+}
+
+/// One coefficient: terms, estimates, checks, verdict.
+CoefficientResult identify_coefficient(const CoefficientModel& given, const FlightView& flight) {
+  const IdentifyOptions& options = flight.options;
+  CoefficientResult result = describe_coefficient(given, flight);
+  if (!result.reason.empty()) return result;
+  ChosenTerms terms =
+      options.structure ? choose_terms(given, *options.structure, flight) : ChosenTerms{given, std::nullopt};
+  result.structure = std::move(terms.search);
+  CoefficientFit fit = fit_coefficient(std::move(terms.model), flight);
+  if (fit.chosen && options.refit_significant) {
+    CoefficientModel kept = significant_terms(fit.model, *fit.chosen);
+    if (kept.size() > 0 && kept.size() < fit.model.size()) fit = fit_coefficient(std::move(kept), flight);
+  }
+
+  ExplainedVerdict verdict{estimation::GroupVerdict::kRejected,
+                           fmt::format("{}: {}", result.name, fit.comparison.reason)};
+  if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight.axis_of_model(given));
+  if (fit.chosen) {
+    const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
+    verdict.reason = rejection(result.name, fit, checks, options);
+    if (!verdict.reason.empty()) {
+      estimation::reject(*fit.chosen);
+    } else {
+      result.body_sensitivity = sensitivity_to_body(fit, flight);
+      widen(*fit.chosen, result.body_sensitivity, options.significance);
+      verdict =
+          explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
+    }
+    result.identification_fit = checks.identification_fit;
+    result.holdout_fit = checks.holdout_fit;
+    result.unmodelled_share = checks.unmodelled_share;
+    result.contradiction_p = checks.contradiction_p;
+    result.residual_autocorrelation = checks.residual_autocorrelation;
+  }
+  result.verdict = verdict.verdict;
+  result.reason = std::move(verdict.reason);
+  result.model = std::move(fit.model);
+  result.data = std::move(fit.data);
+  result.comparison = std::move(fit.comparison);
+  result.chosen = std::move(fit.chosen);
+  result.error_ratio = fit.error_ratio;
+  CoefficientSeries series = series_of(result.model, flight);
+  return with_series(std::move(result), std::move(series));
+}
+
+/// A given model against the excited segments of the flight.
+CoefficientResult evaluate_coefficient(const CoefficientModel& model, const FlightView& flight) {
+  CoefficientResult result = describe_coefficient(model, flight);
+  if (!result.reason.empty()) return result;
+  const std::string& name = result.name;
+  const AxisSegments& axis = flight.axis_of_model(model);
+  const RegressionData data = coefficient_data(model, flight.signals, axis.excited, flight.subject);
+  if (data.rows() < static_cast<Eigen::Index>(10 * model.size())) {
+    result.verdict = estimation::GroupVerdict::kNotExcited;
+    result.reason = fmt::format("{} cannot be judged: {}", name, axis.text);
+    return result;
+  }
+  result.holdout_fit =
+      fit_on(data, Eigen::Map<const Eigen::VectorXd>(model.values.data(), static_cast<Eigen::Index>(model.size())));
+  const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
+  const double least = flight.options.min_holdout_r2;
+  const bool holds = result.holdout_fit.r2 >= least;
+  result.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
+  result.reason =
+      holds ? fmt::format("{} holds: it explains {:.0f} % of this flight", name, explained)
+            : fmt::format(
+                  "{} does not hold: it explains {:.0f} % of the coefficient's variance in this flight, less than "
+                  "{:.0f} %",
+                  name, explained, 100.0 * least);
+  CoefficientSeries series = series_of(model, flight);
+  return with_series(std::move(result), std::move(series));
+}
 
 }  // namespace
 
-std::string unmodelled_text(const CoefficientResult& result) {
-  const double times = std::sqrt(std::max(0.0, result.error_ratio));
-  if (!(result.error_ratio > 0.0) || !std::isfinite(times) || !std::isfinite(result.unmodelled_share)) {
+std::string unmodelled_text(double error_ratio, double unmodelled_share) {
+  const double times = std::sqrt(std::max(0.0, error_ratio));
+  if (!(error_ratio > 0.0) || !std::isfinite(times) || !std::isfinite(unmodelled_share)) {
     return "the errors of its regressors leave no signal to judge by how much of its residual is noise of the sensors";
   }
   return fmt::format(
       "{:.0f} % of its variance is neither modelled nor sensor noise (residual {:.1f} times what the sensors leave), "
-      "so "
-      "something that moves the aircraft is not among the regressors and biases them",
-      100.0 * result.unmodelled_share, times);
+      "so something that moves the aircraft is not among the regressors and biases them",
+      100.0 * unmodelled_share, times);
 }
 
 std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals, const Segments& segments,
                                                      const Subject& subject, const IdentifyOptions& options,
                                                      Progress& progress) {
   std::vector<CoefficientResult> results;
-  CoefficientIdentification identification(signals, segments, subject, options);
+  const FlightView flight{signals, segments, subject, options};
   progress.stage("identifying coefficients");
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const auto c = static_cast<Coefficient>(i);
     const CoefficientModel* model = subject.model.find(c);
-    const auto& wanted = options.coefficients;
-    if (model == nullptr || (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c) == wanted.end())) continue;
-    results.push_back(identification.run(*model));
+    const auto& some = options.coefficients;
+    if (model == nullptr || (!some.empty() && std::find(some.begin(), some.end(), c) == some.end())) continue;
+    results.push_back(identify_coefficient(*model, flight));
     if (!progress.update(static_cast<double>(i + 1) / static_cast<double>(kCoefficients))) break;
   }
   return results;
@@ -375,7 +456,7 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
                                                  const Subject& subject, const IdentifyOptions& options,
                                                  const estimation::Estimate& estimate) {
   std::vector<CoefficientResult> results;
-  CoefficientIdentification identification(signals, segments, subject, options);
+  const FlightView flight{signals, segments, subject, options};
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
     if (structure == nullptr) continue;
@@ -383,7 +464,7 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
     for (const Term& term : structure->terms)
       names.push_back(regressed_parameter_name(structure->coefficient, term, subject));
     const CoefficientModel model = estimated_coefficient(*structure, names, estimate);
-    if (model.size() > 0) results.push_back(identification.evaluate(model));
+    if (model.size() > 0) results.push_back(evaluate_coefficient(model, flight));
   }
   if (results.empty()) {
     throw InputError(estimate.subject, "the estimate holds no usable parameter of the study's model");

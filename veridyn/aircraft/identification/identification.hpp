@@ -11,6 +11,7 @@
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
@@ -20,8 +21,8 @@ namespace veridyn::aircraft {
 /// What identification may do and what it demands of its result. Study table `[identify]`.
 struct IdentifyOptions {
   std::vector<Coefficient> coefficients;  ///< `coefficients = ["CL", "Cm"]`; empty: all that the subject models
-  /// `method`: "auto" takes what the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
-  std::string method = "auto";
+  /// `method`: "auto" (nothing) takes what the comparison recommends; "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
+  std::optional<estimation::Method> method = {};
   bool refit_significant = false;  ///< `refit_significant`: drop what fails its t-test and estimate once more
   double signal_to_noise = 1.0;    ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;      ///< `significance`: level of the t-tests
@@ -30,19 +31,21 @@ struct IdentifyOptions {
   /// `max_unmodelled`: largest share of the coefficient's variance that may be neither modelled nor noise of the
   /// sensors.
   double max_unmodelled = 0.1;
-  /// `contradiction_level`: identification and hold-out data, estimated apart, must agree at this level (chi-square).
+  /// `contradiction_level`: identification and hold-out data, estimated separately, must agree at this level
+  /// (chi-square).
   double contradiction_level = 1e-3;
-  /// `structure`: "given" takes the subject's terms; "stepwise" or "orthogonal" chooses among the candidates first.
-  std::string structure = "given";
+  /// `structure`: "given" (nothing) takes the subject's terms; "stepwise" or "orthogonal" chooses among the candidates
+  /// first.
+  std::optional<estimation::StructureMethod> structure = {};
   /// `candidates`: terms to choose among, `[identify.candidates] CL = ["1", "alpha", ...]`; coefficients that are not
   /// named choose among `default_candidates`.
   std::array<std::vector<Term>, kCoefficients> candidates;
-  bool output_error = false;  ///< `output_error`: output-error maximum likelihood beside regression
+  bool output_error = false;  ///< `output_error`: output-error maximum likelihood in addition to regression
   /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
   bool output_error_gusts = true;
   bool output_error_biases = false;  ///< `output_error_biases`: constant biases of the accelerometers, per segment
   double frequency_low_Hz = 0.0;     ///< `frequency_band = ["0.1 Hz", "2 Hz"]`: equation error in the frequency domain
-  double frequency_high_Hz = 0.0;    ///< 0: not asked for
+  double frequency_high_Hz = 0.0;    ///< 0: none
   std::size_t bootstrap = 0;         ///< `bootstrap`: replicates of a block bootstrap of the chosen regression; 0: none
   std::uint64_t seed = 1;            ///< of the bootstrap; the study's
 
@@ -50,22 +53,13 @@ struct IdentifyOptions {
   [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
 };
 
-/// What may be said of a coefficient as a whole.
-enum class CoefficientVerdict {
-  kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
-  kNotExcited,  ///< the flight does not move what the coefficient depends on
-  kRejected,    ///< an estimate exists and must not be used
-  kSkipped      ///< something that it needs is missing: thrust, a channel
-};
-[[nodiscard]] const char* to_string(CoefficientVerdict verdict);
-
-/// One coefficient: the estimates of all methods, what was chosen, and whether to believe it.
+/// One coefficient: the estimates of all methods, what was chosen, and whether it may be used.
 struct CoefficientResult {
   Coefficient coefficient = Coefficient::kCL;
   std::string name;               ///< "Cm", or "Cm/Jy" where the subject has no inertia
   bool per_unit_inertia = false;  ///< then the model's values are no aerodynamic coefficients
   Axis axis = Axis::kLongitudinal;
-  CoefficientVerdict verdict = CoefficientVerdict::kSkipped;
+  estimation::GroupVerdict verdict = estimation::GroupVerdict::kSkipped;
   std::string reason;                           ///< one sentence
   CoefficientModel model;                       ///< terms; values are the chosen estimate's where there is one
   estimation::RegressionData data;              ///< identification rows, for further analysis
@@ -93,10 +87,11 @@ struct CoefficientResult {
                                                                    const Segments& segments, const Subject& subject,
                                                                    const IdentifyOptions& options, Progress& progress);
 
-/// Why a coefficient is rejected whose residual holds more than the sensors' noise: one clause, without its name.
-[[nodiscard]] std::string unmodelled_text(const CoefficientResult& result);
+/// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
+/// arguments are those of CoefficientResult.
+[[nodiscard]] std::string unmodelled_text(double error_ratio, double unmodelled_share);
 
-/// Terms that a structure search chooses among unless told otherwise: those of `model`, the coefficient's usual linear
+/// Terms that a structure search chooses among by default: those of `model`, the coefficient's usual linear
 /// ones, and second-order ones: alpha^2, alpha q_n, alpha de, de^2 (longitudinal), alpha beta,
 /// alpha p_n, alpha r_n, alpha da, alpha dr, beta^3 (lateral).
 [[nodiscard]] std::vector<Term> default_candidates(const CoefficientModel& model);
@@ -128,7 +123,7 @@ struct CoefficientResult {
 /// An estimate from elsewhere against all excited segments of this flight: a coefficient is identified when it explains
 /// at least `min_holdout_r2` of the measured one there, else rejected. Parameters that the estimate rejected are not
 /// tried.
-/// @throws InputError when the estimate holds nothing that the subject's model names.
+/// @throws InputError when the estimate has no parameter that the subject's model names.
 [[nodiscard]] std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
                                                                const Subject& subject, const IdentifyOptions& options,
                                                                const estimation::Estimate& estimate);

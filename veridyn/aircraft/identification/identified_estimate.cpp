@@ -13,25 +13,11 @@ namespace veridyn::aircraft {
 using estimation::ParameterStatus;
 using estimation::RegressionEstimate;
 
-const char* to_string(CoefficientVerdict verdict) {
-  switch (verdict) {
-    case CoefficientVerdict::kIdentified:
-      return "identified";
-    case CoefficientVerdict::kNotExcited:
-      return "not excited";
-    case CoefficientVerdict::kRejected:
-      return "rejected";
-    case CoefficientVerdict::kSkipped:
-      break;
-  }
-  return "skipped";
-}
-
 std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results) {
   std::vector<Coefficient> found;
   for (const CoefficientResult& result : results) {
-    // Per unit inertia nothing can be flown.
-    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+    // Per unit inertia nothing can be simulated.
+    if (result.verdict == estimation::GroupVerdict::kIdentified && !result.per_unit_inertia)
       found.push_back(result.coefficient);
   }
   return found;
@@ -40,10 +26,10 @@ std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResu
 Subject identified_subject(const Subject& subject, std::span<const CoefficientResult> results) {
   Subject identified = subject;
   for (auto& coefficient : identified.model.coefficients) {
-    if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
+    if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kNaN);
   }
   for (const CoefficientResult& result : results) {
-    if (result.verdict == CoefficientVerdict::kIdentified && !result.per_unit_inertia)
+    if (result.verdict == estimation::GroupVerdict::kIdentified && !result.per_unit_inertia)
       identified.model.set(result.model);
   }
   return identified;
@@ -55,7 +41,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
   std::vector<std::string> methods;
   Eigen::Index total = 0;
   const auto listed = [](const CoefficientResult& result) {
-    return result.chosen || result.verdict == CoefficientVerdict::kNotExcited;
+    return result.chosen || result.verdict == estimation::GroupVerdict::kNotExcited;
   };
   for (const CoefficientResult& result : results) {
     if (listed(result)) total += static_cast<Eigen::Index>(result.model.size());
@@ -67,7 +53,7 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     const std::string& name = result.name;
     if (!listed(result)) continue;
     if (!result.chosen) {
-      // Nothing was estimated: the parameters are listed all the same, so that nobody takes silence for zero.
+      // Nothing was estimated: the parameters are listed all the same, so that a missing one is not read as zero.
       for (std::size_t i = 0; i < result.model.size(); ++i) {
         const Term& term = result.model.terms[i];
         estimate.parameters.push_back({regressed_parameter_name(result.coefficient, term, subject), kNaN, kNaN, kNaN,
@@ -80,9 +66,9 @@ estimation::Estimate make_estimate(const Subject& subject, std::span<const Coeff
     }
     const RegressionEstimate& chosen = *result.chosen;
     for (const auto& p : chosen.parameters) {
-      const bool out = result.verdict == CoefficientVerdict::kNotExcited;
-      estimate.parameters.push_back(
-          {p.name, p.value, p.sigma, p.low95, p.high95, p.unit, out ? ParameterStatus::kNotExcited : p.status});
+      estimate.parameters.push_back(p);
+      if (result.verdict == estimation::GroupVerdict::kNotExcited)
+        estimate.parameters.back().status = ParameterStatus::kNotExcited;
     }
     estimate.covariance.block(at, at, chosen.theta.size(), chosen.theta.size()) = chosen.covariance;
     // Coefficients are estimated separately, but share the errors of mass, geometry and inertia.

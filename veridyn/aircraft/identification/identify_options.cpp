@@ -6,6 +6,32 @@
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
+namespace {
+
+using estimation::Method;
+using estimation::StructureMethod;
+
+/// Nothing for "auto".
+std::optional<Method> read_method(const StudyTable& table) {
+  constexpr std::array kMethods{Method::kOls, Method::kTls, Method::kGtls, Method::kPcaGtls};
+  std::vector<std::string> choices{"auto"};
+  for (const Method method : kMethods) choices.emplace_back(estimation::to_string(method));
+  const std::string chosen = table.choice_or("method", choices, "auto");
+  for (const Method method : kMethods) {
+    if (estimation::to_string(method) == chosen) return method;
+  }
+  return std::nullopt;
+}
+
+/// Nothing for "given".
+std::optional<StructureMethod> read_structure(const StudyTable& table) {
+  const std::vector<std::string> choices{"given", "stepwise", "orthogonal"};
+  const std::string chosen = table.choice_or("structure", choices, "given");
+  if (chosen == "given") return std::nullopt;
+  return chosen == "stepwise" ? StructureMethod::kStepwise : StructureMethod::kOrthogonal;
+}
+
+}  // namespace
 
 IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   IdentifyOptions options;
@@ -17,8 +43,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
       options.coefficients.push_back(*c);
     }
   }
-  const std::vector<std::string> methods{"auto", "OLS", "TLS", "GTLS", "PCA-GTLS"};
-  options.method = table.choice_or("method", methods, options.method);
+  options.method = read_method(table);
   options.refit_significant = table.flag_or("refit_significant", options.refit_significant);
   options.signal_to_noise = table.number_or("signal_to_noise", "1", options.signal_to_noise);
   if (!(options.signal_to_noise >= 1.0 && options.signal_to_noise <= 10.0)) {
@@ -31,8 +56,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   options.min_holdout_r2 = table.number_or("min_holdout_r2", "1", options.min_holdout_r2);
   options.max_unmodelled = table.number_or("max_unmodelled", "1", options.max_unmodelled);
   options.contradiction_level = table.number_or("contradiction_level", "1", options.contradiction_level);
-  const std::vector<std::string> structures{"given", "stepwise", "orthogonal"};
-  options.structure = table.choice_or("structure", structures, options.structure);
+  options.structure = read_structure(table);
   const StudyTable candidates = table.table_or_empty("candidates");
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     if (!candidates.has(kCoefficientNames[i])) continue;
@@ -44,7 +68,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
       terms.push_back(std::move(term));
     }
   }
-  if (table.has("candidates") && options.structure == "given")
+  if (table.has("candidates") && !options.structure)
     table.fail("candidates", "needs structure = \"stepwise\" or \"orthogonal\"");
   options.output_error = table.flag_or("output_error", options.output_error);
   options.output_error_gusts = table.flag_or("output_error_gusts", options.output_error_gusts);

@@ -31,7 +31,8 @@ enum class FlightSignal {
   kRudder,
   kThrust
 };
-inline constexpr std::size_t kFlightSignals = 16;
+inline constexpr std::size_t kFlightSignals = 16;  ///< values of FlightSignal
+/// In the order of FlightSignal.
 inline constexpr std::array<std::string_view, kFlightSignals> kFlightSignalNames = {
     "alpha", "beta",  "airspeed", "accel_x", "accel_y",  "accel_z", "p",      "q",
     "r",     "p_dot", "q_dot",    "r_dot",   "elevator", "aileron", "rudder", "thrust"};
@@ -65,7 +66,8 @@ template <typename Scalar>
 
 /// The constants of the aircraft that enter the coefficients, as a type that can carry derivatives or errors.
 enum class BodyConstant { kMass, kWingArea, kSpan, kChord, kJx, kJy, kJz, kJxz };
-inline constexpr std::size_t kBodyConstants = 8;
+inline constexpr std::size_t kBodyConstants = 8;  ///< values of BodyConstant
+/// In the order of BodyConstant.
 inline constexpr std::array<std::string_view, kBodyConstants> kBodyConstantNames = {
     "mass", "wing_area", "span", "chord", "Jx", "Jy", "Jz", "Jxz"};
 
@@ -77,6 +79,7 @@ struct BodyConstants {
   [[nodiscard]] Scalar& operator[](BodyConstant c) { return value[static_cast<std::size_t>(c)]; }
 };
 
+/// The subject's constants.
 template <typename Scalar>
 [[nodiscard]] BodyConstants<Scalar> body_constants(const Subject& subject) {
   const Inertia J = subject.inertia.value_or(Inertia{});
@@ -128,7 +131,7 @@ template <typename Scalar>
   return c;
 }
 
-/// The same with the subject's own constants.
+/// The same with the subject's constants.
 template <typename Scalar>
 [[nodiscard]] AeroCoefficients<Scalar> measured_coefficients(const FlightSample<Scalar>& s, const Subject& subject,
                                                              double rho, const Scalar& torque = Scalar(0.0)) {

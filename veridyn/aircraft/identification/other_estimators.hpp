@@ -28,10 +28,10 @@ struct OtherParameter {
   estimation::MethodEstimate estimate;
   /// (value - regression) / sqrt(sigma^2 + sigma_regression^2); both use the same data, so +-1 is common and +-3 a
   /// contradiction. NaN where either has no error bar.
-  double apart_sigma = 0.0;
+  double normalised_difference = 0.0;
 };
 
-/// What estimators beside regression say of the same parameters on the same identification segments.
+/// The same parameters by estimators other than regression, on the same identification segments.
 struct OtherEstimators {
   std::vector<AxisOutputError> output_error;
   std::vector<OtherParameter> parameters;
@@ -39,10 +39,11 @@ struct OtherEstimators {
   [[nodiscard]] bool empty() const { return parameters.empty() && notes.empty(); }
 };
 
-/// Runs what `options` asks for: output error per axis, started at the chosen regression; frequency-domain equation
-/// error and block bootstrap per coefficient. Nothing in `results` is changed.
-[[nodiscard]] OtherEstimators estimate_otherwise(const FlightSignals& signals, const Segments& segments,
-                                                 const Subject& subject, std::span<const CoefficientResult> results,
-                                                 const IdentifyOptions& options, Progress& progress);
+/// Runs the estimators that `options` names: output error per axis, started at the chosen regression; frequency-domain
+/// equation error and block bootstrap per coefficient. Nothing in `results` is changed.
+[[nodiscard]] OtherEstimators compare_other_estimators(const FlightSignals& signals, const Segments& segments,
+                                                       const Subject& subject,
+                                                       std::span<const CoefficientResult> results,
+                                                       const IdentifyOptions& options, Progress& progress);
 
 }  // namespace veridyn::aircraft

@@ -13,7 +13,7 @@ namespace {
 
 /// Grids at least this fast are integrated two points at a time.
 constexpr double kFastGrid_Hz = 80.0;
-/// A shorter stretch says less than its initial state takes.
+/// A shorter stretch holds less information than its initial state takes.
 constexpr double kLeastDuration_s = 2.0;
 /// Gusts faster than this are noise of the reconstruction.
 constexpr double kGustPass_Hz = 2.0;
@@ -21,6 +21,8 @@ constexpr double kGustPass_Hz = 2.0;
 constexpr std::array<const char*, 8> kStateNames{"airspeed", "alpha", "beta", "p", "q", "r", "roll", "pitch"};
 constexpr std::array<const char*, 8> kStateUnits{"m/s", "rad", "rad", "rad/s", "rad/s", "rad/s", "rad", "rad"};
 constexpr std::array<const char*, 3> kForceNames{"accel_x", "accel_y", "accel_z"};
+
+bool is_fast(const FlightSignals& signals) { return signals.grid.rate_Hz() >= kFastGrid_Hz; }
 
 /// Rate of change of the air's velocity at the aircraft, body axes: from the air that the reconstruction found
 /// (ground velocity less velocity relative to the air), low-passed.
@@ -75,96 +77,99 @@ OutputErrorModel::OutputErrorModel(const FlightSignals& signals, std::span<const
   for (std::size_t i = 0; i < 3; ++i)
     if (forces_[i]) outputs_.push_back({kForceNames[i], "m/s^2"});
 
-  const bool fast = signals.grid.rate_Hz() >= kFastGrid_Hz;
-  step_ = fast ? 2.0 * signals.grid.step : signals.grid.step;
-  std::array<std::vector<double>, 3> air;
-  if (gusts) air = air_acceleration(signals);
-  using F = FlightSignal;
-  const auto drive_at = [&](std::size_t k) {
-    Drive d;
-    const FlightSample<double> s = signals.sample(k);
-    d.state = {s[F::kAirspeed], s[F::kAlpha], s[F::kBeta],     s[F::kP],
-               s[F::kQ],        s[F::kR],     signals.roll[k], signals.pitch[k]};
-    d.de = s[F::kElevator];
-    d.da = s[F::kAileron];
-    d.dr = s[F::kRudder];
-    d.thrust = s[F::kThrust];
-    d.torque = signals.torque.empty() ? 0.0 : signals.torque[k];
-    d.rho = signals.air_density[k];
-    d.measured = measured_coefficients(s, subject, d.rho, d.torque);
-    d.force = {s[F::kAx], s[F::kAy], s[F::kAz]};
-    if (gusts) d.air_acceleration = {air[0][k], air[1][k], air[2][k]};
-    return d;
-  };
-  const auto complete = [](const Drive& d) {
-    double sum = d.de + d.da + d.dr + d.thrust + d.torque + d.rho;
-    for (const double v : d.state) sum += v;
-    for (const double v : d.force) sum += v;
-    for (const double v : d.air_acceleration) sum += v;
-    for (const double v : {d.measured.CL, d.measured.CD, d.measured.CY, d.measured.Cl, d.measured.Cm, d.measured.Cn})
-      sum += v;
-    return std::isfinite(sum);
-  };
-  const auto middle = [](const Drive& a, const Drive& b) {
-    Drive m = a;
-    const auto mean = [](double x, double y) { return 0.5 * (x + y); };
-    for (std::size_t i = 0; i < kStates; ++i) m.state[i] = mean(a.state[i], b.state[i]);
-    m.de = mean(a.de, b.de);
-    m.da = mean(a.da, b.da);
-    m.dr = mean(a.dr, b.dr);
-    m.thrust = mean(a.thrust, b.thrust);
-    m.torque = mean(a.torque, b.torque);
-    m.rho = mean(a.rho, b.rho);
-    m.measured.CL = mean(a.measured.CL, b.measured.CL);
-    m.measured.CD = mean(a.measured.CD, b.measured.CD);
-    m.measured.CY = mean(a.measured.CY, b.measured.CY);
-    m.measured.Cl = mean(a.measured.Cl, b.measured.Cl);
-    m.measured.Cm = mean(a.measured.Cm, b.measured.Cm);
-    m.measured.Cn = mean(a.measured.Cn, b.measured.Cn);
-    for (std::size_t i = 0; i < 3; ++i) m.air_acceleration[i] = mean(a.air_acceleration[i], b.air_acceleration[i]);
-    return m;
-  };
-  // A stretch of complete samples becomes a segment: its drives at every half step.
-  const auto add_segment = [&](std::size_t begin, std::size_t end) {
-    const double grid_step = signals.grid.step;
-    if (static_cast<double>(end - begin) * grid_step < kLeastDuration_s) return;
-    Segment segment;
-    segment.begin = drives_.size();
-    segment.from_s = signals.grid.at(begin);
-    if (fast) {
-      const std::size_t count = (end - begin - 1) / 2 + 1;
-      for (std::size_t k = 0; k + 1 < 2 * count; ++k) drives_.push_back(drive_at(begin + k));
-      segment.samples = static_cast<Eigen::Index>(count);
-    } else {
-      Drive last = drive_at(begin);
-      drives_.push_back(last);
-      for (std::size_t k = begin + 1; k < end; ++k) {
-        const Drive next = drive_at(k);
-        drives_.push_back(middle(last, next));
-        drives_.push_back(next);
-        last = next;
-      }
-      segment.samples = static_cast<Eigen::Index>(end - begin);
-    }
-    segment.to_s = segment.from_s + step_ * static_cast<double>(segment.samples - 1);
-    for (std::size_t i = 0; i < kStates; ++i) {
-      if (!simulated_[i]) continue;
-      segment.initial.push_back({.name = fmt::format("{} at {:.1f} s", kStateNames[i], segment.from_s),
-                                 .unit = kStateUnits[i],
-                                 .start = drives_[segment.begin].state[i]});
-    }
-    segments_.push_back(std::move(segment));
-  };
+  step_ = is_fast(signals) ? 2.0 * signals.grid.step : signals.grid.step;
+  const AirAcceleration air = gusts ? air_acceleration(signals) : AirAcceleration{};
   for (const TimeSpan& span : spans) {
     const auto [first, last] = signals.indices(span);
     std::size_t begin = first;
     for (std::size_t k = first; k < last; ++k) {
-      if (complete(drive_at(k))) continue;
-      add_segment(begin, k);
+      if (complete(inputs_at(signals, subject, air, k))) continue;
+      add_segment(signals, air, begin, k);
       begin = k + 1;
     }
-    if (begin < last) add_segment(begin, last);
+    if (begin < last) add_segment(signals, air, begin, last);
   }
+}
+
+OutputErrorModel::GridInputs OutputErrorModel::inputs_at(const FlightSignals& signals, const Subject& subject,
+                                                         const AirAcceleration& air, std::size_t k) {
+  using F = FlightSignal;
+  GridInputs d;
+  const FlightSample<double> s = signals.sample(k);
+  d.state = {s[F::kAirspeed], s[F::kAlpha], s[F::kBeta],     s[F::kP],
+             s[F::kQ],        s[F::kR],     signals.roll[k], signals.pitch[k]};
+  d.de = s[F::kElevator];
+  d.da = s[F::kAileron];
+  d.dr = s[F::kRudder];
+  d.thrust = s[F::kThrust];
+  d.torque = signals.torque.empty() ? 0.0 : signals.torque[k];
+  d.rho = signals.air_density[k];
+  d.measured = measured_coefficients(s, subject, d.rho, d.torque);
+  d.force = {s[F::kAx], s[F::kAy], s[F::kAz]};
+  if (!air[0].empty()) d.air_acceleration = {air[0][k], air[1][k], air[2][k]};
+  return d;
+}
+
+bool OutputErrorModel::complete(const GridInputs& d) {
+  double sum = d.de + d.da + d.dr + d.thrust + d.torque + d.rho;
+  for (const double v : d.state) sum += v;
+  for (const double v : d.force) sum += v;
+  for (const double v : d.air_acceleration) sum += v;
+  for (const double v : {d.measured.CL, d.measured.CD, d.measured.CY, d.measured.Cl, d.measured.Cm, d.measured.Cn})
+    sum += v;
+  return std::isfinite(sum);
+}
+
+OutputErrorModel::GridInputs OutputErrorModel::middle(const GridInputs& a, const GridInputs& b) {
+  GridInputs m = a;
+  const auto mean = [](double x, double y) { return 0.5 * (x + y); };
+  for (std::size_t i = 0; i < kStates; ++i) m.state[i] = mean(a.state[i], b.state[i]);
+  m.de = mean(a.de, b.de);
+  m.da = mean(a.da, b.da);
+  m.dr = mean(a.dr, b.dr);
+  m.thrust = mean(a.thrust, b.thrust);
+  m.torque = mean(a.torque, b.torque);
+  m.rho = mean(a.rho, b.rho);
+  m.measured.CL = mean(a.measured.CL, b.measured.CL);
+  m.measured.CD = mean(a.measured.CD, b.measured.CD);
+  m.measured.CY = mean(a.measured.CY, b.measured.CY);
+  m.measured.Cl = mean(a.measured.Cl, b.measured.Cl);
+  m.measured.Cm = mean(a.measured.Cm, b.measured.Cm);
+  m.measured.Cn = mean(a.measured.Cn, b.measured.Cn);
+  for (std::size_t i = 0; i < 3; ++i) m.air_acceleration[i] = mean(a.air_acceleration[i], b.air_acceleration[i]);
+  return m;
+}
+
+void OutputErrorModel::add_segment(const FlightSignals& signals, const AirAcceleration& air, std::size_t begin,
+                                   std::size_t end) {
+  if (static_cast<double>(end - begin) * signals.grid.step < kLeastDuration_s) return;
+  const auto at = [&](std::size_t k) { return inputs_at(signals, subject_, air, k); };
+  Segment segment;
+  segment.begin = inputs_.size();
+  segment.from_s = signals.grid.at(begin);
+  if (is_fast(signals)) {
+    const std::size_t count = (end - begin - 1) / 2 + 1;
+    for (std::size_t k = 0; k + 1 < 2 * count; ++k) inputs_.push_back(at(begin + k));
+    segment.samples = static_cast<Eigen::Index>(count);
+  } else {
+    GridInputs last = at(begin);
+    inputs_.push_back(last);
+    for (std::size_t k = begin + 1; k < end; ++k) {
+      const GridInputs next = at(k);
+      inputs_.push_back(middle(last, next));
+      inputs_.push_back(next);
+      last = next;
+    }
+    segment.samples = static_cast<Eigen::Index>(end - begin);
+  }
+  segment.to_s = segment.from_s + step_ * static_cast<double>(segment.samples - 1);
+  for (std::size_t i = 0; i < kStates; ++i) {
+    if (!simulated_[i]) continue;
+    segment.initial.push_back({.name = fmt::format("{} at {:.1f} s", kStateNames[i], segment.from_s),
+                               .unit = kStateUnits[i],
+                               .start = inputs_[segment.begin].state[i]});
+  }
+  segments_.push_back(std::move(segment));
 }
 
 std::string OutputErrorModel::segment_name(std::size_t segment) const {
@@ -177,7 +182,7 @@ std::vector<estimation::RowMatrix> OutputErrorModel::measured() const {
   for (const Segment& s : segments_) {
     estimation::RowMatrix z(s.samples, static_cast<Eigen::Index>(outputs_.size()));
     for (Eigen::Index k = 0; k < s.samples; ++k) {
-      const Drive& d = drives_[s.begin + 2 * static_cast<std::size_t>(k)];
+      const GridInputs& d = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
       Eigen::Index column = 0;
       for (std::size_t i = 0; i < kStates; ++i)
         if (simulated_[i]) z(k, column++) = d.state[i];

@@ -58,7 +58,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   template <typename Scalar>
   using State = std::array<Scalar, kStates>;
   /// Inputs and measured states at one grid point.
-  struct Drive {
+  struct GridInputs {
     State<double> state{};
     double de = 0.0, da = 0.0, dr = 0.0, thrust = 0.0, torque = 0.0, rho = 1.225;
     AeroCoefficients<double> measured;
@@ -66,23 +66,31 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
     std::array<double, 3> air_acceleration{};
   };
   struct Segment {
-    std::size_t begin = 0;  // into drives_
+    std::size_t begin = 0;  // into inputs_
     Eigen::Index samples = 0;
     double from_s = 0.0, to_s = 0.0;
     std::vector<estimation::ModelParameter> initial;
   };
+  using AirAcceleration = std::array<std::vector<double>, 3>;  // empty in uniform air
   template <typename Scalar>
   struct Rates {
     State<Scalar> state;
     std::array<Scalar, 3> force;  // specific force, body axes
   };
 
+  [[nodiscard]] static GridInputs inputs_at(const FlightSignals& signals, const Subject& subject,
+                                            const AirAcceleration& air, std::size_t k);
+  [[nodiscard]] static bool complete(const GridInputs& inputs);
+  [[nodiscard]] static GridInputs middle(const GridInputs& a, const GridInputs& b);
+  // A stretch of complete samples [begin, end) becomes a segment: its inputs at every half step.
+  void add_segment(const FlightSignals& signals, const AirAcceleration& air, std::size_t begin, std::size_t end);
   template <typename Scalar>
-  [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const Drive& drive, std::span<const Scalar> parameters) const;
+  [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const GridInputs& inputs,
+                                    std::span<const Scalar> parameters) const;
   template <typename Scalar>
-  void hold_measured(State<Scalar>& x, const Drive& drive) const {
+  void hold_measured(State<Scalar>& x, const GridInputs& inputs) const {
     for (std::size_t i = 0; i < kStates; ++i)
-      if (!simulated_[i]) x[i] = Scalar(drive.state[i]);
+      if (!simulated_[i]) x[i] = Scalar(inputs.state[i]);
   }
   [[nodiscard]] const CoefficientModel* modelled(Coefficient c) const {
     return which_[static_cast<std::size_t>(c)] < 0
@@ -90,7 +98,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
                : &coefficients_[static_cast<std::size_t>(which_[static_cast<std::size_t>(c)])];
   }
 
-  const Subject& subject_;
+  Subject subject_;
   std::vector<CoefficientModel> coefficients_;
   std::array<int, kCoefficients> which_{};           // index into coefficients_, or -1
   std::array<std::size_t, kCoefficients> offset_{};  // of its first parameter
@@ -98,7 +106,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   std::array<bool, 3> forces_{};  // specific forces among the outputs
   std::vector<estimation::ModelParameter> parameters_;
   std::vector<estimation::ModelOutput> outputs_;
-  std::vector<Drive> drives_;
+  std::vector<GridInputs> inputs_;
   std::vector<Segment> segments_;
   double step_ = 0.02;  // of the integration [s]
   double gravity_ = kGravity;
@@ -107,43 +115,43 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <typename Scalar>
-OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const Drive& drive,
+OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const GridInputs& inputs,
                                                         std::span<const Scalar> parameters) const {
   using std::cos;
   using std::sin;
   using std::tan;
-  hold_measured(x, drive);
+  hold_measured(x, inputs);
   const Scalar &Va = x[kVa], &alpha = x[kAlphaState], &beta = x[kBetaState];
   const Scalar &p = x[kPState], &q = x[kQState], &r = x[kRState], &phi = x[kPhi], &theta = x[kTheta];
-  const Scalar qS = Scalar(0.5 * drive.rho * subject_.wing_area) * Va * Va;
+  const Scalar qS = Scalar(0.5 * inputs.rho * subject_.wing_area) * Va * Va;
   AeroVariables<Scalar> v;
   v.alpha = alpha;
   v.beta = beta;
   v.p_n = p * Scalar(0.5 * subject_.span) / Va;
   v.q_n = q * Scalar(0.5 * subject_.chord) / Va;
   v.r_n = r * Scalar(0.5 * subject_.span) / Va;
-  v.de = Scalar(drive.de);
-  v.da = Scalar(drive.da);
-  v.dr = Scalar(drive.dr);
-  v.CT = Scalar(drive.thrust) / qS;
+  v.de = Scalar(inputs.de);
+  v.da = Scalar(inputs.da);
+  v.dr = Scalar(inputs.dr);
+  v.CT = Scalar(inputs.thrust) / qS;
   v.Va = Va;
   const auto value = [&](Coefficient c) -> Scalar {
     const CoefficientModel* model = modelled(c);
-    if (model == nullptr) return Scalar(select(drive.measured, c));
+    if (model == nullptr) return Scalar(select(inputs.measured, c));
     return model->linear(v, parameters.subspan(offset_[static_cast<std::size_t>(c)], model->size()));
   };
   const Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD), CY = value(Coefficient::kCY);
   const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
   const Scalar cphi = cos(phi), sphi = sin(phi), cth = cos(theta), sth = sin(theta);
-  const Scalar T(drive.thrust);
+  const Scalar T(inputs.thrust);
   const std::array<Scalar, 3> aero{qS * (CL * sa - CD * ca), qS * CY, qS * (-CD * sa - CL * ca)};
   Rates<Scalar> out;
   const Scalar m(subject_.mass), g(gravity_);
   out.force = {(aero[0] + T) / m, aero[1] / m, aero[2] / m};
   const Scalar u = Va * ca * cb, vb = Va * sb, w = Va * sa * cb;
-  const Scalar du = out.force[0] + r * vb - q * w - g * sth - Scalar(drive.air_acceleration[0]);
-  const Scalar dv = out.force[1] + p * w - r * u + g * cth * sphi - Scalar(drive.air_acceleration[1]);
-  const Scalar dw = out.force[2] + q * u - p * vb + g * cth * cphi - Scalar(drive.air_acceleration[2]);
+  const Scalar du = out.force[0] + r * vb - q * w - g * sth - Scalar(inputs.air_acceleration[0]);
+  const Scalar dv = out.force[1] + p * w - r * u + g * cth * sphi - Scalar(inputs.air_acceleration[1]);
+  const Scalar dw = out.force[2] + q * u - p * vb + g * cth * cphi - Scalar(inputs.air_acceleration[2]);
   const Scalar dVa = (u * du + vb * dv + w * dw) / Va;
   out.state.fill(Scalar(0.0));
   out.state[kVa] = dVa;
@@ -155,7 +163,7 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const D
     const auto& e = subject_.propulsion.position;
     const Scalar b(subject_.span), c(subject_.chord);
     const Scalar l =
-        qS * b * value(Coefficient::kCl) + Scalar(drive.torque) + Scalar(f[1]) * aero[2] - Scalar(f[2]) * aero[1];
+        qS * b * value(Coefficient::kCl) + Scalar(inputs.torque) + Scalar(f[1]) * aero[2] - Scalar(f[2]) * aero[1];
     const Scalar M =
         qS * c * value(Coefficient::kCm) + Scalar(f[2]) * aero[0] - Scalar(f[0]) * aero[2] + Scalar(e[2]) * T;
     const Scalar n =
@@ -191,7 +199,7 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
     return to;
   };
   for (Eigen::Index k = 0; k < s.samples; ++k) {
-    const Drive& now = drives_[s.begin + 2 * static_cast<std::size_t>(k)];
+    const GridInputs& now = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
     hold_measured(x, now);
     const bool sane = x[kVa] > Scalar(kSlowest_mps) && x[kAlphaState] < Scalar(kLargest_rad) &&
                       x[kAlphaState] > Scalar(-kLargest_rad) && x[kBetaState] < Scalar(kLargest_rad) &&
@@ -205,8 +213,8 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
     for (std::size_t i = 0; i < 3; ++i)
       if (forces_[i]) output(k, column++) = k1.force[i];
     if (k + 1 == s.samples) break;
-    const Drive& mid = drives_[s.begin + 2 * static_cast<std::size_t>(k) + 1];
-    const Drive& next = drives_[s.begin + 2 * static_cast<std::size_t>(k) + 2];
+    const GridInputs& mid = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 1];
+    const GridInputs& next = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 2];
     const Rates<Scalar> k2 = rates(moved(x, k1.state, half), mid, parameters);
     const Rates<Scalar> k3 = rates(moved(x, k2.state, half), mid, parameters);
     const Rates<Scalar> k4 = rates(moved(x, k3.state, h), next, parameters);

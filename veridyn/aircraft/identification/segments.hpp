@@ -46,6 +46,7 @@ struct AxisSegments : recording::Segments {
   [[nodiscard]] double excited_s() const { return recording::total_s(excited); }
 };
 
+/// Where the aircraft flies, and the excited stretches of both axes.
 struct Segments {
   std::vector<TimeSpan> airborne;
   AxisSegments longitudinal;
@@ -53,9 +54,9 @@ struct Segments {
   [[nodiscard]] const AxisSegments& of(Axis axis) const { return axis == Axis::kLongitudinal ? longitudinal : lateral; }
 };
 
-/// Finds where the aircraft flies, where a surface is moved more than the flight's own calm (activity: RMS about the
-/// mean in a sliding window) and the body answers, longitudinal (elevator, q) and lateral (aileron or rudder, p or r)
-/// separately, and assigns the blocks of each axis to identification and hold-out so that both hold every kind of
+/// Finds where the aircraft flies, where a surface is moved more than in the flight's calm parts (activity: RMS about
+/// the mean in a sliding window) and the body answers, longitudinal (elevator, q) and lateral (aileron or rudder, p or
+/// r) separately, and assigns the blocks of each axis to identification and hold-out so that both hold every kind of
 /// manoeuvre.
 [[nodiscard]] Segments find_segments(const SegmentSignals& signals, const SegmentOptions& options);
 

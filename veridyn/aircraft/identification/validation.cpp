@@ -19,7 +19,7 @@ constexpr double kLeastAirspeed_mps = 2.0;
 using State = std::array<double, 3>;  // Va, alpha, beta
 
 /// The inputs at one grid point.
-struct Drive {
+struct GridInputs {
   FlightSample<double> sample;
   double roll = 0.0;
   double pitch = 0.0;
@@ -35,8 +35,8 @@ struct Drive {
   }
 };
 
-Drive middle(const Drive& a, const Drive& b) {
-  Drive m;
+GridInputs middle(const GridInputs& a, const GridInputs& b) {
+  GridInputs m;
   for (std::size_t i = 0; i < kFlightSignals; ++i) m.sample.value[i] = 0.5 * (a.sample.value[i] + b.sample.value[i]);
   m.roll = 0.5 * (a.roll + b.roll);
   m.pitch = 0.5 * (a.pitch + b.pitch);
@@ -44,6 +44,7 @@ Drive middle(const Drive& a, const Drive& b) {
   return m;
 }
 
+/// View of a flight over which a model is simulated.
 class Predictor {
  public:
   Predictor(const FlightSignals& signals, const Subject& subject, std::span<const Coefficient> known)
@@ -53,7 +54,7 @@ class Predictor {
 
   [[nodiscard]] bool knows(Coefficient c) const { return known_[static_cast<std::size_t>(c)]; }
 
-  [[nodiscard]] Drive drive(std::size_t k) const {
+  [[nodiscard]] GridInputs inputs(std::size_t k) const {
     return {signals_.sample(k), signals_.roll[k], signals_.pitch[k], signals_.air_density[k]};
   }
 
@@ -62,9 +63,9 @@ class Predictor {
     return {s[FlightSignal::kAirspeed], s[FlightSignal::kAlpha], s[FlightSignal::kBeta]};
   }
 
-  [[nodiscard]] State step(const State& x, const Drive& begin, const Drive& end) const {
+  [[nodiscard]] State step(const State& x, const GridInputs& begin, const GridInputs& end) const {
     const double h = signals_.grid.step;
-    const Drive half = middle(begin, end);
+    const GridInputs half = middle(begin, end);
     const State k1 = rate(x, begin);
     const State k2 = rate(advance(x, k1, 0.5 * h), half);
     const State k3 = rate(advance(x, k2, 0.5 * h), half);
@@ -80,25 +81,25 @@ class Predictor {
     return {x[0] + h * rate[0], x[1] + h * rate[1], x[2] + h * rate[2]};
   }
 
-  [[nodiscard]] State rate(const State& x, const Drive& drive) const {
-    FlightSample<double> predicted = drive.sample;
+  [[nodiscard]] State rate(const State& x, const GridInputs& inputs) const {
+    FlightSample<double> predicted = inputs.sample;
     predicted[FlightSignal::kAirspeed] = x[0];
     predicted[FlightSignal::kAlpha] = x[1];
     predicted[FlightSignal::kBeta] = x[2];
-    const AeroCoefficients<double> model = subject_.model.evaluate(aero_variables(predicted, subject_, drive.rho));
-    // Where the model does not speak, the measurement does: thrust and drag unknown means their sum as measured.
-    const AeroCoefficients<double> measured = measured_coefficients(drive.sample, subject_, drive.rho);
+    const AeroCoefficients<double> model = subject_.model.evaluate(aero_variables(predicted, subject_, inputs.rho));
+    // What is not modelled is taken as measured: without thrust and drag, their sum.
+    const AeroCoefficients<double> measured = measured_coefficients(inputs.sample, subject_, inputs.rho);
     const auto pick = [&](Coefficient c) { return knows(c) ? select(model, c) : select(measured, c); };
     const WindAxesInput<double> input{.CL = pick(Coefficient::kCL),
                                       .CD = pick(Coefficient::kCD),
                                       .CY = pick(Coefficient::kCY),
-                                      .p = drive.sample[FlightSignal::kP],
-                                      .q = drive.sample[FlightSignal::kQ],
-                                      .r = drive.sample[FlightSignal::kR],
-                                      .phi = drive.roll,
-                                      .theta = drive.pitch,
-                                      .thrust = drive.sample[FlightSignal::kThrust],
-                                      .dynamic_pressure_area = 0.5 * drive.rho * subject_.wing_area * x[0] * x[0],
+                                      .p = inputs.sample[FlightSignal::kP],
+                                      .q = inputs.sample[FlightSignal::kQ],
+                                      .r = inputs.sample[FlightSignal::kR],
+                                      .phi = inputs.roll,
+                                      .theta = inputs.pitch,
+                                      .thrust = inputs.sample[FlightSignal::kThrust],
+                                      .dynamic_pressure_area = 0.5 * inputs.rho * subject_.wing_area * x[0] * x[0],
                                       .mass = subject_.mass};
     const WindAxesRate<double> r = wind_axes_rate(x[0], x[1], x[2], input);
     return {r.Va, r.alpha, r.beta};
@@ -135,9 +136,9 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
       const auto [first, last] = signals.indices(span);
       for (std::size_t begin = first; begin < last; begin += per_window) {
         const std::size_t end = std::min(begin + per_window, last);
-        // A rest too short to say anything would flatter the figures.
+        // A short remainder would make the figures look better than they are.
         if (end - begin < per_window / 2) continue;
-        Drive now = predictor.drive(begin);
+        GridInputs now = predictor.inputs(begin);
         if (!now.complete()) continue;
         State x = predictor.measured(begin);
         ++result.windows;
@@ -149,7 +150,7 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
             quantities[j].predicted.push_back(x[which[j]]);
           }
           if (k + 1 == end) break;
-          const Drive next = predictor.drive(k + 1);
+          const GridInputs next = predictor.inputs(k + 1);
           if (!next.complete()) break;
           x = predictor.step(x, now, next);
           now = next;

@@ -13,7 +13,7 @@ namespace veridyn::aircraft {
 
 /// Study table `[validate]`.
 struct ValidationOptions {
-  double period_s = 5.0;  ///< `period`: the simulation starts anew from the measured state this often
+  double period_s = 5.0;  ///< `period`: the simulation starts again from the measured state this often
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static ValidationOptions read(const StudyTable& table);
@@ -29,7 +29,7 @@ struct PredictedQuantity {
   std::vector<double> predicted = {};  ///< SI; NaN between windows
 };
 
-/// The identified model flown over data that identification did not see.
+/// The identified model validated on held-out data.
 struct Validation {
   double period_s = 0.0;
   double simulated_s = 0.0;  ///< time that was predicted
@@ -42,7 +42,7 @@ struct Validation {
 };
 
 /// Integrates the wind-axes force equations (see wind_axes.hpp) with the values of `subject.model`, driven by the
-/// measured rates, attitude, deflections and thrust, and started anew every `period_s` from the smoothed ground
+/// measured rates, attitude, deflections and thrust, and started again every `period_s` from the smoothed ground
 /// velocity, wind and attitude. Airspeed and alpha are judged on the `longitudinal` spans (needs CL in `known`), beta
 /// on the `lateral` ones (needs CY). Coefficients that are not in `known` are taken as measured: without CD the
 /// airspeed is driven by the measurement. Fourth-order Runge-Kutta at the grid's step.

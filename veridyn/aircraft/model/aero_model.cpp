@@ -196,12 +196,12 @@ CoefficientModel read_coefficient(const StudyTable& table, Coefficient c) {
     model.values.push_back(value);
   };
   if (table.is_array(key)) {
-    for (const std::string& text : table.texts(key)) add(text, kUnknown, table.place(key));
+    for (const std::string& text : table.texts(key)) add(text, kNaN, table.place(key));
   } else if (table.is_table(key)) {
     const StudyTable values = table.table(key);
     for (const std::string& text : values.keys()) {
       const bool unknown = values.is_text(text) && values.text(text) == "unknown";
-      add(text, unknown ? kUnknown : values.number(text, "1"), values.place(text));
+      add(text, unknown ? kNaN : values.number(text, "1"), values.place(text));
     }
   } else {
     table.fail(key, "is neither a list of terms, [\"1\", \"alpha\"], nor a table of values, { alpha = 4.5 }");

@@ -19,16 +19,23 @@ namespace veridyn::aircraft {
 /// The six aerodynamic coefficients: L = qbar S CL and so on, moments with span b (Cl, Cn) or chord c (Cm).
 /// CL and CD along the wind axes, CY along body y, moments about body axes.
 enum class Coefficient { kCL, kCD, kCY, kCl, kCm, kCn };
-inline constexpr std::size_t kCoefficients = 6;
+inline constexpr std::size_t kCoefficients = 6;  ///< values of Coefficient
 /// In the order of the enum.
 inline constexpr std::array<std::string_view, kCoefficients> kCoefficientNames = {"CL", "CD", "CY", "Cl", "Cm", "Cn"};
+/// "CL".
 [[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[static_cast<std::size_t>(c)]; }
+/// "lift".
+[[nodiscard]] inline std::string_view meaning_of(Coefficient c) {
+  constexpr std::array<std::string_view, kCoefficients> kMeanings = {
+      "lift", "drag", "side force", "rolling moment", "pitching moment", "yawing moment"};
+  return kMeanings[static_cast<std::size_t>(c)];
+}
 /// The coefficient called `name`, or none.
 [[nodiscard]] std::optional<Coefficient> find_coefficient(std::string_view name);
 
 /// What an aerodynamic coefficient may depend on.
 enum class AeroVariable { kAlpha, kBeta, kPn, kQn, kRn, kDe, kDa, kDr, kCT, kVa };
-inline constexpr std::size_t kAeroVariables = 10;
+inline constexpr std::size_t kAeroVariables = 10;  ///< values of AeroVariable
 /// Names in terms, in the order of the enum.
 inline constexpr std::array<std::string_view, kAeroVariables> kAeroVariableNames = {
     "alpha", "beta", "p_n", "q_n", "r_n", "de", "da", "dr", "CT", "Va"};
@@ -122,9 +129,6 @@ struct Term {
 /// - "abs" before a variable taken absolute: `CD_abs_de`, `CD_abs_alpha2`;
 /// - "spline", variable, knot (angles in deg) and degree: `CL_spline_alpha_5deg_2`.
 [[nodiscard]] std::string parameter_name(Coefficient coefficient, const Term& term);
-
-/// A parameter whose value is not known (yet).
-inline constexpr double kUnknown = kNaN;
 
 /// One coefficient as a sum of parameters times terms.
 struct CoefficientModel {

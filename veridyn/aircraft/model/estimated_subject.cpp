@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 
@@ -15,7 +16,7 @@ CoefficientModel estimated_coefficient(const CoefficientModel& structure, const 
                                        const estimation::Estimate& estimate) {
   CoefficientModel model{structure.coefficient, {}, {}};
   for (std::size_t i = 0; i < structure.size(); ++i) {
-    const estimation::EstimatedParameter* p = estimate.find(names[i]);
+    const estimation::Parameter* p = estimate.find(names[i]);
     if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
     model.terms.push_back(structure.terms[i]);
     model.values.push_back(p->value);
@@ -33,7 +34,7 @@ void refuse_unknown(const AeroModel& model, const estimation::Estimate& estimate
     const std::vector<std::string> names = coefficient->parameter_names();
     known.insert(known.end(), names.begin(), names.end());
   }
-  for (const estimation::EstimatedParameter& p : estimate.parameters) {
+  for (const estimation::Parameter& p : estimate.parameters) {
     if (std::find(known.begin(), known.end(), p.name) != known.end()) continue;
     throw InputError(place,
                      fmt::format("parameter '{}' is not in the study's model{}", p.name, suggestion(p.name, known)));
@@ -53,7 +54,7 @@ Subject estimated_subject(const Subject& subject, const estimation::Estimate& es
       coefficient = std::move(model);
       any = true;
     } else {
-      std::fill(coefficient->values.begin(), coefficient->values.end(), kUnknown);
+      std::fill(coefficient->values.begin(), coefficient->values.end(), kNaN);
     }
   }
   if (!any) throw InputError(place, "holds no usable parameter of the study's model");

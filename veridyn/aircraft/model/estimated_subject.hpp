@@ -5,7 +5,7 @@
 
 namespace veridyn::aircraft {
 
-/// The terms of `structure` that the estimate holds a value for under their `names` (one a term), with these values.
+/// The terms of `structure` that the estimate holds a value for under their `names` (one per term), with these values.
 /// Terms that it dropped or rejected are left out, so the result may be smaller, or empty.
 [[nodiscard]] CoefficientModel estimated_coefficient(const CoefficientModel& structure,
                                                      const std::vector<std::string>& names,

@@ -152,7 +152,7 @@ void write_stall(pugi::xml_node aero, const StallBlend& stall) {
 }
 
 Expression with_stall(const CoefficientModel& model, const std::optional<StallBlend>& stall) {
-  const Expression whole = blended_part(model, true);
+  Expression whole = blended_part(model, true);
   const Coefficient c = model.coefficient;
   if (!stall || (c != Coefficient::kCL && (c != Coefficient::kCD || !stall->drag))) return whole;
   if (stall->form == StallForm::kSeparation) {
@@ -260,7 +260,7 @@ ThrustFunctions thrust_functions(const Propulsion& p) {
       const Expression turning = operation("gt", {n, value(1e-6)});
       const double D2 = p.diameter * p.diameter;
       out.thrust_lbs = product({turning, value(D2 * D2 * per_pound), rho, power(n, 2), polynomial_in(p.CT, J)});
-      out.torque_lbsft = product({turning, value(-p.rotation * D2 * D2 * p.diameter / (2.0 * M_PI) * per_pound_foot),
+      out.torque_lbsft = product({turning, value(-p.rotation * D2 * D2 * p.diameter / (2.0 * kPi) * per_pound_foot),
                                   rho, power(n, 2), polynomial_in(p.CP, J)});
       break;
     }
@@ -273,7 +273,7 @@ void write_external_reactions(pugi::xml_node root, const Propulsion& p, const Th
   if (p.kind == PropulsionKind::kPropeller) {
     const Expression n = property("aero/function/rotor-revolutions-per-second");
     function(reactions, "aero/function/rotor-revolutions-per-second", "behind the rotor's lag",
-             product({value(p.omega_max / (2.0 * M_PI)), property("fcs/rotor-speed-norm")}));
+             product({value(p.omega_max / (2.0 * kPi)), property("fcs/rotor-speed-norm")}));
     function(
         reactions, "aero/function/advance-ratio", "J = Va / (n D), within the propeller's map",
         operation("min", {value(p.J_max), quotient(product({property("velocities/u-aero-fps"), value(kFoot)}),

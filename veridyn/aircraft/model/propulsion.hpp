@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -69,7 +70,7 @@ struct Propulsion {
   friend bool operator==(const Propulsion&, const Propulsion&) = default;
 };
 
-/// Reads `[subject.propulsion]` over `base`; with a key `kind` it starts anew.
+/// Reads `[subject.propulsion]` over `base`; with a key `kind` it starts from nothing.
 ///
 ///     kind = "none" | "polynomial" | "momentum" | "propeller"
 ///     position = [-0.25, 0, 0]              # [m] from the centre of gravity
@@ -77,6 +78,7 @@ struct Propulsion {
 ///     S_prop, C_prop, k_motor, k_tp, k_omega                     # momentum
 ///     diameter, omega_max, time_constant, CT = [..], CP = [..], J_max, rotation   # propeller
 [[nodiscard]] Propulsion read_propulsion(const StudyTable& table, const Propulsion& base);
+/// The table that `read_propulsion` reads.
 [[nodiscard]] std::string write_propulsion_toml(const Propulsion& propulsion,
                                                 std::string_view heading = "subject.propulsion");
 
@@ -121,13 +123,13 @@ PropulsionLoad<Scalar> Propulsion::load(const Scalar& throttle, const Scalar& ax
       break;
     }
     case PropulsionKind::kPropeller: {
-      const Scalar n = rotor_speed / Scalar(2.0 * M_PI);
+      const Scalar n = rotor_speed / Scalar(2.0 * kPi);
       if (!(n > Scalar(1e-6))) break;  // a stopped rotor: J is undefined and n^2 CT(J_max) has no meaning
       Scalar J = axial_speed / (n * Scalar(diameter));
       if (J > Scalar(J_max)) J = Scalar(J_max);
       const double D2 = diameter * diameter;
       out.thrust = rho * n * n * Scalar(D2 * D2) * horner(CT, J);
-      out.torque = Scalar(-rotation * D2 * D2 * diameter / (2.0 * M_PI)) * rho * n * n * horner(CP, J);
+      out.torque = Scalar(-rotation * D2 * D2 * diameter / (2.0 * kPi)) * rho * n * n * horner(CP, J);
       break;
     }
   }

@@ -23,6 +23,7 @@ struct MassProperties {
 template <typename Scalar>
 using RigidBodyState = Eigen::Matrix<Scalar, 13, 1>;
 
+/// The attitude, body to NED.
 template <typename Scalar>
 [[nodiscard]] Eigen::Quaternion<Scalar> attitude_of(const RigidBodyState<Scalar>& x) {
   return Eigen::Quaternion<Scalar>(x(9), x(6), x(7), x(8));

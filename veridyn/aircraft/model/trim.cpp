@@ -84,10 +84,9 @@ Eigen::Matrix4d block(const Eigen::Matrix<double, 8, 8>& A, const std::array<int
 }  // namespace
 
 std::string Trim::message() const {
-  constexpr double kDeg = 180.0 / kPi;
   const std::string where = fmt::format("level flight at {:g} m/s", condition.airspeed);
-  const std::string state = fmt::format("alpha {:.2f} deg, elevator {:.2f} deg, throttle {:.3f}", alpha * kDeg,
-                                        controls.de * kDeg, controls.throttle);
+  const std::string state = fmt::format("alpha {:.2f} deg, elevator {:.2f} deg, throttle {:.3f}", alpha * 180.0 / kPi,
+                                        controls.de * 180.0 / kPi, controls.throttle);
   switch (end) {
     case TrimEnd::kConverged:
       return fmt::format("{}: {}", where, state);

@@ -11,7 +11,7 @@
 
 namespace veridyn::aircraft {
 
-/// Steady level flight that is asked for: straight, or a turn of given bank at constant height.
+/// The desired steady level flight: straight, or a turn of given bank at constant height.
 struct TrimCondition {
   double airspeed = 20.0;             ///< [m/s]
   double density = kSeaLevelDensity;  ///< [kg/m^3]
@@ -19,6 +19,7 @@ struct TrimCondition {
   double gravity = kGravity;          ///< [m/s^2]
 };
 
+/// How the search for a trim ended.
 enum class TrimEnd {
   kConverged,   ///< every acceleration is below 1e-9 (m/s^2, rad/s^2)
   kNoSolution,  ///< Newton's method stopped above that: the aircraft cannot fly steadily there

@@ -51,8 +51,8 @@ struct AirDataInput {
 };
 
 /// The error vector that all filters share: attitude (body axes, rad) 0..2, velocity 3..5, gust 6..10, slow wind
-/// 11..13, biases (14..19) and scale factors (20..25) of gyro and accelerometer, errors of CL, CD, CY (26..28). A
-/// filter's own error vector leaves out what it does not estimate, in the same order.
+/// 11..13, biases (14..19) and scale factors (20..25) of gyro and accelerometer, errors of CL, CD, CY (26..28). The
+/// error vector of one filter leaves out what it does not estimate, in the same order.
 struct AirDataErrorVector {
   static constexpr int kAttitude = 0;
   static constexpr int kVelocity = 3;
@@ -83,7 +83,7 @@ struct Prediction {
 /// Kinematics of an aircraft in moving air: what a filter knows that does not know the aircraft.
 ///
 /// The specification's state [u_r v_r w_r W_N W_E W_D], driven by accelerometer, gyro and Euler angles, is the
-/// difference of three things that change for different reasons; here each is a state of its own:
+/// difference of three things that change for different reasons; here each is a separate state:
 /// - attitude (quaternion, body to NED), driven by the gyro: corrected by the Euler angles of the AHRS, whose white
 ///   error of 0.75 deg is averaged down to a few hundredths of a degree instead of entering every step;
 /// - velocity over ground v [m/s, NED], driven by the accelerometer: v' = R a + g;
@@ -222,7 +222,7 @@ struct AirDataMotion : AirDataErrorVector {
 };
 
 /// The model-free filter's system (see estimation::SystemModel): with or without the errors of the inertial sensors as
-/// states. Where they are states but not all are asked for, the others are held by a variance of zero.
+/// states. Where they are states but not all are estimated, the others are held by a variance of zero.
 template <bool kHasImu>
 struct AirDataModel : AirDataMotion {
   static constexpr bool kHasImuErrors = kHasImu;

@@ -20,7 +20,7 @@ struct Posterior {
   Eigen::MatrixXd information;
 };
 
-/// The likelihood of one task. A view of what it was made from.
+/// View of a task whose likelihood it evaluates.
 class AirDataLikelihood {
  public:
   AirDataLikelihood(const FilterEngine& engine, const RunSetting& base, const SolveTask& task, std::vector<int> index)
@@ -110,7 +110,7 @@ class AirDataLikelihood {
 }  // namespace
 
 AirDataErrors estimate_air_data_errors(const FilterEngine& engine, const RunSetting& base, const SolveTask& task) {
-  const AirDataLikelihood evaluate(engine, base, task, wanted_air_data_errors(*task.options));
+  const AirDataLikelihood evaluate(engine, base, task, estimated_air_data_errors(*task.options));
   AirDataErrors result;
   result.index = evaluate.index();
   const Eigen::Index errors = evaluate.errors();

@@ -21,7 +21,8 @@ struct AirDataErrors {
 
 /// 1 sigma of each before the flight; see kVaneBiasPrior and its like.
 [[nodiscard]] std::array<double, 5> air_data_error_priors();
-[[nodiscard]] std::vector<int> wanted_air_data_errors(const ReconstructOptions& options);
+/// Indices (AirDataErrorIndex) of those that the options estimate.
+[[nodiscard]] std::vector<int> estimated_air_data_errors(const ReconstructOptions& options);
 
 /// The errors theta that maximise likelihood times prior, after the filter-error method (Maine & Iliff 1985;
 /// Jategaonkar 2006, chapter 5): for a given theta the filter runs with the air data corrected, and
@@ -41,8 +42,8 @@ struct AirDataErrors {
 /// theta fixed the filter's innovations are as they should be, and the gusts are integrated out, not maximised over.
 ///
 /// The intensities of the gusts along the three axes are estimated along with theta, within a factor e^0.3 (1 sigma):
-/// otherwise an angle's fluctuation, sigma_w / Va, would tell the airspeed to a percent to whoever believes that
-/// sigma_w is known to a percent.
+/// otherwise an angle's fluctuation, sigma_w / Va, would determine the airspeed to a percent as soon as sigma_w is
+/// taken as known to a percent.
 [[nodiscard]] AirDataErrors estimate_air_data_errors(const FilterEngine& engine, const RunSetting& base,
                                                      const SolveTask& task);
 

@@ -19,7 +19,7 @@ struct MeasurementContext {
   double air_density = 1.225;     ///< [kg/m^3]
   Eigen::Vector3d vane_position{0.0, 0.0, 0.0};
   bool beta_is_flank = false;
-  double min_airspeed = 3.0;            ///< below it vanes and force model are not believed [m/s]
+  double min_airspeed = 3.0;            ///< below it vanes and force model are not used [m/s]
   Eigen::Vector3d gyro{0.0, 0.0, 0.0};  ///< as measured [rad/s]
   double gyro_sigma = 0.0;              ///< of one sample [rad/s]
   Controls<double> controls;            ///< for the accelerometer of the model-based filter
@@ -32,7 +32,7 @@ struct OfferedSample {
   double variance = 0.0;
 };
 
-/// What the sample `z` of a sensor with standard deviation `sigma` says at state `x`; nothing where it is not to be
+/// The sample `z` of a sensor with standard deviation `sigma` at state `x`; nothing where it is not to be
 /// used there. The accelerometer's axes are measurements of the model-based filter only: for the other `forces` is
 /// null.
 [[nodiscard]] std::optional<OfferedSample> offered_sample(const AirDataMotion& motion, const ModelBasedMotion* forces,

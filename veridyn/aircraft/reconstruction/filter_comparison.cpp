@@ -34,12 +34,17 @@ struct Moments {
   [[nodiscard]] double sd() const { return std::sqrt(std::max(0.0, rms() * rms() - mean() * mean())); }
 };
 
-/// Errors of a channel against the truth, which is interpolated; `signal` receives the truth.
-Moments errors_of(const Recording& estimate, const Recording& truth, const Quantity& q, Moments& signal) {
-  Moments errors;
+/// Errors of a channel, and the truth that it is compared with.
+struct Comparison {
+  Moments errors, truth;
+};
+
+/// Against the interpolated truth.
+Comparison compare_channel(const Recording& estimate, const Recording& truth, const Quantity& q) {
+  Comparison comparison;
   const Channel* e = estimate.find(q.name);
   const Channel* t = truth.find(q.truth);
-  if (e == nullptr || t == nullptr || t->size() < 2 || e->empty()) return errors;
+  if (e == nullptr || t == nullptr || t->size() < 2 || e->empty()) return comparison;
   const auto times = e->times();
   const auto true_times = t->times();
   std::size_t j = 0;
@@ -49,10 +54,10 @@ Moments errors_of(const Recording& estimate, const Recording& truth, const Quant
     if (true_times[j] > times[i] || true_times[j + 1] < times[i] || !std::isfinite(e->value[i])) continue;
     const double share = (times[i] - true_times[j]) / (true_times[j + 1] - true_times[j]);
     const double expected = (1.0 - share) * t->value[j] + share * t->value[j + 1];
-    errors.add(e->value[i] - expected);
-    signal.add(expected);
+    comparison.errors.add(e->value[i] - expected);
+    comparison.truth.add(expected);
   }
-  return errors;
+  return comparison;
 }
 
 }  // namespace
@@ -95,20 +100,18 @@ std::vector<FilterError> compare_filters(const Recording& mapped, const Recordin
     FilterError error;
     error.quantity = q.name;
     error.unit = std::string_view(q.name) == "alpha" || std::string_view(q.name) == "beta" ? "rad" : "m/s";
-    Moments signal, unused;
-    const auto fill = [&](const Reconstruction& r, FilterError::Of& of) {
-      of.filter_rms = errors_of(r.filtered, truth, q, unused).rms();
-      const Moments smoothed = errors_of(r.smoothed, truth, q, signal);
-      of.smoother_rms = smoothed.rms();
-      of.smoother_bias = smoothed.mean();
+    const auto of = [&](const Reconstruction& r) {
+      const Moments smoothed = compare_channel(r.smoothed, truth, q).errors;
+      return FilterError::Of{.filter_rms = compare_channel(r.filtered, truth, q).errors.rms(),
+                             .smoother_rms = smoothed.rms(),
+                             .smoother_bias = smoothed.mean()};
     };
-    fill(free, error.model_free);
-    signal = {};
-    fill(based, error.model_based);
-    error.signal_sd = signal.sd();
-    const auto bounds = [](FilterError::Of& of, const AngleBound& b) {
-      of.filter_bound = b.filter;
-      of.smoother_bound = b.smoother;
+    error.model_free = of(free);
+    error.model_based = of(based);
+    error.signal_sd = compare_channel(based.smoothed, truth, q).truth.sd();
+    const auto bounds = [](FilterError::Of& filter, const AngleBound& b) {
+      filter.filter_bound = b.filter;
+      filter.smoother_bound = b.smoother;
     };
     if (error.quantity == "alpha") bounds(error.model_free, kinematic.alpha);
     if (error.quantity == "beta") bounds(error.model_free, kinematic.beta);

@@ -7,7 +7,7 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_columns.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_run.hpp"
 
-/// Inside of reconstruct.cpp: the filters behind one interface, so that only the engines' own source files, one for the
+/// Inside of reconstruct.cpp: the filters behind one interface, so that only the engines' source files, one for the
 /// model-free and one for the model-based, instantiate the filter for its sizes of state.
 namespace veridyn::aircraft::internal {
 
@@ -69,8 +69,10 @@ class FilterEngine {
                                                                     const Start& start) const = 0;
 };
 
-/// `imu_errors`: errors of gyro and accelerometer are states, those that are not asked for held by a variance of zero.
+/// `imu_errors`: errors of gyro and accelerometer are states, those that the options do not estimate held by a variance
+/// of zero.
 [[nodiscard]] std::unique_ptr<FilterEngine> model_free_engine(bool imu_errors);
+/// As `model_free_engine`, with the subject's force coefficients.
 [[nodiscard]] std::unique_ptr<FilterEngine> model_based_engine(bool imu_errors);
 
 }  // namespace veridyn::aircraft::internal

@@ -6,11 +6,13 @@
 /// Inside of the engines' source files: an engine for one system. Costly to compile; included by those two only.
 namespace veridyn::aircraft::internal {
 
+/// The covariance of a filter of one kind, with its size hidden.
 template <class Model>
 [[nodiscard]] CovarianceView view_of(const typename Model::Covariance& P) {
   return {{P.data(), Model::kStates, Model::kStates}, Model::kImuError, Model::kCoefficientError};
 }
 
+/// AirDataEstimator for one kind of filter.
 template <class Model>
 class EstimatorOf final : public AirDataEstimator {
  public:
@@ -54,6 +56,7 @@ class EstimatorOf final : public AirDataEstimator {
   estimation::ExtendedKalmanFilter<Model> filter_;
 };
 
+/// InnovationRun for one kind of filter.
 template <class Model>
 class InnovationRunOf final : public InnovationRun {
  public:
@@ -66,6 +69,7 @@ class InnovationRunOf final : public InnovationRun {
   FlightRun<Model> run_;
 };
 
+/// FilterEngine for one kind of filter.
 template <class Model>
 class EngineOf final : public FilterEngine {
  public:

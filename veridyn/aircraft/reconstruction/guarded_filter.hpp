@@ -11,7 +11,7 @@ namespace veridyn::aircraft {
 /// filter's as long as its innovations are what they should be, and the model-free filter's otherwise.
 ///
 /// New derivatives may come at any time from a recursive identification (`set_model`): the loop is closed, and the
-/// guard keeps it from trusting its own mistakes, because the model-free filter never sees the model. Judged are pitot
+/// guard keeps it from trusting its mistakes, because the model-free filter never sees the model. Judged are pitot
 /// tube, vanes and accelerometer of the model-based filter, each by itself (InnovationGuard). When the guard ends the
 /// trust, the model-based filter starts again from the model-free one's state and covariance; it does so again after
 /// every window with an alarm, so that what a wrong model did to it is forgotten, and it is trusted again after

@@ -108,6 +108,30 @@ SteadyPoint steady_point(const Subject& s, double airspeed, double density) {
   return balance_forces(s, airspeed, density);
 }
 
+/// The gusts' states, as in AirDataModel: transition over a sample, stationary covariance, gust [m/s] per state.
+struct GustStates {
+  Matrix5 F = Matrix5::Zero();
+  Matrix5 Pi = Matrix5::Zero();
+  Eigen::Matrix<double, 3, 5> G = Eigen::Matrix<double, 3, 5>::Zero();
+};
+
+GustStates gust_states(const DrydenSettings& spectrum, double airspeed, const BoundSensors& sensors) {
+  GustStates gusts;
+  gusts.F(0, 0) = std::exp(-airspeed / (spectrum.Lu * sensors.rate_Hz));
+  gusts.Pi(0, 0) = 1.0;
+  gusts.G(0, 0) = sensors.airspeed_known ? 0.0 : spectrum.sigma_u;
+  const auto pair = [&](int row, int i, double length, double intensity) {
+    const double step = airspeed / (length * sensors.rate_Hz);
+    gusts.F.block<2, 2>(i, i) << std::exp(-step), 0.0, step * std::exp(-step), std::exp(-step);
+    gusts.Pi.block<2, 2>(i, i) << 0.5, 0.25, 0.25, 0.25;
+    gusts.G(row, i) = intensity * std::sqrt(3.0);
+    gusts.G(row, i + 1) = -intensity * (std::sqrt(3.0) - 1.0);
+  };
+  pair(1, 1, spectrum.Lv, spectrum.sigma_v);
+  pair(2, 3, spectrum.Lw, spectrum.sigma_w);
+  return gusts;
+}
+
 }  // namespace
 
 ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subject, double airspeed,
@@ -119,21 +143,9 @@ ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subj
   if (!at.usable) return bound;
   if (at.thrust != 0.0) forces.propulsion = {};
 
-  // The gusts' states, as in AirDataModel.
-  Matrix5 F = Matrix5::Zero(), Pi = Matrix5::Zero();
-  F(0, 0) = std::exp(-airspeed / (spectrum.Lu * sensors.rate_Hz));
-  Pi(0, 0) = 1.0;
-  Eigen::Matrix<double, 3, 5> G = Eigen::Matrix<double, 3, 5>::Zero();
-  G(0, 0) = sensors.airspeed_known ? 0.0 : spectrum.sigma_u;
-  const auto pair = [&](int row, int i, double length, double intensity) {
-    const double step = airspeed / (length * sensors.rate_Hz);
-    F.block<2, 2>(i, i) << std::exp(-step), 0.0, step * std::exp(-step), std::exp(-step);
-    Pi.block<2, 2>(i, i) << 0.5, 0.25, 0.25, 0.25;
-    G(row, i) = intensity * std::sqrt(3.0);
-    G(row, i + 1) = -intensity * (std::sqrt(3.0) - 1.0);
-  };
-  pair(1, 1, spectrum.Lv, spectrum.sigma_v);
-  pair(2, 3, spectrum.Lw, spectrum.sigma_w);
+  const GustStates gusts = gust_states(spectrum, airspeed, sensors);
+  const Matrix5 &F = gusts.F, &Pi = gusts.Pi;
+  const auto& G = gusts.G;
   const Matrix5 Q = Pi - F * Pi * F.transpose();
 
   using Jet = ceres::Jet<double, 3>;

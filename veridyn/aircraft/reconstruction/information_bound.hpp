@@ -13,6 +13,7 @@ struct AngleBound {
   double smoother = 0.0;
 };
 
+/// The bounds of both flow angles.
 struct InformationBound {
   AngleBound alpha;
   AngleBound beta;
@@ -55,7 +56,7 @@ struct ModelBound {
   bool usable = false;      ///< false: the aircraft does not fly level at that airspeed
 };
 
-/// How well alpha, beta and airspeed can be known by someone who knows the aircraft's own derivatives: as above
+/// How well alpha, beta and airspeed can be known when the aircraft's derivatives are known: as above
 /// (attitude, ground velocity and slow wind exact; Dryden's gusts along the three axes unknown), with an accelerometer
 /// that measures the force of the subject's model, linearised about steady level flight at `airspeed` and
 /// `air_density`. Where the subject's moments and inertia give no complete trim, alpha and thrust are those of balanced
@@ -65,7 +66,7 @@ struct ModelBound {
 /// moderate turbulence with the reference sensors: at 15 m/s alpha 0.08 / 0.08 deg (0.075 / 0.074 here, drag counted in
 /// the normal force), beta 0.28 / 0.24 deg; at 20 m/s 0.04 / 0.04 and 0.19 / 0.17 deg (filter / smoother). With the
 /// airspeed unknown, as it is, alpha's are 0.17 / 0.14 and 0.09 / 0.07 deg. Beyond the linear range (stall) the
-/// aircraft tells less than this.
+/// aircraft gives less than this.
 [[nodiscard]] ModelBound information_bound(const DrydenSettings& spectrum, const Subject& subject, double airspeed,
                                            const BoundSensors& sensors, double air_density = 1.225);
 

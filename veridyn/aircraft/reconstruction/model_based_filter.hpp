@@ -14,7 +14,7 @@ namespace veridyn::aircraft {
 struct ModelError {
   std::array<double, 3> initial{0.02, 0.005, 0.01};  ///< 1 sigma at the start [-]
   std::array<double, 3> walk{5e-4, 2e-4, 2e-4};      ///< [1/sqrt(s)]
-  std::array<bool, 3> modelled{true, true, true};    ///< false: nothing is known of it, the accelerometer tells it
+  std::array<bool, 3> modelled{true, true, true};    ///< false: nothing is known of it, the accelerometer measures it
   static constexpr double kUnknownInitial = 1.0;     ///< where it is not modelled
   static constexpr double kUnknownWalk = 0.5;        ///< [1/sqrt(s)]
   [[nodiscard]] double sigma(std::size_t i) const { return modelled[i] ? initial[i] : kUnknownInitial; }
@@ -38,7 +38,7 @@ struct ModelError {
 ///
 /// The Jacobian of `propagate` is composed of those of the kinematics, in closed form, and of the specific force, by
 /// automatic differentiation with respect to v_r, rates and coefficient errors. The velocity carries white force noise
-/// of the accelerometer's size: what the model does not say of the force from sample to sample.
+/// of the accelerometer's size: what the model leaves out of the force from sample to sample.
 struct ModelBasedMotion : AirDataMotion {
   /// Whose force model it is; moments are not used. Never null when used.
   const Subject* subject = nullptr;
@@ -101,7 +101,7 @@ struct ModelBasedAirData : ModelBasedMotion {
 
   [[nodiscard]] Eigen::Matrix<double, kDynamic, kStates> transition_rows(const State<double>& x, const Input& u,
                                                                          double dt, State<double>& after) const {
-    const FullRows all = full_rows(x, u, dt, kHasImu, after);
+    FullRows all = full_rows(x, u, dt, kHasImu, after);
     if constexpr (kHasImu) {
       return all;
     } else {

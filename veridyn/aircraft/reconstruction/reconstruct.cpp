@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -27,16 +28,26 @@ using internal::RunSetting;
 using internal::Segment;
 using internal::Solution;
 
-std::vector<double> output_stamps(const FlightStreams& s, const Segment& segment, double rate_Hz) {
-  std::vector<double> t;
-  if (rate_Hz > 0.0) {
-    for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k) t.push_back(k / rate_Hz);
-    return t;
+/// Stamps of the results.
+struct OutputStamps {
+  std::vector<double> time;
+  std::vector<std::size_t> first;  ///< index of the first of each segment
+};
+
+OutputStamps output_stamps(const FlightStreams& s, std::span<const Segment> segments, double rate_Hz) {
+  OutputStamps stamps;
+  for (const Segment& segment : segments) {
+    stamps.first.push_back(stamps.time.size());
+    if (rate_Hz > 0.0) {
+      for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k)
+        stamps.time.push_back(k / rate_Hz);
+      continue;
+    }
+    const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
+    const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
+    stamps.time.insert(stamps.time.end(), first, last);
   }
-  const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
-  const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
-  t.assign(first, last);
-  return t;
+  return stamps;
 }
 
 // --- Turbulence -----------------------------------------------------------------------------------------------------
@@ -93,26 +104,28 @@ double log_likelihood(const FlightStreams& s, const ReconstructOptions& o, const
   return sum;
 }
 
-void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std::span<const Segment> segments,
-                       Reconstruction& out) {
-  if (o.turbulence != "auto") {
-    out.turbulence = o.turbulence == "study" ? o.own_turbulence : gust_spectrum(o.turbulence);
-    for (double* sigma : {&out.turbulence.sigma_u, &out.turbulence.sigma_v, &out.turbulence.sigma_w}) {
+/// A gust spectrum and why it was taken.
+struct ChosenTurbulence {
+  DrydenSettings spectrum;
+  std::string origin;
+};
+
+ChosenTurbulence choose_turbulence(const FlightStreams& s, const ReconstructOptions& o,
+                                   std::span<const Segment> segments) {
+  if (o.turbulence) {
+    ChosenTurbulence chosen{o.turbulence->spectrum, o.turbulence->name};
+    for (double* sigma : {&chosen.spectrum.sigma_u, &chosen.spectrum.sigma_v, &chosen.spectrum.sigma_w})
       *sigma *= o.turbulence_scale;
-    }
-    out.turbulence_origin = o.turbulence_scale == 1.0
-                                ? o.turbulence
-                                : fmt::format("{}, intensities times {:g}", o.turbulence, o.turbulence_scale);
-    return;
+    if (o.turbulence_scale != 1.0) chosen.origin += fmt::format(", intensities times {:g}", o.turbulence_scale);
+    return chosen;
   }
   using namespace internal;
   if (s.sensors[kPitot].t.empty() && s.sensors[kAlpha].t.empty() && s.sensors[kBeta].t.empty()) {
-    out.turbulence = gust_spectrum("low_moderate");
-    out.turbulence_origin = "low_moderate, assumed: no sensor feels the air";
-    return;
+    return {gust_spectrum("low_moderate"), "low_moderate, assumed: no sensor feels the air"};
   }
   const Segment part = typical_part(s, segments, 60.0);
   constexpr std::array<double, 7> kScales{0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0};
+  ChosenTurbulence chosen;
   double best = -kInfinity;
   for (const char* setting : {"low_light", "medium_light"}) {
     for (const double scale : kScales) {
@@ -120,65 +133,109 @@ void choose_turbulence(const FlightStreams& s, const ReconstructOptions& o, std:
       const double likelihood = log_likelihood(s, o, part, spectrum);
       if (likelihood > best) {
         best = likelihood;
-        out.turbulence = spectrum;
-        out.turbulence_origin = fmt::format("auto: {} times {:g}, by the innovations of {:.0f}..{:.0f} s", setting,
-                                            scale, part.begin, part.end);
+        chosen = {spectrum, fmt::format("auto: {} times {:g}, by the innovations of {:.0f}..{:.0f} s", setting, scale,
+                                        part.begin, part.end)};
       }
     }
   }
+  return chosen;
 }
 
 // --- Report ---------------------------------------------------------------------------------------------------------
 
-void report_sensors(const FlightStreams& s, const Solution& solution, Reconstruction& out) {
+/// Gaps and slow samples of the inertial sensors.
+std::vector<std::string> sampling_warnings(const FlightStreams& s, std::size_t segments, double max_gap) {
+  std::vector<std::string> warnings;
+  if (segments > 1) {
+    warnings.push_back(
+        fmt::format("gyro or accelerometer pause for more than {:g} s: estimated in {} parts, each "
+                    "with its own start",
+                    max_gap, segments));
+  }
+  if (s.gyro.interval > 0.05) {
+    warnings.push_back(fmt::format("gyro at {:.1f} Hz: motion between its samples is not seen", 1.0 / s.gyro.interval));
+  }
+  return warnings;
+}
+
+std::vector<SensorReport> sensor_reports(const FlightStreams& s, const Solution& solution) {
+  std::vector<SensorReport> reports;
   for (std::size_t i = 0; i < kSensors; ++i) {
     const internal::Stream& stream = s.sensors[i];
     if (stream.t.empty()) continue;
-    const auto summary = solution.monitors[i].summary();
-    out.log_likelihood += summary.log_likelihood;
-    out.sensors.push_back({stream.channel, stream.unit, stream.sigma, stream.rate_Hz, summary});
+    reports.push_back({stream.channel, stream.unit, stream.sigma, stream.rate_Hz, solution.monitors[i].summary()});
+  }
+  return reports;
+}
+
+/// Sensors whose samples contradict the estimate.
+std::vector<std::string> contradiction_warnings(std::span<const SensorReport> sensors) {
+  std::vector<std::string> warnings;
+  for (const SensorReport& sensor : sensors) {
+    const estimation::InnovationSummary& summary = sensor.innovations;
     if (summary.count == 0) continue;
     const double refused = static_cast<double>(summary.rejected) / static_cast<double>(summary.count);
     if (refused > 0.01) {
-      out.warnings.push_back(fmt::format("{}: {:.1f} % of the samples contradict the estimate and were dropped",
-                                         stream.channel, 100.0 * refused));
+      warnings.push_back(fmt::format("{}: {:.1f} % of the samples contradict the estimate and were dropped",
+                                     sensor.channel, 100.0 * refused));
     }
     if (summary.recovered > 0) {
-      out.warnings.push_back(
+      warnings.push_back(
           fmt::format("{}: dropped for long and taken back, {} samples with inflated variance: the estimate or the "
                       "sensor was wrong for a while",
-                      stream.channel, summary.recovered));
+                      sensor.channel, summary.recovered));
     }
     if (summary.count > 100 && summary.nis > 2.0) {
-      out.warnings.push_back(fmt::format(
+      warnings.push_back(fmt::format(
           "{}: innovations {:.1f} times the expected size: its error is larger than the assumed {:.3g}{}",
-          stream.channel, std::sqrt(summary.nis), shown(stream.sigma, stream.unit), shown_unit(stream.unit)));
+          sensor.channel, std::sqrt(summary.nis), display_value(sensor.sigma, sensor.unit), display_unit(sensor.unit)));
     }
   }
+  return warnings;
 }
 
-void report_quantities(const FlightStreams& s, const ReconstructOptions& o, const ResultColumns& columns,
-                       std::size_t count, Reconstruction& out) {
-  const auto first = [count](const std::vector<double>& v) { return std::span<const double>(v.data(), count); };
-  const double speed = std::max(numerics::median(first(columns.value(0))), 1.0);
-  const DrydenSettings& g = out.turbulence;
+/// Sensors that are missing, and what cannot be known without them.
+std::vector<std::string> missing_sensor_warnings(const FlightStreams& s) {
+  std::vector<std::string> warnings;
   const bool pitot = !s.sensors[internal::kPitot].t.empty();
   const bool vane_a = !s.sensors[internal::kAlpha].t.empty();
   const bool vane_b = !s.sensors[internal::kBeta].t.empty();
-  if (!pitot) out.warnings.emplace_back("no pitot tube: the size of the airspeed is known only through the wind");
+  if (!pitot) warnings.emplace_back("no pitot tube: the size of the airspeed is known only through the wind");
   if (!vane_a) {
-    out.warnings.emplace_back(
-        "no alpha vane: gusts along z stay unknown, so alpha is known only as far as they are small");
+    warnings.emplace_back("no alpha vane: gusts along z stay unknown, so alpha is known only as far as they are small");
   }
   if (!vane_b) {
-    out.warnings.emplace_back(
-        "no beta vane: lateral gusts stay unknown, so beta is known only as far as they are small");
+    warnings.emplace_back("no beta vane: lateral gusts stay unknown, so beta is known only as far as they are small");
   }
   if (!pitot && !vane_a && !vane_b) {
-    out.warnings.emplace_back(
+    warnings.emplace_back(
         "neither pitot tube nor vanes: nothing in the recording feels the air; airspeed, alpha, "
         "beta and wind are assumptions, not estimates");
   }
+  return warnings;
+}
+
+/// Where errors of vanes and pitot tube were estimated.
+std::vector<std::string> air_data_error_warnings(bool converged, bool with_model) {
+  std::vector<std::string> warnings;
+  if (!converged) {
+    warnings.emplace_back(
+        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
+        "narrow");
+  }
+  if (!with_model) {
+    warnings.emplace_back(
+        "errors of vanes and pitot tube found without a model of the aircraft are biased when pilot or autopilot "
+        "answer the gusts, which then look like errors of the sensors; reconstruct.filter = \"model-based\" is not "
+        "misled so");
+  }
+  return warnings;
+}
+
+std::vector<QuantityReport> quantity_reports(const ReconstructOptions& o, const DrydenSettings& g,
+                                             const ResultColumns& columns, std::size_t count) {
+  const auto first = [count](const std::vector<double>& v) { return std::span<const double>(v.data(), count); };
+  const double speed = std::max(numerics::median(first(columns.value(0))), 1.0);
   const auto prior = [&](std::size_t c) -> double {
     const double vertical = std::hypot(o.initial_wind_down, g.sigma_w);
     switch (c) {
@@ -197,6 +254,7 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
         return 0.0;
     }
   };
+  std::vector<QuantityReport> reports;
   for (std::size_t c = 0; c < internal::kColumns.size(); ++c) {
     const double before = prior(c);
     if (before == 0.0 || !columns.has(c)) continue;
@@ -207,10 +265,11 @@ void report_quantities(const FlightStreams& s, const ReconstructOptions& o, cons
     q.sigma = numerics::median(first(columns.sigma(c)));
     q.observability = observability_of(q.sigma, before);
     q.statement = fmt::format("{} is {}: sigma {:.3g}{} where {:.3g}{} was assumed beforehand", q.quantity,
-                              to_string(q.observability), shown(q.sigma, q.unit), shown_unit(q.unit),
-                              shown(before, q.unit), shown_unit(q.unit));
-    out.quantities.push_back(std::move(q));
+                              to_string(q.observability), display_value(q.sigma, q.unit), display_unit(q.unit),
+                              display_value(before, q.unit), display_unit(q.unit));
+    reports.push_back(std::move(q));
   }
+  return reports;
 }
 
 double error_prior(std::size_t column, const ModelError& model) {
@@ -224,7 +283,7 @@ double error_prior(std::size_t column, const ModelError& model) {
   return model.sigma(column - kFirstCoefficientError);
 }
 
-void report_sensor_errors(const Solution& solution, const ModelError& model, Reconstruction& out) {
+std::vector<SensorErrorReport> sensor_error_reports(const Solution& solution, const ModelError& model) {
   std::vector<SensorErrorEstimate> errors;
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < solution.error_columns.size(); ++i) {
@@ -246,13 +305,12 @@ void report_sensor_errors(const Solution& solution, const ModelError& model, Rec
       covariance(a, b) =
           solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
   }
-  out.sensor_errors = judge_sensor_errors(errors, covariance);
+  return judge_sensor_errors(errors, covariance);
 }
 
-void report_guard(const internal::GuardTrace& trace, const std::vector<double>& stamps, std::size_t count,
-                  Reconstruction& out) {
+GuardReport guard_report(const internal::GuardTrace& trace, const std::vector<double>& stamps, std::size_t count) {
   GuardReport report;
-  report.falls = trace.falls;
+  report.reverts = trace.reverts;
   std::size_t used = 0;
   for (std::size_t k = 0; k < count; ++k) {
     if (trace.model_based[k]) {
@@ -267,15 +325,14 @@ void report_guard(const internal::GuardTrace& trace, const std::vector<double>& 
   }
   report.model_based_share = count > 0 ? static_cast<double>(used) / static_cast<double>(count) : 0.0;
   report.statement =
-      report.falls == 0
+      report.reverts == 0
           ? std::string("the model-based filter was trusted throughout")
           : fmt::format(
                 "the model-based filter was trusted {:.0f} % of the time; its innovations contradicted the "
                 "model {} time{}, first at {:.1f} s",
-                100.0 * report.model_based_share, report.falls, report.falls > 1 ? "s" : "",
+                100.0 * report.model_based_share, report.reverts, report.reverts > 1 ? "s" : "",
                 report.model_free.empty() ? 0.0 : report.model_free.front().begin);
-  if (report.falls > 0) out.warnings.push_back(report.statement);
-  out.guard = std::move(report);
+  return report;
 }
 
 void add_guard_channels(const internal::GuardTrace& trace, const TimeBase& time, std::size_t count,
@@ -294,20 +351,16 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   if (mapped.frame == Frame::kFlu) {
     throw InputError(mapped.source, "is in the frame flu; reconstruction of an aircraft needs frd, convert it first");
   }
-  Reconstruction out;
-  FlightStreams streams = internal::load_streams(mapped, options, out.warnings);
-  out.sigma = streams.sigma;
-  out.filter = options.filter;
+  FlightStreams streams = internal::load_streams(mapped, options);
   std::optional<Subject> force_model;
   if (options.filter != FilterKind::kModelFree) {
     if (subject == nullptr) {
       throw InputError(mapped.source, "reconstruct.filter other than \"model-free\" needs a subject with derivatives");
     }
-    force_model = *subject;
-    internal::load_model_streams(mapped, *force_model, streams, out.warnings);
+    internal::ModelStreams with_model = internal::load_model_streams(mapped, *subject, std::move(streams));
+    streams = std::move(with_model.streams);
+    force_model = std::move(with_model.force_model);
   }
-  out.density_origin = streams.density_origin;
-
   const std::vector<Segment> segments = internal::find_segments(streams, options.max_gap);
   if (segments.empty()) {
     throw InputError(
@@ -316,57 +369,51 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
                     "a gap longer than {:g} s",
                     options.max_gap));
   }
-  if (segments.size() > 1) {
-    out.warnings.push_back(
-        fmt::format("gyro or accelerometer pause for more than {:g} s: estimated in {} parts, each "
-                    "with its own start",
-                    options.max_gap, segments.size()));
-  }
-  if (streams.gyro.interval > 0.05) {
-    out.warnings.push_back(
-        fmt::format("gyro at {:.1f} Hz: motion between its samples is not seen", 1.0 / streams.gyro.interval));
-  }
-  std::vector<double> stamps;
-  std::vector<std::size_t> first_stamp;
-  for (const Segment& segment : segments) {
-    out.segments.push_back({segment.begin, segment.end});
-    first_stamp.push_back(stamps.size());
-    const std::vector<double> t = output_stamps(streams, segment, options.rate_Hz);
-    stamps.insert(stamps.end(), t.begin(), t.end());
-  }
-  if (stamps.empty()) throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
+  OutputStamps stamps = output_stamps(streams, segments, options.rate_Hz);
+  if (stamps.time.empty())
+    throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
 
-  choose_turbulence(streams, options, segments, out);
-  progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.back() - stamps.front()));
+  ChosenTurbulence turbulence = choose_turbulence(streams, options, segments);
+  progress.stage(fmt::format("reconstructing {:.0f} s of flight", stamps.time.back() - stamps.time.front()));
   const internal::SolveTask task{.streams = &streams,
                                  .options = &options,
                                  .segments = segments,
-                                 .stamps = &stamps,
-                                 .first_stamp = first_stamp,
-                                 .spectrum = out.turbulence,
+                                 .stamps = &stamps.time,
+                                 .first_stamp = stamps.first,
+                                 .spectrum = turbulence.spectrum,
                                  .subject = force_model ? &*force_model : nullptr};
   Solution solution = options.filter == FilterKind::kGuarded      ? internal::solve_guarded(task, progress)
                       : options.filter == FilterKind::kModelBased ? internal::solve_model_based(task, progress)
                                                                   : internal::solve_model_free(task, progress);
 
-  out.interrupted = solution.count < stamps.size();
-  report_sensors(streams, solution, out);
-  report_quantities(streams, options, *solution.smoothed, solution.count, out);
-  if (!solution.air_data_errors_converged) {
-    out.warnings.emplace_back(
-        "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
-        "narrow");
+  Reconstruction out;
+  const auto warn = [&](std::vector<std::string> texts) {
+    std::move(texts.begin(), texts.end(), std::back_inserter(out.warnings));
+  };
+  out.filter = options.filter;
+  out.sigma = streams.sigma;
+  out.density_origin = streams.density_origin;
+  out.turbulence = turbulence.spectrum;
+  out.turbulence_origin = std::move(turbulence.origin);
+  for (const Segment& segment : segments) out.segments.push_back({segment.begin, segment.end});
+  out.interrupted = solution.count < stamps.time.size();
+  warn(streams.warnings);
+  warn(sampling_warnings(streams, segments.size(), options.max_gap));
+  out.sensors = sensor_reports(streams, solution);
+  for (const SensorReport& sensor : out.sensors) out.log_likelihood += sensor.innovations.log_likelihood;
+  warn(contradiction_warnings(out.sensors));
+  out.quantities = quantity_reports(options, out.turbulence, *solution.smoothed, solution.count);
+  warn(missing_sensor_warnings(streams));
+  if (options.estimates_air_data_errors())
+    warn(air_data_error_warnings(solution.air_data_errors_converged, force_model.has_value()));
+  out.sensor_errors =
+      sensor_error_reports(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{});
+  if (solution.guard) {
+    out.guard = guard_report(*solution.guard, stamps.time, solution.count);
+    if (out.guard->reverts > 0) out.warnings.push_back(out.guard->statement);
   }
-  if (!force_model && options.wants_air_data_errors()) {
-    out.warnings.emplace_back(
-        "errors of vanes and pitot tube found without a model of the aircraft are biased when pilot or autopilot "
-        "answer "
-        "the gusts, which then look like errors of the sensors; reconstruct.filter = \"model-based\" is not misled so");
-  }
-  report_sensor_errors(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{}, out);
-  if (solution.guard) report_guard(*solution.guard, stamps, solution.count, out);
-  stamps.resize(solution.count);
-  const TimeBase time = make_time_base(std::move(stamps));
+  stamps.time.resize(solution.count);
+  const TimeBase time = make_time_base(std::move(stamps.time));
   const auto finish = [&](Recording& recording, ResultColumns& columns) {
     recording.source = mapped.source;
     recording.frame = Frame::kFrd;

@@ -23,6 +23,7 @@ struct SensorReport {
   estimation::InnovationSummary innovations;
 };
 
+/// How well a quantity of the motion is known.
 struct QuantityReport {
   std::string quantity;  ///< channel name, "beta"
   std::string unit;
@@ -35,8 +36,8 @@ struct QuantityReport {
 /// What the guard of `filter = "guarded"` did.
 struct GuardReport {
   double model_based_share = 0.0;    ///< of the time
-  std::size_t falls = 0;             ///< changes from the model-based to the model-free filter
-  std::vector<TimeSpan> model_free;  ///< when the model was not believed
+  std::size_t reverts = 0;           ///< changes from the model-based to the model-free filter
+  std::vector<TimeSpan> model_free;  ///< when the model was not trusted
   std::string statement;             ///< one sentence
 };
 
@@ -45,6 +46,7 @@ struct FilterError {
   std::string quantity;    ///< "alpha"
   std::string unit;        ///< SI
   double signal_sd = 0.0;  ///< standard deviation of the truth
+  /// Of one filter and its smoother, in `unit`.
   struct Of {
     double filter_rms = 0.0, smoother_rms = 0.0, smoother_bias = 0.0;
     double filter_bound = 0.0, smoother_bound = 0.0;  ///< information bound; 0 where there is none
@@ -52,16 +54,16 @@ struct FilterError {
   Of model_free, model_based;
 };
 
-/// The motion through the air, and how far to trust it.
+/// The motion through the air, with error bars and reports.
 ///
 /// `filtered` (what was known at the time) and `smoothed` (what is known from the whole record) hold the same channels
 /// on the same stamps, SI, frame frd:
 /// - `airspeed`, `alpha`, `beta`: of the centre of gravity relative to the air, gusts included;
 /// - `air_velocity_x|y|z`: the same as a vector in body axes;
 /// - `wind_north|east|down`: the slow wind; `wind_total_north|east|down`: with gusts, from where v = R v_r + wind;
-/// - `gust_x|y|z`: the gusts in body axes (no sigma of their own);
+/// - `gust_x|y|z`: the gusts in body axes (without sigma);
 /// - `roll`, `pitch`, `yaw`, `vel_north|east|down`; `air_density` as used (no sigma);
-/// - what was asked to be estimated of `gyro_bias_x|y|z`, `accel_bias_x|y|z`, `alpha_bias`, `beta_bias`, `alpha_scale`,
+/// - what the options estimate of `gyro_bias_x|y|z`, `accel_bias_x|y|z`, `alpha_bias`, `beta_bias`, `alpha_scale`,
 ///   `pitot_scale`, `pitot_bias`, `gyro_scale_x|y|z`, `accel_scale_x|y|z`;
 /// - of the model-based filter: `CL_error`, `CD_error`, `CY_error`, by how much the coefficients of the model are off;
 /// - of the guarded filter: `model_based` (1 where the estimate is the model-based filter's; `filtered` only) and
@@ -71,12 +73,12 @@ struct FilterError {
 struct Reconstruction {
   Recording smoothed;
   Recording filtered;              ///< empty unless `keep_filter`
-  std::vector<TimeSpan> segments;  ///< stretches without a long gap, each estimated on its own
+  std::vector<TimeSpan> segments;  ///< stretches without a long gap, each estimated separately
   std::vector<SensorReport> sensors;
   std::vector<QuantityReport> quantities;
   std::vector<SensorErrorReport> sensor_errors;  ///< those that were to be estimated
   std::optional<GuardReport> guard;
-  std::vector<FilterError> comparison;  ///< filled by whoever knows the truth
+  std::vector<FilterError> comparison;  ///< filled by `compare_filters`, where the truth is known
   FilterKind filter = FilterKind::kModelFree;
   SensorSigma sigma;              ///< as used
   DrydenSettings turbulence;      ///< as used
@@ -93,10 +95,10 @@ struct Reconstruction {
 ///
 /// Needs `accel_x|y|z`, `gyro_x|y|z`, `roll`, `pitch`, `yaw`, `vel_north|east|down`. Uses what there is of
 /// `dynamic_pressure` (or else `airspeed`), `alpha`, `beta`, and for the air density `air_density`, `static_pressure`,
-/// `air_temperature`, `alt`. Without a pitot tube or vanes it works too; `quantities` and the sigma channels say what
+/// `air_temperature`, `alt`. Without a pitot tube or vanes it works too; `quantities` and the sigma channels show what
 /// is then not known.
 ///
-/// Each segment starts from the first attitude, ground velocity and airspeed: v_r points as the vanes say, without
+/// Each segment starts from the first attitude, ground velocity and airspeed: v_r points as the vanes show, without
 /// vanes along the ground velocity, and is scaled to the airspeed; the rest of the ground velocity is wind.
 /// @throws InputError naming a missing channel and what the recording has, or saying that there is too little data.
 /// The model-based and the guarded filter need `subject` with values for CL (and CD, CY as far as known), deflections,

@@ -12,7 +12,7 @@
 /// Inside of reconstruct.cpp: from states and covariances to channels.
 namespace veridyn::aircraft::internal {
 
-/// A result's name, unit and whether the study asked for it.
+/// A result's name and unit, and whether the study has it.
 struct ColumnName {
   const char* name;
   const char* unit;
@@ -63,7 +63,7 @@ inline constexpr std::size_t kFirstAirDataError = 30;
 inline constexpr std::size_t kFirstCoefficientError = 35;
 
 /// Covariance of a filter's error vector and where in it the errors of the inertial sensors and of the force model are,
-/// -1 where they are not. A view of the filter's own.
+/// -1 where they are not. View of the filter's covariance.
 struct CovarianceView {
   Eigen::Map<const Eigen::MatrixXd> matrix;
   int imu_error = -1;
@@ -78,10 +78,10 @@ struct CovarianceView {
 /// Values and standard deviations of all results at all stamps.
 class ResultColumns {
  public:
-  /// Space for `size` samples of the columns that are `wanted`.
-  ResultColumns(std::size_t size, const std::array<bool, kColumns.size()>& wanted) : size_(size) {
+  /// Space for `size` samples of the columns that are `present`.
+  ResultColumns(std::size_t size, const std::array<bool, kColumns.size()>& present) : size_(size) {
     for (std::size_t c = 0; c < kColumns.size(); ++c) {
-      if (!wanted[c]) continue;
+      if (!present[c]) continue;
       value_[c].resize(size);
       sigma_[c].resize(size);
     }

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "veridyn/aircraft/reconstruction/guarded_filter.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_solve.hpp"
@@ -7,13 +9,20 @@
 namespace veridyn::aircraft::internal {
 namespace {
 
-/// Goes through the recording with the guarded filter and writes its estimate.
-GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error, ResultColumns* filtered,
-                  Progress& progress) {
+/// What the guard did, and the estimate of the filter that was active.
+struct GuardedPass {
+  GuardTrace trace;
+  std::optional<ResultColumns> filtered;
+};
+
+/// Goes through the recording with the guarded filter; its estimate is written over `filtered`, where that is kept.
+GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error,
+                        std::optional<ResultColumns> filtered, Progress& progress) {
   const FlightStreams& s = *task.streams;
   const ReconstructOptions& o = *task.options;
   const std::vector<double>& stamps = *task.stamps;
-  GuardTrace trace;
+  GuardedPass pass{{}, std::move(filtered)};
+  GuardTrace& trace = pass.trace;
   trace.model_based.assign(stamps.size(), 0);
   trace.nis_ratio.assign(stamps.size(), 0.0);
   const auto subject = std::make_shared<const Subject>(*task.subject);
@@ -24,7 +33,7 @@ GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_
   for (std::size_t i = 0; i < task.segments.size(); ++i) {
     const Segment& segment = task.segments[i];
     EventCursor cursor(s, stamps, segment, task.first_stamp[i]);
-    GuardedFilter filter(o.wants_imu_biases(), setting.motion, subject, start_of(setting, segment), segment.begin,
+    GuardedFilter filter(o.estimates_imu_biases(), setting.motion, subject, start_of(setting, segment), segment.begin,
                          o.guard, o.gate);
     for (double time = cursor.next_time(); std::isfinite(time); time = cursor.next_time()) {
       const double dt = time - cursor.time();
@@ -45,16 +54,16 @@ GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_
       const std::size_t k = cursor.output();
       trace.model_based[k] = filter.model_based() ? 1 : 0;
       trace.nis_ratio[k] = filter.guard().worst();
-      if (filtered) {
+      if (pass.filtered) {
         const AirDataEstimator& active = filter.active();
-        filtered->write(k, active.motion(), active.state(), active.covariance(), s.density_at(time, density));
+        pass.filtered->write(k, active.motion(), active.state(), active.covariance(), s.density_at(time, density));
       }
       if (++done % kReport == 0 && !progress.update(static_cast<double>(done) / static_cast<double>(stamps.size())))
-        return trace;
+        return pass;
     }
-    trace.falls += filter.guard().falls();
+    trace.reverts += filter.guard().falls();
   }
-  return trace;
+  return pass;
 }
 
 }  // namespace
@@ -62,8 +71,9 @@ GuardTrace replay(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_
 Solution solve_guarded(const SolveTask& task, Progress& progress) {
   Solution based = solve_model_based(task, progress);
   Solution free = solve_model_free(task, progress);
-  ResultColumns* filtered = based.filtered ? &*based.filtered : nullptr;
-  GuardTrace trace = replay(task, free.air_error, filtered, progress);
+  GuardedPass guarded = run_guarded(task, free.air_error, std::move(based.filtered), progress);
+  const GuardTrace& trace = guarded.trace;
+  based.filtered = std::move(guarded.filtered);
   based.count = std::min(based.count, free.count);
 
   // The model-based smoother is contaminated on both sides of a stretch in which the model was wrong.
@@ -79,17 +89,17 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
     if (!trace.model_based[k]) next_wrong = stamps[k];
     if (next_wrong - stamps[k] < kGuardMargin_s) trusted[k] = 0;
   }
-  // Sensor errors are one statement about the flight: once the model was not trusted, it has no say in them.
+  // Sensor errors are one estimate over the whole flight: once the model was not trusted, they come without it.
   for (std::size_t k = 0; k < based.count; ++k) {
     if (!trusted[k]) based.smoothed->copy_sample(k, *free.smoothed);
-    if (trace.falls > 0) based.smoothed->copy_errors(k, *free.smoothed);
+    if (trace.reverts > 0) based.smoothed->copy_errors(k, *free.smoothed);
   }
-  if (trace.falls > 0) {
+  if (trace.reverts > 0) {
     based.monitors = free.monitors;
     based.error_columns = free.error_columns;
     based.error_covariance = free.error_covariance;
   }
-  based.guard = std::move(trace);
+  based.guard = std::move(guarded.trace);
   return based;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/simulation/dryden.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/kalman/innovation.hpp"
 #include "veridyn/estimation/kalman/innovation_guard.hpp"
@@ -17,15 +18,15 @@ namespace veridyn::aircraft {
 /// Standard deviations (1 sigma) of white sensor errors per sample. The defaults are the specification's reference set,
 /// whose table prints 2 sigma.
 struct SensorSigma {
-  double accelerometer = 0.05;          ///< m/s^2
-  double gyro = 0.35 * M_PI / 180.0;    ///< rad/s
-  double attitude = 0.75 * M_PI / 180;  ///< each Euler angle [rad]
-  double velocity = 0.05;               ///< north and east [m/s]
-  double velocity_down = 0.1;           ///< m/s
-  double dynamic_pressure = 10.0;       ///< Pa
-  double airspeed = 0.5;                ///< m/s
-  double alpha = 0.6 * M_PI / 180.0;    ///< rad
-  double beta = 0.6 * M_PI / 180.0;     ///< rad
+  double accelerometer = 0.05;         ///< m/s^2
+  double gyro = 0.35 * kPi / 180.0;    ///< rad/s
+  double attitude = 0.75 * kPi / 180;  ///< each Euler angle [rad]
+  double velocity = 0.05;              ///< north and east [m/s]
+  double velocity_down = 0.1;          ///< m/s
+  double dynamic_pressure = 10.0;      ///< Pa
+  double airspeed = 0.5;               ///< m/s
+  double alpha = 0.6 * kPi / 180.0;    ///< rad
+  double beta = 0.6 * kPi / 180.0;     ///< rad
 };
 
 /// Which filter delivers the motion through the air.
@@ -37,18 +38,33 @@ enum class FilterKind {
 
 [[nodiscard]] const char* to_string(FilterKind kind);
 
+/// Where the white noise of the sensors is known from.
+enum class NoiseSource {
+  kMeasured,  ///< the noise floor of each channel, but not less than `autopilot_floor()`
+  kReference  ///< SensorSigma's defaults, the specification's reference set
+};
+
+/// A gust spectrum that is assumed, and what it is called in messages: "low_light", or "study" for a table of numbers.
+struct AssumedTurbulence {
+  std::string name;
+  DrydenSettings spectrum;
+};
+
+/// The spectrum of a named setting; see gust_spectrum.
+[[nodiscard]] AssumedTurbulence named_turbulence(const std::string& setting);
+
 /// How the motion through the air is reconstructed. Study table `[reconstruct]`; every key is optional.
 ///
 ///     [reconstruct]
 ///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a
 ///     measurement;
-///                              # "guarded": both side by side, the model-based one as long as its innovations allow
-///     estimate_file = "estimate.json"  # where the derivatives of CL, CD, CY come from; without it the subject's
-///     values compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters'
-///     errors too model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the
-///     model is exact model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)] rate = "100 Hz"          #
-///     of the results; without it they come at the gyro's stamps sensors = "auto"         # "reference": the
-///     specification's reference set, right for simulated recordings;
+///                              # "guarded": both in parallel, the model-based one as long as its innovations allow
+///     estimate_file = "estimate.json"  # source of the derivatives of CL, CD, CY; without it the subject's values
+///     compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters' errors too
+///     model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the model is exact
+///     model_error_walk = [5e-4, 2e-4, 2e-4]  # how they wander [1/sqrt(s)]
+///     rate = "100 Hz"          # of the results; without it they come at the gyro's stamps
+///     sensors = "auto"         # "reference": the specification's reference set, right for simulated recordings;
 ///                              # "auto": the noise floor measured in each channel, but not less than what an ordinary
 ///                              # autopilot's errors that are not white amount to (values in `autopilot_floor()`)
 ///     turbulence = "auto"      # "none" | "low_light" | "low_moderate" | "medium_light" | "medium_moderate" |
@@ -65,8 +81,8 @@ enum class FilterKind {
 ///     wind_down_walk = 0.01    # and vertical
 ///     initial_wind = "5 m/s"   # 1 sigma of the slow wind before anything is known, north and east
 ///     initial_wind_down = "0.5 m/s"
-///     min_airspeed = "3 m/s"   # below it the vanes are not believed
-///     max_gap = "0.5 s"        # without gyro or accelerometer for longer: the estimate ends and starts anew
+///     min_airspeed = "3 m/s"   # below it the vanes are not used
+///     max_gap = "0.5 s"        # without gyro or accelerometer for longer: the estimate ends and starts again
 ///     gate = 5.0               # innovations beyond this many sigma are dropped
 ///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
 ///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
@@ -76,16 +92,15 @@ enum class FilterKind {
 ///     velocity = "0.1 s"
 struct ReconstructOptions {
   FilterKind filter = FilterKind::kModelFree;
-  std::filesystem::path estimate_file;  ///< empty: the subject's own values
+  std::filesystem::path estimate_file;  ///< empty: the subject's values
   bool compare = true;
   std::array<double, 3> model_error{0.02, 0.005, 0.01};
   std::array<double, 3> model_error_walk{5e-4, 2e-4, 2e-4};
   estimation::GuardOptions guard;
   double rate_Hz = 0.0;
-  std::string sensors = "auto";
-  std::string turbulence = "auto";
+  NoiseSource sensors = NoiseSource::kMeasured;
+  std::optional<AssumedTurbulence> turbulence = {};  ///< nothing: the spectrum of the largest innovation likelihood
   double turbulence_scale = 1.0;
-  DrydenSettings own_turbulence;  ///< where `turbulence` is "study"
   bool gyro_bias = false;
   bool accel_bias = false;
   bool gyro_scale = false;
@@ -108,43 +123,43 @@ struct ReconstructOptions {
   double min_airspeed = 3.0;
   double max_gap = 0.5;
   estimation::InnovationGate gate;
+  /// `[reconstruct.sigma]`: overrides `sensors`, units of SensorSigma.
   struct Sigma {
     std::optional<double> accelerometer, gyro, attitude, velocity, velocity_down, dynamic_pressure, airspeed, alpha,
         beta;
   } sigma;
+  /// `[reconstruct.delay]` [s].
   struct Delay {
     double velocity = 0.0, attitude = 0.0, pitot = 0.0, alpha = 0.0, beta = 0.0;
   } delay;
-  bool keep_filter = true;  ///< whether the filter's estimate is kept beside the smoother's
+  bool keep_filter = true;  ///< whether the filter's estimate is kept in addition to the smoother's
 
   /// Reads the table `[reconstruct]`.
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static ReconstructOptions read(const StudyTable& table);
 
-  [[nodiscard]] bool wants_imu_biases() const { return gyro_bias || accel_bias || wants_imu_scales(); }
-  [[nodiscard]] bool wants_imu_scales() const { return gyro_scale || accel_scale; }
-  [[nodiscard]] bool wants_air_data_errors() const {
+  [[nodiscard]] bool estimates_imu_biases() const { return gyro_bias || accel_bias || estimates_imu_scales(); }
+  [[nodiscard]] bool estimates_imu_scales() const { return gyro_scale || accel_scale; }
+  [[nodiscard]] bool estimates_air_data_errors() const {
     return alpha_bias || beta_bias || alpha_scale || pitot_scale || pitot_bias;
   }
-  [[nodiscard]] bool wants_sensor_errors() const { return wants_imu_biases() || wants_air_data_errors(); }
+  [[nodiscard]] bool estimates_sensor_errors() const { return estimates_imu_biases() || estimates_air_data_errors(); }
 };
 
 /// The least standard deviations that `sensors = "auto"` assumes of an ordinary autopilot. Attitude and velocity of its
-/// own filter, vibration and mounting errors are not white: what the samples scatter by is not how wrong they are.
+/// filter, vibration and mounting errors are not white: what the samples scatter by is not how wrong they are.
 /// Accelerometer 0.15 m/s^2, gyro 0.5 deg/s, attitude 2 deg, velocity 0.15 and 0.25 m/s, dynamic pressure 4 Pa,
 /// airspeed 0.3 m/s, vanes 0.4 deg.
 [[nodiscard]] SensorSigma autopilot_floor();
 
-/// What is assumed of sensor errors that are to be estimated, 1 sigma: gyro 1 deg/s, accelerometer 0.5 m/s^2, vane
-/// 5 deg, upwash slope 0.3, pitot scale 0.2 (of the pressure), pitot bias 20 Pa, scale factors of gyro and
-/// accelerometer 0.05.
-inline constexpr double kImuScalePrior = 0.05;
-inline constexpr double kGyroBiasPrior = M_PI / 180.0;
-inline constexpr double kAccelBiasPrior = 0.5;
-inline constexpr double kVaneBiasPrior = 5.0 * M_PI / 180.0;
-inline constexpr double kAlphaScalePrior = 0.3;
-inline constexpr double kPitotScalePrior = 0.2;
-inline constexpr double kPitotBiasPrior = 20.0;
+// What is assumed of sensor errors that are to be estimated, 1 sigma.
+inline constexpr double kImuScalePrior = 0.05;               ///< scale factors of gyro and accelerometer
+inline constexpr double kGyroBiasPrior = kPi / 180.0;        ///< rad/s
+inline constexpr double kAccelBiasPrior = 0.5;               ///< m/s^2
+inline constexpr double kVaneBiasPrior = 5.0 * kPi / 180.0;  ///< rad
+inline constexpr double kAlphaScalePrior = 0.3;              ///< slope of the upwash
+inline constexpr double kPitotScalePrior = 0.2;              ///< of the pressure
+inline constexpr double kPitotBiasPrior = 20.0;              ///< Pa
 
 /// A named setting of the specification's table, with its intensities times `scale`: "low_light", "low_moderate",
 /// "medium_light", "medium_moderate", "none".

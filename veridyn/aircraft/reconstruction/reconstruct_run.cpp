@@ -29,7 +29,7 @@ Start start_of(const RunSetting& setting, const Segment& segment) {
   x.attitude = numerics::quaternion_from_euler(first(kRoll), first(kPitch), first(kYaw));
   x.velocity = Eigen::Vector3d(first(kVelNorth), first(kVelEast), first(kVelDown));
 
-  // u_r = R v_ground scaled to |v_r| = Va, unless vanes say where the air comes from.
+  // u_r = R v_ground scaled to |v_r| = Va, unless vanes show where the air comes from.
   constexpr double kWindow = 1.0;
   const auto& e = x.air_error = setting.air_error;
   double airspeed = median_within(s.sensors[kPitot], segment.begin, kWindow);

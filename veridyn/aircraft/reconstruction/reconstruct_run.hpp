@@ -11,9 +11,10 @@
 /// Inside of reconstruct.cpp: the filter going through one segment, event by event.
 namespace veridyn::aircraft::internal {
 
+/// The innovations of all sensors.
 using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
 
-/// What does not change along a run. A view: streams, options and stamps must outlive it.
+/// View of what does not change along a run: streams, options and stamps must outlive it.
 struct RunSetting {
   const FlightStreams* streams;
   const ReconstructOptions* options;
@@ -30,13 +31,13 @@ struct Start {
   Eigen::Matrix<double, AirDataErrorVector::kFull, 1> variance =
       Eigen::Matrix<double, AirDataErrorVector::kFull, 1>::Zero();
 };
+/// From the first attitude, ground velocity and air data of the segment; see `reconstruct`.
 [[nodiscard]] Start start_of(const RunSetting& setting, const Segment& segment);
 
 /// Median of the samples in [from, from + window]; NaN when there are none.
 [[nodiscard]] double median_within(const Stream& s, double from, double window);
 
-/// Goes through the samples of all sensors in the order of their stamps. A view: the streams and stamps must outlive
-/// it.
+/// View of the samples of all sensors in the order of their stamps: the streams and stamps must outlive it.
 class EventCursor {
  public:
   /// `first_output` is the index in `output_t` of the first stamp of the segment.
@@ -46,7 +47,7 @@ class EventCursor {
   /// Time of the next event; NaN at the end of the segment.
   [[nodiscard]] double next_time() const;
 
-  /// Inertial measurements, and controls where `with_controls`, for the way from here to `time`.
+  /// Inertial measurements, and controls where `with_controls`, from here to `time`.
   void fill(AirDataInput& u, double time, bool with_controls);
 
   /// What a sample at the present time means. The gyro is the one of the last step's middle.
@@ -109,7 +110,8 @@ template <class Model>
   return model;
 }
 
-/// One filter through one segment. A view of its setting; copyable, so that the smoother can repeat stretches of it.
+/// View of a RunSetting in which one filter goes through one segment; copyable, so that the smoother can repeat
+/// stretches of it.
 template <class Model>
 class FlightRun {
  public:

@@ -16,7 +16,7 @@
 /// Inside of reconstruct.cpp: filters and smoothers over all segments of a recording.
 namespace veridyn::aircraft::internal {
 
-/// A view of what a reconstruction works on.
+/// View of what a reconstruction works on.
 struct SolveTask {
   const FlightStreams* streams;
   const ReconstructOptions* options;
@@ -31,9 +31,10 @@ struct SolveTask {
 struct GuardTrace {
   std::vector<char> model_based;  ///< whether the estimate is the model-based filter's
   std::vector<double> nis_ratio;  ///< of the last judged window: largest sum of squared innovations over its limit
-  std::size_t falls = 0;          ///< from model-based to model-free
+  std::size_t reverts = 0;        ///< from model-based to model-free
 };
 
+/// Estimates of filter and smoother over all segments.
 struct Solution {
   std::optional<ResultColumns> smoothed, filtered;
   Monitors monitors;
@@ -46,9 +47,12 @@ struct Solution {
   std::optional<GuardTrace> guard;
 };
 
+/// Monitors of all sensors behind one gate.
 [[nodiscard]] Monitors monitors_with(const estimation::InnovationGate& gate);
+/// The inertial sensors' noise as power spectral densities, and the walk of the wind.
 [[nodiscard]] AirDataNoise noise_of(const FlightStreams& streams, const ReconstructOptions& options);
 
+/// By how much the subject's force coefficients may be off.
 [[nodiscard]] ModelError model_error_of(const Subject& subject, const ReconstructOptions& options);
 
 /// The filters' system as the task describes it.
@@ -57,10 +61,12 @@ struct Solution {
 /// Filter and smoother of one kind over all segments; errors of the air data by likelihood (see
 /// `estimate_air_data_errors`), and what they leave uncertain added to the covariances.
 [[nodiscard]] Solution solve(const FilterEngine& engine, const SolveTask& task, Progress& progress);
+/// `solve` with the model-free filter.
 [[nodiscard]] Solution solve_model_free(const SolveTask& task, Progress& progress);
+/// `solve` with the model-based filter.
 [[nodiscard]] Solution solve_model_based(const SolveTask& task, Progress& progress);
 /// Filters as GuardedFilter decides; the smoothed estimate is the model-based smoother's but for the time within
-/// `kGuardMargin_s` of where the model was not believed, there the model-free smoother's.
+/// `kGuardMargin_s` of where the model was not trusted, there the model-free smoother's.
 [[nodiscard]] Solution solve_guarded(const SolveTask& task, Progress& progress);
 inline constexpr double kGuardMargin_s = 3.0;
 

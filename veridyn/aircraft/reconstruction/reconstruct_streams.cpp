@@ -104,7 +104,7 @@ double noise_floor(const VectorStream& s) {
 
 SensorSigma choose_sigma(const FlightStreams& s, const ReconstructOptions& o) {
   SensorSigma sigma;
-  if (o.sensors == "auto") {
+  if (o.sensors == NoiseSource::kMeasured) {
     const auto floor_of = [&](std::initializer_list<Sensor> which) {
       double largest = 0.0;
       for (const Sensor i : which) largest = std::max(largest, noise_floor(s.sensors[i].v));
@@ -135,7 +135,7 @@ SensorSigma choose_sigma(const FlightStreams& s, const ReconstructOptions& o) {
 
 double isa_temperature(double altitude) { return kSeaLevelTemperature - kLapse * std::min(altitude, 11000.0); }
 
-void load_density(const Recording& recording, FlightStreams& s, std::vector<std::string>& warnings) {
+void load_density(const Recording& recording, FlightStreams& s) {
   const auto put = [&](Stream stream, std::string origin) {
     s.density_t = std::move(stream.t);
     s.density = std::move(stream.v);
@@ -168,7 +168,7 @@ void load_density(const Recording& recording, FlightStreams& s, std::vector<std:
   s.density_t = {0.0};
   s.density = {kSeaLevelDensity};
   s.density_origin = "standard atmosphere at sea level";
-  warnings.emplace_back(
+  s.warnings.emplace_back(
       "the recording holds neither air density, static pressure nor altitude: 1.225 kg/m^3 is assumed, an airspeed "
       "error of 5 % per 1000 m of altitude");
 }
@@ -187,8 +187,7 @@ double FlightStreams::density_at(double time, std::size_t& cursor) const {
   return interpolate(density_t, density, time, cursor);
 }
 
-FlightStreams load_streams(const Recording& recording, const ReconstructOptions& o,
-                           std::vector<std::string>& warnings) {
+FlightStreams load_streams(const Recording& recording, const ReconstructOptions& o) {
   FlightStreams s;
   s.gyro = vector(recording, "gyro");
   s.accel = vector(recording, "accel");
@@ -206,7 +205,7 @@ FlightStreams load_streams(const Recording& recording, const ReconstructOptions&
   needed(kVelNorth, "vel_north", "m/s", o.delay.velocity);
   needed(kVelEast, "vel_east", "m/s", o.delay.velocity);
   needed(kVelDown, "vel_down", "m/s", o.delay.velocity);
-  load_density(recording, s, warnings);
+  load_density(recording, s);
 
   s.sensors[kPitot] = scalar(recording, "dynamic_pressure", "Pa", o.delay.pitot);
   if (s.sensors[kPitot].t.empty()) {
@@ -293,8 +292,7 @@ void move_to_centre_of_gravity(FlightStreams& s, const std::array<double, 3>& po
 
 }  // namespace
 
-void load_model_streams(const Recording& recording, Subject& subject, FlightStreams& s,
-                        std::vector<std::string>& warnings) {
+ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams s) {
   const std::string needing = "reconstruct.filter = \"model-based\"";
   for (const Coefficient c : {Coefficient::kCl, Coefficient::kCm, Coefficient::kCn}) {
     subject.model.coefficients[static_cast<std::size_t>(c)].reset();
@@ -314,7 +312,7 @@ void load_model_streams(const Recording& recording, Subject& subject, FlightStre
   }
   for (const Coefficient c : {Coefficient::kCD, Coefficient::kCY}) {
     if (subject.model.find(c) == nullptr) {
-      warnings.push_back(fmt::format(
+      s.warnings.push_back(fmt::format(
           "the derivatives of {} are not known: its force is taken as the accelerometer shows it", name_of(c)));
     }
   }
@@ -354,7 +352,8 @@ void load_model_streams(const Recording& recording, Subject& subject, FlightStre
     s.controls.throttle = std::move(throttle);
     s.controls.rotor_speed = std::move(rotor);
   } else {
-    warnings.push_back(fmt::format("{} has no propulsion model and the recording no thrust: taken as 0", subject.name));
+    s.warnings.push_back(
+        fmt::format("{} has no propulsion model and the recording no thrust: taken as 0", subject.name));
   }
 
   move_to_centre_of_gravity(s, subject.imu_position);
@@ -369,6 +368,7 @@ void load_model_streams(const Recording& recording, Subject& subject, FlightStre
     stream.rate_Hz = s.accel.interval > 0.0 ? 1.0 / s.accel.interval : 0.0;
     stream.sigma = s.sigma.accelerometer;
   }
+  return {std::move(s), std::move(subject)};
 }
 
 std::vector<Segment> find_segments(const FlightStreams& s, double max_gap) {

@@ -53,6 +53,7 @@ struct ControlStreams {
   [[nodiscard]] Controls<double> at(double time, Cursor& cursor) const;
 };
 
+/// All streams of a flight.
 struct FlightStreams {
   ControlStreams controls;
   std::array<Stream, kSensors> sensors;
@@ -61,20 +62,25 @@ struct FlightStreams {
   std::string density_origin;
   bool pitot_is_pressure = true;
   SensorSigma sigma;
+  std::vector<std::string> warnings;  ///< what had to be assumed
 
   [[nodiscard]] double density_at(double time, std::size_t& cursor) const;
 };
 
 /// @throws InputError naming a missing channel.
-[[nodiscard]] FlightStreams load_streams(const Recording& recording, const ReconstructOptions& options,
-                                         std::vector<std::string>& warnings);
+[[nodiscard]] FlightStreams load_streams(const Recording& recording, const ReconstructOptions& options);
+
+/// Streams with a force model to filter with.
+struct ModelStreams {
+  FlightStreams streams;
+  Subject force_model;
+};
 
 /// Adds what the model-based filter needs beyond `load_streams`: the accelerometer's axes as measurements at the centre
-/// of gravity, deflections, thrust. `subject` becomes the force model to filter with: without moments, and with a
-/// propulsion that turns recorded thrust into thrust where there is a channel `thrust`.
+/// of gravity, deflections, thrust. The force model is the subject without moments, and with a propulsion that turns
+/// recorded thrust into thrust where there is a channel `thrust`.
 /// @throws InputError naming a channel or a parameter that the model of CL, CD and CY needs and that is missing.
-void load_model_streams(const Recording& recording, Subject& subject, FlightStreams& streams,
-                        std::vector<std::string>& warnings);
+[[nodiscard]] ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams streams);
 
 /// A stretch over which gyro and accelerometer have no gap longer than `max_gap`, from where attitude and ground
 /// velocity are known.
@@ -82,6 +88,7 @@ struct Segment {
   double begin = 0.0;
   double end = 0.0;
 };
+/// The segments of at least a second and ten samples of the gyro; `max_gap` in s.
 [[nodiscard]] std::vector<Segment> find_segments(const FlightStreams& streams, double max_gap);
 
 }  // namespace veridyn::aircraft::internal

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::aircraft {
 
 const char* to_string(Observability observability) {
@@ -23,9 +25,11 @@ Observability observability_of(double sigma, double prior_sigma) {
   return ratio < 0.35 ? Observability::kObservable : ratio < 0.8 ? Observability::kWeak : Observability::kNotObservable;
 }
 
-double shown(double value, const std::string& unit) { return unit.starts_with("rad") ? value * 180.0 / M_PI : value; }
+double display_value(double value, const std::string& unit) {
+  return unit.starts_with("rad") ? value * 180.0 / kPi : value;
+}
 
-std::string shown_unit(const std::string& unit) {
+std::string display_unit(const std::string& unit) {
   if (unit == "rad") return " deg";
   if (unit == "rad/s") return " deg/s";
   return unit == "1" ? "" : " " + unit;
@@ -54,7 +58,7 @@ std::vector<SensorErrorReport> judge_sensor_errors(const std::vector<SensorError
       r.correlation = correlation;
       r.correlated_with = errors[static_cast<std::size_t>(b)].name;
     }
-    const auto text = [&](double v) { return fmt::format("{:.3g}{}", shown(v, e.unit), shown_unit(e.unit)); };
+    const auto text = [&](double v) { return fmt::format("{:.3g}{}", display_value(v, e.unit), display_unit(e.unit)); };
     switch (r.observability) {
       case Observability::kObservable:
         r.statement = fmt::format("{} is {} +- {}: determined by this flight ({} was assumed beforehand)", e.name,

@@ -8,7 +8,7 @@
 
 namespace veridyn::aircraft {
 
-/// What a flight says about a constant error of a sensor (data compatibility; Klein & Morelli 2006, chapter 10), and
+/// What a flight determines of a constant error of a sensor (data compatibility; Klein & Morelli 2006, chapter 10), and
 /// how much of it is information and how much the assumption beforehand.
 struct SensorErrorReport {
   std::string name;  ///< "alpha_bias", "accel_scale_x"

@@ -37,12 +37,12 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
       one.theta = e.theta;
       one.sigma.resize(n), one.low.resize(n), one.high.resize(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const estimation::ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+        const estimation::Parameter& p = e.parameters[static_cast<std::size_t>(i)];
         one.sigma(i) = p.sigma, one.low(i) = p.low95, one.high(i) = p.high95;
       }
     }
   };
-  out.interrupted = !numerics::parallel_for(seeds, 0, estimate, [&](std::size_t done) {
+  out.interrupted = !numerics::parallel_for(seeds, progress.threads(), estimate, [&](std::size_t done) {
     return progress.update(static_cast<double>(done) / static_cast<double>(seeds));
   });
   if (out.interrupted) return out;

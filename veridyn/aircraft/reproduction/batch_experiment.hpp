@@ -14,7 +14,7 @@ struct BatchStatistics {
   int estimates = 0;             ///< seeds that gave an estimate
   Eigen::VectorXd mean, sd;      ///< of the parameters over seeds
   Eigen::VectorXd mean_sigma;    ///< root mean square of the standard errors that the method stated
-  Eigen::VectorXd coverage;      ///< share of 95 % intervals that hold the truth
+  Eigen::VectorXd coverage;      ///< interval coverage: share of 95 % intervals that contain the truth
   Eigen::VectorXd output_error;  ///< per seed: largest |z_true - X_true theta| / max |z_true|; NaN without an estimate
   std::vector<double> example;   ///< X_true theta of the first seed
 
@@ -22,6 +22,7 @@ struct BatchStatistics {
   [[nodiscard]] double bias(Eigen::Index parameter, const Eigen::VectorXd& truth) const;
 };
 
+/// All methods over all seeds.
 struct BatchExperiment {
   ExactRows rows;
   std::vector<BatchStatistics> methods;

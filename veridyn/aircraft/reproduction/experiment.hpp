@@ -14,9 +14,9 @@
 
 namespace veridyn::aircraft {
 
-/// A numerical experiment on one coefficient: exact rows of a simulated flight with noise drawn anew for every seed, so
+/// A numerical experiment on one coefficient: exact rows of a simulated flight with new noise for every seed, so
 /// that what an estimator does on average, and how often its intervals cover, can be counted. Study table
-/// `[experiment]` beside `[subject]` and `[flight]`.
+/// `[experiment]` next to `[subject]` and `[flight]`.
 ///
 ///     coefficient = "Cn"
 ///     seeds = 100                # repetitions, seeded by `seed` of the study and their number

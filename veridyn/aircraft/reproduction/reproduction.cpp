@@ -35,18 +35,19 @@ std::vector<Method> read_methods(const StudyTable& experiment) {
   return methods;
 }
 
-/// The checks of one study.
+/// View of an experiment and of what its study expects.
 class Expectations {
  public:
-  Expectations(const StudyTable& expect, Reproduction& result) : expect_(expect), result_(result) {}
+  Expectations(const StudyTable& expect, const Reproduction& result) : expect_(expect), result_(result) {}
 
-  void check() {
+  std::vector<Check> check() {
     if (result_.batch) check_batch();
     if (result_.tracking) check_tracking();
+    return std::move(checks_);
   }
 
  private:
-  void add(bool passed, std::string text) { result_.checks.push_back({passed, std::move(text)}); }
+  void add(bool passed, std::string text) { checks_.push_back({passed, std::move(text)}); }
 
   const BatchStatistics& method_of(const char* key, const std::string& name) const {
     for (const BatchStatistics& s : result_.batch->methods) {
@@ -268,7 +269,8 @@ class Expectations {
   static double median(const std::vector<double>& sorted) { return sorted[sorted.size() / 2]; }
 
   const StudyTable& expect_;
-  Reproduction& result_;
+  const Reproduction& result_;
+  std::vector<Check> checks_;
 };
 
 }  // namespace
@@ -301,7 +303,7 @@ Reproduction reproduce(const StudyTable& root, Progress& progress) {
     result.interrupted = result.tracking->interrupted;
   }
   if (result.interrupted) return result;
-  Expectations(expect, result).check();
+  result.checks = Expectations(expect, result).check();
   root.finish();
   return result;
 }

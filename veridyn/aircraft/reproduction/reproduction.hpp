@@ -11,8 +11,8 @@
 
 namespace veridyn::aircraft {
 
-/// A published result beside ours: one row of `veridyn reproduce aircraft`, described by a study of its own
-/// (examples/reproduce/aircraft). Beside `[subject]`, `[flight]` and `[experiment]` the study holds
+/// A published result and ours: one row of `veridyn reproduce aircraft`, described by a separate study
+/// (examples/reproduce/aircraft). In addition to `[subject]`, `[flight]` and `[experiment]` the study holds
 ///
 ///     title = "CY, OLS, exact regressors"
 ///     finding = "what was published, in words"

@@ -19,6 +19,7 @@ std::size_t phase_at(const std::vector<double>& begins, double t) {
   return phase;
 }
 
+/// View of an experiment whose settling times it finds.
 class Settling {
  public:
   explicit Settling(const TrackingExperiment& experiment) : e_(experiment) {
@@ -143,7 +144,7 @@ TrackingExperiment run_tracking_experiment(const ExperimentOptions& o, const std
       if (seed == 0) run.history = tracker.history();
     }
   };
-  out.interrupted = !numerics::parallel_for(seeds, 0, track, [&](std::size_t done) {
+  out.interrupted = !numerics::parallel_for(seeds, progress.threads(), track, [&](std::size_t done) {
     return progress.update(static_cast<double>(done) / static_cast<double>(seeds));
   });
   return out;

@@ -13,6 +13,7 @@ struct TrackerSetting {
   std::string name;
   TrackOptions options;
 };
+/// @throws InputError as TrackOptions::read.
 [[nodiscard]] std::vector<TrackerSetting> read_trackers(const StudyTable& experiment);
 
 /// What one tracker did in one repetition.
@@ -27,6 +28,7 @@ struct TrackingRun {
   TrackHistory history;                     ///< of the first repetition only
 };
 
+/// All trackers over all repetitions.
 struct TrackingExperiment {
   ExactRows rows;
   std::vector<double> phase_s;          ///< beginnings of the phases

@@ -53,6 +53,7 @@ std::vector<double> reference_of(const io::Table& table, const CalibrationInput&
   return q;
 }
 
+/// Fits one sensor to its reference.
 class Fitting {
  public:
   Fitting(const io::Table& table, const CalibrationInput& in) : in_(in) {
@@ -124,15 +125,16 @@ class Fitting {
     if (!(e.covariance(1, 1) <= kLeastKnownScale * kLeastKnownScale * e.theta(1) * e.theta(1))) bias_only();
   }
 
-  /// Far from the points a scale that they do not determine would do harm: the sensor's own is kept.
+  /// Far from the points a scale that they do not determine would do harm: the sensor's scale is kept.
   void bias_only() {
     const auto n = static_cast<double>(fit_.raw.size());
     double mean = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < fit_.raw.size(); ++i) mean += (fit_.raw[i] - fit_.reference[i]) / n;
     for (std::size_t i = 0; i < fit_.raw.size(); ++i) squares += std::pow(fit_.raw[i] - fit_.reference[i] - mean, 2);
-    fit_.findings.push_back(fmt::format(
-        "the reference changes too little to tell a scale ({:.2g} +- {:.2g}): scale 1 is kept, the bias fitted alone",
-        fit_.calibration.scale, std::sqrt(fit_.calibration.covariance(0, 0))));
+    fit_.findings.push_back(
+        fmt::format("the reference changes too little to tell a scale ({:.2g} +- {:.2g}): scale 1 is kept, the "
+                    "bias fitted alone",
+                    fit_.calibration.scale, std::sqrt(fit_.calibration.covariance(0, 0))));
     fit_.method += " (bias only)";
     fit_.calibration.scale = 1.0;
     fit_.calibration.bias = mean;
@@ -209,7 +211,7 @@ class Fitting {
   void findings() {
     if (!fit_.usable) return;
     const auto shown = [&](double value) {
-      return fit_.unit == "rad" ? fmt::format("{:.2g} deg", value * 180.0 / M_PI)
+      return fit_.unit == "rad" ? fmt::format("{:.2g} deg", value * 180.0 / kPi)
                                 : fmt::format("{:.3g} {}", value, fit_.unit);
     };
     if (fit_.quadratic_p < kSignificance) {
@@ -238,7 +240,7 @@ class Fitting {
     }
   }
 
-  const CalibrationInput& in_;
+  CalibrationInput in_;
   SensorFit fit_;
 };
 

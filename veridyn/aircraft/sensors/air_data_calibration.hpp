@@ -31,6 +31,7 @@ struct SensorCalibration {
 /// A file of calibrations: a table for each channel with `scale`, `bias`, `covariance` (of [scale, bias]), `range`
 /// (raw) and `residual_rms`, SI and radians.
 [[nodiscard]] std::vector<SensorCalibration> read_calibration(const std::filesystem::path& path);
+/// The file that `read_calibration` reads.
 [[nodiscard]] std::string calibration_toml(const std::vector<SensorCalibration>& sensors, const std::string& origin);
 
 /// Corrects the channels of a mapped recording, and says so in its origins and notes; a channel that is missing, or
@@ -86,6 +87,7 @@ struct SensorFit {
   bool usable = false;
 };
 
+/// Fits of all sensors of a calibration.
 struct CalibrationResult {
   std::vector<SensorFit> sensors;
   estimation::Estimate estimate;

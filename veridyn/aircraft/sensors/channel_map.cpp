@@ -93,7 +93,7 @@ void MapBuilder::apply(std::span<const ChannelRule> rules) {
   }
 }
 
-void MapBuilder::put(std::string channel, std::string unit, TimeBase time, std::vector<double> value,
+void MapBuilder::put(std::string channel, const std::string& unit, TimeBase time, std::vector<double> value,
                      std::string source, std::string note) {
   Channel made = make_channel(std::move(channel), unit, std::move(time), std::move(value));
   mapped_.origins.push_back({made.name, std::move(source), made.rate_Hz(), std::move(note)});

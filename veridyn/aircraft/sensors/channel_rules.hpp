@@ -19,7 +19,7 @@ struct ChannelRule {
   double scale = 1.0;   ///< applied to the raw number before its unit
 };
 
-/// Takes what is mapped so far and adds to it.
+/// View of a log and of what is mapped of it so far, to which it adds.
 class MapBuilder {
  public:
   MapBuilder(const Recording& log, MappedRecording& mapped) : log_(log), mapped_(mapped) {}
@@ -27,7 +27,7 @@ class MapBuilder {
   /// Applies the first usable rule of each channel that is not mapped yet.
   void apply(std::span<const ChannelRule> rules);
   /// Adds a channel that was computed from others.
-  void put(std::string channel, std::string unit, TimeBase time, std::vector<double> value, std::string source,
+  void put(std::string channel, const std::string& unit, TimeBase time, std::vector<double> value, std::string source,
            std::string note = {});
   void note(std::string text);
   /// The log's channel when it is there and changes at all, else null; dead channels are noted once.
@@ -42,9 +42,13 @@ class MapBuilder {
 
 using recording::interpolated;
 
+/// By the messages that only its logs have.
 [[nodiscard]] bool is_ardupilot(const Recording& log);
+/// By the topics that only its logs have.
 [[nodiscard]] bool is_px4(const Recording& log);
+/// Adds the channels of an ArduPilot log.
 void map_ardupilot(MapBuilder& builder, const SurfaceThrows& throws);
+/// Adds the channels of a PX4 log.
 void map_px4(MapBuilder& builder, const SurfaceThrows& throws);
 
 }  // namespace veridyn::aircraft::internal

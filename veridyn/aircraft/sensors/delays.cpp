@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
@@ -32,7 +33,7 @@ const std::vector<DelayGroup>& groups() {
   return all;
 }
 
-/// Views of a recording that is being aligned and of how.
+/// View of a recording that is being aligned, group by group, and of how.
 class Alignment {
  public:
   Alignment(Recording& recording, const DelayAlignment& options, const BandLimited& band, Progress& progress)
@@ -171,28 +172,28 @@ DelayAlignment DelayAlignment::read(const StudyTable& table) {
   return options;
 }
 
-std::vector<DelayReport> align_delays(MappedRecording& mapped, const DelayAlignment& options, Progress& progress) {
-  Recording& recording = mapped.recording;
+AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& options, Progress& progress) {
+  AlignedRecording aligned{std::move(mapped), {}};
+  Recording& recording = aligned.mapped.recording;
   const bool clock = recording.has("gyro_x") && recording.has("gyro_y") && recording.has("gyro_z");
   const std::optional<BandLimited> band =
       clock ? BandLimited::around(recording.at("gyro_x"), options.band_Hz) : std::nullopt;
   std::optional<Alignment> alignment;
   if (band && options.automatic) alignment.emplace(recording, options, *band, progress);
-  std::vector<DelayReport> reports;
   double done = 0.0;
   for (const DelayGroup& group : groups()) {
     if (!progress.update(done / static_cast<double>(groups().size()))) break;
     done += 1.0;
     std::optional<DelayReport> report = recording::take_off_given(recording, group, options);
     if (!report && alignment && !options.given_for(group.name)) report = alignment->align(group);
-    if (report) reports.push_back(std::move(*report));
+    if (report) aligned.delays.push_back(std::move(*report));
   }
-  return reports;
+  return aligned;
 }
 
-std::vector<DelayReport> align_delays(MappedRecording& mapped, const DelayAlignment& options) {
+AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& options) {
   Progress silent;
-  return align_delays(mapped, options, silent);
+  return align_delays(std::move(mapped), options, silent);
 }
 
 }  // namespace veridyn::aircraft

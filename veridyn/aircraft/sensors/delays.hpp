@@ -18,6 +18,12 @@ struct DelayAlignment : recording::DelayOptions {
   [[nodiscard]] static DelayAlignment read(const StudyTable& table);
 };
 
+/// A recording whose sensors are on one clock, and how late each was.
+struct AlignedRecording {
+  MappedRecording mapped;
+  std::vector<DelayReport> delays;
+};
+
 /// Estimates how late each sensor is and takes it off its stamps.
 ///
 /// Sensors are compared through kinematics that hold whatever the aerodynamics: attitude rates against the gyro, the
@@ -26,12 +32,11 @@ struct DelayAlignment : recording::DelayOptions {
 /// have no such twin: theirs is the delay at which angular acceleration is best explained by rates, flow angles and
 /// deflections together.
 ///
-/// A sensor slower than recording::kSlowestDelayed_Hz is left alone, which its report says. Stops after the group at
-/// hand when `progress` is interrupted: groups without a report are then as they were.
-[[nodiscard]] std::vector<DelayReport> align_delays(MappedRecording& mapped, const DelayAlignment& options,
-                                                    Progress& progress);
+/// A sensor slower than recording::kSlowestDelayed_Hz is left alone, with a note in its report. Stops after the group
+/// at hand when `progress` is interrupted: groups without a report are then as they were.
+[[nodiscard]] AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& options, Progress& progress);
 
-/// The same where nobody watches.
-[[nodiscard]] std::vector<DelayReport> align_delays(MappedRecording& mapped, const DelayAlignment& options);
+/// The same without progress.
+[[nodiscard]] AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& options);
 
 }  // namespace veridyn::aircraft

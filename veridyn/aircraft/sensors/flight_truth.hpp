@@ -29,8 +29,10 @@ enum class Truth : std::size_t {
   kMagX, kMagY, kMagZ,
   kCount
 };
+/// Values of Truth.
 inline constexpr std::size_t kTruthCount = static_cast<std::size_t>(Truth::kCount);
 
+/// Name and unit of a true quantity.
 struct TruthChannel {
   std::string_view name;
   std::string_view unit;
@@ -62,6 +64,7 @@ inline constexpr std::array<TruthChannel, kTruthCount> kTruthChannels = {{
 }};
 // clang-format on
 
+/// All true quantities at one moment, SI, in the order of kTruthChannels.
 struct TruthSample {
   std::array<double, kTruthCount> value{};
   [[nodiscard]] double& operator[](Truth t) { return value[static_cast<std::size_t>(t)]; }

@@ -133,7 +133,7 @@ SensorSet read_sensors(const StudyTable& table) {
 }
 
 Sensor::Sensor(const SensorKind& kind, const SensorSettings& settings, std::uint64_t seed)
-    : kind_(&kind),
+    : kind_(kind),
       settings_(settings),
       noise_(seed, std::string("sensor.") + std::string(kind.name)),
       losses_(seed, std::string("dropout.") + std::string(kind.name)) {
@@ -161,8 +161,8 @@ void Sensor::observe(double t, const TruthSample& now) {
 void Sensor::sample(double /*event_time*/, double stamp, double share, const TruthSample& now) {
   std::array<double, 4> y{};
   const double walk_step = settings_.walk / std::sqrt(settings_.rate);
-  for (std::size_t i = 0; i < kind_->channels; ++i) {
-    const Truth source = kind_->source[i];
+  for (std::size_t i = 0; i < kind_.channels; ++i) {
+    const Truth source = kind_.source[i];
     double truth = now[source];
     const bool angle = kTruthChannels[static_cast<std::size_t>(source)].angle;
     if (share < 1.0) {
@@ -176,7 +176,7 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
     if (settings_.resolution > 0.0) y[i] = settings_.resolution * std::round(y[i] / settings_.resolution);
   }
   if (settings_.dropout > 0.0) {
-    // Losses begin at random and last for an exponential time, such that the share of lost samples is as asked.
+    // Losses begin at random and last for an exponential time, such that the share of lost samples is `dropout`.
     if (stamp < lost_until_) return;
     const double length = std::max(settings_.dropout_duration, 1.0 / settings_.rate) * settings_.rate;
     const double begin = settings_.dropout / (settings_.dropout + length * (1.0 - settings_.dropout));
@@ -187,15 +187,15 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
     }
   }
   time_.push_back(stamp);
-  for (std::size_t i = 0; i < kind_->channels; ++i) value_[i].push_back(y[i]);
+  for (std::size_t i = 0; i < kind_.channels; ++i) value_[i].push_back(y[i]);
 }
 
-void Sensor::give(Recording& recording) {
+void Sensor::move_into(Recording& recording) {
   if (!settings_.enabled) return;
   const TimeBase base = make_time_base(std::move(time_));
-  for (std::size_t i = 0; i < kind_->channels; ++i) {
-    const std::string_view unit = kTruthChannels[static_cast<std::size_t>(kind_->source[i])].unit;
-    recording.add(make_channel(std::string(kind_->channel[i]), unit, base, std::move(value_[i])));
+  for (std::size_t i = 0; i < kind_.channels; ++i) {
+    const std::string_view unit = kTruthChannels[static_cast<std::size_t>(kind_.source[i])].unit;
+    recording.add(make_channel(std::string(kind_.channel[i]), unit, base, std::move(value_[i])));
   }
 }
 

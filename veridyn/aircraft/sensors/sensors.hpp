@@ -13,7 +13,7 @@
 
 namespace veridyn::aircraft {
 
-/// Error model of one sensor: y = bias + walk(t) + (1 + scale) y_true + white noise, taken at its own rate, with delay,
+/// Error model of one sensor: y = bias + walk(t) + (1 + scale) y_true + white noise, taken at its rate, with delay,
 /// quantisation and dropouts. Units are those of the channel in SI.
 struct SensorSettings {
   bool enabled = true;
@@ -42,6 +42,7 @@ struct SensorKind {
 /// All sensors, in a fixed order: accelerometer, gyro, ahrs, magnetometer, gps_velocity, gps_position, barometer,
 /// thermometer, pitot, alpha_vane, beta_vane, servos, tachometer, thrust.
 inline constexpr std::size_t kSensorKinds = 14;
+/// All sensors that can be simulated, in the order of SensorSet.
 [[nodiscard]] const std::array<SensorKind, kSensorKinds>& sensor_kinds();
 
 /// Settings of every sensor, in the order of `sensor_kinds()`.
@@ -70,20 +71,20 @@ using SensorSet = std::array<SensorSettings, kSensorKinds>;
 ///     dropout_duration = 0.5      # mean length of a loss [s]
 [[nodiscard]] SensorSet read_sensors(const StudyTable& table);
 
-/// One sensor at work. Draws from a random stream of its own, so that switching one off leaves the others unchanged.
+/// One sensor at work. Draws from a separate random stream, so that switching one off leaves the others unchanged.
 class Sensor {
  public:
   Sensor(const SensorKind& kind, const SensorSettings& settings, std::uint64_t seed);
   /// The truth at `t`, `step` seconds after the last call; stamps between are taken on the straight line. The first
   /// call is at t = 0.
   void observe(double t, const TruthSample& now);
-  /// The channels measured so far are moved to the recording.
-  void give(Recording& recording);
+  /// Moves the channels measured so far into a recording.
+  void move_into(Recording& recording);
 
  private:
   void sample(double event_time, double stamp, double share, const TruthSample& now);
 
-  const SensorKind* kind_;
+  SensorKind kind_;
   SensorSettings settings_;
   numerics::RandomStream noise_;
   numerics::RandomStream losses_;

@@ -35,8 +35,8 @@ Terms<Scalar> terms_of(const SwingAxis& axis, double g, bool with_cradle, const 
     return {total * g * d * d / (4.0 * w * w * L), with_cradle ? mc * g * d * d / (4.0 * wc * wc * Lc) : Scalar(0.0),
             Scalar(0.0)};
   }
-  const Scalar own = L + v[5];
-  return {total * g * L / (w * w), with_cradle ? mc * g * Lc / (wc * wc) : Scalar(0.0), m * own * own};
+  const Scalar arm = L + v[5];
+  return {total * g * L / (w * w), with_cradle ? mc * g * Lc / (wc * wc) : Scalar(0.0), m * arm * arm};
 }
 
 Eigen::VectorXd values_of(const SwingTest& test, const SwingAxis& axis, double w, double wc) {
@@ -92,13 +92,14 @@ std::pair<double, double> mean_frequency(const std::vector<SwingRun>& runs, bool
   return {mean, w.size() > 1 ? std::max(by_fits, std::sqrt(scatter / (n - 1.0) / n)) : by_fits};
 }
 
-class Analysis {
+/// Fits the runs of a swing test and judges the moments of inertia.
+class SwingAnalysis {
  public:
-  Analysis(const SwingTest& test, Progress& progress) : test_(test), progress_(progress) {}
+  SwingAnalysis(SwingTest test, int threads) : test_(std::move(test)), threads_(threads) {}
 
-  SwingTestResult run() {
+  SwingTestResult run(Progress& progress) {
     for (const SwingAxis& axis : test_.axes) {
-      progress_.stage(fmt::format("fitting the swings about {}", axis.axis));
+      progress.stage(fmt::format("fitting the swings about {}", axis.axis));
       result_.axes.push_back(analyse(axis));
     }
     covariance();
@@ -157,7 +158,7 @@ class Analysis {
     if (slower > 0.002) {
       result_.warnings.push_back(fmt::format(
           "{}: swings of {:.0f} deg at first make it slower by about {:.1f} %, the inertia larger by {:.1f} %",
-          run.file, run.fit.amplitude() * 180.0 / M_PI, 100.0 * slower, 200.0 * slower));
+          run.file, run.fit.amplitude() * 180.0 / kPi, 100.0 * slower, 200.0 * slower));
     }
     if (run.swing.principal_share < 0.9) {
       result_.warnings.push_back(fmt::format("{}: only {:.0f} % of the motion is about its main axis", run.file,
@@ -203,7 +204,8 @@ class Analysis {
     const double g = test_.gravity;
     const bool cradle = with_cradle();
     const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).sum(); };
-    i.error = estimation::propagate_errors(inputs, 1, f, {.draws = test_.draws, .seed = test_.seed}).outputs[0];
+    const estimation::MonteCarloOptions options{.draws = test_.draws, .seed = test_.seed, .threads = threads_};
+    i.error = estimation::propagate_errors(inputs, 1, f, options).outputs[0];
   }
 
   void judge(AxisInertia& i) const {
@@ -275,11 +277,11 @@ class Analysis {
     estimation::Estimate& e = result_.estimate;
     e.subject = test_.name;
     e.method = "swing test";
-    std::vector<std::string> good, bad;
+    std::vector<std::string> found, missing;
     const double z = numerics::normal_quantile(0.975);
     for (const AxisInertia& i : result_.axes) {
       const bool determined = i.verdict == InertiaVerdict::kDetermined;
-      (determined ? good : bad).push_back(fmt::format("J{}", i.test.axis));
+      (determined ? found : missing).push_back(fmt::format("J{}", i.test.axis));
       // error = measured - true: the interval of the true value is the other way round.
       const bool skew = i.error.not_finite == 0;
       e.parameters.push_back(
@@ -300,14 +302,14 @@ class Analysis {
     }
     e.covariance = result_.covariance;
     std::vector<std::string> parts;
-    if (!good.empty()) parts.push_back(fmt::format("determined: {}", fmt::join(good, ", ")));
-    if (!bad.empty()) parts.push_back(fmt::format("not determined: {}", fmt::join(bad, ", ")));
+    if (!found.empty()) parts.push_back(fmt::format("determined: {}", fmt::join(found, ", ")));
+    if (!missing.empty()) parts.push_back(fmt::format("not determined: {}", fmt::join(missing, ", ")));
     e.verdict = fmt::format("{}", fmt::join(parts, "; "));
     e.warnings.insert(e.warnings.end(), result_.warnings.begin(), result_.warnings.end());
   }
 
-  const SwingTest& test_;
-  Progress& progress_;
+  SwingTest test_;
+  int threads_;
   SwingTestResult result_;
 };
 
@@ -421,7 +423,9 @@ double swing_inertia(const SwingTest& test, const SwingAxis& axis, double freque
   return terms_of(axis, test.gravity, test.cradle_mass > 0.0, v.data()).sum();
 }
 
-SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress) { return Analysis(test, progress).run(); }
+SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress) {
+  return SwingAnalysis(test, progress.threads()).run(progress);
+}
 
 std::string inertia_toml(const SwingTest& test, const SwingTestResult& result) {
   std::string text = fmt::format("# Inertia of {} from a swing test, to be copied into its [subject].\n", test.name);

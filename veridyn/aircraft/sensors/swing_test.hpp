@@ -31,7 +31,7 @@ struct SwingAxis {
   double filar_distance = 0.0;  ///< d, between the lines [m]; bifilar
   double length = 0.0;          ///< L of the lines or l from pivot to centre of gravity, aircraft in its cradle [m]
   double cradle_length = 0.0;   ///< the same with the cradle alone [m]
-  double offset = 0.0;  ///< pendulum: how much further from the pivot the aircraft's own centre of gravity is [m]
+  double offset = 0.0;          ///< pendulum: how much further from the pivot the aircraft's centre of gravity is [m]
   std::vector<std::filesystem::path> files = {},
                                      cradle_files = {};  ///< runs with the aircraft, and of the cradle alone
 };
@@ -100,7 +100,7 @@ struct SwingRun {
   estimation::DampedCosine fit;
 };
 
-/// What a swing test says about a moment of inertia.
+/// Whether a swing test determines a moment of inertia.
 enum class InertiaVerdict {
   kDetermined,
   kNotDetermined  ///< sigma above `max_relative_sigma` of the value, or the value is not positive
@@ -123,6 +123,7 @@ struct AxisInertia {
   [[nodiscard]] double sigma() const { return error.sd; }
 };
 
+/// Moments of inertia of all axes that were swung.
 struct SwingTestResult {
   std::vector<AxisInertia> axes;
   Eigen::MatrixXd covariance;  ///< of the values, axes in their order: masses are shared
@@ -132,16 +133,16 @@ struct SwingTestResult {
 };
 
 /// Moment of inertia about one axis [kg m^2] from masses, lengths and undamped frequencies: aircraft in its cradle less
-/// the cradle (each about the same line), for a pendulum moved to the aircraft's own centre of gravity by the parallel
+/// the cradle (each about the same line), for a pendulum moved to the aircraft's centre of gravity by the parallel
 /// axis theorem.
 [[nodiscard]] double swing_inertia(const SwingTest& test, const SwingAxis& axis, double frequency,
                                    double cradle_frequency);
 
-/// Reads and fits all runs, and judges. A run that holds no swing is left out with a warning.
-/// @throws InputError for unreadable files, or an axis without a single good run.
+/// Reads and fits all runs, and judges. A run without a swing is left out with a warning.
+/// @throws InputError for unreadable files, or an axis without a single usable run.
 [[nodiscard]] SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress);
 
-/// `inertia` and `sigma` of a subject, with what is not determined or was not measured said in comments.
+/// `inertia` and `sigma` of a subject, with comments on what is not determined or was not measured.
 [[nodiscard]] std::string inertia_toml(const SwingTest& test, const SwingTestResult& result);
 
 }  // namespace veridyn::aircraft

@@ -34,39 +34,39 @@ std::array<double, kSurfaces> Autopilot::command(double t, double step, const Tr
   const double engine = excited[3] ? excitation_gain_ : 1.0;
   const double phi = x[Truth::kRoll], theta = x[Truth::kPitch];
 
-  // Bank: as the turn asks, otherwise back to the heading; after a turn the new heading is kept.
+  // Bank: that of the turn, otherwise back to the heading; after a turn the new heading is kept.
   const double bank = excitation.bank(t);
-  double phi_wanted = 0.0;
+  double phi_desired = 0.0;
   if (std::isfinite(bank)) {
-    phi_wanted = bank;
+    phi_desired = bank;
     turning_ = true;
   } else {
     if (turning_) heading_ = x[Truth::kYaw];
     turning_ = false;
     const double error = std::remainder(heading_ - x[Truth::kYaw], 2.0 * kPi);
-    phi_wanted = std::clamp(0.8 * error, -25 * kDegree, 25 * kDegree);
+    phi_desired = std::clamp(0.8 * error, -25 * kDegree, 25 * kDegree);
   }
-  const double p_wanted = std::clamp(1.5 * (phi_wanted - phi), -40 * kDegree, 40 * kDegree);
+  const double p_desired = std::clamp(1.5 * (phi_desired - phi), -40 * kDegree, 40 * kDegree);
   const double p_effect = inverse(model_.B(3, 1));
   const double da =
-      trim_.controls.da + lateral * p_effect * (-model_.A(3, 3) * p_wanted + 2.0 * (p_wanted - x[Truth::kGyroX]));
+      trim_.controls.da + lateral * p_effect * (-model_.A(3, 3) * p_desired + 2.0 * (p_desired - x[Truth::kGyroX]));
   const double turn_rate = g / Va * std::sin(phi) * std::cos(theta);
   const double dr = trim_.controls.dr +
                     lateral * inverse(model_.B(5, 2)) * (-model_.A(5, 5) * turn_rate - (x[Truth::kGyroZ] - turn_rate));
 
   // Height.
   const double climb = -x[Truth::kVelDown];
-  const double climb_wanted = std::clamp(0.2 * (x[Truth::kPosDown] - down_), -2.0, 2.0);
-  const double path_error = (climb_wanted - climb) / Va;
+  const double climb_desired = std::clamp(0.2 * (x[Truth::kPosDown] - down_), -2.0, 2.0);
+  const double path_error = (climb_desired - climb) / Va;
   pitch_integral_ = std::clamp(pitch_integral_ + 0.2 * longitudinal * path_error * step, -10 * kDegree, 10 * kDegree);
   const double load = 1.0 / std::max(0.5, std::cos(phi));
-  const double theta_wanted =
+  const double theta_desired =
       std::clamp(trim_.theta + pitch_integral_ + 0.8 * path_error + (load - 1.0) * std::max(0.0, trim_.alpha + 0.1),
                  trim_.theta - 15 * kDegree, trim_.theta + 15 * kDegree);
   const double q_turn = turn_rate * std::tan(phi);
-  const double q_wanted = std::clamp(1.5 * (theta_wanted - theta), -20 * kDegree, 20 * kDegree) + q_turn;
+  const double q_desired = std::clamp(1.5 * (theta_desired - theta), -20 * kDegree, 20 * kDegree) + q_turn;
   const double de = trim_.controls.de + longitudinal * inverse(model_.B(4, 0)) *
-                                            (4.0 * (q_wanted - x[Truth::kGyroY]) - model_.A(4, 4) * q_turn);
+                                            (4.0 * (q_desired - x[Truth::kGyroY]) - model_.A(4, 4) * q_turn);
 
   // Speed, through a filter of one second so that gusts do not move the throttle.
   airspeed_ += std::min(1.0, step) * (x[Truth::kAirspeed] - airspeed_);

@@ -25,7 +25,7 @@ class Autopilot {
   Trim trim_;
   LinearModel model_;
   std::array<Actuator, kSurfaces> limits_;
-  double down_;  ///< position wanted [m]
+  double down_;  ///< desired position [m]
   double heading_;
   double excitation_gain_;
   bool turning_ = false;

@@ -76,7 +76,7 @@ DrydenStep::DrydenStep(double theta) : decay(std::exp(-theta)), coupling(theta *
 }
 
 DrydenGusts::DrydenGusts(const DrydenSettings& settings, numerics::RandomStream random)
-    : settings_(settings), random_(std::move(random)) {
+    : settings_(settings), random_(random) {
   u_ = random_.normal();
   for (Pair* pair : {&v_, &w_}) {
     // Cholesky factor of [1/2 1/4; 1/4 1/4].

@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -15,7 +17,6 @@ namespace veridyn::aircraft {
 
 namespace {
 
-constexpr double kTurnAround = 2.0 * kPi;
 constexpr double kPause = 2.0;  ///< between the surfaces of one doublet or 3-2-1-1 [s]
 
 double pulse_count(ManoeuvreKind kind) {
@@ -37,7 +38,7 @@ double peak(const Multisine& m, double duration) {
   for (int i = 0; i < n; ++i) {
     double sum = 0.0;
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
-      sum += std::sin(kTurnAround * m.frequency[k] * duration * i / n + m.phase[k]);
+      sum += std::sin(2.0 * kPi * m.frequency[k] * duration * i / n + m.phase[k]);
     }
     largest = std::max(largest, std::abs(sum));
   }
@@ -47,7 +48,7 @@ double peak(const Multisine& m, double duration) {
 double raw_value(const Multisine& m, double t) {
   double sum = 0.0;
   for (std::size_t k = 0; k < m.frequency.size(); ++k) {
-    sum += std::sin(kTurnAround * m.frequency[k] * t + m.phase[k]);
+    sum += std::sin(2.0 * kPi * m.frequency[k] * t + m.phase[k]);
   }
   return sum;
 }
@@ -62,7 +63,7 @@ void lower_peak(Multisine& m, double duration) {
   const Eigen::ArrayXd time =
       Eigen::ArrayXd::LinSpaced(n, 0.0, duration * static_cast<double>(n - 1) / static_cast<double>(n));
   for (Eigen::Index k = 0; k < harmonics; ++k) {
-    const double omega = kTurnAround * m.frequency[static_cast<std::size_t>(k)];
+    const double omega = 2.0 * kPi * m.frequency[static_cast<std::size_t>(k)];
     sine.col(k) = (omega * time).sin();
     cosine.col(k) = (omega * time).cos();
   }
@@ -121,7 +122,7 @@ void start_at_zero(Multisine& m, double duration) {
       (raw_value(m, c) <= 0.0 ? a : b) = c;
     }
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
-      m.phase[k] = std::remainder(m.phase[k] + kTurnAround * m.frequency[k] * a, kTurnAround);
+      m.phase[k] = std::remainder(m.phase[k] + 2.0 * kPi * m.frequency[k] * a, 2.0 * kPi);
     }
     return;
   }
@@ -177,8 +178,8 @@ std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kS
   using enum ManoeuvreKind;
   const auto amplitude = [&amplitudes](Surface s) { return amplitudes[static_cast<std::size_t>(s)]; };
   std::vector<Manoeuvre> plan;
-  const auto add = [&](ManoeuvreKind kind, double start, double length, std::vector<Surface> surfaces, double pulse,
-                       double bank) {
+  const auto add = [&](ManoeuvreKind kind, double start, double length, const std::vector<Surface>& surfaces,
+                       double pulse, double bank) {
     Manoeuvre m;
     m.kind = kind;
     m.start = start;
@@ -287,7 +288,7 @@ std::vector<Multisine> make_multisines(std::size_t count, double duration, doubl
     const double n = static_cast<double>(m.frequency.size());
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
       const double j = static_cast<double>(k) + 1.0;
-      m.phase.push_back(std::remainder(-kPi * j * (j - 1.0) / n, kTurnAround));
+      m.phase.push_back(std::remainder(-kPi * j * (j - 1.0) / n, 2.0 * kPi));
     }
     lower_peak(m, duration);
     start_at_zero(m, duration);
@@ -297,10 +298,17 @@ std::vector<Multisine> make_multisines(std::size_t count, double duration, doubl
 }
 
 Excitation::Excitation(std::vector<Manoeuvre> manoeuvres) : manoeuvres_(std::move(manoeuvres)) {
+  // The phases of one multisine take 20 ms: equal ones of a long flight are designed once.
+  using Design = std::tuple<std::size_t, double, double, double>;
+  std::map<Design, std::vector<Multisine>> designs;
   for (const Manoeuvre& m : manoeuvres_) {
-    sines_.push_back(m.kind == ManoeuvreKind::kMultisine
-                         ? make_multisines(m.surfaces.size(), m.duration, m.f_min, m.f_max)
-                         : std::vector<Multisine>{});
+    if (m.kind != ManoeuvreKind::kMultisine) {
+      sines_.emplace_back();
+      continue;
+    }
+    std::vector<Multisine>& design = designs[{m.surfaces.size(), m.duration, m.f_min, m.f_max}];
+    if (design.empty()) design = make_multisines(m.surfaces.size(), m.duration, m.f_min, m.f_max);
+    sines_.push_back(design);
   }
 }
 

@@ -11,10 +11,13 @@
 
 namespace veridyn::aircraft {
 
+/// What the pilot moves.
 enum class Surface { kElevator, kAileron, kRudder, kThrottle };
-inline constexpr std::size_t kSurfaces = 4;
+inline constexpr std::size_t kSurfaces = 4;  ///< values of Surface
+/// In the order of Surface.
 inline constexpr std::array<std::string_view, kSurfaces> kSurfaceNames = {"elevator", "aileron", "rudder", "throttle"};
 
+/// Shapes of planned inputs.
 enum class ManoeuvreKind {
   kDoublet,    ///< +1, -1 pulses
   k3211,       ///< +3, -2, +1, -1 pulses
@@ -23,13 +26,13 @@ enum class ManoeuvreKind {
   kPulse,      ///< one pulse, held: a pull into a stall
 };
 
-/// Something that the pilot does on purpose. In all but turns, the surfaces get a deflection on top of the pilot's own.
+/// A planned input of the pilot. In all but turns, the surfaces get a deflection in addition to the autopilot's.
 struct Manoeuvre {
   ManoeuvreKind kind = ManoeuvreKind::kDoublet;
   double start = 0.0;                  ///< [s]
   double duration = 0.0;               ///< [s]; multisines and turns
   std::vector<Surface> surfaces = {};  ///< in doublets and 3-2-1-1 one after another, with two seconds between
-  std::vector<double> amplitude = {};  ///< largest deflection [rad] (throttle [-]), one a surface
+  std::vector<double> amplitude = {};  ///< largest deflection [rad] (throttle [-]), one per surface
   double pulse = 0.5;                  ///< length of one unit of a doublet or 3-2-1-1 [s]
   double f_min = 0.1;                  ///< multisine band [Hz]
   double f_max = 2.0;
@@ -40,7 +43,7 @@ struct Manoeuvre {
 
 /// Largest deflections that keep a small excitation small, from the linear model about a trim: the elevator changes
 /// alpha by about 3 deg in the steady state, the aileron rolls at 20 deg/s, the rudder yields 4 deg of sideslip; never
-/// more than half of the way to a stop. Throttle 0.15.
+/// more than half of the travel to a stop. Throttle 0.15.
 [[nodiscard]] std::array<double, kSurfaces> default_amplitudes(const Subject& subject, const Trim& trim,
                                                                const LinearModel& model);
 
@@ -55,7 +58,7 @@ struct Manoeuvre {
 ///     start = 20                         # [s]
 ///     duration = 30                      # [s] multisine and turn
 ///     surfaces = ["aileron", "rudder"]   # elevator, aileron, rudder, throttle
-///     amplitude = "4 deg"                # one, or one a surface; left out: see default_amplitudes
+///     amplitude = "4 deg"                # one, or one per surface; left out: see default_amplitudes
 ///     pulse = 0.5                        # [s] doublet, 3211, pulse
 ///     band = [0.1, 2.0]                  # [Hz] multisine
 ///     bank = "25 deg"                    # turn
@@ -70,7 +73,7 @@ struct Multisine {
   [[nodiscard]] double value(double t) const;
 };
 
-/// Multisines for `count` surfaces: the harmonics of 1/duration in the band are dealt out in turn, so that any two
+/// Multisines for `count` surfaces: the harmonics of 1/duration in the band are assigned in turn, so that any two
 /// signals are orthogonal over the duration. Phases start at Schroeder's (1970) and are improved for a low peak; the
 /// signals start at a zero. Deterministic.
 [[nodiscard]] std::vector<Multisine> make_multisines(std::size_t count, double duration, double f_min, double f_max);
@@ -84,7 +87,7 @@ class Excitation {
   [[nodiscard]] std::array<double, kSurfaces> at(double t) const;
   /// Which surfaces are excited at `t`.
   [[nodiscard]] std::array<bool, kSurfaces> excited(double t) const;
-  /// Bank that is asked for at `t` by a turn [rad], or NaN.
+  /// Bank of the turn at `t` [rad]; NaN outside turns.
   [[nodiscard]] double bank(double t) const;
   [[nodiscard]] const std::vector<Manoeuvre>& manoeuvres() const { return manoeuvres_; }
 
@@ -93,6 +96,7 @@ class Excitation {
   std::vector<std::vector<Multisine>> sines_;
 };
 
+/// "multisine", as in a study.
 [[nodiscard]] std::string_view name_of(ManoeuvreKind kind);
 
 }  // namespace veridyn::aircraft

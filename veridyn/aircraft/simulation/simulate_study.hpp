@@ -30,7 +30,7 @@ namespace veridyn::aircraft {
 ///     excitation_gain = 0.3        # share of its feedback that the pilot keeps on a surface while it is excited
 ///     plan = "default"             # "default" (see default_plan) or "none" (straight and level), when no
 ///     [[flight.manoeuvre]]         # manoeuvres are listed (see read_manoeuvres)
-///     [[flight.change]]            # the aircraft changes in flight, in order of time; the pilot is not told
+///     [[flight.change]]            # the aircraft changes in flight, in order of time; the autopilot keeps its gains
 ///     time = 300                   # [s]
 ///     parameters = { Cm_alpha = -0.35 }   # from then on; parameters of the subject's model, by name
 ///

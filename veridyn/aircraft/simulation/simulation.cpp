@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "veridyn/aircraft/sensors/servo.hpp"
 #include "veridyn/aircraft/simulation/autopilot.hpp"
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/ode.hpp"
@@ -27,6 +29,7 @@ void put(TruthSample& out, Truth first, const Vector3d& v) {
   for (std::size_t k = 0; k < 3; ++k) out.value[i + k] = v(static_cast<Eigen::Index>(k));
 }
 
+/// State, controls and air at one moment.
 struct Moment {
   State state;
   Controls<double> controls;
@@ -85,13 +88,14 @@ TruthSample truth_of(const Subject& s, const MassProperties& body, const Moment&
   return out;
 }
 
+/// Collects samples of the truth for a recording.
 class TruthRecorder {
  public:
   void add(double t, const TruthSample& sample) {
     time_.push_back(t);
     for (std::size_t i = 0; i < kTruthCount; ++i) value_[i].push_back(sample.value[i]);
   }
-  void give(Recording& recording) {
+  void move_into(Recording& recording) {
     const TimeBase base = make_time_base(std::move(time_));
     for (std::size_t i = 0; i < kTruthCount; ++i) {
       recording.add(
@@ -118,6 +122,115 @@ void check(const SimulationOptions& o) {
   }
 }
 
+/// An aircraft in the air that it flies through: its state, the servos and the engine that move it, gusts and wind.
+class FlyingAircraft {
+ public:
+  /// In steady flight at the trim; `options.changes` and the rest of the flight are up to the caller.
+  FlyingAircraft(const SimulationOptions& options, const Trim& trim)
+      : subject_(options.subject),
+        body_(subject_.mass, subject_.inertia->matrix()),
+        step_(options.step),
+        gravity_(options.gravity),
+        ground_(options.ground),
+        rotor_share_(rotor_share(subject_.propulsion, step_)),
+        servos_{Servo(subject_.elevator, trim.controls.de, step_), Servo(subject_.aileron, trim.controls.da, step_),
+                Servo(subject_.rudder, trim.controls.dr, step_),
+                Servo(subject_.throttle, trim.controls.throttle, step_)},
+        gusts_(options.turbulence, numerics::RandomStream(options.seed, "turbulence")),
+        wind_(options.wind, numerics::RandomStream(options.seed, "wind")) {
+    now_.controls = trim.controls;
+    now_.mean_wind = wind_.at(options.altitude - ground_);
+    now_.gust = gust_vector();
+    now_.state.setZero();
+    now_.state(2) = -options.altitude;
+    now_.state.segment<4>(6) = numerics::quaternion_from_euler(0.0, trim.theta, options.heading).coeffs();
+    now_.state.segment<3>(3) =
+        R_body_from_ned(now_.state).transpose() * air_velocity(trim.condition.airspeed, trim.alpha, trim.beta) +
+        now_.mean_wind;
+  }
+
+  void change_model(const AeroModel& model) { subject_.model = model; }
+
+  [[nodiscard]] TruthSample truth() const { return truth_of(subject_, body_, now_, gravity_); }
+  [[nodiscard]] bool finite() const { return now_.state.allFinite(); }
+
+  /// Over one step from `t` [s], where the truth is `truth`, with the surfaces commanded to `command`.
+  void advance(double t, const TruthSample& truth, const std::array<double, kSurfaces>& command) {
+    for (std::size_t i = 0; i < kSurfaces; ++i) servos_[i].advance(command[i]);
+    gusts_.advance(step_, truth[Truth::kAirspeed]);
+    wind_.advance(step_);
+    Moment next;
+    next.controls = {servos_[0].position(), servos_[1].position(), servos_[2].position(), servos_[3].position(), 0.0};
+    next.controls.rotor_speed =
+        now_.controls.rotor_speed +
+        rotor_share_ * (subject_.propulsion.steady_rotor_speed(next.controls.throttle) - now_.controls.rotor_speed);
+    next.mean_wind = wind_.at(-now_.state(2) - ground_);
+    next.gust = gust_vector();
+
+    // Density changes by less than 1e-5 of itself within a step, so it is held.
+    const double rho = truth[Truth::kAirDensity];
+    const auto rate = [&](double time, const State& x) {
+      const double share = (time - t) / step_;
+      const auto between = [share](double a, double b) { return a + share * (b - a); };
+      Controls<double> c;
+      c.de = between(now_.controls.de, next.controls.de);
+      c.da = between(now_.controls.da, next.controls.da);
+      c.dr = between(now_.controls.dr, next.controls.dr);
+      c.throttle = between(now_.controls.throttle, next.controls.throttle);
+      c.rotor_speed = between(now_.controls.rotor_speed, next.controls.rotor_speed);
+      const Vector3d mean = now_.mean_wind + share * (next.mean_wind - now_.mean_wind);
+      const Vector3d gust = now_.gust + share * (next.gust - now_.gust);
+      return aircraft_rate<double>(subject_, body_, x, c, mean, gust, rho, gravity_);
+    };
+    next.state = numerics::runge_kutta_4_step(rate, t, now_.state, step_);
+    normalise_attitude(next.state);
+    now_ = next;
+  }
+
+ private:
+  [[nodiscard]] Vector3d gust_vector() const {
+    const std::array<double, 3> g = gusts_.gust();
+    return {g[0], g[1], g[2]};
+  }
+
+  /// By how much of its distance to the steady speed a rotor comes nearer in a step.
+  [[nodiscard]] static double rotor_share(const Propulsion& p, double step) {
+    return p.kind == PropulsionKind::kPropeller && p.time_constant > 0.0 ? -std::expm1(-step / p.time_constant) : 1.0;
+  }
+
+  Subject subject_;
+  MassProperties body_;
+  double step_;
+  double gravity_;
+  double ground_;
+  double rotor_share_;
+  std::array<Servo, kSurfaces> servos_;
+  DrydenGusts gusts_;
+  Wind wind_;
+  Moment now_;
+};
+
+/// Whether the flight ends at this moment, and why; kCompleted where it goes on.
+SimulationEnd end_of(const TruthSample& truth, double ground) {
+  if (-truth[Truth::kPosDown] <= ground) return SimulationEnd::kGround;
+  const double p = truth[Truth::kGyroX], q = truth[Truth::kGyroY], r = truth[Truth::kGyroZ];
+  const bool upset = std::abs(truth[Truth::kAlpha]) > 0.5 * kPi || Vector3d(p, q, r).norm() > 50.0;
+  return upset ? SimulationEnd::kUpset : SimulationEnd::kCompleted;
+}
+
+/// Manoeuvres that began and changes that happened.
+std::vector<Event> events_of(std::span<const Manoeuvre> manoeuvres, std::span<const ModelChange> changes, double end) {
+  std::vector<Event> events;
+  for (const Manoeuvre& m : manoeuvres) {
+    if (m.start > end) continue;
+    std::vector<std::string_view> names;
+    for (const Surface surface : m.surfaces) names.push_back(kSurfaceNames[static_cast<std::size_t>(surface)]);
+    events.push_back({m.start, "manoeuvre", fmt::format("{} {}", name_of(m.kind), fmt::join(names, ", "))});
+  }
+  for (const ModelChange& change : changes) events.push_back({change.time, "change", change.text});
+  return events;
+}
+
 }  // namespace
 
 double default_airspeed(const Subject& s, double gravity) {
@@ -138,69 +251,56 @@ std::string SimulatedFlight::message() const {
       return fmt::format("the aircraft departed from controlled flight {}", at());
     case SimulationEnd::kDiverged:
       return fmt::format("the state is no longer finite {}: the step is too long for this aircraft", at());
-    default:
+    case SimulationEnd::kInterrupted:
       return fmt::format("interrupted {}", at());
+    // Not ends of a flight with fixed steps.
+    case SimulationEnd::kStepSize:
+    case SimulationEnd::kStepLimit:
+    case SimulationEnd::kStopped:
+    case SimulationEnd::kSpun:
+    case SimulationEnd::kRolledOver:
+      break;
   }
+  VERIDYN_ASSERT(false);
+  return {};
 }
 
 SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
   check(o);
-  Subject s = o.subject;  // its model changes where the flight says so
-  const MassProperties body(s.mass, s.inertia->matrix());
-  const double airspeed = o.airspeed > 0.0 ? o.airspeed : default_airspeed(s, o.gravity);
   SimulatedFlight flight;
-  flight.measured.source = flight.truth.source = fmt::format("simulated flight of {}", s.name);
+  flight.measured.source = flight.truth.source = fmt::format("simulated flight of {}", o.subject.name);
   flight.measured.frame = flight.truth.frame = Frame::kFrd;
-  flight.trim = find_trim(
-      s, {.airspeed = airspeed, .density = standard_atmosphere(o.altitude).density, .bank = 0.0, .gravity = o.gravity});
+  flight.trim =
+      find_trim(o.subject, {.airspeed = o.airspeed > 0.0 ? o.airspeed : default_airspeed(o.subject, o.gravity),
+                            .density = standard_atmosphere(o.altitude).density,
+                            .bank = 0.0,
+                            .gravity = o.gravity});
   if (!flight.trim.usable()) {
     flight.end = SimulationEnd::kNoTrim;
     return flight;
   }
-  const Trim& trim = flight.trim;
-  const LinearModel linear = linearise(s, trim);
-  flight.manoeuvres = o.manoeuvres ? *o.manoeuvres : default_plan(o.duration, default_amplitudes(s, trim, linear));
+  const LinearModel linear = linearise(o.subject, flight.trim);
+  flight.manoeuvres =
+      o.manoeuvres ? *o.manoeuvres : default_plan(o.duration, default_amplitudes(o.subject, flight.trim, linear));
   const Excitation excitation(flight.manoeuvres);
-  Autopilot pilot(s, trim, linear, o.altitude, o.heading, o.excitation_gain);
-
-  const double h = o.step;
-  std::array<Servo, kSurfaces> servos = {Servo(s.elevator, trim.controls.de, h), Servo(s.aileron, trim.controls.da, h),
-                                         Servo(s.rudder, trim.controls.dr, h),
-                                         Servo(s.throttle, trim.controls.throttle, h)};
-  const double rotor_share = s.propulsion.kind == PropulsionKind::kPropeller && s.propulsion.time_constant > 0.0
-                                 ? -std::expm1(-h / s.propulsion.time_constant)
-                                 : 1.0;
-  DrydenGusts gusts(o.turbulence, numerics::RandomStream(o.seed, "turbulence"));
-  Wind wind(o.wind, numerics::RandomStream(o.seed, "wind"));
+  Autopilot pilot(o.subject, flight.trim, linear, o.altitude, o.heading, o.excitation_gain);
+  FlyingAircraft aircraft(o, flight.trim);
   std::vector<Sensor> sensors;
   for (std::size_t i = 0; i < kSensorKinds; ++i) sensors.emplace_back(sensor_kinds()[i], o.sensors[i], o.seed);
 
-  const auto gust_vector = [&gusts] {
-    const std::array<double, 3> g = gusts.gust();
-    return Vector3d(g[0], g[1], g[2]);
-  };
-  Moment now;
-  now.controls = trim.controls;
-  now.mean_wind = wind.at(o.altitude - o.ground);
-  now.gust = gust_vector();
-  now.state.setZero();
-  now.state(2) = -o.altitude;
-  now.state.segment<4>(6) = numerics::quaternion_from_euler(0.0, trim.theta, o.heading).coeffs();
-  now.state.segment<3>(3) =
-      R_body_from_ned(now.state).transpose() * air_velocity(airspeed, trim.alpha, trim.beta) + now.mean_wind;
-
   TruthRecorder recorder;
-  const auto steps = static_cast<long long>(std::llround(o.duration / h));
-  const auto every = std::max(1LL, std::llround(1.0 / (o.truth_rate * h)));
+  const auto steps = static_cast<long long>(std::llround(o.duration / o.step));
+  const auto every = std::max(1LL, std::llround(1.0 / (o.truth_rate * o.step)));
   flight.alpha_min = kInfinity;
   flight.alpha_max = -flight.alpha_min;
   progress.stage(fmt::format("simulating {:.0f} s of flight", o.duration));
   std::size_t changed = 0;
   for (long long k = 0; k <= steps; ++k) {
-    const double t = static_cast<double>(k) * h;
-    while (changed < o.changes.size() && t >= o.changes[changed].time - 0.5 * h) s.model = o.changes[changed++].model;
-    const TruthSample truth = truth_of(s, body, now, o.gravity);
-    if (!now.state.allFinite() || !std::isfinite(truth[Truth::kAirspeed])) {
+    const double t = static_cast<double>(k) * o.step;
+    while (changed < o.changes.size() && t >= o.changes[changed].time - 0.5 * o.step)
+      aircraft.change_model(o.changes[changed++].model);
+    const TruthSample truth = aircraft.truth();
+    if (!aircraft.finite() || !std::isfinite(truth[Truth::kAirspeed])) {
       flight.end = SimulationEnd::kDiverged;
       break;
     }
@@ -209,65 +309,18 @@ SimulatedFlight simulate(const SimulationOptions& o, Progress& progress) {
     flight.end_time = t;
     flight.alpha_min = std::min(flight.alpha_min, truth[Truth::kAlpha]);
     flight.alpha_max = std::max(flight.alpha_max, truth[Truth::kAlpha]);
-    if (-now.state(2) <= o.ground) {
-      flight.end = SimulationEnd::kGround;
-      break;
-    }
-    if (std::abs(truth[Truth::kAlpha]) > 0.5 * kPi || now.state.tail<3>().norm() > 50.0) {
-      flight.end = SimulationEnd::kUpset;
-      break;
-    }
+    flight.end = end_of(truth, o.ground);
+    if (flight.end != SimulationEnd::kCompleted) break;
     if (k % 2000 == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(std::max(1LL, steps)))) {
       flight.end = SimulationEnd::kInterrupted;
       break;
     }
-    if (k == steps) break;
-
-    const std::array<double, kSurfaces> command = pilot.command(t, h, truth, excitation);
-    for (std::size_t i = 0; i < kSurfaces; ++i) servos[i].advance(command[i]);
-    gusts.advance(h, truth[Truth::kAirspeed]);
-    wind.advance(h);
-    Moment next;
-    next.controls = {servos[0].position(), servos[1].position(), servos[2].position(), servos[3].position(), 0.0};
-    next.controls.rotor_speed =
-        now.controls.rotor_speed +
-        rotor_share * (s.propulsion.steady_rotor_speed(next.controls.throttle) - now.controls.rotor_speed);
-    next.mean_wind = wind.at(-now.state(2) - o.ground);
-    next.gust = gust_vector();
-
-    // Density changes by less than 1e-5 of itself within a step, so it is held.
-    const double rho = truth[Truth::kAirDensity];
-    const auto rate = [&](double time, const State& x) {
-      const double share = (time - t) / h;
-      const auto between = [share](double a, double b) { return a + share * (b - a); };
-      Controls<double> c;
-      c.de = between(now.controls.de, next.controls.de);
-      c.da = between(now.controls.da, next.controls.da);
-      c.dr = between(now.controls.dr, next.controls.dr);
-      c.throttle = between(now.controls.throttle, next.controls.throttle);
-      c.rotor_speed = between(now.controls.rotor_speed, next.controls.rotor_speed);
-      const Vector3d mean = now.mean_wind + share * (next.mean_wind - now.mean_wind);
-      const Vector3d gust = now.gust + share * (next.gust - now.gust);
-      return aircraft_rate<double>(s, body, x, c, mean, gust, rho, o.gravity);
-    };
-    next.state = numerics::runge_kutta_4_step(rate, t, now.state, h);
-    normalise_attitude(next.state);
-    now = next;
+    if (k < steps) aircraft.advance(t, truth, pilot.command(t, o.step, truth, excitation));
   }
-  for (Sensor& sensor : sensors) sensor.give(flight.measured);
-  recorder.give(flight.truth);
-  for (const Manoeuvre& m : flight.manoeuvres) {
-    if (m.start > flight.end_time) continue;
-    std::vector<std::string_view> names;
-    for (const Surface surface : m.surfaces) names.push_back(kSurfaceNames[static_cast<std::size_t>(surface)]);
-    const std::string text = fmt::format("{} {}", name_of(m.kind), fmt::join(names, ", "));
-    flight.measured.events.push_back({m.start, "manoeuvre", text});
-    flight.truth.events.push_back({m.start, "manoeuvre", text});
-  }
-  for (std::size_t i = 0; i < changed; ++i) {
-    flight.measured.events.push_back({o.changes[i].time, "change", o.changes[i].text});
-    flight.truth.events.push_back({o.changes[i].time, "change", o.changes[i].text});
-  }
+  for (Sensor& sensor : sensors) sensor.move_into(flight.measured);
+  recorder.move_into(flight.truth);
+  flight.measured.events = flight.truth.events =
+      events_of(flight.manoeuvres, std::span(o.changes).first(changed), flight.end_time);
   static_cast<void>(progress.update(1.0));
   return flight;
 }

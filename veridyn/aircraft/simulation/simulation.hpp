@@ -17,14 +17,15 @@
 
 namespace veridyn::aircraft {
 
-/// The aircraft changes in flight: ice, damage, a wing that stalls or recovers. From `time` on the model is `model`.
+/// A change of the aircraft in flight: ice, damage, a wing that stalls or recovers. From `time` on the model is
+/// `model`.
 struct ModelChange {
   double time = 0.0;  ///< [s]
   AeroModel model;
   std::string text;  ///< what changed, in words: "Cm_alpha -0.7 to -0.35"
 };
 
-/// What is flown.
+/// The flight to simulate.
 struct SimulationOptions {
   Subject subject;
   double duration = 300.0;    ///< [s]
@@ -62,7 +63,7 @@ struct SimulatedFlight {
 
 /// Flies the subject: six degrees of freedom with the attitude as quaternion, fixed steps of the fourth-order
 /// Runge-Kutta method, controls and gusts varying linearly within a step. Same options, same bytes. A flight that fails
-/// keeps what was flown until then.
+/// keeps what was simulated until then, and so does one that `progress` interrupts, which takes at most 2000 steps.
 /// @throws InputError when the subject lacks inertia or a parameter of its model has no value.
 [[nodiscard]] SimulatedFlight simulate(const SimulationOptions& options, Progress& progress);
 

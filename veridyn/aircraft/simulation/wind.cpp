@@ -8,8 +8,7 @@
 
 namespace veridyn::aircraft {
 
-Wind::Wind(const WindSettings& settings, numerics::RandomStream random)
-    : settings_(settings), random_(std::move(random)) {}
+Wind::Wind(const WindSettings& settings, numerics::RandomStream random) : settings_(settings), random_(random) {}
 
 void Wind::advance(double step) {
   if (settings_.drift_sigma == 0.0) return;

@@ -8,6 +8,8 @@
 
 namespace veridyn::aircraft {
 
+std::string_view to_string(AirDataSource source) { return source == AirDataSource::kSensors ? "sensors" : "filter"; }
+
 TrackOptions TrackOptions::read(const StudyTable& table) {
   TrackOptions o;
   o.read_keys(table);
@@ -19,9 +21,11 @@ TrackOptions TrackOptions::read(const StudyTable& table) {
       o.coefficients.push_back(*c);
     }
   }
-  if (table.has("estimate")) o.estimate_file = table.files("estimate").at(0).string();
+  const std::string_view estimate = table.renamed("estimate_file", "estimate");
+  if (table.has(estimate)) o.estimate_file = table.file(estimate).string();
   const std::vector<std::string> sources{"filter", "sensors"};
-  o.air_data = table.choice_or("air_data", sources, o.air_data);
+  const bool by_sensors = table.choice_or("air_data", sources, "filter") == "sensors";
+  o.air_data = by_sensors ? AirDataSource::kSensors : AirDataSource::kFilter;
   return o;
 }
 

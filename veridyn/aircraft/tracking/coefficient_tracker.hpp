@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/aircraft/model/aero_model.hpp"
@@ -11,14 +12,19 @@ namespace veridyn::aircraft {
 
 using estimation::TrackHistory;
 
+/// Where airspeed and flow angles of a tracked flight come from.
+enum class AirDataSource {
+  kFilter,  ///< airspeed of the causal state estimate; vanes, or where there are none the estimate's flow angles
+  kSensors  ///< pitot and vanes
+};
+[[nodiscard]] std::string_view to_string(AirDataSource source);
+
 /// How a coefficient is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these;
 /// every one is optional. Rows come at the rate of `FlightSignals::stride`.
 struct TrackOptions : estimation::TrackerOptions {
-  std::vector<Coefficient> coefficients = {};  ///< `coefficients`; empty: all that the subject models
-  std::string estimate_file;                   ///< `estimate`: estimate.json to start from (hybrid start)
-  /// `air_data`: "filter" takes airspeed from the causal state estimate (and flow angles where there is no vane),
-  /// "sensors" from pitot and vanes.
-  std::string air_data = "filter";
+  std::vector<Coefficient> coefficients = {};       ///< `coefficients`; empty: all that the subject models
+  std::string estimate_file;                        ///< `estimate`: estimate.json to start from (hybrid start)
+  AirDataSource air_data = AirDataSource::kFilter;  ///< `air_data`: "filter", "sensors"
 
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static TrackOptions read(const StudyTable& table);

@@ -11,8 +11,7 @@ namespace veridyn::aircraft {
 
 Recording direct_air_data(const Recording& recording, const ReconstructOptions& reconstruct,
                           const SignalOptions& options) {
-  std::vector<std::string> warnings;
-  const internal::FlightStreams streams = internal::load_streams(recording, reconstruct, warnings);
+  const internal::FlightStreams streams = internal::load_streams(recording, reconstruct);
   const internal::Stream& pitot = streams.sensors[internal::kPitot];
   if (pitot.t.empty()) {
     throw InputError(recording.source,
@@ -25,7 +24,7 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
     if (const Channel* channel = recording.find(name)) out.add(*channel);
   }
 
-  // Airspeed at the pitot's stamps, filtered on an even grid of its own rate.
+  // Airspeed at the pitot's stamps, filtered on an even grid of its rate.
   std::vector<double> airspeed(pitot.t.size()), density(pitot.t.size());
   std::size_t cursor = 0;
   for (std::size_t i = 0; i < pitot.t.size(); ++i) {

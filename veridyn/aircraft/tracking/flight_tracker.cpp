@@ -12,7 +12,7 @@
 
 namespace veridyn::aircraft {
 
-using estimation::EstimatedParameter;
+using estimation::Parameter;
 using estimation::RegressionEstimate;
 
 double filter_margin(const FlightSignals& signals) {
@@ -25,9 +25,9 @@ FlightTracker::FlightTracker(Subject subject, TrackOptions options, double min_a
     : subject_(std::move(subject)), options_(std::move(options)), min_airspeed_(min_airspeed_mps), last_(-kInfinity) {
   if (start != nullptr) start_ = *start;
   for (const auto& model : subject_.model.coefficients) {
-    const auto& wanted = options_.coefficients;
+    const auto& some = options_.coefficients;
     if (!model) continue;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), model->coefficient) == wanted.end()) continue;
+    if (!some.empty() && std::find(some.begin(), some.end(), model->coefficient) == some.end()) continue;
     coefficients_.push_back({.model = *model});
     if (model->size() > static_cast<std::size_t>(estimation::kMaxRecursiveParameters)) {
       coefficients_.back().obstacle =
@@ -112,7 +112,7 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
   if (start_) {
     std::vector<Eigen::Index> at;
     for (const std::string& name : names) {
-      const EstimatedParameter* p = start_->find(name);
+      const Parameter* p = start_->find(name);
       const bool usable = p != nullptr && std::isfinite(p->value) && p->sigma > 0.0 && std::isfinite(p->sigma) &&
                           p->status != estimation::ParameterStatus::kRejected;
       complete = complete && usable;
@@ -174,9 +174,8 @@ estimation::Estimate FlightTracker::estimate() const {
     const RegressionEstimate e = c.tracker->regression().estimate();
     const auto n = static_cast<Eigen::Index>(c.model.size());
     for (std::size_t i = 0; i < c.model.size(); ++i) {
-      const estimation::ParameterEstimate& p = e.parameters[i];
-      out.parameters.push_back({p.name, p.value, p.sigma, p.low95, p.high95,
-                                regressed_parameter_unit(c.model.coefficient, c.model.terms[i], subject_), p.status});
+      out.parameters.push_back(e.parameters[i]);
+      out.parameters.back().unit = regressed_parameter_unit(c.model.coefficient, c.model.terms[i], subject_);
     }
     out.covariance.block(at, at, n, n) = e.covariance;
     at += n;

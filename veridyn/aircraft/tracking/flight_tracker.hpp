@@ -29,8 +29,8 @@ struct FlightChange {
 ///
 /// A row is taken from every stride-th grid point in the air, as in batch identification. The error covariance W of a
 /// coefficient's rows is averaged over its first `kLearnSeconds` in the air, whose rows are kept until then, so that
-/// nothing is lost. With a batch estimate the tracker starts from it, and what its residual showed beyond the sensors'
-/// noise is added to W as equation error.
+/// nothing is missed. With a batch estimate the tracker starts from it, and what its residual showed beyond the
+/// sensors' noise is added to W as equation error.
 class FlightTracker {
  public:
   static constexpr double kLearnSeconds = 20.0;

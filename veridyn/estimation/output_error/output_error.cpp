@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -23,7 +24,7 @@ using internal::OutputErrorProblem;
 /// Share of a parameter's unit vector in what is not identifiable above which it has no error bar.
 constexpr double kShareWithoutErrorBar = 1e-4;
 
-/// Hands one segment's triangle to Ceres.
+/// View of one segment of a problem, whose triangle it hands to Ceres.
 class SegmentCost : public ceres::CostFunction {
  public:
   SegmentCost(const OutputErrorProblem& problem, std::size_t segment) : problem_(problem), segment_(segment) {
@@ -79,7 +80,8 @@ class PriorCost : public ceres::CostFunction {
   Eigen::VectorXd start_, root_;
 };
 
-/// All segments at once, on our own threads and in a fixed order: Ceres itself runs on one.
+/// View of a problem that evaluates all segments at once, on our threads and in a fixed order: Ceres itself runs on
+/// one.
 class EvaluateSegments : public ceres::EvaluationCallback {
  public:
   explicit EvaluateSegments(OutputErrorProblem& problem) : problem_(problem) {}
@@ -89,6 +91,7 @@ class EvaluateSegments : public ceres::EvaluationCallback {
   OutputErrorProblem& problem_;
 };
 
+/// View of the caller's progress: Ceres stops when it is interrupted.
 class Watch : public ceres::IterationCallback {
  public:
   explicit Watch(Progress& progress) : progress_(progress) {}
@@ -100,6 +103,7 @@ class Watch : public ceres::IterationCallback {
   Progress& progress_;
 };
 
+/// View of one call's model, measurements, options and progress, with what the search has found so far.
 class Estimation {
  public:
   Estimation(const ParametricModel& model, const std::vector<RowMatrix>& measured, const OutputErrorOptions& options,
@@ -226,7 +230,7 @@ class Estimation {
     result_.noise_covariance = problem_.noise();
     result_.parameters.resize(parameters.size());
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      ParameterEstimate& p = result_.parameters[i];
+      Parameter& p = result_.parameters[i];
       p.name = parameters[i].name;
       p.unit = parameters[i].unit;
       p.value = result_.theta(static_cast<Index>(i));
@@ -262,85 +266,112 @@ class Estimation {
     }
   }
 
-  void error_bars() {
-    const Index n = problem_.shared_count();
-    const std::vector<Index>& free = problem_.free_shared();
-    if (n == 0) return;
+  /// Root of the information: the segments' triangles with their own unknowns eliminated, and the priors.
+  RowMatrix information_root() const {
     const auto unknowns = problem_.shared_unknowns();
-    // Root of the information: the segments' triangles with their own unknowns eliminated, and the priors.
     RowMatrix root = problem_.shared_root();
-    for (Index i = 0; i < n; ++i) {
-      const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const double sigma = unknowns[i]->prior_sigma;
       if (!std::isfinite(sigma)) continue;
       root.conservativeResize(root.rows() + 1, Eigen::NoChange);
-      root.row(root.rows() - 1) = Eigen::RowVectorXd::Unit(n, i) / sigma;
+      root.row(root.rows() - 1) =
+          Eigen::RowVectorXd::Unit(static_cast<Index>(unknowns.size()), static_cast<Index>(i)) / sigma;
     }
-    Eigen::VectorXd length = root.colwise().norm().transpose();
-    for (double& l : length) l = l > 0.0 ? l : 1.0;
-    const numerics::SingularValues svd =
-        numerics::singular_values(root * length.cwiseInverse().asDiagonal(), numerics::SingularVectors::kThinUAndFullV);
+    return root;
+  }
+
+  /// Inverse of the information over what the data and priors determine; the rest is `unidentifiable`.
+  struct InverseInformation {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd length;  ///< of the information root's columns
+    Eigen::VectorXd share;   ///< of each parameter's unit vector in directions that are not identifiable
+  };
+
+  /// Empty where the outputs depend on no free parameter.
+  std::optional<InverseInformation> invert_information() {
+    const Index n = problem_.shared_count();
+    const std::vector<Index>& free = problem_.free_shared();
+    const RowMatrix root = information_root();
+    InverseInformation out;
+    out.length = root.colwise().norm().transpose();
+    for (double& l : out.length) l = l > 0.0 ? l : 1.0;
+    const numerics::SingularValues svd = numerics::singular_values(root * out.length.cwiseInverse().asDiagonal(),
+                                                                   numerics::SingularVectors::kThinUAndFullV);
     const Eigen::VectorXd& s = svd.values;
     const double largest = s.size() > 0 ? s(0) : 0.0;
-    if (!(largest > 0.0)) {
-      return end(OutputErrorTermination::kNothingToEstimate, "the outputs do not depend on any free parameter");
-    }
-    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n), share = Eigen::VectorXd::Zero(n);
+    if (!(largest > 0.0)) return std::nullopt;
+    Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n);
+    out.share = Eigen::VectorXd::Zero(n);
     result_.condition_number = s.size() == n && s(n - 1) > 0.0 ? largest / s(n - 1) : kInfinity;
     std::vector<std::string> names;
-    for (const ModelParameter* p : unknowns) names.push_back(p->name);
+    for (const ModelParameter* p : problem_.shared_unknowns()) names.push_back(p->name);
     for (Index j = 0; j < n; ++j) {
       if (j < s.size() && s(j) > options_.identifiable * largest) {
         inverse(j) = 1.0 / s(j);
         continue;
       }
-      share += svd.V.col(j).cwiseAbs2();
-      Eigen::VectorXd combination = svd.V.col(j).cwiseQuotient(length);
+      out.share += svd.V.col(j).cwiseAbs2();
+      Eigen::VectorXd combination = svd.V.col(j).cwiseQuotient(out.length);
       combination /= combination.norm();
       Eigen::VectorXd all = Eigen::VectorXd::Zero(result_.theta.size());
       for (Index i = 0; i < n; ++i) all(free[static_cast<std::size_t>(i)]) = combination(i);
       result_.unidentifiable.push_back({all, kInfinity, describe_combination(combination, names)});
     }
-    const Eigen::MatrixXd back = length.cwiseInverse().asDiagonal() * svd.V * inverse.asDiagonal();
-    const Eigen::MatrixXd white = back * back.transpose();
-    Eigen::MatrixXd chosen = white;
+    const Eigen::MatrixXd back = out.length.cwiseInverse().asDiagonal() * svd.V * inverse.asDiagonal();
+    out.matrix = back * back.transpose();
+    return out;
+  }
+
+  /// The inverse information corrected for residuals that are autocorrelated; sets degrees of freedom and lag window.
+  Eigen::MatrixXd corrected_for_autocorrelation(const Eigen::MatrixXd& white) {
+    const ResidualSpectrum spectrum = residual_spectrum(problem_.whitened_residuals(), options_.max_lag);
+    Eigen::MatrixXd filling = problem_.spectral_filling(spectrum) / spectrum.kept;
+    // The prior's own error is white: its information enters as it is.
+    const auto unknowns = problem_.shared_unknowns();
+    for (Index i = 0; i < filling.rows(); ++i) {
+      const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
+      if (std::isfinite(sigma)) filling(i, i) += 1.0 / (sigma * sigma);
+    }
+    result_.degrees_of_freedom = std::min(result_.degrees_of_freedom, spectrum.degrees_of_freedom);
+    result_.lag_window = spectrum.window;
+    return white * filling * white;
+  }
+
+  void error_bars() {
+    const Index n = problem_.shared_count();
+    const std::vector<Index>& free = problem_.free_shared();
+    if (n == 0) return;
+    const std::optional<InverseInformation> information = invert_information();
+    if (!information)
+      return end(OutputErrorTermination::kNothingToEstimate, "the outputs do not depend on any free parameter");
+    const Eigen::MatrixXd& white = information->matrix;
+    const Eigen::VectorXd& share = information->share;
     const double values = static_cast<double>(result_.values);
     const double freedom = std::max(1.0, values - static_cast<double>(problem_.all_unknowns()));
     // Residuals are smaller than the noise by the freedom that the fit took.
     const double inflation = values / freedom;
     const double white_inflation = problem_.estimates_noise() ? inflation : 1.0;
     result_.degrees_of_freedom = freedom;
-    const bool coloured = options_.covariance == CovarianceKind::kColoured;
-    if (coloured) {
-      const ResidualSpectrum spectrum = residual_spectrum(problem_.whitened_residuals(), options_.max_lag);
-      Eigen::MatrixXd filling = problem_.coloured_filling(spectrum) / spectrum.kept;
-      // The prior's own error is white: its information enters as it is.
-      for (Index i = 0; i < n; ++i) {
-        const double sigma = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
-        if (std::isfinite(sigma)) filling(i, i) += 1.0 / (sigma * sigma);
-      }
-      chosen = white * filling * white;
-      result_.degrees_of_freedom = std::min(freedom, spectrum.degrees_of_freedom);
-      result_.lag_window = spectrum.window;
-    }
+    const bool autocorrelated = options_.covariance == CovarianceKind::kAutocorrelated;
+    const Eigen::MatrixXd chosen = autocorrelated ? corrected_for_autocorrelation(white) : white;
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j < n; ++j) {
         const Index a = free[static_cast<std::size_t>(i)], b = free[static_cast<std::size_t>(j)];
         const bool known = share(i) <= kShareWithoutErrorBar && share(j) <= kShareWithoutErrorBar;
         const double otherwise = i == j ? kInfinity : 0.0;
-        result_.covariance(a, b) = known ? (coloured ? inflation : white_inflation) * chosen(i, j) : otherwise;
+        result_.covariance(a, b) = known ? (autocorrelated ? inflation : white_inflation) * chosen(i, j) : otherwise;
         result_.covariance_white(a, b) = known ? white_inflation * white(i, j) : otherwise;
       }
     }
-    const double quantile95 = numerics::student_t_quantile(0.975, result_.degrees_of_freedom);
+    const auto unknowns = problem_.shared_unknowns();
     for (Index i = 0; i < n; ++i) {
       const Index a = free[static_cast<std::size_t>(i)];
-      ParameterEstimate& p = result_.parameters[static_cast<std::size_t>(a)];
+      Parameter& p = result_.parameters[static_cast<std::size_t>(a)];
       p.sigma = std::sqrt(std::max(0.0, result_.covariance(a, a)));
       p.sigma_white = std::sqrt(std::max(0.0, result_.covariance_white(a, a)));
-      p.low95 = p.value - quantile95 * p.sigma;
-      p.high95 = p.value + quantile95 * p.sigma;
+      set_interval(p, result_.degrees_of_freedom);
       p.unexcited_share = std::min(1.0, share(i));
-      const double l = length(i);
+      const double l = information->length(i);
       p.variance_inflation = std::max(1.0, white(i, i) * l * l);
       const double prior = unknowns[static_cast<std::size_t>(i)]->prior_sigma;
       if (std::isfinite(prior))
@@ -350,8 +381,6 @@ class Estimation {
         result_.learned_share(a) = 0.0;
         continue;
       }
-      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
-      p.p_value = numerics::student_t_two_sided_p(p.t, result_.degrees_of_freedom);
       p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
       if (result_.learned_share(a) < 0.1) p.status = ParameterStatus::kNotExcited;
     }
@@ -385,11 +414,7 @@ std::string_view to_string(OutputErrorTermination termination) {
   return "";
 }
 
-const ParameterEstimate* OutputErrorEstimate::find(std::string_view name) const {
-  const auto found =
-      std::find_if(parameters.begin(), parameters.end(), [&](const ParameterEstimate& p) { return p.name == name; });
-  return found == parameters.end() ? nullptr : &*found;
-}
+const Parameter* OutputErrorEstimate::find(std::string_view name) const { return find_parameter(parameters, name); }
 
 void OutputErrorOptions::validate(const ParametricModel& model) const {
   const auto require = [](bool holds, const char* what, double value, const char* rule) {
@@ -401,7 +426,7 @@ void OutputErrorOptions::validate(const ParametricModel& model) const {
   require(tolerance > 0.0, "tolerance", tolerance, "> 0");
   require(identifiable > 0.0 && identifiable < 1.0, "identifiable", identifiable, "in (0, 1)");
   require(max_lag >= 0, "max_lag", static_cast<double>(max_lag), ">= 0");
-  require(threads >= 0, "threads", threads, ">= 0 (0: all cores)");
+  require(threads >= 0, "threads", threads, ">= 0 (0: those of the progress)");
   const auto p = static_cast<Index>(model.outputs().size());
   if (noise_start.size() > 0 && (noise_start.size() != p || !(noise_start.array() > 0.0).all())) {
     throw InputError("output_error.noise_start",
@@ -428,7 +453,9 @@ OutputErrorEstimate output_error(const ParametricModel& model, const std::vector
 OutputErrorEstimate output_error(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                  const OutputErrorOptions& options, Progress& progress) {
   options.validate(model);
-  return Estimation(model, measured, options, progress).run();
+  OutputErrorOptions o = options;
+  if (o.threads == 0) o.threads = progress.threads();
+  return Estimation(model, measured, o, progress).run();
 }
 
 }  // namespace veridyn::estimation

@@ -38,8 +38,8 @@ struct OutputErrorOptions {
   /// `kGiven`.
   Eigen::VectorXd noise_start = {};
   /// Error bars: inverse information (kWhite: Cramer-Rao, too small when the model is incomplete) or corrected for the
-  /// autocorrelation of the residuals (kColoured, the default).
-  CovarianceKind covariance = CovarianceKind::kColoured;
+  /// autocorrelation of the residuals (kAutocorrelated, the default).
+  CovarianceKind covariance = CovarianceKind::kAutocorrelated;
   bool free_initial_conditions = true;          ///< estimate the initial conditions of every segment
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
   double significance = 0.05;                   ///< two-sided level of the t-tests
@@ -50,7 +50,7 @@ struct OutputErrorOptions {
   /// matrix's root scaled to unit length) is reported as not identifiable.
   double identifiable = 1e-6;
   Eigen::Index max_lag = 500;  ///< longest lag of residual correlation that is looked for [samples]
-  int threads = 0;             ///< 0: all cores; any number gives identical bits
+  int threads = 0;             ///< 0: those of the progress; any number gives identical bits
 
   /// @throws InputError naming the option, its value and its rule.
   void validate(const ParametricModel& model) const;
@@ -76,13 +76,13 @@ struct SegmentParameter {
 /// Maximum-likelihood estimate of a model's parameters from its outputs.
 struct OutputErrorEstimate {
   OutputErrorTermination termination = OutputErrorTermination::kTooFewSamples;
-  std::string message;                        ///< one sentence
-  std::vector<ParameterEstimate> parameters;  ///< those that all segments share, in the model's order
-  Eigen::VectorXd theta;                      ///< their values
-  Eigen::MatrixXd covariance;        ///< of the chosen kind; 0 for fixed, infinite variance for not identifiable ones
-  Eigen::MatrixXd covariance_white;  ///< inverse information (Cramer-Rao bound)
-  double degrees_of_freedom = 0.0;   ///< of the t-tests
-  Eigen::Index lag_window = 0;       ///< lags at which residual correlation counts in full [samples]
+  std::string message;                ///< one sentence
+  std::vector<Parameter> parameters;  ///< those that all segments share, in the model's order
+  Eigen::VectorXd theta;              ///< their values
+  Eigen::MatrixXd covariance;         ///< of the chosen kind; 0 for fixed, infinite variance for not identifiable ones
+  Eigen::MatrixXd covariance_white;   ///< inverse information (Cramer-Rao bound)
+  double degrees_of_freedom = 0.0;    ///< of the t-tests
+  Eigen::Index lag_window = 0;        ///< lags at which residual correlation counts in full [samples]
   std::vector<SegmentParameter> segment_parameters;
   Eigen::MatrixXd noise_covariance;  ///< R
   std::vector<OutputFit> outputs;
@@ -103,7 +103,7 @@ struct OutputErrorEstimate {
   [[nodiscard]] bool usable() const {
     return termination == OutputErrorTermination::kConverged || termination == OutputErrorTermination::kRelaxations;
   }
-  [[nodiscard]] const ParameterEstimate* find(std::string_view name) const;
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
 };
 
 /// Output-error maximum likelihood (Klein & Morelli 2006, chapter 6): z_k = y_k(theta) + nu_k, nu ~ N(0, R), minimises

@@ -337,11 +337,12 @@ RowMatrix OutputErrorProblem::shared_root() const {
   RowMatrix stacked = RowMatrix::Zero(total, n);
   Index at = 0;
   for (const Segment& s : segments_) {
-    const Index own = s.local.size(), size = own + n;
-    Eigen::MatrixXd shared = s.triangle.matrix.block(0, own, size, n);
+    const Index locals = s.local.size(), size = locals + n;
+    Eigen::MatrixXd shared = s.triangle.matrix.block(0, locals, size, n);
     Index rank = 0;
-    if (own > 0) {
-      numerics::Eliminated eliminated = numerics::eliminate(s.triangle.matrix.topLeftCorner(size, own), shared, 1e-10);
+    if (locals > 0) {
+      numerics::Eliminated eliminated =
+          numerics::eliminate(s.triangle.matrix.topLeftCorner(size, locals), shared, 1e-10);
       shared = std::move(eliminated.rest);
       rank = eliminated.rank;
     }
@@ -364,21 +365,21 @@ std::vector<RowMatrix> OutputErrorProblem::whitened_residuals() const {
   return result;
 }
 
-Eigen::MatrixXd OutputErrorProblem::coloured_filling(const ResidualSpectrum& spectrum) const {
+Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spectrum) const {
   const Index n = shared_.size();
   std::vector<Eigen::MatrixXd> parts(segments_.size(), Eigen::MatrixXd::Zero(n, n));
   numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
     RowMatrix residual, predicted, rows;
     if (!linearise(s, true, residual, predicted, rows)) return;
-    const Index own = segments_[s].local.size();
-    RowMatrix sensitivity = rows.middleCols(own, n);
-    if (own > 0) {
+    const Index locals = segments_[s].local.size();
+    RowMatrix sensitivity = rows.middleCols(locals, n);
+    if (locals > 0) {
       const Eigen::MatrixXd& triangle = segments_[s].triangle.matrix;
-      sensitivity -=
-          rows.leftCols(own) *
-          numerics::shortest_least_squares(triangle.leftCols(own), Eigen::MatrixXd(triangle.middleCols(own, n)), 1e-10);
+      sensitivity -= rows.leftCols(locals) *
+                     numerics::shortest_least_squares(triangle.leftCols(locals),
+                                                      Eigen::MatrixXd(triangle.middleCols(locals, n)), 1e-10);
     }
-    parts[s] = coloured_information(spectrum, sensitivity, outputs_);
+    parts[s] = autocorrelated_information(spectrum, sensitivity, outputs_);
   });
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n, n);
   for (const Eigen::MatrixXd& part : parts) total += part;

@@ -14,11 +14,12 @@ namespace veridyn::estimation::internal {
 struct SegmentTriangle {
   bool valid = false;
   double squares = 0.0;  ///< nu' R^-1 nu over the segment
-  RowMatrix matrix;      ///< (unknowns + 1) x (unknowns + 1), own unknowns first
+  RowMatrix matrix;      ///< (unknowns + 1) x (unknowns + 1), local unknowns first
 };
 
-/// State of an output-error estimation: current unknowns, noise covariance, and each segment's residual and triangle at
-/// them. The unknowns live in blocks whose addresses do not change, where Ceres moves them.
+/// View of model, measurements and options with the state of their estimation: current unknowns, noise covariance, and
+/// each segment's residual and triangle at them. The unknowns live in blocks whose addresses do not change, where Ceres
+/// moves them.
 class OutputErrorProblem {
  public:
   /// @throws InputError when the measurements do not fit the model.
@@ -45,7 +46,7 @@ class OutputErrorProblem {
   [[nodiscard]] std::vector<std::string> local_units(std::size_t s) const;
   [[nodiscard]] Eigen::Index unknowns(std::size_t s) const { return local_count(s) + shared_count(); }
 
-  /// Residuals at the current unknowns, and triangles where derivatives are asked for.
+  /// Residuals at the current unknowns, and triangles where derivatives are needed.
   void evaluate(bool derivatives);
   [[nodiscard]] bool valid() const;
   [[nodiscard]] const SegmentTriangle& triangle(std::size_t s) const { return segments_[s].triangle; }
@@ -59,10 +60,10 @@ class OutputErrorProblem {
 
   /// |R^-1/2 S (now - before)|, an upper bound of every shared parameter's change in its own sigma.
   [[nodiscard]] double largest_change_in_sigma(const Eigen::VectorXd& before) const;
-  /// A with A'A the information of the shared unknowns, the segments' own eliminated; priors are not in it.
+  /// A with A'A the information of the shared unknowns, the segments' local ones eliminated; priors are not in it.
   [[nodiscard]] RowMatrix shared_root() const;
   [[nodiscard]] std::vector<RowMatrix> whitened_residuals() const;
-  [[nodiscard]] Eigen::MatrixXd coloured_filling(const ResidualSpectrum& spectrum) const;
+  [[nodiscard]] Eigen::MatrixXd spectral_filling(const ResidualSpectrum& spectrum) const;
   [[nodiscard]] double negative_log_likelihood() const;
   [[nodiscard]] std::vector<OutputFit> output_fits() const;
   [[nodiscard]] const RowMatrix& predicted(std::size_t s) const { return segments_[s].predicted; }

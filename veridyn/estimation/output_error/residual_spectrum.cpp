@@ -111,8 +111,8 @@ ResidualSpectrum residual_spectrum(const std::vector<RowMatrix>& residuals, Eige
   return result;
 }
 
-Eigen::MatrixXd coloured_information(const ResidualSpectrum& spectrum, const RowMatrix& sensitivity,
-                                     Eigen::Index outputs) {
+Eigen::MatrixXd autocorrelated_information(const ResidualSpectrum& spectrum, const RowMatrix& sensitivity,
+                                           Eigen::Index outputs) {
   const Eigen::Index n = sensitivity.cols(), N = sensitivity.rows() / outputs;
   const Eigen::Index L = spectrum.length, half = L / 2 + 1;
   // Row f of block j: transforms of output j's sensitivities at frequency f.

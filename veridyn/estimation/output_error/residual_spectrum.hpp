@@ -23,7 +23,7 @@ struct ResidualSpectrum {
 
 /// sum over i, j of S_i' Gamma(i - j) S_j for one segment, by Parseval: `sensitivity` has a row per sample and output
 /// (k outputs + j), zero where missing.
-[[nodiscard]] Eigen::MatrixXd coloured_information(const ResidualSpectrum& spectrum, const RowMatrix& sensitivity,
-                                                   Eigen::Index outputs);
+[[nodiscard]] Eigen::MatrixXd autocorrelated_information(const ResidualSpectrum& spectrum, const RowMatrix& sensitivity,
+                                                         Eigen::Index outputs);
 
 }  // namespace veridyn::estimation

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -21,13 +22,12 @@ using Distribution = std::function<double(double)>;
 double chain_run_length(const Distribution& F, double reference, double threshold, int count) {
   const double step = 2.0 * threshold / (2.0 * count - 1.0);
   Eigen::MatrixXd A = Eigen::MatrixXd::Identity(count, count);
-  std::vector<double> edge(static_cast<std::size_t>(2 * count));
+  std::vector<double> edge(at(2 * count));
   // F between states depends on their difference only.
-  for (int d = -count; d < count; ++d) edge[static_cast<std::size_t>(d + count)] = F(reference + (d + 0.5) * step);
+  for (int d = -count; d < count; ++d) edge[at(d + count)] = F(reference + (d + 0.5) * step);
   for (int i = 0; i < count; ++i) {
-    A(i, 0) -= edge[static_cast<std::size_t>(-i + count)];
-    for (int j = 1; j < count; ++j)
-      A(i, j) -= edge[static_cast<std::size_t>(j - i + count)] - edge[static_cast<std::size_t>(j - i - 1 + count)];
+    A(i, 0) -= edge[at(-i + count)];
+    for (int j = 1; j < count; ++j) A(i, j) -= edge[at(j - i + count)] - edge[at(j - i - 1 + count)];
   }
   const Eigen::VectorXd length = numerics::solve_linear(A, Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
   return length(0) > 0.0 ? length(0) : 1e15;

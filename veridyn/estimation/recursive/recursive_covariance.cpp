@@ -1,4 +1,4 @@
-// Error bars of RecursiveRegression: computed when asked for.
+// Error bars of RecursiveRegression: computed at the first call after an update.
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
@@ -133,6 +133,46 @@ void RecursiveRegression::State::inverse_on_excited(const SmallMatrix& jacobian,
   inverse = root.transpose().lazyProduct(root);
 }
 
+// Adds the bound on what is not excited to `bound`: the limit in each direction, and at least the error bar that GTLS
+// over all directions has there.
+void RecursiveRegression::State::add_unexcited_bound(const SmallMatrix& jacobian, SmallMatrix& bound) const {
+  const Eigen::Index n = count();
+  double largest = 1.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    largest = std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
+  }
+  const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
+  // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.
+  SmallVector b(n + 1), gtls_h(n + 1), gtls_W_h;
+  SmallMatrix gtls;
+  bool has_gtls = data.null_columns() == 0;
+  if (has_gtls) {
+    data.basis(data.noisy_columns() - 1, b.data());
+    has_gtls = data.share_of_last(b.data()) > 1e-20;
+  }
+  if (has_gtls) {
+    gtls_h = b * (-1.0 / b(n));
+    gtls_W_h = W.lazyProduct(gtls_h);
+    SmallMatrix gtls_inverse, S;
+    has_gtls = inverse_jacobian(gtls_h, gtls_inverse);
+    if (has_gtls) {
+      white_filling(jacobian, gtls_W_h, scale * gtls_h.dot(gtls_W_h), S);
+      gtls = sandwich(gtls_inverse, S);
+    }
+  }
+  for (Eigen::Index j = 0; j < unexcited.cols(); ++j) {
+    double limit = least;
+    if (has_gtls) {
+      const SmallVector weighted = free_weight.cwiseProduct(unexcited.col(j));
+      const SmallVector product = gtls.lazyProduct(weighted);
+      const double variance = weighted.dot(product);
+      if (variance > 0.0 && std::isfinite(variance)) limit = std::max(limit, kNormal95 * std::sqrt(variance));
+    }
+    const SmallVector q = unexcited.col(j).cwiseQuotient(free_weight) * (limit / kNormal95);
+    bound += q.lazyProduct(q.transpose());
+  }
+}
+
 void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& result) const {
   const auto all = static_cast<Eigen::Index>(names.size());
   const Eigen::Index n = count();
@@ -159,7 +199,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
         jacobian.setZero(n, n);
       }
       white_filling(jacobian, W_h, residual_variance, S);
-      if (kind == CovarianceKind::kColoured && scores.weight > 0.0) {
+      if (kind == CovarianceKind::kAutocorrelated && scores.weight > 0.0) {
         // Few blocks know little: the white filling counts as one of them.
         const double blocks = scores.blocks();
         const double trust = blocks / (blocks + 1.0);
@@ -173,43 +213,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
       if (leading > 0.0) excited += leading * inverse;
     }
     bound.setZero(n, n);
-    if (good && partial) {
-      double largest = 1.0;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        largest =
-            std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
-      }
-      const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
-      // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.
-      SmallVector b(n + 1), gtls_h(n + 1), gtls_W_h;
-      SmallMatrix gtls;
-      bool has_gtls = data.null_columns() == 0;
-      if (has_gtls) {
-        data.basis(data.noisy_columns() - 1, b.data());
-        has_gtls = data.share_of_last(b.data()) > 1e-20;
-      }
-      if (has_gtls) {
-        gtls_h = b * (-1.0 / b(n));
-        gtls_W_h = W.lazyProduct(gtls_h);
-        SmallMatrix gtls_inverse, S;
-        has_gtls = inverse_jacobian(gtls_h, gtls_inverse);
-        if (has_gtls) {
-          white_filling(jacobian, gtls_W_h, scale * gtls_h.dot(gtls_W_h), S);
-          gtls = sandwich(gtls_inverse, S);
-        }
-      }
-      for (Eigen::Index j = 0; j < unexcited.cols(); ++j) {
-        double limit = least;
-        if (has_gtls) {
-          const SmallVector weighted = free_weight.cwiseProduct(unexcited.col(j));
-          const SmallVector product = gtls.lazyProduct(weighted);
-          const double variance = weighted.dot(product);
-          if (variance > 0.0 && std::isfinite(variance)) limit = std::max(limit, kNormal95 * std::sqrt(variance));
-        }
-        const SmallVector q = unexcited.col(j).cwiseQuotient(free_weight) * (limit / kNormal95);
-        bound += q.lazyProduct(q.transpose());
-      }
-    }
+    if (good && partial) add_unexcited_bound(jacobian, bound);
   }
   if (good) {
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -233,7 +237,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
 }
 
 const internal::RecursiveErrorBars& RecursiveRegression::State::error_bars(CovarianceKind kind) const {
-  internal::RecursiveErrorBars& known = kind == CovarianceKind::kWhite ? white_bars : coloured_bars;
+  internal::RecursiveErrorBars& known = kind == CovarianceKind::kWhite ? white_bars : autocorrelated_bars;
   if (!known.fresh) {
     compute_error_bars(kind, known);
     known.fresh = true;
@@ -266,29 +270,21 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
   const internal::RecursiveErrorBars& white = error_bars(CovarianceKind::kWhite);
   result.covariance_white = white.covariance;
   result.degrees_of_freedom = known.degrees_of_freedom;
-  result.lag_window = options.covariance == CovarianceKind::kColoured ? options.block : 0;
+  result.lag_window = options.covariance == CovarianceKind::kAutocorrelated ? options.block : 0;
   result.rows = static_cast<Eigen::Index>(rows);
   result.residual_sd = residual_variance > 0.0 ? std::sqrt(residual_variance) : 0.0;
   result.error_scale = options.method == Method::kOls ? 0.0 : scale;
   result.singular_values.assign(singular_values.data(), singular_values.data() + singular_values.size());
   result.threshold = options.method == Method::kPcaGtls ? threshold : 0.0;
   result.excited_directions = excited_directions;
-  const double quantile95 = numerics::student_t_quantile(0.975, std::max(1.0, known.degrees_of_freedom));
   for (Eigen::Index i = 0; i < all; ++i) {
-    ParameterEstimate p;
+    Parameter p;
     p.name = names[static_cast<std::size_t>(i)];
     p.value = theta(i);
     p.sigma = known.sigma(i);
     p.sigma_white = white.sigma(i);
-    p.low95 = p.value - quantile95 * p.sigma;
-    p.high95 = p.value + quantile95 * p.sigma;
     p.status = status(i, significance);
-    if (p.status == ParameterStatus::kFixed) {
-      p.p_value = kNaN;
-    } else {
-      p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
-      p.p_value = numerics::student_t_two_sided_p(p.t, std::max(1.0, known.degrees_of_freedom));
-    }
+    set_interval(p, std::max(1.0, known.degrees_of_freedom));
     p.unexcited_share = unexcited_share(i);
     result.parameters.push_back(p);
   }

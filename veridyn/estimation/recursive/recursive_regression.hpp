@@ -33,7 +33,7 @@ struct RecursiveOptions {
   /// 10 max(1, largest |U (theta - prior)|_i); never below 1.96 sigma of GTLS in that direction.
   double unexcited_bound = 0.0;
   /// Error bars for autocorrelated residuals (the default) from sums of scores over blocks, or for white ones.
-  CovarianceKind covariance = CovarianceKind::kColoured;
+  CovarianceKind covariance = CovarianceKind::kAutocorrelated;
   /// Length of a block of scores [samples]: longer than the residual stays correlated (1 s at 100 Hz).
   Eigen::Index block = 100;
 
@@ -100,7 +100,7 @@ class RecursiveRegression {
   [[nodiscard]] bool usable() const { return termination() == EstimateTermination::kEstimated; }
   [[nodiscard]] EstimateTermination termination() const;
   /// n_p x n_p, of the chosen kind, bound on what is not excited included; infinite diagonal when not usable.
-  /// Computed when asked for after an update.
+  /// Computed at the first call after an update.
   [[nodiscard]] const SmallMatrix& covariance() const;
   [[nodiscard]] const SmallMatrix& covariance_white() const;
   /// Square roots of the diagonal of `covariance`.

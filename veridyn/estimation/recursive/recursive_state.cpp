@@ -252,7 +252,7 @@ void RecursiveRegression::State::solve() {
   const int w = data.noisy_columns();
   const double freedom = std::max(1.0, samples - static_cast<double>(n));
   const double smallest = data.singular_value(w - 1);
-  white_bars.fresh = coloured_bars.fresh = false;
+  white_bars.fresh = autocorrelated_bars.fresh = false;
   scale = smallest * smallest / freedom;
   // Rows of pure noise have singular values up to sqrt(N) + sqrt(w), which matters while there are few.
   threshold = std::max((options.signal_to_noise + 1.0) * std::sqrt(freedom),

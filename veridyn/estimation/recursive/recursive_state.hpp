@@ -12,7 +12,7 @@ namespace veridyn::estimation {
 
 namespace internal {
 
-/// Error bars of all parameters, computed when asked for after an update.
+/// Error bars of all parameters, computed at the first call after an update.
 struct RecursiveErrorBars {
   SmallMatrix covariance;
   SmallVector sigma;
@@ -51,6 +51,7 @@ struct RecursiveRegression::State {
   bool solve_least();
   bool solve_excited(int excited);
   const internal::RecursiveErrorBars& error_bars(CovarianceKind kind) const;
+  void add_unexcited_bound(const SmallMatrix& jacobian, SmallMatrix& bound) const;
   void compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& bars) const;
   bool inverse_jacobian(const SmallVector& h, SmallMatrix& inverse) const;
   void inverse_on_excited(const SmallMatrix& jacobian, SmallMatrix& inverse) const;
@@ -97,7 +98,7 @@ struct RecursiveRegression::State {
   SmallVector unexcited_share;         // all parameters
 
   mutable internal::RecursiveErrorBars white_bars;
-  mutable internal::RecursiveErrorBars coloured_bars;
+  mutable internal::RecursiveErrorBars autocorrelated_bars;
 };
 
 }  // namespace veridyn::estimation

@@ -103,13 +103,13 @@ VERIDYN_INLINE Angles angles_of(const Rows<kColumns>& G, const Row<kColumns>& po
   const double level = kNoAngle * kNoAngle * most;
   const Pair rounding{level, level};
   for (std::size_t i = 0; i < kColumns; ++i) {
-    const Pair own{power(static_cast<int>(i)), power(static_cast<int>(i))};
+    const Pair current{power(static_cast<int>(i)), power(static_cast<int>(i))};
     for (int j = 0; j < kPairs; ++j) {
       const Pair d = G[i].pair[j];
-      const Pair product = own * power.pair[j];
-      const Pair longer = own > power.pair[j] ? own : power.pair[j];
+      const Pair product = current * power.pair[j];
+      const Pair longer = current > power.pair[j] ? current : power.pair[j];
       const Pair square = d * d;
-      Pair difference = power.pair[j] - own;
+      Pair difference = power.pair[j] - current;
       if (j == static_cast<int>(i) / 2) difference[static_cast<int>(i) % 2] = kInfinity;
       Pair k = d / difference;
       k = square > rounding * longer ? k : none;
@@ -208,8 +208,8 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
       power.pair[j] = weight * s * s + y.pair[j] * y.pair[j];
     }
     for (std::size_t i = 0; i < kSize; ++i) {
-      const double own = y(static_cast<int>(i));
-      for (std::size_t j = 0; j < kPairs; ++j) G[i].pair[j] = Pair{own, own} * y.pair[j];
+      const double current = y(static_cast<int>(i));
+      for (std::size_t j = 0; j < kPairs; ++j) G[i].pair[j] = Pair{current, current} * y.pair[j];
     }
     const Angles angles = angles_of<kColumns>(G, power, K);
     if (angles.largest <= kLargestAngle) {

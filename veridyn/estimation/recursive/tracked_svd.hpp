@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/small_matrix.hpp"
 
 namespace veridyn::estimation {
@@ -32,7 +33,7 @@ class TrackedSvd {
   /// Descending.
   [[nodiscard]] double singular_value(int j) const { return values_[static_cast<std::size_t>(j)]; }
   /// Element i of right singular vector j.
-  [[nodiscard]] double vector(int i, int j) const { return vectors_[static_cast<std::size_t>(i * padded_ + j)]; }
+  [[nodiscard]] double vector(int i, int j) const { return vectors_[at(i * padded_ + j)]; }
   [[nodiscard]] SmallMatrix vectors() const;
   /// Turns (of all columns at once, or of single pairs) so far.
   [[nodiscard]] std::uint64_t turns() const { return turns_; }

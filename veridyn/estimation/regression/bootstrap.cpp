@@ -88,7 +88,8 @@ void BootstrapOptions::validate(Index rows) const {
   if (block_length < 0 || block_length > rows)
     throw InputError("bootstrap.block_length",
                      fmt::format("is {}; must be from 0 to {}, the rows", block_length, rows));
-  if (threads < 0) throw InputError("bootstrap.threads", fmt::format("is {}; must be >= 0 (0: all cores)", threads));
+  if (threads < 0)
+    throw InputError("bootstrap.threads", fmt::format("is {}; must be >= 0 (0: those of the progress)", threads));
 }
 
 bool Bootstrap::usable() const {
@@ -136,7 +137,8 @@ Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& esti
   std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
   std::mutex mutex;
-  numerics::parallel_for(options.replicates, options.threads, [&](std::size_t i) {
+  const int threads = options.threads > 0 ? options.threads : progress.threads();
+  numerics::parallel_for(options.replicates, threads, [&](std::size_t i) {
     if (stop) return;
     numerics::RandomStream random(options.seed, static_cast<std::uint64_t>(i));
     estimates[i] = estimator(resample_rows(data, segments, result.block_length, options.circular, random));

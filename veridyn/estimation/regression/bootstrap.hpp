@@ -20,7 +20,7 @@ struct BootstrapOptions {
   /// draw rows near the ends less often.
   bool circular = true;
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all cores; any number gives identical bits
+  int threads = 0;  ///< 0: those of the progress; any number gives identical bits
 
   /// @throws InputError naming the option, its value and its rule.
   void validate(Eigen::Index rows) const;
@@ -49,7 +49,7 @@ struct Bootstrap {
 /// Block bootstrap of rows (Kuensch 1989; Politis & Romano 1992): whole blocks of neighbouring rows [x, z] are drawn
 /// with replacement until there are as many rows as before, and the estimate repeated. It assumes neither a
 /// distribution nor independence of X and residual, only that rows more than a block apart are independent: the error
-/// bar of last resort for any estimator. Blocks stay within segments; each becomes a segment of its own. Its variance
+/// bar of last resort for any estimator. Blocks stay within segments; each becomes a separate segment. Its variance
 /// is too small by about the correlation length over the block length. Replicate i draws from stream i of the seed,
 /// whatever the threads.
 /// @throws InputError when data or options are wrong.

@@ -10,6 +10,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
@@ -75,6 +76,76 @@ void remove_line(Eigen::Ref<Eigen::VectorXd> x) {
   x -= slope * t;
 }
 
+/// Columns [x, z] of each segment, transformed at the frequencies of the band that the segment resolves.
+std::vector<Eigen::MatrixXcd> transformed_segments(const RegressionData& data, const std::vector<Index>& columns,
+                                                   double step, const FrequencyOptions& options) {
+  const auto n = static_cast<Index>(columns.size());
+  std::vector<Eigen::MatrixXcd> segments;
+  for (const auto& [begin, end] : segment_ranges(data.rows(), data.segment)) {
+    const Index N = end - begin;
+    if (N < kLeastSamples) continue;
+    const double duration = step * static_cast<double>(N);
+    const double spacing = options.resolution_Hz > 0.0 ? options.resolution_Hz : 1.0 / duration;
+    std::vector<double> frequencies;
+    for (double m = std::ceil(options.low_Hz / spacing - 1e-9); m * spacing <= options.high_Hz * (1.0 + 1e-9); m += 1.0)
+      if (m >= 1.0) frequencies.push_back(m * spacing);
+    if (frequencies.empty()) continue;
+    Eigen::MatrixXcd segment(static_cast<Index>(frequencies.size()), n + 1);
+    for (Index j = 0; j <= n; ++j) {
+      Eigen::VectorXd column = data.regressand.segment(begin, N);
+      if (j < n) column = data.regressors.col(columns[static_cast<std::size_t>(j)]).segment(begin, N);
+      if (data.row_scale.size() > 0) column = column.cwiseQuotient(data.row_scale.segment(begin, N)).eval();
+      if (options.remove_trend) remove_line(column);
+      segment.col(j) = finite_fourier_transform({column.data(), static_cast<std::size_t>(N)}, step, frequencies) /
+                       std::sqrt(duration);
+    }
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+/// Real and imaginary parts as separate rows: theta is real.
+RowMatrix real_rows(const std::vector<Eigen::MatrixXcd>& segments, Index columns) {
+  Index rows = 0;
+  for (const Eigen::MatrixXcd& segment : segments) rows += 2 * segment.rows();
+  RowMatrix D(rows, columns);
+  Index row = 0;
+  for (const Eigen::MatrixXcd& segment : segments) {
+    D.middleRows(row, segment.rows()) = segment.real();
+    D.middleRows(row + segment.rows(), segment.rows()) = segment.imag();
+    row += 2 * segment.rows();
+  }
+  return D;
+}
+
+std::vector<Parameter> unknown_parameters(const RegressionData& data, const std::vector<Index>& columns) {
+  std::vector<Parameter> parameters;
+  for (const Index j : columns) {
+    Parameter p;
+    p.name = data.parameter_names[static_cast<std::size_t>(j)];
+    if (!data.parameter_units.empty()) p.unit = data.parameter_units[static_cast<std::size_t>(j)];
+    p.value = kNaN;
+    p.sigma = p.sigma_white = p.high95 = kInfinity;
+    p.low95 = -p.sigma;
+    parameters.push_back(std::move(p));
+  }
+  return parameters;
+}
+
+/// Covariance whose filling is the residual's own power at each frequency, whatever its spectrum: heteroscedasticity-
+/// consistent with leverage removed (HC3, MacKinnon & White 1985).
+Eigen::MatrixXd covariance_by_frequency(const RowMatrix& D, const OrdinaryLeastSquares& ols) {
+  const Index n = D.cols() - 1;
+  const Eigen::VectorXd residual = D.col(n) - D.leftCols(n) * ols.theta;
+  Eigen::MatrixXd filling = Eigen::MatrixXd::Zero(n, n);
+  for (Index k = 0; k < D.rows(); ++k) {
+    const Eigen::VectorXd x = D.row(k).head(n).transpose();
+    const double r = residual(k) / std::max(1e-6, 1.0 - x.dot(ols.inverse_normal * x));
+    filling += r * r * x * x.transpose();
+  }
+  return ols.inverse_normal * filling * ols.inverse_normal;
+}
+
 }  // namespace
 
 Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step,
@@ -134,54 +205,19 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
       columns.push_back(j);
   }
   const auto n = static_cast<Index>(columns.size());
-  std::vector<Eigen::MatrixXcd> blocks;
-  for (const auto& [begin, end] : segment_ranges(data.rows(), data.segment)) {
-    const Index N = end - begin;
-    if (N < kLeastSamples) continue;
-    const double duration = step * static_cast<double>(N);
-    const double spacing = options.resolution_Hz > 0.0 ? options.resolution_Hz : 1.0 / duration;
-    std::vector<double> frequencies;
-    for (double m = std::ceil(options.low_Hz / spacing - 1e-9); m * spacing <= options.high_Hz * (1.0 + 1e-9); m += 1.0)
-      if (m >= 1.0) frequencies.push_back(m * spacing);
-    if (frequencies.empty()) continue;
-    ++result.segments;
-    Eigen::MatrixXcd block(static_cast<Index>(frequencies.size()), n + 1);
-    for (Index j = 0; j <= n; ++j) {
-      Eigen::VectorXd column = data.regressand.segment(begin, N);
-      if (j < n) column = data.regressors.col(columns[static_cast<std::size_t>(j)]).segment(begin, N);
-      if (data.row_scale.size() > 0) column = column.cwiseQuotient(data.row_scale.segment(begin, N)).eval();
-      if (options.remove_trend) remove_line(column);
-      block.col(j) = finite_fourier_transform({column.data(), static_cast<std::size_t>(N)}, step, frequencies) /
-                     std::sqrt(duration);
-    }
-    result.frequencies += block.rows();
-    blocks.push_back(std::move(block));
-  }
+  const std::vector<Eigen::MatrixXcd> segments = transformed_segments(data, columns, step, options);
+  result.segments = signed_index(segments.size());
+  for (const Eigen::MatrixXcd& segment : segments) result.frequencies += segment.rows();
   RegressionEstimate& e = result.estimate;
   e.method = Method::kOls;
   e.rows = 2 * result.frequencies;
-  for (const Index j : columns) {
-    ParameterEstimate p;
-    p.name = data.parameter_names[static_cast<std::size_t>(j)];
-    if (!data.parameter_units.empty()) p.unit = data.parameter_units[static_cast<std::size_t>(j)];
-    p.value = kNaN;
-    p.sigma = p.sigma_white = p.high95 = kInfinity;
-    p.low95 = -p.sigma;
-    e.parameters.push_back(std::move(p));
-  }
+  e.parameters = unknown_parameters(data, columns);
   if (n == 0 || e.rows < n + 2) {
     e.message = fmt::format("{} frequencies between {} and {} Hz in {} segments are too few for {} parameters",
                             result.frequencies, options.low_Hz, options.high_Hz, result.segments, n);
     return result;
   }
-  // Real and imaginary parts are rows of their own: theta is real.
-  RowMatrix D(e.rows, n + 1);
-  Index row = 0;
-  for (const Eigen::MatrixXcd& block : blocks) {
-    D.middleRows(row, block.rows()) = block.real();
-    D.middleRows(row + block.rows(), block.rows()) = block.imag();
-    row += 2 * block.rows();
-  }
+  const RowMatrix D = real_rows(segments, n + 1);
   AugmentedQr qr(n + 1);
   qr.append(D);
   const OrdinaryLeastSquares ols = ordinary_least_squares(qr.triangle());
@@ -202,29 +238,18 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
   e.covariance_white = ols.residual_sum_of_squares / freedom * ols.inverse_normal;
   e.covariance = e.covariance_white;
   e.degrees_of_freedom = freedom;
-  if (options.covariance == CovarianceKind::kColoured) {
-    const Eigen::VectorXd residual = D.col(n) - D.leftCols(n) * ols.theta;
-    Eigen::MatrixXd filling = Eigen::MatrixXd::Zero(n, n);
-    for (Index k = 0; k < e.rows; ++k) {
-      const Eigen::VectorXd x = D.row(k).head(n).transpose();
-      const double r = residual(k) / std::max(1e-6, 1.0 - x.dot(ols.inverse_normal * x));
-      filling += r * r * x * x.transpose();
-    }
-    e.covariance = ols.inverse_normal * filling * ols.inverse_normal;
-    // The filling is an estimate too, from as many values as there are frequencies.
+  if (options.covariance == CovarianceKind::kAutocorrelated) {
+    e.covariance = covariance_by_frequency(D, ols);
+    // It is an estimate too, from as many values as there are frequencies.
     e.degrees_of_freedom = std::max(1.0, static_cast<double>(result.frequencies - n));
   }
-  const double quantile95 = numerics::student_t_quantile(0.975, e.degrees_of_freedom);
   for (Index i = 0; i < n; ++i) {
-    ParameterEstimate& p = e.parameters[static_cast<std::size_t>(i)];
+    Parameter& p = e.parameters[static_cast<std::size_t>(i)];
     p.value = e.theta(i);
     p.sigma = std::sqrt(e.covariance(i, i));
     p.sigma_white = std::sqrt(e.covariance_white(i, i));
-    p.low95 = p.value - quantile95 * p.sigma;
-    p.high95 = p.value + quantile95 * p.sigma;
     p.variance_inflation = std::max(1.0, D.col(i).squaredNorm() * ols.inverse_normal(i, i));
-    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
-    p.p_value = numerics::student_t_two_sided_p(p.t, e.degrees_of_freedom);
+    set_interval(p, e.degrees_of_freedom);
     p.status = p.p_value < options.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
   }
   e.termination = EstimateTermination::kEstimated;

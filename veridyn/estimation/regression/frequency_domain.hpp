@@ -27,7 +27,7 @@ struct FrequencyOptions {
   double resolution_Hz = 0.0;  ///< spacing; 0 takes 1/duration of each segment, at which values are independent
   bool remove_trend = true;    ///< subtract a straight line from every column of a segment first
   double significance = 0.05;
-  CovarianceKind covariance = CovarianceKind::kColoured;
+  CovarianceKind covariance = CovarianceKind::kAutocorrelated;
 
   /// @throws InputError unless 0 < low < high <= 1/(2 step).
   void validate(double step) const;
@@ -48,7 +48,7 @@ struct FrequencyEstimate {
 /// Constant regressors and whatever is a straight line in a segment vanish, so biases and drifts of the sensors need no
 /// parameters; noise outside the band does no harm. Values of a segment are divided by sqrt(duration): then the noise
 /// of long and short segments weighs the same. Covariance: kWhite: s^2 [Re(X'X)]^-1 with s^2 from 2 M - n real values;
-/// kColoured: residual power may vary over frequency (sandwich with leverage correction HC3), which is what
+/// kAutocorrelated: residual power may vary over frequency (sandwich with leverage correction HC3), which is what
 /// autocorrelated residuals are here, so no lags are needed. Errors in the regressors within the band still bias, as in
 /// OLS.
 /// @throws InputError when data, step or options are wrong. With no usable frequency: `kTooFewRows`.

@@ -108,8 +108,9 @@ LongRunCovariance long_run_covariance(const RowMatrix& scores, const SegmentRang
   return result;
 }
 
-LongRunCovariance coloured_normal_matrix(const RowMatrix& regressors, const Eigen::Ref<const Eigen::VectorXd>& residual,
-                                         const SegmentRanges& segments, Eigen::Index window) {
+LongRunCovariance autocorrelated_normal_matrix(const RowMatrix& regressors,
+                                               const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                               const SegmentRanges& segments, Eigen::Index window) {
   const Eigen::Index n = regressors.cols();
   const auto N = static_cast<double>(regressors.rows());
   LongRunCovariance result;

@@ -35,8 +35,8 @@ using SegmentRanges = std::vector<std::pair<Eigen::Index, Eigen::Index>>;
 /// Morelli & Klein (1997): sum over i, j of x_i R(i - j) x_j', with R the autocovariance of the
 /// residual under the same lag window. Needs the residual independent of X; steadier than the sandwich since R is one
 /// function.
-[[nodiscard]] LongRunCovariance coloured_normal_matrix(const RowMatrix& regressors,
-                                                       const Eigen::Ref<const Eigen::VectorXd>& residual,
-                                                       const SegmentRanges& segments, Eigen::Index window);
+[[nodiscard]] LongRunCovariance autocorrelated_normal_matrix(const RowMatrix& regressors,
+                                                             const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                                             const SegmentRanges& segments, Eigen::Index window);
 
 }  // namespace veridyn::estimation

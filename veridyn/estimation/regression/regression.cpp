@@ -25,22 +25,6 @@ std::string_view to_string(Method method) {
   return "";
 }
 
-std::string_view to_string(ParameterStatus status) {
-  switch (status) {
-    case ParameterStatus::kIdentified:
-      return "identified";
-    case ParameterStatus::kInsignificant:
-      return "insignificant";
-    case ParameterStatus::kNotExcited:
-      return "not_excited";
-    case ParameterStatus::kRejected:
-      return "rejected";
-    case ParameterStatus::kFixed:
-      return "fixed";
-  }
-  return "";
-}
-
 std::string_view to_string(EstimateTermination termination) {
   switch (termination) {
     case EstimateTermination::kEstimated:
@@ -81,11 +65,7 @@ void RegressionOptions::validate(Eigen::Index parameters) const {
   }
 }
 
-const ParameterEstimate* RegressionEstimate::find(std::string_view name) const {
-  const auto found =
-      std::find_if(parameters.begin(), parameters.end(), [&](const ParameterEstimate& p) { return p.name == name; });
-  return found == parameters.end() ? nullptr : &*found;
-}
+const Parameter* RegressionEstimate::find(std::string_view name) const { return find_parameter(parameters, name); }
 
 const RegressionEstimate* RegressionComparison::find(Method method) const {
   const auto found =
@@ -99,7 +79,7 @@ RegressionEstimate estimate(const RegressionData& data, Method method, const Reg
 }
 
 void reject(RegressionEstimate& estimate) {
-  for (ParameterEstimate& p : estimate.parameters) {
+  for (Parameter& p : estimate.parameters) {
     if (p.status != ParameterStatus::kFixed && p.status != ParameterStatus::kNotExcited)
       p.status = ParameterStatus::kRejected;
   }

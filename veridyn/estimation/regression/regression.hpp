@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/parameter.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -21,16 +23,6 @@ enum class Method {
 /// "OLS", "TLS", "GTLS", "PCA-GTLS".
 [[nodiscard]] std::string_view to_string(Method method);
 
-/// What may be said of one parameter. `to_string` gives the words of estimate.json.
-enum class ParameterStatus {
-  kIdentified,     ///< differs from zero at the chosen significance
-  kInsignificant,  ///< determined, but zero lies inside its interval: marked, not zeroed
-  kNotExcited,     ///< the data do not determine it; its error bar is the bound on what is not excited
-  kRejected,       ///< the estimate as a whole must not be used
-  kFixed           ///< pinned by the user
-};
-[[nodiscard]] std::string_view to_string(ParameterStatus status);
-
 /// How an estimation ended.
 enum class EstimateTermination {
   kEstimated,      ///< an estimate with covariance
@@ -43,13 +35,14 @@ enum class EstimateTermination {
 
 /// Which covariance the error bars come from.
 enum class CovarianceKind {
-  kWhite,    ///< errors uncorrelated in time; 1.6 to 3 times too small on real flight
-  kColoured  ///< OLS: Morelli & Klein (1997), residual autocorrelation; TLS family: lag-window sandwich. The default
+  kWhite,          ///< errors uncorrelated in time; 1.6 to 3 times too small on real flight
+  kAutocorrelated  ///< OLS: Morelli & Klein (1997), residual autocorrelation; TLS family: lag-window sandwich. The
+                   ///< default
 };
 
 /// How a regression is estimated and tested.
 struct RegressionOptions {
-  CovarianceKind covariance = CovarianceKind::kColoured;
+  CovarianceKind covariance = CovarianceKind::kAutocorrelated;
   /// Two-sided level of the t-tests; intervals `low95`, `high95` are always 95 %.
   double significance = 0.05;
   /// S/n of the threshold (S/n + 1) sqrt(N - n_p) on the singular values of D C^-1, in [1, 10]. Since s_j^2 is signal
@@ -73,25 +66,6 @@ struct RegressionOptions {
   void validate(Eigen::Index parameters) const;
 };
 
-/// One parameter as a report shows it.
-struct ParameterEstimate {
-  std::string name;
-  std::string unit = "1";
-  double value = 0.0;
-  double sigma = 0.0;  ///< of the chosen covariance
-  double low95 = 0.0;  ///< Student's t with the estimate's degrees of freedom
-  double high95 = 0.0;
-  double t = 0.0;        ///< value / sigma
-  double p_value = 1.0;  ///< two-sided, of "the parameter is zero"
-  double sigma_white = 0.0;
-  /// Variance inflation factor 1/(1 - R^2 of this column on the others): above about 10 the column is nearly a
-  /// combination of the others. 1 for a constant column alone.
-  double variance_inflation = 1.0;
-  /// Share (0..1) of the parameter's unit vector that lies in directions that were not excited.
-  double unexcited_share = 0.0;
-  ParameterStatus status = ParameterStatus::kRejected;
-};
-
 /// A combination of parameters and how well the data excite it.
 struct Direction {
   Eigen::VectorXd combination;  ///< unit vector over the parameters
@@ -104,7 +78,7 @@ struct RegressionEstimate {
   Method method = Method::kOls;
   EstimateTermination termination = EstimateTermination::kTooFewRows;
   std::string message;  ///< one sentence: what came out, or why nothing did
-  std::vector<ParameterEstimate> parameters;
+  std::vector<Parameter> parameters;
   Eigen::VectorXd theta;             ///< n_p; the values of `parameters`
   Eigen::MatrixXd covariance;        ///< of the chosen kind, unexcited bound included
   Eigen::MatrixXd covariance_white;  ///< the same with errors taken as white
@@ -128,22 +102,13 @@ struct RegressionEstimate {
 
   /// Is there an estimate with an error bar?
   [[nodiscard]] bool usable() const { return termination == EstimateTermination::kEstimated; }
-  [[nodiscard]] const ParameterEstimate* find(std::string_view name) const;
-};
-
-/// A check on the comparison, with the sentence that a report prints.
-struct HonestyCheck {
-  std::string name = {};
-  bool passed = true;
-  double value = 0.0;
-  double limit = 0.0;
-  std::string text = {};
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
 };
 
 /// All methods on the same data, from one pass over it, and which one is recommended.
 struct RegressionComparison {
   std::vector<RegressionEstimate> estimates;  ///< OLS, TLS, GTLS, PCA-GTLS (without W: OLS, TLS)
-  std::vector<HonestyCheck> checks;
+  std::vector<Evidence> checks;
   bool recommends = false;
   Method recommended = Method::kOls;  ///< meaningful when `recommends`
   std::string reason;                 ///< one sentence, whether it recommends or refuses

@@ -39,6 +39,73 @@ Pinning pin_parameters(const Eigen::VectorXd& prior, const Eigen::VectorXd& weig
   return pinning;
 }
 
+/// What is estimated when pinned parameters are moved to the regressand.
+struct FreeParameters {
+  Pinning pinning;
+  Eigen::VectorXd all_prior, all_weight;  ///< of all parameters
+  Eigen::VectorXd prior, weight;          ///< of the free ones
+  Eigen::MatrixXd triangle;               ///< of [X_free, z]
+  Eigen::MatrixXd error_covariance;       ///< W of [X_free, z]
+  Eigen::MatrixXd lift;                   ///< all parameters by free ones
+
+  [[nodiscard]] Eigen::Index count() const { return prior.size(); }
+};
+
+FreeParameters free_parameters(const RegressionOptions& options, const Eigen::MatrixXd& triangle,
+                               const Eigen::MatrixXd& W) {
+  const Eigen::Index n = W.rows() - 1;
+  FreeParameters out;
+  out.all_prior = options.prior.size() > 0 ? options.prior : Eigen::VectorXd::Zero(n).eval();
+  out.all_weight = options.prior_weight.size() > 0 ? options.prior_weight : Eigen::VectorXd::Ones(n).eval();
+  out.pinning = pin_parameters(out.all_prior, out.all_weight);
+  const auto count = static_cast<Eigen::Index>(out.pinning.free.size());
+  out.prior.resize(count);
+  out.weight.resize(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    out.prior(j) = out.all_prior(out.pinning.free[static_cast<std::size_t>(j)]);
+    out.weight(j) = out.all_weight(out.pinning.free[static_cast<std::size_t>(j)]);
+  }
+  const bool pinned = count < n;
+  const Eigen::MatrixXd& P = out.pinning.P;
+  out.triangle = pinned ? retriangulate(triangle * P) : triangle;
+  out.error_covariance = pinned ? Eigen::MatrixXd(P.transpose() * W * P) : W;
+  out.lift = P.topLeftCorner(n, count);
+  return out;
+}
+
+/// What is assumed of directions that the data do not excite.
+struct UnexcitedBound {
+  Eigen::MatrixXd covariance;  ///< of the free parameters
+  Eigen::VectorXd share;       ///< of each free parameter's unit vector
+  std::vector<Direction> directions;
+};
+
+UnexcitedBound bound_unexcited(const PcaTotalLeastSquares& pca, const FreeParameters& free, double given_limit,
+                               double rows, const std::vector<std::string>& names) {
+  UnexcitedBound out;
+  out.covariance = Eigen::MatrixXd::Zero(free.count(), free.count());
+  out.share = Eigen::VectorXd::Zero(free.count());
+  if (pca.unexcited.cols() == 0) return out;
+  const Eigen::VectorXd offset = free.weight.cwiseProduct(pca.theta - free.prior);
+  const double automatic = kAutomaticBound * std::max(1.0, offset.cwiseAbs().maxCoeff());
+  const TotalLeastSquares full = total_least_squares(free.triangle, free.error_covariance, rows);
+  for (Eigen::Index j = 0; j < pca.unexcited.cols(); ++j) {
+    const Eigen::VectorXd direction = pca.unexcited.col(j);
+    double limit = given_limit > 0.0 ? given_limit : automatic;
+    if (full.solved) {
+      const Eigen::VectorXd weighted = free.weight.cwiseProduct(direction);
+      limit = std::max(limit, kNormal95 * std::sqrt(std::max(0.0, weighted.dot(full.covariance_white * weighted))));
+    }
+    const Eigen::VectorXd q = direction.cwiseQuotient(free.weight);
+    out.covariance += (limit / kNormal95) * (limit / kNormal95) * q * q.transpose();
+    out.share += direction.cwiseAbs2();
+    Eigen::VectorXd combination = free.lift * q;
+    combination /= combination.norm();
+    out.directions.push_back({combination, limit, describe_combination(combination, names)});
+  }
+  return out;
+}
+
 std::string list_of(const std::vector<Direction>& directions) {
   std::string text;
   for (const Direction& d : directions) text += (text.empty() ? "" : "; ") + d.text;
@@ -139,10 +206,10 @@ void RegressionAnalysis::run_ols(RegressionEstimate& result) const {
   }
   result.covariance_white = variance * ols.inverse_normal;
   result.covariance = result.covariance_white;
-  if (options_.covariance == CovarianceKind::kColoured) {
+  if (options_.covariance == CovarianceKind::kAutocorrelated) {
     const Eigen::VectorXd r = residual(ols.theta);
     const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
-    const LongRunCovariance filling = coloured_normal_matrix(X(), r, segments_, window);
+    const LongRunCovariance filling = autocorrelated_normal_matrix(X(), r, segments_, window);
     result.covariance = rows() / freedom * (ols.inverse_normal * filling.matrix * ols.inverse_normal);
     result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
     result.lag_window = window;
@@ -177,7 +244,7 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
   }
   result.covariance_white = tls.covariance_white;
   result.covariance = tls.covariance_white;
-  if (options_.covariance == CovarianceKind::kColoured) {
+  if (options_.covariance == CovarianceKind::kAutocorrelated) {
     RowMatrix scores;
     Eigen::VectorXd r;
     errors_in_variables_scores(X(), z(), W, tls.theta, ratio, scores, r);
@@ -196,28 +263,14 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
 void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
   const Eigen::Index n = data_.parameters();
   const double freedom = rows() - static_cast<double>(n);
-  const Eigen::MatrixXd W = error_covariance(result.method);
-  const Eigen::VectorXd prior = options_.prior.size() > 0 ? options_.prior : Eigen::VectorXd::Zero(n).eval();
-  const Eigen::VectorXd weight =
-      options_.prior_weight.size() > 0 ? options_.prior_weight : Eigen::VectorXd::Ones(n).eval();
-  const Pinning pinning = pin_parameters(prior, weight);
-  const auto free_count = static_cast<Eigen::Index>(pinning.free.size());
-  Eigen::VectorXd free_prior(free_count), free_weight(free_count);
-  for (Eigen::Index j = 0; j < free_count; ++j) {
-    free_prior(j) = prior(pinning.free[static_cast<std::size_t>(j)]);
-    free_weight(j) = weight(pinning.free[static_cast<std::size_t>(j)]);
-  }
-  const bool pinned = free_count < n;
-  const Eigen::MatrixXd R = pinned ? retriangulate(triangle_ * pinning.P) : triangle_;
-  const Eigen::MatrixXd W_free = pinned ? Eigen::MatrixXd(pinning.P.transpose() * W * pinning.P) : W;
+  const FreeParameters free = free_parameters(options_, triangle_, error_covariance(result.method));
+  const Eigen::MatrixXd& W = free.error_covariance;
   const bool scale_known = data_.has_error_covariance() && data_.error_scale_known;
   const PcaTotalLeastSquares pca =
-      pca_total_least_squares(R, W_free, rows(), options_.signal_to_noise, scale_known, free_prior, free_weight);
-  const Eigen::MatrixXd lift = pinning.P.topLeftCorner(n, free_count);
-
-  result.theta = lift * pca.theta;
+      pca_total_least_squares(free.triangle, W, rows(), options_.signal_to_noise, scale_known, free.prior, free.weight);
+  result.theta = free.lift * pca.theta;
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(weight(i))) result.theta(i) = prior(i);
+    if (!std::isfinite(free.all_weight(i))) result.theta(i) = free.all_prior(i);
   }
   result.singular_values.assign(pca.singular_values.data(), pca.singular_values.data() + pca.singular_values.size());
   result.threshold = pca.threshold;
@@ -230,20 +283,20 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
     return;
   }
 
-  // Scores of the free parameters; pinned ones moved to the regressand.
   const Eigen::MatrixXd& inverse = pca.inverse_on_excited;
-  Eigen::MatrixXd excited_white =
-      inverse * white_score_covariance(pca.jacobian, W_free, pca.theta, pca.error_scale, rows(), ratio_) * inverse;
+  const Eigen::MatrixXd excited_white =
+      inverse * white_score_covariance(pca.jacobian, W, pca.theta, pca.error_scale, rows(), ratio_) * inverse;
   Eigen::MatrixXd excited = excited_white;
-  if (options_.covariance == CovarianceKind::kColoured) {
+  if (options_.covariance == CovarianceKind::kAutocorrelated) {
     RowMatrix scores;
     Eigen::VectorXd r;
-    if (pinned) {
-      const RowMatrix X_free = X() * lift;
-      const Eigen::VectorXd z_free = z() + X() * pinning.P.col(free_count).head(n);
-      errors_in_variables_scores(X_free, z_free, W_free, pca.theta, ratio_, scores, r);
+    if (free.count() < n) {
+      // Scores of the free parameters; pinned ones moved to the regressand.
+      const RowMatrix X_free = X() * free.lift;
+      const Eigen::VectorXd z_free = z() + X() * free.pinning.P.col(free.count()).head(n);
+      errors_in_variables_scores(X_free, z_free, W, pca.theta, ratio_, scores, r);
     } else {
-      errors_in_variables_scores(X(), z(), W_free, pca.theta, ratio_, scores, r);
+      errors_in_variables_scores(X(), z(), W, pca.theta, ratio_, scores, r);
     }
     const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
     const LongRunCovariance filling = long_run_covariance(scores, segments_, window);
@@ -252,46 +305,28 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
     result.lag_window = window;
   }
 
-  // The bound on what is not excited.
-  Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(free_count, free_count);
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(free_count);
-  if (pca.unexcited.cols() > 0) {
-    const Eigen::VectorXd offset = free_weight.cwiseProduct(pca.theta - free_prior);
-    const double automatic = kAutomaticBound * std::max(1.0, offset.cwiseAbs().maxCoeff());
-    const TotalLeastSquares full = total_least_squares(R, W_free, rows());
-    for (Eigen::Index j = 0; j < pca.unexcited.cols(); ++j) {
-      const Eigen::VectorXd direction = pca.unexcited.col(j);
-      double limit = options_.unexcited_bound > 0.0 ? options_.unexcited_bound : automatic;
-      if (full.solved) {
-        const Eigen::VectorXd weighted = free_weight.cwiseProduct(direction);
-        limit = std::max(limit, kNormal95 * std::sqrt(std::max(0.0, weighted.dot(full.covariance_white * weighted))));
-      }
-      const Eigen::VectorXd q = direction.cwiseQuotient(free_weight);
-      bound += (limit / kNormal95) * (limit / kNormal95) * q * q.transpose();
-      share += direction.cwiseAbs2();
-      Eigen::VectorXd combination = lift * q;
-      combination /= combination.norm();
-      result.unexcited.push_back({combination, limit, describe_combination(combination, data_.parameter_names)});
-    }
-  }
-  result.covariance_white = lift * (excited_white + bound) * lift.transpose();
-  result.covariance = lift * (excited + bound) * lift.transpose();
+  UnexcitedBound bound = bound_unexcited(pca, free, options_.unexcited_bound, rows(), data_.parameter_names);
+  result.unexcited = std::move(bound.directions);
+  result.covariance_white = free.lift * (excited_white + bound.covariance) * free.lift.transpose();
+  result.covariance = free.lift * (excited + bound.covariance) * free.lift.transpose();
   result.termination = EstimateTermination::kEstimated;
   result.message = result.unexcited.empty()
                        ? fmt::format("all {} directions are excited", n)
                        : fmt::format("{} of {} directions are excited; not excited: {}", pca.excited_directions,
-                                     free_count, list_of(result.unexcited));
+                                     free.count(), list_of(result.unexcited));
   // Kept here because `finish` cannot distinguish the bound from the excited part.
   const double critical = numerics::student_t_quantile(1.0 - 0.5 * options_.significance, result.degrees_of_freedom);
   result.parameters.resize(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(weight(i))) result.parameters[static_cast<std::size_t>(i)].status = ParameterStatus::kFixed;
+    if (!std::isfinite(free.all_weight(i)))
+      result.parameters[static_cast<std::size_t>(i)].status = ParameterStatus::kFixed;
   }
-  for (Eigen::Index j = 0; j < free_count; ++j) {
-    ParameterEstimate& p = result.parameters[static_cast<std::size_t>(pinning.free[static_cast<std::size_t>(j)])];
-    p.unexcited_share = std::min(1.0, share(j));
-    const double sigma = std::sqrt(std::max(0.0, excited(j, j) + bound(j, j)));
-    const bool bound_dominates = bound(j, j) > excited(j, j) && !(std::abs(pca.theta(j)) > critical * sigma);
+  for (Eigen::Index j = 0; j < free.count(); ++j) {
+    Parameter& p = result.parameters[static_cast<std::size_t>(free.pinning.free[static_cast<std::size_t>(j)])];
+    p.unexcited_share = std::min(1.0, bound.share(j));
+    const double by_bound = bound.covariance(j, j);
+    const double sigma = std::sqrt(std::max(0.0, excited(j, j) + by_bound));
+    const bool bound_dominates = by_bound > excited(j, j) && !(std::abs(pca.theta(j)) > critical * sigma);
     p.status = p.unexcited_share > 0.5 || bound_dominates ? ParameterStatus::kNotExcited : ParameterStatus::kIdentified;
   }
 }
@@ -309,9 +344,8 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
   result.normal_plot = numerics::normal_probability_plot(view, options_.normal_plot_points);
   const bool usable = result.usable();
   const double freedom = std::max(1.0, result.degrees_of_freedom);
-  const double quantile95 = numerics::student_t_quantile(0.975, freedom);
   for (Eigen::Index i = 0; i < n; ++i) {
-    ParameterEstimate& p = result.parameters[static_cast<std::size_t>(i)];
+    Parameter& p = result.parameters[static_cast<std::size_t>(i)];
     p.name = data_.parameter_names[static_cast<std::size_t>(i)];
     if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[static_cast<std::size_t>(i)];
     p.value = result.theta(i);
@@ -325,15 +359,8 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
     }
     p.sigma = std::sqrt(std::max(0.0, result.covariance(i, i)));
     p.sigma_white = std::sqrt(std::max(0.0, result.covariance_white(i, i)));
-    p.low95 = p.value - quantile95 * p.sigma;
-    p.high95 = p.value + quantile95 * p.sigma;
-    if (p.status == ParameterStatus::kFixed) {
-      p.p_value = kNaN;
-      continue;
-    }
-    p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
-    p.p_value = numerics::student_t_two_sided_p(p.t, freedom);
-    if (p.status != ParameterStatus::kNotExcited) {
+    set_interval(p, freedom);
+    if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed) {
       p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
     }
   }

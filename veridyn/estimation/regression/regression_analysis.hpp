@@ -9,7 +9,8 @@
 
 namespace veridyn::estimation::internal {
 
-/// What all methods share on the same data: the checked, row-scaled data and the triangle of one pass over it.
+/// View of data and options with what all methods share on them: checked, row-scaled data and the triangle of one pass
+/// over it. Data and options must outlive it.
 class RegressionAnalysis {
  public:
   RegressionAnalysis(const RegressionData& data, const RegressionOptions& options);

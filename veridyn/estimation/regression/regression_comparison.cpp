@@ -26,7 +26,7 @@ struct Distance {
 Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   Distance largest;
   for (Eigen::Index i = 0; i < a.size(); ++i) {
-    const ParameterEstimate& p = scale.parameters[static_cast<std::size_t>(i)];
+    const Parameter& p = scale.parameters[static_cast<std::size_t>(i)];
     if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited || !(p.sigma > 0.0)) continue;
     const double sigmas = std::abs(a(i) - b(i)) / p.sigma;
     if (sigmas > largest.sigmas) largest = {sigmas, p.name};
@@ -34,13 +34,13 @@ Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, con
   return largest;
 }
 
-HonestyCheck residual_colour(const RegressionEstimate& estimate) {
-  HonestyCheck check{.name = "residual colour"};
+Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
+  Evidence check{.name = "residual autocorrelation"};
   check.value = estimate.whiteness.durbin_watson;
   check.limit = 2.0;
   check.passed = estimate.whiteness.white();
   double worst = 0.0;
-  for (const ParameterEstimate& p : estimate.parameters) {
+  for (const Parameter& p : estimate.parameters) {
     if (p.sigma_white > 0.0 && std::isfinite(p.sigma)) worst = std::max(worst, p.sigma / p.sigma_white);
   }
   check.text = check.passed
@@ -52,8 +52,8 @@ HonestyCheck residual_colour(const RegressionEstimate& estimate) {
   return check;
 }
 
-HonestyCheck collinearity(const RegressionEstimate& ols) {
-  HonestyCheck check{.name = "collinearity"};
+Evidence collinearity(const RegressionEstimate& ols) {
+  Evidence check{.name = "collinearity"};
   check.value = ols.condition_number;
   check.limit = kConditionLimit;
   const auto worst = std::max_element(ols.parameters.begin(), ols.parameters.end(), [](const auto& a, const auto& b) {
@@ -66,9 +66,8 @@ HonestyCheck collinearity(const RegressionEstimate& ols) {
 }
 
 // Is the residual as large as W says? Chi-square with the effective number of samples.
-HonestyCheck error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual,
-                         const std::vector<int>& segment) {
-  HonestyCheck check{.name = "error scale"};
+Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual, const std::vector<int>& segment) {
+  Evidence check{.name = "error scale"};
   const double samples =
       numerics::effective_sample_size_variance({residual.data(), static_cast<std::size_t>(residual.size())}, segment);
   const double low = std::min(1.0 / kScaleBand, numerics::chi_square_quantile(0.005, samples) / samples);
@@ -84,6 +83,84 @@ HonestyCheck error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& 
   return check;
 }
 
+Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& candidate) {
+  const std::string_view name = to_string(candidate.method);
+  const Distance apart = distance(candidate, candidate.theta, ols.theta);
+  Evidence check{.name = "agreement of OLS",
+                 .passed = apart.sigmas <= kSensitivityLimit,
+                 .value = apart.sigmas,
+                 .limit = kSensitivityLimit};
+  check.text = check.passed ? fmt::format("OLS and {} agree to {:.1f} sigma", name, apart.sigmas)
+                            : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
+                                          apart.sigmas, name, apart.parameter);
+  return check;
+}
+
+/// What a residual of another size than the assumed errors says changes when it is read the other way: all of it as
+/// equation error, or as smaller errors of the regressors.
+struct OtherReading {
+  bool too_large = false;      ///< is the residual larger than the errors say?
+  TotalLeastSquares estimate;  ///< under the other reading
+  Distance moved;              ///< of the candidate to it
+  Evidence check;              ///< whether that matters
+};
+
+OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate,
+                            const TotalLeastSquares& raised) {
+  const Eigen::MatrixXd& W = analysis.data().error_covariance;
+  OtherReading out;
+  out.too_large = candidate.error_scale > 1.0;
+  out.estimate = out.too_large
+                     ? raised
+                     : total_least_squares(analysis.triangle(),
+                                           with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()),
+                                           analysis.rows());
+  const bool solved = out.estimate.solved;
+  out.moved = solved ? distance(candidate, candidate.theta, out.estimate.theta) : Distance{kInfinity, ""};
+  const Distance& moved = out.moved;
+  out.check = {.name = "sensitivity to the error ratio",
+               .passed = moved.sigmas <= kSensitivityLimit,
+               .value = moved.sigmas,
+               .limit = kSensitivityLimit};
+  out.check.text =
+      !solved ? std::string("with the other reading of the mismatch there is no estimate")
+              : fmt::format("{} moves {:.1f} sigma at most{} if {}", to_string(candidate.method), moved.sigmas,
+                            moved.parameter.empty() ? "" : fmt::format(" ({})", moved.parameter),
+                            out.too_large ? "what the assumed errors leave unexplained is error of the equation alone"
+                                          : "the regressors' errors are smaller than assumed");
+  return out;
+}
+
+RegressionComparison recommend(RegressionComparison comparison, Method method, std::string reason) {
+  comparison.recommends = true;
+  comparison.recommended = method;
+  comparison.reason = std::move(reason);
+  return comparison;
+}
+
+RegressionComparison refuse(RegressionComparison comparison, std::string reason) {
+  comparison.recommends = false;
+  comparison.reason = std::move(reason);
+  return comparison;
+}
+
+RegressionComparison compare_with_exact_regressors(RegressionComparison result, bool errors_given) {
+  const RegressionEstimate& ols = result.estimates[0];
+  result.checks.push_back(residual_autocorrelation(ols));
+  if (ols.usable()) {
+    return recommend(std::move(result), Method::kOls,
+                     errors_given ? "OLS: the regressors are exact"
+                                  : "OLS: no errors of the regressors are given, so they are taken as exact");
+  }
+  const RegressionEstimate* pca = result.find(Method::kPcaGtls);
+  if (pca != nullptr && pca->usable()) {
+    std::string reason = fmt::format("PCA-GTLS: {}", pca->message);
+    return recommend(std::move(result), Method::kPcaGtls, std::move(reason));
+  }
+  std::string reason = fmt::format("none: {}", ols.message);
+  return refuse(std::move(result), std::move(reason));
+}
+
 }  // namespace
 
 RegressionComparison compare(const RegressionData& data, const RegressionOptions& options) {
@@ -95,113 +172,62 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   std::vector<Method> methods = {Method::kOls, Method::kTls};
   if (data.has_error_covariance()) methods.insert(methods.end(), {Method::kGtls, Method::kPcaGtls});
   for (const Method method : methods) result.estimates.push_back(analysis.run(method));
-  const RegressionEstimate& ols = result.estimates[0];
+  result.checks.push_back(collinearity(result.estimates[0]));
+  if (!with_errors) return compare_with_exact_regressors(std::move(result), data.has_error_covariance());
 
-  result.checks.push_back(collinearity(ols));
-  const auto refuse = [&](std::string reason) {
-    result.recommends = false;
-    result.reason = std::move(reason);
-    return result;
-  };
-  const auto recommend = [&](Method method, std::string reason) {
-    result.recommends = true;
-    result.recommended = method;
-    result.reason = std::move(reason);
-    return result;
-  };
-
-  if (!with_errors) {
-    result.checks.push_back(residual_colour(ols));
-    if (!ols.usable()) {
-      const RegressionEstimate* pca = result.find(Method::kPcaGtls);
-      if (pca != nullptr && pca->usable())
-        return recommend(Method::kPcaGtls, fmt::format("PCA-GTLS: {}", pca->message));
-      return refuse(fmt::format("none: {}", ols.message));
-    }
-    return recommend(Method::kOls, data.has_error_covariance()
-                                       ? "OLS: the regressors are exact"
-                                       : "OLS: no errors of the regressors are given, so they are taken as exact");
-  }
-
-  const RegressionEstimate& gtls = *result.find(Method::kGtls);
+  const RegressionEstimate ols = result.estimates[0];
   const RegressionEstimate& pca = *result.find(Method::kPcaGtls);
-  const RegressionEstimate& candidate = pca.usable() && !pca.unexcited.empty() ? pca : gtls;
+  const RegressionEstimate candidate = pca.usable() && !pca.unexcited.empty() ? pca : *result.find(Method::kGtls);
   const std::string name(to_string(candidate.method));
-  result.checks.push_back(residual_colour(candidate));
-  if (!candidate.usable()) return refuse(fmt::format("none: {} found nothing: {}", name, candidate.message));
-
-  if (ols.usable()) {
-    const Distance apart = distance(candidate, candidate.theta, ols.theta);
-    HonestyCheck agreement{.name = "agreement of OLS",
-                           .passed = apart.sigmas <= kSensitivityLimit,
-                           .value = apart.sigmas,
-                           .limit = kSensitivityLimit};
-    agreement.text = agreement.passed
-                         ? fmt::format("OLS and {} agree to {:.1f} sigma", name, apart.sigmas)
-                         : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
-                                       apart.sigmas, name, apart.parameter);
-    result.checks.push_back(agreement);
-  }
+  result.checks.push_back(residual_autocorrelation(candidate));
+  if (!candidate.usable())
+    return refuse(std::move(result), fmt::format("none: {} found nothing: {}", name, candidate.message));
+  if (ols.usable()) result.checks.push_back(ols_agreement(ols, candidate));
   if (!data.error_scale_known) {
-    return recommend(
-        candidate.method,
-        fmt::format("{}: under the given ratio of errors, which these data cannot test (its scale is not given)",
-                    name));
+    return recommend(std::move(result), candidate.method,
+                     fmt::format("{}: under the given ratio of errors, which these data cannot test (its scale is not "
+                                 "given)",
+                                 name));
   }
 
-  const Eigen::MatrixXd& W = data.error_covariance;
-  HonestyCheck scale = error_scale(candidate, analysis.residual(candidate.theta), data.segment);
-  const bool too_large = candidate.error_scale > 1.0;
-  if (!data.regressand_error_known && too_large)
+  Evidence scale = error_scale(candidate, analysis.residual(candidate.theta), data.segment);
+  if (!data.regressand_error_known && candidate.error_scale > 1.0)
     scale.passed = true;  // only rounding above 1: the excess is in W already
   result.checks.push_back(scale);
-
-  // The answer if the mismatch is on one side only.
   const TotalLeastSquares raised = total_least_squares(
-      analysis.triangle(), with_equation_error(analysis.triangle(), W, analysis.rows()), analysis.rows());
+      analysis.triangle(), with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows()),
+      analysis.rows());
   if (raised.solved) result.theta_with_equation_error = raised.theta;
-  const TotalLeastSquares other =
-      too_large ? raised
-                : total_least_squares(analysis.triangle(),
-                                      with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()),
-                                      analysis.rows());
-  HonestyCheck sensitivity{.name = "sensitivity to the error ratio", .limit = kSensitivityLimit};
-  const Distance moved = other.solved ? distance(candidate, candidate.theta, other.theta) : Distance{kInfinity, ""};
-  sensitivity.value = moved.sigmas;
-  sensitivity.passed = moved.sigmas <= kSensitivityLimit;
-  sensitivity.text =
-      !other.solved ? std::string("with the other reading of the mismatch there is no estimate")
-                    : fmt::format("{} moves {:.1f} sigma at most{} if {}", name, moved.sigmas,
-                                  moved.parameter.empty() ? "" : fmt::format(" ({})", moved.parameter),
-                                  too_large ? "what the assumed errors leave unexplained is error of the equation alone"
-                                            : "the regressors' errors are smaller than assumed");
-  result.checks.push_back(sensitivity);
+  const OtherReading other = read_otherwise(analysis, candidate, raised);
+  result.checks.push_back(other.check);
 
   if (scale.passed) {
-    return recommend(candidate.method,
+    return recommend(std::move(result), candidate.method,
                      fmt::format("{}: the residual is as large as the assumed errors say (ratio {:.2g})", name,
                                  candidate.error_scale));
   }
-  if (sensitivity.passed) {
-    return recommend(candidate.method, fmt::format("{}: the residual variance is {:.2g} of what the assumed errors "
-                                                   "give, but the estimate moves only {:.1f} sigma by it",
-                                                   name, candidate.error_scale, moved.sigmas));
+  if (other.check.passed) {
+    return recommend(std::move(result), candidate.method,
+                     fmt::format("{}: the residual variance is {:.2g} of what the assumed errors give, but the "
+                                 "estimate moves only {:.1f} sigma by it",
+                                 name, candidate.error_scale, other.moved.sigmas));
   }
-  if (ols.usable() && other.solved) {
-    const Distance apart = distance(ols, ols.theta, other.theta);
+  if (ols.usable() && other.estimate.solved) {
+    const Distance apart = distance(ols, ols.theta, other.estimate.theta);
     if (apart.sigmas <= 1.0) {
-      return recommend(Method::kOls,
+      return recommend(std::move(result), Method::kOls,
                        fmt::format("OLS: the residual variance is {:.2g} of what the assumed errors give; with that "
                                    "corrected the errors of the regressors matter by {:.1f} sigma at most",
                                    candidate.error_scale, apart.sigmas));
     }
   }
-  return refuse(
-      fmt::format("none: the residual variance is {:.2g} of what the assumed errors give, and {} depends on where the "
-                  "difference lies ({:.1f} sigma{}); {}",
-                  candidate.error_scale, name, moved.sigmas, moved.parameter.empty() ? "" : " in " + moved.parameter,
-                  too_large ? "the model is incomplete or the errors are larger than assumed"
-                            : "the errors are smaller than assumed"));
+  return refuse(std::move(result),
+                fmt::format("none: the residual variance is {:.2g} of what the assumed errors give, and {} depends on "
+                            "where the difference lies ({:.1f} sigma{}); {}",
+                            candidate.error_scale, name, other.moved.sigmas,
+                            other.moved.parameter.empty() ? "" : " in " + other.moved.parameter,
+                            other.too_large ? "the model is incomplete or the errors are larger than assumed"
+                                            : "the errors are smaller than assumed"));
 }
 
 }  // namespace veridyn::estimation

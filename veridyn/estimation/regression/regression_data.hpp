@@ -53,7 +53,8 @@ struct RegressionData {
 [[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> segment_ranges(Eigen::Index rows,
                                                                                 std::span<const int> segment);
 
-/// Removes rows with a NaN or infinity; a segment that loses rows in its middle is split into new ids, numbered from 0.
+/// Removes rows with a NaN or infinity; a segment with rows missing in its middle is split into new ids, numbered from
+/// 0.
 /// @returns how many rows were removed.
 Eigen::Index drop_rows_that_are_not_finite(RegressionData& data);
 

@@ -20,6 +20,7 @@ using Eigen::Index;
 /// A column whose part outside the model is smaller than this share of it cannot enter.
 constexpr double kDependent = 1e-9;
 
+/// View of data and options that walks through the structures they allow.
 class Search {
  public:
   Search(const RegressionData& data, const StructureOptions& options) : options_(options), data_(data) {
@@ -42,7 +43,8 @@ class Search {
   StructureSearch run() {
     result_.method = options_.method;
     model_ = always_;
-    if (options_.method == StructureMethod::kOrthogonal && options_.colour_penalty) result_.penalty = colour_penalty();
+    if (options_.method == StructureMethod::kOrthogonal && options_.autocorrelation_penalty)
+      result_.penalty = autocorrelation_penalty();
     result_.history.push_back(describe(StructureAction::kStart, -1, 0.0, model_));
     result_.history.back().r2_change = result_.history.back().r2;
     if (options_.method == StructureMethod::kStepwise)
@@ -136,7 +138,7 @@ class Search {
   }
 
   /// Median over the parameters of the full model of their variance with autocorrelated over that with white residuals.
-  [[nodiscard]] double colour_penalty() const {
+  [[nodiscard]] double autocorrelation_penalty() const {
     std::vector<Index> all;
     for (Index j = 0; j < data_.parameters(); ++j) {
       if (static_cast<double>(all.size()) + 2.0 <= N_ && std::isfinite(rss(with(all, j)))) all.push_back(j);
@@ -145,7 +147,7 @@ class Search {
     const RegressionEstimate full = estimate(select_columns(data_, all), Method::kOls);
     if (!full.usable()) return 1.0;
     std::vector<double> ratio;
-    for (const ParameterEstimate& p : full.parameters)
+    for (const Parameter& p : full.parameters)
       if (p.sigma_white > 0.0) ratio.push_back(p.sigma * p.sigma / (p.sigma_white * p.sigma_white));
     return ratio.empty() ? 1.0 : std::max(1.0, numerics::median(ratio));
   }

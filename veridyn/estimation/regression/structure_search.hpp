@@ -28,7 +28,7 @@ struct StructureOptions {
   /// Orthogonal: multiply the penalty of the predicted squared error by how much the autocorrelation of the residuals
   /// raises the variance of parameters (median over the fit with all candidates). Without it a term enters for
   /// following autocorrelated noise: Morelli's penalty alone is right for white residuals.
-  bool colour_penalty = true;
+  bool autocorrelation_penalty = true;
   /// Orthogonal: terms of the chosen model that contribute less than this share of its RMS are dropped.
   double least_contribution = 1e-3;
   /// Columns that are always in, in addition to constant ones.

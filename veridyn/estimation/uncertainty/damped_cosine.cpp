@@ -175,7 +175,7 @@ DampedCosine fit_damped_cosine(std::span<const double> time, std::span<const dou
   // Sandwich covariance: what the motion holds beyond the model is autocorrelated.
   const SegmentRanges whole{{0, at.J.rows()}};
   const Eigen::Index window = correlation_length(at.residual, whole, std::min<Eigen::Index>(5000, at.J.rows() / 4));
-  const Eigen::MatrixXd S = coloured_normal_matrix(at.J, at.residual, whole, window).matrix;
+  const Eigen::MatrixXd S = autocorrelated_normal_matrix(at.J, at.residual, whole, window).matrix;
   const Eigen::Matrix<double, 5, 5> N = at.J.transpose() * at.J;
   const Eigen::Matrix<double, 5, 5> inverse =
       numerics::solve_symmetric(N, Eigen::MatrixXd(Eigen::MatrixXd::Identity(5, 5)));

@@ -30,7 +30,7 @@ void fill_normal(Eigen::MatrixXd& m, numerics::RandomStream& random) {
   }
 }
 
-/// Draws of the inputs; the same block has the same draws, whoever makes it.
+/// View of the inputs that draws them; a block has the same draws on any thread.
 class InputSampler {
  public:
   explicit InputSampler(const UncertainInputs& inputs)
@@ -126,7 +126,6 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
   const auto n = static_cast<Eigen::Index>(inputs.names.size());
   std::vector<std::vector<double>> error(outputs, std::vector<double>(options.draws));
   const std::size_t blocks = (options.draws + kBlock - 1) / kBlock;
-  const auto threads = static_cast<int>(options.threads);
   const auto draw = [&](std::size_t block) {
     Eigen::MatrixXd x(n, static_cast<Eigen::Index>(kBlock)), noise = x, e = x;
     std::vector<double> true_output(outputs), measured_output(outputs);
@@ -143,13 +142,13 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
       for (std::size_t o = 0; o < outputs; ++o) error[o][begin + k] = measured_output[o] - true_output[o];
     }
   };
-  numerics::parallel_for(blocks, threads, draw);
+  numerics::parallel_for(blocks, options.threads, draw);
 
   MonteCarloResult result;
   result.draws = options.draws;
   result.correlation_change = sampler.correlation_change();
   result.outputs.resize(outputs);
-  numerics::parallel_for(outputs, threads,
+  numerics::parallel_for(outputs, options.threads,
                          [&](std::size_t o) { result.outputs[o] = describe(error[o], options.coverage); });
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -32,7 +32,7 @@ struct MonteCarloOptions {
   std::size_t draws = 100000;  ///< JCGM 101 recommends 1e6 for two digits of an endpoint; 1e5 gives about 1 %
   std::uint64_t seed = 1;
   double coverage = 0.95;  ///< of the interval, in (0, 1)
-  unsigned threads = 0;    ///< 0: as many as the machine has. Results do not depend on it.
+  int threads = 0;         ///< 0: as many as the machine has. Results do not depend on it.
 
   /// @throws InputError naming option, value and rule.
   void validate() const;

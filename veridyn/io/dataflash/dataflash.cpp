@@ -12,6 +12,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/gather.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
@@ -104,7 +105,7 @@ class Indexer {
         // Either the next record is damaged or this one was cut short: then a sound record begins inside of it.
         const std::size_t inside = find_record(at + 3, next);
         if (inside < next) {
-          lose(at, inside, damage);
+          count_lost(at, inside, damage);
           at = inside;
           continue;
         }
@@ -145,21 +146,21 @@ class Indexer {
     while (begin < end) {
       const void* const found = std::memchr(data_.data() + begin, kHead1, end - begin);
       if (found == nullptr) return end;
-      begin = static_cast<std::size_t>(static_cast<const char*>(found) - data_.data());
+      begin = at(static_cast<const char*>(found) - data_.data());
       if (is_sound(begin)) return begin;
       ++begin;
     }
     return end;
   }
 
-  static void lose(std::size_t begin, std::size_t end, LogDamage& damage) {
+  static void count_lost(std::size_t begin, std::size_t end, LogDamage& damage) {
     damage.bytes_lost += end - begin;
     ++damage.records_lost;
   }
 
   std::size_t skip_to(std::size_t at, LogDamage& damage) {
     const std::size_t next = find_record(at + 1, data_.size());
-    lose(at, next, damage);
+    count_lost(at, next, damage);
     return next;
   }
 
@@ -196,7 +197,7 @@ class Indexer {
     layouts_.push_back(std::move(layout));
   }
 
-  // Formats may stand after the first records of their type (a ring buffer that lost its start).
+  // Formats may stand after the first records of their type (a ring buffer that has overwritten its start).
   void look_ahead() {
     looked_ahead_ = true;
     for (std::size_t at = data_.find(kFormatHead); at != std::string_view::npos && at + kFormatLength <= data_.size();
@@ -316,7 +317,7 @@ LogTopic decode(std::string_view data, const Layout& layout, std::vector<std::ui
   topic.doubled = layout.time ? ordered.doubled : 0;
   topic.time = make_time_base(std::move(ordered.time));
 
-  std::vector<GatherColumn> wanted;
+  std::vector<GatherColumn> selected;
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const DataFlashColumn& column = layout.columns[i];
     if ((layout.time && layout.time->column == i) || instance_column == i) continue;
@@ -327,11 +328,11 @@ LogTopic decode(std::string_view data, const Layout& layout, std::vector<std::ui
       field.unit = column.unit;
       field.scale = column.scale;
       topic.fields.push_back(std::move(field));
-      wanted.push_back({gather_type(column.type), column.offset + 2 * static_cast<std::uint32_t>(element),
-                        dataflash_size(column.type)});
+      selected.push_back({gather_type(column.type), column.offset + 2 * static_cast<std::uint32_t>(element),
+                          dataflash_size(column.type)});
     }
   }
-  std::vector<Column> columns = gather(data.data(), records, wanted);
+  std::vector<Column> columns = gather(data.data(), records, selected);
   for (std::size_t i = 0; i < columns.size(); ++i) topic.fields[i].values = std::move(columns[i]);
   return topic;
 }
@@ -368,8 +369,7 @@ void note_odd_formats(const std::vector<Layout>& layouts, LogDamage& damage) {
   if (!odd.empty()) {
     damage.notes.push_back(
         fmt::format("formats whose length is not that of their columns (bytes): {}",
-                    fmt::join(odd.begin(),
-                              odd.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(odd.size(), 12)), ", ")));
+                    fmt::join(odd.begin(), odd.begin() + signed_index(std::min<std::size_t>(odd.size(), 12)), ", ")));
   }
 }
 

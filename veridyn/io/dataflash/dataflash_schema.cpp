@@ -244,12 +244,12 @@ void DataFlashUnits::add_format(std::uint8_t type, std::string_view unit_ids, st
 }
 
 void DataFlashUnits::apply(const DataFlashFormat& format, std::vector<DataFlashColumn>& columns, bool binary) const {
-  const auto& told = formats_[format.type];
+  const auto& ids = formats_[format.type];
   for (std::size_t i = 0; i < columns.size(); ++i) {
     DataFlashColumn& column = columns[i];
     column.scale = binary ? dataflash_scale(column.type) : 1.0;
-    if (told && !units_.empty()) {
-      const auto& [unit_ids, multiplier_ids] = *told;
+    if (ids && !units_.empty()) {
+      const auto& [unit_ids, multiplier_ids] = *ids;
       if (i < unit_ids.size()) {
         if (const auto unit = units_.find(unit_ids[i]); unit != units_.end()) column.unit = unit->second;
       }
@@ -271,8 +271,8 @@ std::optional<std::size_t> DataFlashUnits::instance_column(const DataFlashFormat
   const auto is_count = [&](std::size_t i) {
     return std::string_view("bBMhHiI").find(columns[i].type) != std::string_view::npos;
   };
-  if (const auto& told = formats_[format.type]) {
-    const std::size_t i = told->first.find('#');
+  if (const auto& ids = formats_[format.type]) {
+    const std::size_t i = ids->first.find('#');
     if (i != std::string::npos && i < columns.size() && is_count(i)) return i;
     return std::nullopt;
   }
@@ -293,10 +293,10 @@ std::optional<DataFlashTime> dataflash_time(const std::vector<DataFlashColumn>& 
   };
   if (const auto i = find("TimeUS")) return DataFlashTime{*i, 1e-6};
   const auto ms = find("TimeMS");
-  if (const auto own = find("T");
-      own && (!ms || find("Week") ||
-              std::any_of(columns.begin(), columns.end(), [](const auto& c) { return c.name == "Week"; }))) {
-    return DataFlashTime{*own, 1e-3};
+  if (const auto stamp = find("T");
+      stamp && (!ms || find("Week") ||
+                std::any_of(columns.begin(), columns.end(), [](const auto& c) { return c.name == "Week"; }))) {
+    return DataFlashTime{*stamp, 1e-3};
   }
   if (ms) return DataFlashTime{*ms, 1e-3};
   return std::nullopt;

@@ -118,16 +118,16 @@ void tell_dataflash_story(Log& log) {
     if (name == "PARM") read_parameters(log, topic);
     if (name == "MSG") read_messages(log, topic);
   }
-  bool told = false;  // several messages say the same of arming: the most direct one is believed
+  bool reported = false;  // several messages report arming: the most direct one is used
   for (const char* source : {"ARM", "EV", "STAT"}) {
-    if (told) break;
+    if (reported) break;
     for (const LogTopic& topic : log.topics) {
       if (topic.name != source) continue;
       const std::size_t before = log.events.size();
       if (topic.name == "ARM") read_armed(log, topic, "ArmState");
       if (topic.name == "EV") read_armed_events(log, topic);
       if (topic.name == "STAT") read_armed(log, topic, "Armed");
-      told = told || log.events.size() > before;
+      reported = reported || log.events.size() > before;
     }
   }
   for (const LogTopic& topic : log.topics) {

@@ -11,6 +11,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
@@ -63,19 +64,19 @@ class TextReader {
       if (line.empty()) continue;
       split(line, cells);
       if (cells[0] == "FMT") {
-        if (!define(cells)) lose(line, last);
+        if (!define(cells)) count_lost(line, last);
         continue;
       }
       if (tables_.empty()) continue;  // a title ahead of the formats
       const auto found = index_.find(cells[0]);
-      if (found == index_.end() || !take(tables_[found->second], cells)) lose(line, last);
+      if (found == index_.end() || !take(tables_[found->second], cells)) count_lost(line, last);
     }
   }
 
   std::vector<Table>& tables() { return tables_; }
 
  private:
-  void lose(std::string_view line, bool last) {
+  void count_lost(std::string_view line, bool last) {
     log_.damage.bytes_lost += line.size();
     ++log_.damage.records_lost;
     if (last) log_.damage.notes.emplace_back("the log ends in the middle of a line");
@@ -145,9 +146,9 @@ class TextReader {
       if (!is_text_type(table.columns[i].type)) continue;
       const std::string_view first = cells[i + 1];
       const std::string_view last = cells[i + 1 + extra];
-      cells[i + 1] = std::string_view(first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data()));
-      const auto begin = cells.begin() + static_cast<std::ptrdiff_t>(i + 2);
-      cells.erase(begin, begin + static_cast<std::ptrdiff_t>(extra));
+      cells[i + 1] = std::string_view(first.data(), at(last.data() + last.size() - first.data()));
+      const auto begin = cells.begin() + signed_index(i + 2);
+      cells.erase(begin, begin + signed_index(extra));
       return true;
     }
     return false;

@@ -146,7 +146,7 @@ void finish(Log& log) {
   drop_stray_last_rows(log);
   std::stable_sort(log.events.begin(), log.events.end(),
                    [](const Event& a, const Event& b) { return a.time < b.time; });
-  const auto tell = [&](std::size_t LogTopic::*member, std::string_view what) {
+  const auto note = [&](std::size_t LogTopic::*member, std::string_view what) {
     std::size_t total = 0;
     std::vector<std::string> names;
     for (const LogTopic& topic : log.topics) {
@@ -156,9 +156,9 @@ void finish(Log& log) {
     }
     if (total > 0) log.damage.notes.push_back(fmt::format("{} samples {} ({})", total, what, fmt::join(names, ", ")));
   };
-  tell(&LogTopic::spikes, "dropped: their time stamps lie far off");
-  tell(&LogTopic::reordered, "were out of order in time and have been sorted");
-  tell(&LogTopic::doubled, "have the time stamp of the sample before");
+  note(&LogTopic::spikes, "dropped: their time stamps lie far off");
+  note(&LogTopic::reordered, "were out of order in time and have been sorted");
+  note(&LogTopic::doubled, "have the time stamp of the sample before");
 }
 
 }  // namespace internal

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::io {
 namespace {
 
@@ -12,7 +14,7 @@ double median_step(const std::vector<double>& stamps) {
   if (stamps.size() < 2) return 0.0;
   std::vector<double> steps(stamps.size() - 1);
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) steps[i] = std::abs(stamps[i + 1] - stamps[i]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  const auto middle = steps.begin() + signed_index(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }
@@ -34,10 +36,9 @@ std::vector<bool> find_spikes(const std::vector<double>& stamps) {
     bool in_order = true;
     for (std::size_t k = begin; k + 1 < end; ++k) in_order = in_order && stamps[k] <= stamps[k + 1];
     if (in_order) continue;
-    std::copy(stamps.begin() + static_cast<std::ptrdiff_t>(begin), stamps.begin() + static_cast<std::ptrdiff_t>(end),
-              window.begin());
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>((end - begin) / 2);
-    std::nth_element(window.begin(), middle, window.begin() + static_cast<std::ptrdiff_t>(end - begin));
+    std::copy(stamps.begin() + signed_index(begin), stamps.begin() + signed_index(end), window.begin());
+    const auto middle = window.begin() + signed_index((end - begin) / 2);
+    std::nth_element(window.begin(), middle, window.begin() + signed_index(end - begin));
     spike[i] = std::abs(stamps[i] - *middle) > limit;
   }
   return spike;

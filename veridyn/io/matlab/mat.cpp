@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/dataflash/dataflash_schema.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
@@ -112,8 +113,8 @@ class Builder {
     std::vector<std::vector<double>> series;
     std::vector<double> stamps;
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      const auto begin = value.numbers.begin() + static_cast<std::ptrdiff_t>(k * rows);
-      std::vector<double> numbers(begin, begin + static_cast<std::ptrdiff_t>(rows));
+      const auto begin = value.numbers.begin() + signed_index(k * rows);
+      std::vector<double> numbers(begin, begin + signed_index(rows));
       if (time && time->column == k) {
         for (double& stamp : numbers) stamp *= time->scale;
         stamps = std::move(numbers);
@@ -202,9 +203,9 @@ class Builder {
       return;
     }
     for (std::size_t k = 0; k * rows < item.numbers.size(); ++k) {
-      const auto begin = item.numbers.begin() + static_cast<std::ptrdiff_t>(k * rows);
+      const auto begin = item.numbers.begin() + signed_index(k * rows);
       fields.push_back({fmt::format("{}[{}]", label, k), "1", 1.0, {}, {}});
-      columns.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(rows));
+      columns.emplace_back(begin, begin + signed_index(rows));
     }
   }
 

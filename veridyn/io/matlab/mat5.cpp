@@ -150,9 +150,9 @@ std::optional<std::string> inflate_all(std::string_view packed) {
     }
     stream.next_out = reinterpret_cast<Bytef*>(result.data() + filled);
     stream.avail_out = static_cast<uInt>(std::min<std::size_t>(result.size() - filled, 1U << 30U));
-    const uInt room = stream.avail_out;
+    const uInt free_bytes = stream.avail_out;
     state = inflate(&stream, Z_NO_FLUSH);
-    filled += room - stream.avail_out;
+    filled += free_bytes - stream.avail_out;
     if (state == Z_BUF_ERROR && stream.avail_in == 0) break;
   }
   inflateEnd(&stream);

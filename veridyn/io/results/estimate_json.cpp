@@ -8,12 +8,13 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::io {
 namespace {
 
 using estimation::Estimate;
-using estimation::EstimatedParameter;
+using estimation::Parameter;
 using estimation::ParameterStatus;
 using nlohmann::ordered_json;
 
@@ -47,7 +48,7 @@ ParameterStatus read_status(const std::string& text, const std::string& place) {
 }
 
 /// A usable parameter has a value, and no error bar is negative. What was rejected or not excited may have neither.
-void check_parameter(const EstimatedParameter& p, const std::string& file) {
+void check_parameter(const Parameter& p, const std::string& file) {
   const bool usable = p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kInsignificant ||
                       p.status == ParameterStatus::kFixed;
   const std::string place = fmt::format("{}: parameter '{}'", file, p.name);
@@ -63,7 +64,7 @@ std::string to_json(const Estimate& estimate) {
   root["subject"] = estimate.subject;
   root["method"] = estimate.method;
   root["parameters"] = ordered_json::array();
-  for (const EstimatedParameter& p : estimate.parameters) {
+  for (const Parameter& p : estimate.parameters) {
     root["parameters"].push_back({{"name", p.name},
                                   {"value", number(p.value)},
                                   {"sigma", number(p.sigma)},
@@ -74,9 +75,9 @@ std::string to_json(const Estimate& estimate) {
   }
   if (!estimate.other_methods.empty()) {
     root["other_methods"] = ordered_json::array();
-    for (const estimation::MethodEstimate& p : estimate.other_methods) {
-      root["other_methods"].push_back({{"name", p.parameter},
-                                       {"method", p.method},
+    for (const auto& [method, p] : estimate.other_methods) {
+      root["other_methods"].push_back({{"name", p.name},
+                                       {"method", method},
                                        {"value", number(p.value)},
                                        {"sigma", number(p.sigma)},
                                        {"low95", number(p.low95)},
@@ -130,20 +131,19 @@ Estimate read_estimate(const std::filesystem::path& path) {
                                    .status = read_status(read_text(p, "status", place), place)});
     check_parameter(estimate.parameters.back(), name);
   }
-  const auto n = static_cast<Eigen::Index>(estimate.parameters.size());
+  const auto n = signed_index(estimate.parameters.size());
   estimate.covariance = Eigen::MatrixXd::Zero(n, n);
   const ordered_json& covariance = require(root, "covariance", name);
   if (!covariance.is_array() || covariance.size() != estimate.parameters.size()) {
     throw InputError(name, fmt::format("'covariance' is not a {} by {} matrix", n, n));
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const ordered_json& row = covariance[static_cast<std::size_t>(i)];
+    const ordered_json& row = covariance[at(i)];
     if (!row.is_array() || row.size() != estimate.parameters.size()) {
       throw InputError(name, fmt::format("'covariance' row {} has not {} numbers", i + 1, n));
     }
     for (Eigen::Index j = 0; j < n; ++j) {
-      estimate.covariance(i, j) =
-          read_number(row[static_cast<std::size_t>(j)], fmt::format("{}: covariance[{}][{}]", name, i, j));
+      estimate.covariance(i, j) = read_number(row[at(j)], fmt::format("{}: covariance[{}][{}]", name, i, j));
     }
   }
   if (root.contains("fit") && root["fit"].is_object()) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/tables/csv_cells.hpp"
@@ -119,8 +120,7 @@ class CsvParser {
       rows_ = rest;
     } else {
       line_ += reader.lines();
-      rows_ = std::string_view(reader.position(),
-                               static_cast<std::size_t>(bytes_.data() + bytes_.size() - reader.position()));
+      rows_ = std::string_view(reader.position(), at(bytes_.data() + bytes_.size() - reader.position()));
     }
     time_ =
         internal::choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/log/log.hpp"
 
@@ -47,9 +48,9 @@ std::optional<double> unusual_number(std::string_view cell, bool& infinite) {
 }
 
 std::string_view CellReader::line() {
-  const auto* stop = static_cast<const char*>(std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_)));
+  const auto* stop = static_cast<const char*>(std::memchr(at_, '\n', at(end_ - at_)));
   const char* const last = stop != nullptr ? stop : end_;
-  const std::string_view text(at_, static_cast<std::size_t>(last - at_));
+  const std::string_view text(at_, at(last - at_));
   at_ = stop != nullptr ? stop + 1 : end_;
   ++lines_;
   return trimmed(text);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
@@ -35,9 +36,9 @@ constexpr TimeName kTimeNames[] = {{"time", "s"},          {"t", "s"},
 
 using Names = std::vector<std::string>;
 
-std::optional<std::size_t> column_of(const Names& names, std::string_view wanted) {
+std::optional<std::size_t> column_of(const Names& names, std::string_view name) {
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (lower(names[i]) == wanted) return i;
+    if (lower(names[i]) == name) return i;
   }
   return std::nullopt;
 }
@@ -52,7 +53,7 @@ std::pair<std::optional<std::size_t>, std::string> named_column(const Names& nam
       throw InputError(place, fmt::format("no column '{}' for the time{}", options.time_column,
                                           suggestion(options.time_column, names)));
     }
-    return {static_cast<std::size_t>(found - names.begin()), ""};
+    return {at(found - names.begin()), ""};
   }
   if (has("timems") && has("week") && has("t")) return {column_of(names, "t"), "ms"};
   if (has("date") && has("time") && has("millis")) return {column_of(names, "millis"), ""};

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/tables/csv.hpp"
 
 namespace veridyn::io {
@@ -44,7 +45,7 @@ std::string to_csv(const Recording& recording) {
     const TimeBase time = channel.time ? channel.time : make_time_base({});
     const auto found =
         std::find_if(bases.begin(), bases.end(), [&](const TimeBase& base) { return same_base(base, time); });
-    base_of.push_back(static_cast<std::size_t>(found - bases.begin()));
+    base_of.push_back(at(found - bases.begin()));
     if (found == bases.end()) bases.push_back(time);
   }
   const std::vector<double> rows = join(bases);

@@ -26,9 +26,9 @@ class Scanner {
     return value;
   }
 
-  /// The next character when it is one of `wanted`, else 0.
-  char one_of(std::string_view wanted) {
-    if (rest_.empty() || wanted.find(rest_.front()) == std::string_view::npos) return '\0';
+  /// The next character when it is one of `choices`, else 0.
+  char one_of(std::string_view choices) {
+    if (rest_.empty() || choices.find(rest_.front()) == std::string_view::npos) return '\0';
     const char found = rest_.front();
     rest_.remove_prefix(1);
     return found;

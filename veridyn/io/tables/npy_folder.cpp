@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
 #include "veridyn/io/tables/npy.hpp"
@@ -63,8 +64,7 @@ class FolderReader {
         rest.erase("t");
         rest.erase("value");
         LogTopic topic;
-        topic.name =
-            fmt::format("{}", fmt::join(parts.begin() + static_cast<std::ptrdiff_t>(shared), parts.end(), "."));
+        topic.name = fmt::format("{}", fmt::join(parts.begin() + signed_index(shared), parts.end(), "."));
         if (topic.name.empty()) topic.name = parts.empty() ? "value" : parts.back();
         const NpyArray times = read(parts, "t");
         add(std::move(topic), times, {{"", read(parts, "value")}}, parts, "t");
@@ -77,16 +77,15 @@ class FolderReader {
       for (const std::string& name : rest) unused_.push_back(path_of(parts, name));
     }
     if (log_.topics.empty())
-      throw InputError(
-          log_.source,
-          "is a directory without NumPy arrays that have stamps (t.npy beside value.npy, or NAME_times.npy beside "
-          "NAME_*.npy); expected such a folder or a file");
+      throw InputError(log_.source,
+                       "is a directory without NumPy arrays that have stamps (t.npy alongside value.npy, or "
+                       "NAME_times.npy alongside "
+                       "NAME_*.npy); expected such a folder or a file");
     if (!unused_.empty()) {
       const std::size_t shown = std::min<std::size_t>(unused_.size(), 6);
-      log_.damage.notes.push_back(
-          fmt::format("{} arrays without stamps were left out: {}{}", unused_.size(),
-                      fmt::join(unused_.begin(), unused_.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-                      shown < unused_.size() ? ", ..." : ""));
+      log_.damage.notes.push_back(fmt::format("{} arrays without stamps were left out: {}{}", unused_.size(),
+                                              fmt::join(unused_.begin(), unused_.begin() + signed_index(shown), ", "),
+                                              shown < unused_.size() ? ", ..." : ""));
     }
     internal::finish(log_);
     return std::move(log_);
@@ -112,7 +111,7 @@ class FolderReader {
     return read_npy(file.bytes(), path.string());
   }
 
-  /// How many leading folders all pairs of t and value have in common, less their own.
+  /// How many leading folders all pairs of t and value have in common, without the last.
   [[nodiscard]] std::size_t shared_by_pairs() const {
     const Parts* first = nullptr;
     std::size_t shared = 0;

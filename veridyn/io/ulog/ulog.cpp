@@ -84,7 +84,7 @@ class Walker {
       begin = end;
     }
     if (unknown_ids_ > 0) {
-      log_.damage.notes.push_back(fmt::format("{} data messages of ids that nobody subscribed", unknown_ids_));
+      log_.damage.notes.push_back(fmt::format("{} data messages of ids without a subscription", unknown_ids_));
     }
     if (unknown_types_ > 0) log_.damage.notes.push_back(fmt::format("{} messages of unknown type", unknown_types_));
   }
@@ -171,13 +171,13 @@ class Walker {
     return stop;
   }
 
-  void lose(std::size_t begin, std::size_t end) {
+  void count_lost(std::size_t begin, std::size_t end) {
     log_.damage.bytes_lost += end - begin;
     ++log_.damage.records_lost;
   }
 
   void walk(std::size_t begin, std::size_t end) {
-    constexpr int kSure = 3;  // neighbours in a row that are believed after damage
+    constexpr int kSure = 3;  // neighbours in a row that are trusted after damage
     std::size_t at = begin;
     while (at < end) {
       const bool fits = at + 3 <= end && at + 3 + size_at(at) <= end;
@@ -187,7 +187,7 @@ class Walker {
           // A damaged length leads anywhere: then messages begin inside of this one.
           const std::size_t inside = find_chain(at + 3, next, end, kSure + 1);
           if (inside < next) {
-            lose(at, inside);
+            count_lost(at, inside);
             at = inside;
             continue;
           }
@@ -204,7 +204,7 @@ class Walker {
         at += 3 + size_at(at);
       } else {
         const std::size_t next = find_chain(at + 1, end, end, kSure);
-        lose(at, next);
+        count_lost(at, next);
         at = next;
       }
     }
@@ -387,7 +387,7 @@ LogTopic decode(std::string_view data, Subscription& subscription, const ULogLay
     topic.schema = true;
     log.damage.notes.push_back(fmt::format("{} has no timestamp and makes no channels", topic.name));
   }
-  std::vector<GatherColumn> wanted;
+  std::vector<GatherColumn> selected;
   for (const ULogField& from : layout.fields) {
     if (&from == stamp) continue;
     const Px4Unit known = px4_unit(topic.name, from.base_name);
@@ -396,9 +396,9 @@ LogTopic decode(std::string_view data, Subscription& subscription, const ULogLay
     field.unit = known.unit;
     field.scale = known.scale;
     topic.fields.push_back(std::move(field));
-    wanted.push_back({from.type, from.offset, from.size});
+    selected.push_back({from.type, from.offset, from.size});
   }
-  std::vector<Column> columns = gather(data.data(), records, wanted);
+  std::vector<Column> columns = gather(data.data(), records, selected);
   for (std::size_t i = 0; i < columns.size(); ++i) topic.fields[i].values = std::move(columns[i]);
   return topic;
 }

@@ -25,7 +25,7 @@ template <typename Scalar>
 
 /// De Groote et al. (2016): the two time constants blended by tanh(smoothing (u - a)), infinitely differentiable.
 ///
-/// OpenSim's smoothing of 0.1 blends them almost equally, 10 keeps them apart. Check: 15 ms, 60 ms, u = 1, a = 0.1
+/// OpenSim's smoothing of 0.1 blends them almost equally, 10 separates them. Check: 15 ms, 60 ms, u = 1, a = 0.1
 /// gives 54.7339439415 with 0.1, 92.3076910503 with 10.
 template <typename Scalar>
 [[nodiscard]] Scalar smooth_activation_rate(const Scalar& u, const Scalar& a, const Scalar& activation_time,

@@ -13,7 +13,7 @@ namespace veridyn::muscle {
 /// It is kept inside [low, high], which must hold the root: a step that would leave it is replaced by halving.
 struct DampedVelocity {
   double A, F, damping, low, high;
-  double v;           ///< where it stands; begin with a guess
+  double v;           ///< the estimate so far; a guess at first
   bool done = false;  ///< the next step would be below rounding
 
   /// `curve(v)` returns the numerics::FunctionValue of fV.

@@ -107,7 +107,7 @@ class DeGrooteFregly2016 {
     // Beyond, 1e12 times the greatest velocity: held there so that nothing overflows.
     if (s > Scalar(kMaxArgument)) s = Scalar(kMaxArgument);
     if (s < Scalar(-kMaxArgument)) s = Scalar(-kMaxArgument);
-    const Scalar free = (sinh(s) - Scalar(kVelocity[2])) * Scalar(1.0 / kVelocity[1]);
+    Scalar free = (sinh(s) - Scalar(kVelocity[2])) * Scalar(1.0 / kVelocity[1]);
     if (!(damping > 0.0)) return free;
     // Damping slows down: the root lies between rest and the free velocity, and within (F - A fV)/damping.
     const double v = value_of(free), rest = value_of((F - A) * Scalar(1.0 / damping));

@@ -23,10 +23,10 @@ std::vector<CompiledCurves> compile_curves(std::span<const MuscleParameters> mus
       return p.rigid_tendon || p.fiber_damping >= Millard2012::kDampingThreshold;
     };
     std::size_t same = i;
-    if (const auto* own = std::get_if<MillardCurves>(&muscles[i].curves)) {
+    if (const auto* millard = std::get_if<MillardCurves>(&muscles[i].curves)) {
       for (std::size_t j = 0; j < i && same == i; ++j) {
         const auto* other = std::get_if<MillardCurves>(&muscles[j].curves);
-        if (other != nullptr && *other == *own && damped(muscles[i]) == damped(muscles[j])) same = j;
+        if (other != nullptr && *other == *millard && damped(muscles[i]) == damped(muscles[j])) same = j;
       }
     }
     curves.push_back(same < i ? CompiledCurves(curves[same]) : compile_curves(muscles[i]));

@@ -18,7 +18,8 @@ struct Model;
 /// Parameters of all muscles of a model, in its order.
 [[nodiscard]] std::vector<MuscleParameters> muscle_parameters(const Model& model);
 
-/// One element a muscle, in the model's order. Entries that a muscle has no use for are not read.
+/// View of the inputs of all muscles, in the model's order: valid while the arrays that it names are. Entries that a
+/// muscle does not use are not read.
 template <typename Scalar>
 struct MuscleInputs {
   std::span<const Scalar> excitation;
@@ -28,6 +29,7 @@ struct MuscleInputs {
   std::span<const Scalar> path_speed;    ///< [m/s]; rigid tendons only
 };
 
+/// View of the arrays that `MuscleGroup::rates` writes to, in the model's order.
 template <typename Scalar>
 struct MuscleOutputs {
   std::span<Scalar> activation_rate;  ///< [1/s]
@@ -52,16 +54,17 @@ class MuscleGroup {
     return !settings_[muscle].ignore_activation_dynamics;
   }
 
-  /// The same muscles with other parameters, of another scalar if wanted; curves are shared. Not checked: an estimator
+  /// The same muscles with other parameters, possibly of another scalar; curves are shared. Not checked: an estimator
   /// keeps its parameters positive.
   template <typename Other>
   [[nodiscard]] MuscleGroup<Other> with(std::span<const MusculotendonParameters<Other>> parameters) const;
   /// The same in place.
   void set_parameters(std::span<const MusculotendonParameters<Scalar>> parameters);
 
+  /// Derivatives of the muscles' states, and their forces.
   void rates(const MuscleInputs<Scalar>& in, const MuscleOutputs<Scalar>& out) const;
 
-  /// Forces alone.
+  /// Forces only.
   void tendon_forces(const MuscleInputs<Scalar>& in, std::span<Scalar> force) const;
 
   /// Fibre lengths at rest, by `musculotendon_equilibrium`; `end` (when not empty) says how each ended.
@@ -79,20 +82,22 @@ class MuscleGroup {
     });
   }
 
-  /// The same with each muscle's own activation, with derivatives if the scalar carries them.
+  /// The same with an activation for each muscle, with derivatives if the scalar carries them.
   void rigid_parts(std::span<const Scalar> activation, std::span<const Scalar> path_length,
                    std::span<const Scalar> path_speed, std::span<RigidTendonParts<Scalar>> parts) const;
 
-  /// One muscle's forces at its own activation, as if its tendon were rigid.
+  /// One muscle's forces at activation a, as if its tendon were rigid.
   [[nodiscard]] RigidTendonForces rigid_forces(std::size_t muscle, double a, double lMT,
                                                double vMT) const requires std::same_as<Scalar, double> {
     return with_member(muscle, [&](const auto& m) { return rigid_tendon_forces(m.curves, m.constants, a, lMT, vMT); });
   }
+  /// One muscle's forces, lengths and energies.
   [[nodiscard]] MuscleDetails details(std::size_t muscle, double u, double a, double lM, double lMT,
                                       double vMT) const requires std::same_as<Scalar, double> {
     return with_member(muscle,
                        [&](const auto& m) { return musculotendon_details(m.curves, m.constants, u, a, lM, lMT, vMT); });
   }
+  /// [N]
   [[nodiscard]] double max_isometric_force(std::size_t muscle) const;
 
   /// @throws InputError naming the muscle when an excitation is NaN or infinite.
@@ -134,8 +139,8 @@ class MuscleGroup {
     else
       for (const M& m : list) member_rates(m, in, out);
   }
-  /// The velocity of a damped muscle is a long chain of dependent operations. Eight muscles taken through it side by
-  /// side keep the processor busy: about twice as fast as one after the other, with the same results.
+  /// The velocity of a damped muscle is a long chain of dependent operations. Eight muscles taken through it together
+  /// use the processor better: about twice as fast as one after the other, with the same results.
   template <typename M>
   static void damped_rates(const std::vector<M>& list, const MuscleInputs<double>& in,
                            const MuscleOutputs<double>& out);
@@ -152,6 +157,7 @@ class MuscleGroup {
 
 /// Curves of each muscle, tables shared by those whose shape parameters are equal. @throws InputError as `check`.
 [[nodiscard]] std::vector<CompiledCurves> compile_curves(std::span<const MuscleParameters> muscles);
+/// @throws InputError naming the muscle when an excitation is NaN or infinite.
 void check_excitations(std::span<const MuscleParameters> muscles, std::span<const double> excitation);
 
 // Definitions

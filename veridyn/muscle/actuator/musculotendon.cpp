@@ -77,6 +77,13 @@ void check_curves(const Rules& r, const DeGrooteFregly2016Curves& c) {
   r.positive("activation smoothing", c.activation_smoothing);
 }
 
+CompiledCurves compiled(const ThelenCurves& c, const MuscleParameters&) { return Thelen2003(c); }
+CompiledCurves compiled(const DeprecatedThelenCurves& c, const MuscleParameters&) { return Thelen2003Deprecated(c); }
+CompiledCurves compiled(const MillardCurves& c, const MuscleParameters& p) {
+  return Millard2012(c, p.rigid_tendon || p.fiber_damping >= Millard2012::kDampingThreshold);
+}
+CompiledCurves compiled(const DeGrooteFregly2016Curves& c, const MuscleParameters&) { return DeGrooteFregly2016(c); }
+
 }  // namespace
 
 void check(const MuscleParameters& p) {
@@ -97,17 +104,8 @@ void check(const MuscleParameters& p) {
 }
 
 CompiledCurves compile_curves(const MuscleParameters& p) {
-  struct Compile {
-    const MuscleParameters& p;
-    CompiledCurves operator()(const ThelenCurves& c) const { return Thelen2003(c); }
-    CompiledCurves operator()(const DeprecatedThelenCurves& c) const { return Thelen2003Deprecated(c); }
-    CompiledCurves operator()(const MillardCurves& c) const {
-      return Millard2012(c, p.rigid_tendon || p.fiber_damping >= Millard2012::kDampingThreshold);
-    }
-    CompiledCurves operator()(const DeGrooteFregly2016Curves& c) const { return DeGrooteFregly2016(c); }
-  };
   try {
-    return std::visit(Compile{p}, p.curves);
+    return std::visit([&](const auto& c) { return compiled(c, p); }, p.curves);
   } catch (const InputError& error) {
     throw InputError(fmt::format("muscle {}", p.name), error.what());
   }

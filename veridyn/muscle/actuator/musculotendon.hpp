@@ -17,10 +17,10 @@
 /// States of a muscle are activation a and fibre length lM [m]; with a rigid tendon lM follows from the path and with
 /// `ignore_activation_dynamics` a from the excitation, and their rates are 0. The path gives length lMT [m] and speed
 /// vMT [m/s] (positive while it lengthens). Fixed-width pennation: height h = L0 sin(phi0), sin(phi) = h/lM,
-/// lMT = lM cos(phi) + lT. Forces [N] are tension. Functions neither throw nor allocate; NaN goes through.
+/// lMT = lM cos(phi) + lT. Forces [N] are tension. Functions neither throw nor allocate; NaN is passed on.
 namespace veridyn::muscle {
 
-/// A muscle's curves, made ready for evaluation.
+/// A muscle's curves, prepared for evaluation.
 using CompiledCurves = std::variant<Thelen2003, Thelen2003Deprecated, Millard2012, DeGrooteFregly2016>;
 
 /// @throws InputError naming the muscle and the element: parameters that are not finite or out of range, curves whose
@@ -70,11 +70,15 @@ struct MusculotendonConstants {
 
 /// Length at which the curves end on the short side [L0].
 [[nodiscard]] double minimum_norm_length(const CompiledCurves& curves);
+/// Shortest fibre length that the curves allow, in optimal lengths.
 [[nodiscard]] inline double minimum_norm_length(const Thelen2003&) { return Thelen2003::kMinLength; }
+/// Shortest fibre length that the curves allow, in optimal lengths.
 [[nodiscard]] inline double minimum_norm_length(const Thelen2003Deprecated&) {
   return Thelen2003Deprecated::kMinLength;
 }
+/// Shortest fibre length that the curves allow, in optimal lengths.
 [[nodiscard]] inline double minimum_norm_length(const Millard2012& c) { return c.min_length(); }
+/// Shortest fibre length that the curves allow, in optimal lengths.
 [[nodiscard]] inline double minimum_norm_length(const DeGrooteFregly2016&) { return DeGrooteFregly2016::kMinLength; }
 
 /// Which limit a muscle is at.
@@ -84,11 +88,12 @@ enum class MuscleLimit {
   kSlackTendon,    ///< tendon at or below slack length (rigid tendon: path shorter than the tendon)
 };
 
+/// Derivatives of a muscle's states, and its force.
 template <typename Scalar>
 struct MuscleRates {
   Scalar activation_rate;  ///< [1/s]
   Scalar fiber_velocity;   ///< [m/s]
-  Scalar tendon_force;     ///< what acts along the path [N]
+  Scalar tendon_force;     ///< along the path [N]
 };
 
 /// Everything about one state of a muscle.
@@ -115,13 +120,15 @@ struct MuscleDetails {
   MuscleLimit limit = MuscleLimit::kNone;
 };
 
+/// How a search for equilibrium ended.
 enum class EquilibriumEnd {
   kFound,        ///< forces balance to rounding
-  kSlackTendon,  ///< the path is so short that the tendon is slack with the fibre at its least length: that one is
-                 ///< given
-  kNotFinite,    ///< the input is NaN or infinite; NaN is given
+  kSlackTendon,  ///< the path is so short that the tendon is slack with the fibre at its least length, which is
+                 ///< returned
+  kNotFinite,    ///< the input is NaN or infinite; NaN is returned
 };
 
+/// Fibre length at which fibre and tendon forces balance at rest.
 template <typename Scalar>
 struct MuscleEquilibrium {
   Scalar fiber_length;  ///< [m]
@@ -264,6 +271,7 @@ template <typename Curves, typename Scalar>
   return {active < Scalar(0.0) ? nothing : active, (curves.passive_force(l) + Scalar(k.damping) * v) * along_tendon};
 }
 
+/// Forces of a muscle whose tendon does not stretch.
 template <typename Curves>
 [[nodiscard]] RigidTendonForces rigid_tendon_forces(const Curves& curves, const MusculotendonConstants<double>& k,
                                                     double a, double lMT, double vMT) {
@@ -276,7 +284,7 @@ template <typename Curves>
 [[nodiscard]] MuscleDetails musculotendon_details(const Curves& curves, const MusculotendonConstants<double>& k,
                                                   double u, double a, double lM, double lMT, double vMT);
 
-/// One muscle on its own. `MuscleGroup` is quicker for many.
+/// One muscle by itself. `MuscleGroup` is faster for many.
 template <typename Scalar>
 class Musculotendon {
  public:

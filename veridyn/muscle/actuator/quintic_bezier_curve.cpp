@@ -31,7 +31,7 @@ Quintic quintic(const std::array<double, 6>& p, double u) {
           w2 * w * e[0] + 3.0 * u * w * (w * e[1] + u * e[2]) + u2 * u * e[3]};
 }
 
-// x(u) = x, u in [0, 1]: Newton's method kept inside a shrinking bracket.
+// x(u) = x, u in [0, 1]: Newton's method within a shrinking bracket.
 double parameter_at(const QuinticBezierPiece& piece, double x, double start) {
   double low = 0.0, high = 1.0, u = start;
   for (int i = 0; i < 200; ++i) {

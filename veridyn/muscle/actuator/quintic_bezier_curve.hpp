@@ -101,6 +101,7 @@ class QuinticBezierCurve {
   static constexpr std::size_t kMaxPieces = 5;
   static constexpr double kNever = kInfinity;
 
+  /// View of the cell of the table that a value lies in, and where in it.
   struct Lookup {
     const double* coefficient;
     double t;

@@ -13,7 +13,7 @@ namespace veridyn::muscle {
 /// - velocities are in units of (Vmax0 + a (Vmax - Vmax0)) L0, and their denominator carries a damping;
 /// - the tendon's toe ends at force 1/3 and strain 0.609 e0, its slope is 1.712/e0 and 0.001 length/LS is added at all
 ///   lengths, so that it pulls when slack as well;
-/// - passive force exp(k (l - 1)/e0M - k) acts below l = 1 too (0.018 there) and goes on straight above 1 + e0M;
+/// - passive force exp(k (l - 1)/e0M - k) acts below l = 1 too (0.018 there) and continues straight above 1 + e0M;
 /// - the time constants of activation do not depend on activation.
 class Thelen2003Deprecated {
  public:
@@ -40,7 +40,7 @@ class Thelen2003Deprecated {
   [[nodiscard]] Scalar tendon_force(const Scalar& length) const {
     using std::exp;
     const Scalar strain = length - Scalar(1.0);
-    const Scalar base = Scalar(kTendonBase) * length;
+    Scalar base = Scalar(kTendonBase) * length;
     if (strain <= Scalar(0.0)) return base;
     if (strain > Scalar(toe_strain_))
       return base + Scalar(tendon_slope_) * (strain - Scalar(toe_strain_)) + Scalar(kToeForce);

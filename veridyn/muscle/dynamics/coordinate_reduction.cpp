@@ -25,7 +25,7 @@ CoordinateReduction::CoordinateReduction(const Model& model, std::span<const int
       throw InputError(place(c), fmt::format("couplers '{}' and '{}' both set it", other->name, coupler.name));
     }
     if (roles_[at(c)] == CoordinateRole::kDriven) {
-      throw InputError(place(c), fmt::format("it is {} and coupler '{}' sets it too: one of them must go",
+      throw InputError(place(c), fmt::format("it is {} and coupler '{}' sets it too: remove one of them",
                                              model.coordinates[at(c)].locked ? "locked" : "prescribed", coupler.name));
     }
     setter[at(c)] = &coupler;

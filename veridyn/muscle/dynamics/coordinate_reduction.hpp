@@ -9,7 +9,7 @@
 
 namespace veridyn::muscle {
 
-/// Who decides how a coordinate moves.
+/// What determines the motion of a coordinate.
 enum class CoordinateRole {
   kFree,     ///< the forces: a coordinate of the equations of motion
   kCoupled,  ///< another coordinate, by a coupler's function
@@ -53,6 +53,7 @@ class CoordinateReduction {
   /// Driven coordinates resting at their default values.
   [[nodiscard]] std::vector<DrivenMotion<double>> default_motion() const;
 
+  /// value(dependent) = function(value(independent))
   struct Coupler {
     int independent = 0;
     int dependent = 0;
@@ -86,24 +87,23 @@ template <typename Scalar>
 void expand(const CoordinateReduction& reduction, const Scalar* z, const Scalar* zdot,
             const DrivenMotion<Scalar>* driven, ExpandedState<Scalar>& state);
 
-/// Dynamics of the free coordinates, J' M J zddot = J' (tau - h - M bias), with all coordinates' forces tau. Constraint
-/// forces of couplers and drives do no work on the free coordinates and need not be known. A workspace, one a thread;
-/// does not allocate or throw.
+/// View of a mechanism and a reduction, both of which must outlive it: dynamics of the free coordinates,
+/// J' M J zddot = J' (tau - h - M bias), with all coordinates' forces tau. Constraint forces of couplers and drives do
+/// no work on the free coordinates and need not be known. A workspace for one thread; does not allocate or throw.
 template <typename Scalar>
 class ReducedDynamics {
  public:
-  /// Both are referred to and must outlive this.
   ReducedDynamics(const Mechanism& mechanism, const CoordinateReduction& reduction);
 
   /// `driven` may be null when nothing is driven.
   void set_state(const Scalar* z, const Scalar* zdot, const DrivenMotion<Scalar>* driven);
 
-  /// zddot for forces tau on all coordinates (by coordinate, those on driven ones count for nothing) and on links (see
+  /// zddot for forces tau on all coordinates (by coordinate; those on driven ones have no effect) and on links (see
   /// `Dynamics::inverse_dynamics`). All coordinates' accelerations are in `qddot()` afterwards.
   Factorization forward_dynamics(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* zddot);
 
-  /// After `forward_dynamics` with the same arguments: the forces that drive the driven coordinates, those that
-  /// couplers hand them included. [N m or N], in the order of `driven()`.
+  /// After `forward_dynamics` with the same arguments: the forces that drive the driven coordinates, with those
+  /// of coordinates that couplers make follow them. [N m or N], in the order of `driven()`.
   void driving_forces(const Scalar* tau, const SpatialVector<Scalar>* applied, Scalar* forces);
 
   [[nodiscard]] const ExpandedState<Scalar>& state() const { return state_; }

@@ -18,18 +18,18 @@ namespace veridyn::muscle {
 /// Whether a mass matrix could be factorised.
 struct Factorization {
   /// A coordinate along which nothing has inertia (a massless body at the end of a chain, two coordinates that move the
-  /// same way); -1: none, all is well.
+  /// same way); -1: none.
   int singular_coordinate = -1;
   [[nodiscard]] bool usable() const { return singular_coordinate < 0; }
 };
 
+/// View of a mechanism, which must outlive it: a workspace for the dynamics of one state at a time.
 template <typename Scalar>
 class Dynamics {
  public:
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-  /// `mechanism` is referred to: it must outlive this.
   explicit Dynamics(const Mechanism& mechanism);
 
   /// Poses, velocities and inertias in ground for coordinates q and speeds qdot (as many as coordinates).
@@ -42,7 +42,7 @@ class Dynamics {
   /// forces with their moments about the ground's origin; nullptr: none. `qddot` nullptr: zero.
   void inverse_dynamics(const Scalar* qddot, const SpatialVector<Scalar>* applied, Scalar* tau);
 
-  /// The forces `applied` (by link, as above) seen by the coordinates: sum over links of column . applied.
+  /// Generalised forces of the forces `applied` (by link, as above): sum over links of column . applied.
   void generalized_forces(const SpatialVector<Scalar>* applied, Scalar* tau);
 
   /// Rows of the mass matrix by the composite rigid body algorithm, in the layout of Mechanism::row.
@@ -58,7 +58,7 @@ class Dynamics {
   void mass_matrix(Matrix& M);
 
   /// Solves M x = b in place by M = L' D L along the tree, without fill-in, after `update_mass_rows`, whose rows it
-  /// uses up. Coordinates with `fixed` (by coordinate; nullptr: none) are left out of the equations and get x = 0.
+  /// overwrites. Coordinates with `fixed` (by coordinate; nullptr: none) are left out of the equations; their x is 0.
   Factorization solve_mass(const char* fixed, Scalar* x);
 
   /// qddot for the coordinate forces tau, by articulated bodies.

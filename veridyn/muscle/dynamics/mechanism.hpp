@@ -56,10 +56,11 @@ struct Link {
 /// in the model, and each belongs to one joint.
 class Mechanism {
  public:
-  /// @throws InputError naming the elements when joints make a circle, two joints move one body, a body hangs on no
+  /// @throws InputError naming the elements when joints make a circle, two joints move one body, a body is on no
   /// joint, or a joint uses the coordinate of another.
   explicit Mechanism(const Model& model);
 
+  /// Where a body of the model is.
   struct BodyPlace {
     int link = 0;
     Placement in_link;
@@ -118,7 +119,7 @@ struct Kinematics {
   /// By link, after `update_velocities`.
   std::vector<SpatialVector<Scalar>> velocity;
   /// By link: the part of its acceleration relative to the parent's that is there without coordinate accelerations,
-  /// sum_k d(columns[k])/dt qdot_k. Spatial, so it does not hold the centripetal term of a point; see
+  /// sum_k d(columns[k])/dt qdot_k. Spatial, so without the centripetal term of a point; see
   /// `point_acceleration`.
   std::vector<SpatialVector<Scalar>> velocity_bias;
 
@@ -291,8 +292,9 @@ void update_velocities(const Mechanism& mechanism, const Scalar* qdot, Kinematic
   }
 }
 
-// In dynamics.cpp.
+/// Compiled once, in dynamics.cpp.
 extern template void update_positions(const Mechanism&, const double*, Kinematics<double>&);
+/// Compiled once, in dynamics.cpp.
 extern template void update_velocities(const Mechanism&, const double*, Kinematics<double>&);
 
 }  // namespace veridyn::muscle

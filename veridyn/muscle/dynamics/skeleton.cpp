@@ -14,7 +14,7 @@ std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, cons
     for (const Joint& j : model.joints) {
       if (j.parent != static_cast<int>(b)) continue;
       const Body& child = model.bodies[static_cast<std::size_t>(j.child)];
-      // What is welded on, such as a load, makes no stick of its own.
+      // What is welded on, such as a load, makes no stick.
       if (j.coordinates.empty() && child.mass_center.isZero(0.0)) continue;
       carries = true;
       lines.push_back({model.bodies[b].name, {joint, pose * j.parent_frame.translation}});

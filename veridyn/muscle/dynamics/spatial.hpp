@@ -10,8 +10,10 @@
 /// 1e-16 m r^2 / I of relative accuracy is lost (1e-12 for a forearm 10 m away).
 namespace veridyn::muscle {
 
+/// A vector in space.
 template <typename Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+/// A rotation or an inertia in space.
 template <typename Scalar>
 using Matrix3 = Eigen::Matrix<Scalar, 3, 3>;
 

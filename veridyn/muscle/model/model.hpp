@@ -12,7 +12,7 @@
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
 /// A musculoskeletal model as its file describes it: plain data with all names resolved to indices and all offset
-/// frames folded into the bodies that carry them. `osim_reader.hpp` makes one, `mechanism.hpp`, `muscle_path.hpp` and
+/// frames composed into the bodies that carry them. `osim_reader.hpp` makes one, `mechanism.hpp`, `muscle_path.hpp` and
 /// `musculotendon.hpp` compute with it.
 ///
 /// SI units, radians. Body 0 is the ground. Lists keep the order of the file.
@@ -33,6 +33,7 @@ struct Placement {
 /// Body-fixed x-y-z rotation sequence, R = Rx(a) Ry(b) Rz(c): OpenSim's `orientation` and `xyz_body_rotation`.
 [[nodiscard]] Eigen::Matrix3d body_fixed_xyz(const Eigen::Vector3d& angles);
 
+/// A rigid body.
 struct Body {
   std::string name;
   double mass = 0.0;                                      ///< [kg]
@@ -40,18 +41,21 @@ struct Body {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();      ///< about the mass centre, body axes [kg m^2]
 };
 
+/// What a coordinate of a joint measures; kCoupled: an angle that moves the joint only through other functions.
 enum class CoordinateMotion { kRotational, kTranslational, kCoupled };
 
+/// A generalised coordinate of a joint.
 struct Coordinate {
   std::string name;
   CoordinateMotion motion = CoordinateMotion::kRotational;
   int joint = 0;
   double default_value = 0.0;  ///< [rad] or [m]
-  double default_speed = 0.0;  ///< [1/s]
-  double low = 0.0;
+  double default_speed = 0.0;  ///< [rad/s] or [m/s]
+  double low = 0.0;            ///< of its range [rad] or [m]
   double high = 0.0;
   bool clamped = false;
   bool locked = false;
+  /// "m" or "rad".
   std::string unit() const { return motion == CoordinateMotion::kTranslational ? "m" : "rad"; }
   /// low <= value <= high but for rounding; false for NaN.
   [[nodiscard]] bool in_range(double value) const;
@@ -91,12 +95,14 @@ struct CoordinateCoupler {
   numerics::PiecewisePolynomial function;
 };
 
+/// How a point of a muscle's path is given.
 enum class PathPointKind {
   kFixed,
   kConditional,  ///< part of the path only while low <= coordinate <= high
   kMoving,       ///< location = functions of coordinates
 };
 
+/// A point that a muscle's path passes through.
 struct PathPoint {
   std::string name;
   PathPointKind kind = PathPointKind::kFixed;
@@ -108,6 +114,7 @@ struct PathPoint {
   std::array<numerics::PiecewisePolynomial, 3> moving_location;
 };
 
+/// Surfaces that paths wrap over.
 enum class WrapShape { kSphere, kCylinder, kEllipsoid, kTorus };
 
 /// Half space, in the wrap object's frame, to which wrapping is confined: sign * x[axis] > 0; sign 0: everywhere.
@@ -116,6 +123,7 @@ struct WrapQuadrant {
   int sign = 0;
 };
 
+/// A surface fixed to a body that muscle paths wrap over.
 struct WrapObject {
   std::string name;
   WrapShape shape = WrapShape::kSphere;
@@ -131,13 +139,15 @@ struct WrapObject {
 /// OpenSim's ways of choosing an ellipsoid's wrapping plane.
 enum class EllipsoidMethod { kHybrid, kMidpoint, kAxial };
 
+/// A wrap object of a muscle's path.
 struct PathWrap {
   int object = 0;       ///< in Model::wrap_objects
-  int first_point = 0;  ///< of the path, 0-based, inclusive: wrapping is looked for between these points only
+  int first_point = 0;  ///< of the path, 0-based, inclusive: only between these points is there wrapping
   int last_point = -1;  ///< inclusive; -1: the path's last
   EllipsoidMethod method = EllipsoidMethod::kHybrid;
 };
 
+/// A muscle with its path.
 struct Muscle {
   MuscleParameters parameters;
   std::vector<PathPoint> points;
@@ -165,6 +175,7 @@ struct CoordinateLimitForce {
   double transition = 0.1;
 };
 
+/// A point on a body that motion capture observes.
 struct Marker {
   std::string name;
   int body = 0;
@@ -175,10 +186,12 @@ struct Marker {
 struct UnsupportedElement {
   std::string element;  ///< "HuntCrossleyForce"
   std::string name;     ///< "contact_r"
-  /// True when it would change the motion (a force, a constraint); a simulation then has to be told to go on without.
+  /// True when it would change the motion (a force, a constraint); a simulation then runs only with
+  /// `without_unsupported`.
   bool changes_motion = false;
 };
 
+/// The whole model. Indices are positions in these lists.
 struct Model {
   std::string name;
   std::string credits;
@@ -200,6 +213,7 @@ struct Model {
   [[nodiscard]] int body(std::string_view name) const;
   [[nodiscard]] int coordinate(std::string_view name) const;
   [[nodiscard]] int muscle(std::string_view name) const;
+  /// In the model's order.
   [[nodiscard]] std::vector<std::string> coordinate_names() const;
   [[nodiscard]] std::vector<std::string> muscle_names() const;
   /// "model 'arm26' has no coordinate 'elbow'; did you mean 'r_elbow_flex'?", for a message about a name without index.

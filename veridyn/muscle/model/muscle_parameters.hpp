@@ -72,10 +72,11 @@ struct DeGrooteFregly2016Curves {
   double activation_smoothing = 0.1;  ///< b of the activation law's tanh
 };
 
+/// Curves of a muscle by the model that they belong to.
 using MuscleCurves = std::variant<ThelenCurves, DeprecatedThelenCurves, MillardCurves, DeGrooteFregly2016Curves>;
 
-/// The parameters of one musculotendon unit that an estimator may want to know; templated so that derivatives with
-/// respect to them come from automatic differentiation.
+/// The parameters of one musculotendon unit that can be estimated; a template, so that automatic differentiation gives
+/// derivatives with respect to them.
 template <typename Scalar>
 struct MusculotendonParameters {
   Scalar max_isometric_force{1000.0};        ///< F0 [N]
@@ -99,6 +100,7 @@ struct MusculotendonField {
   const char* name;
   const char* unit;
 };
+/// All of them, in the order of the struct.
 inline constexpr std::array<MusculotendonField, 7> kMusculotendonFields{{{"max_isometric_force", "N"},
                                                                          {"optimal_fiber_length", "m"},
                                                                          {"tendon_slack_length", "m"},
@@ -115,6 +117,7 @@ template <typename Scalar>
                             &p.deactivation_time_constant};
   return *fields[field];
 }
+/// A parameter by its place in the list of fields.
 template <typename Scalar>
 [[nodiscard]] const Scalar& field_of(const MusculotendonParameters<Scalar>& p, std::size_t field) {
   return field_of(const_cast<MusculotendonParameters<Scalar>&>(p), field);

@@ -13,7 +13,7 @@ enum class RampShape {
   kLinear,       ///< s: the speed jumps at both ends
 };
 
-/// A wished movement of one coordinate: `from` before `start`, `to` after `start + duration`.
+/// A desired movement of one coordinate: `from` before `start`, `to` after `start + duration`.
 struct Ramp {
   double start = 0.0;     ///< [s]
   double duration = 1.0;  ///< [s], > 0

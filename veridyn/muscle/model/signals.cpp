@@ -106,7 +106,7 @@ SignalTable read_signals(const std::filesystem::path& path) {
   if (io::is_storage(text)) return from_storage(io::parse_storage(text, path.string()));
   Recording recording = io::read_recording(path);
   recording.source = path.string();
-  // A topic name stands before the column's unless the file is of our own form.
+  // A topic name precedes the column's, except in tables of the form that this program writes.
   return from_recording(recording);
 }
 

@@ -50,9 +50,10 @@ struct MotionOptions {
 /// few or too uneven for the low-pass.
 [[nodiscard]] Motion make_motion(const SignalTable& table, const Model& model, const MotionOptions& options = {});
 
+/// How signals continue between their samples.
 enum class Interpolation {
-  kLinear,  ///< between samples, as OpenSim's controllers take them
-  kHold,    ///< each sample holds until the next: a control that was held over windows
+  kLinear,  ///< on a line to the next sample, as OpenSim's controllers do
+  kHold,    ///< constant until the next sample: a control that was held over windows
 };
 
 /// Functions of time for a list of names (excitations of muscles, controls of actuators), evaluated together. Constant

@@ -16,6 +16,7 @@ struct FrameReference {
   Placement placement;
 };
 
+/// View of a document, which must outlive it, and the model as far as it has been read.
 struct Context {
   const Document& document;
   Model model;
@@ -25,8 +26,9 @@ struct Context {
   /// Index of a body by name or component path. @throws InputError naming the nearest body.
   [[nodiscard]] int body(const Element& user, const char* property, std::string_view reference) const;
   [[nodiscard]] int coordinate(const Element& user, const char* property, std::string_view reference) const;
-  /// The frame that `reference` means to `user`: ground, a body, or an offset frame, its own first.
+  /// The frame that `reference` means to `user`: ground, a body, or an offset frame, those of `user` first.
   [[nodiscard]] FrameReference frame(const Element& user, const char* property, std::string_view reference) const;
+  /// Adds to the model's warnings or to its unsupported elements.
   void warn(const Element& element, std::string_view what);
   void unsupported(const Element& element, bool changes_motion);
 };
@@ -34,15 +36,22 @@ struct Context {
 /// What a socket is connected to: `socket_NAME`, `socket_NAME_connectee_name` or a Connector element.
 [[nodiscard]] std::string socket(const Element& user, const char* name);
 
+/// Reads the document's bodies into the model. @throws InputError with file, line and element.
 void read_bodies(Context& context);
+/// Reads the document's wrap objects into the model. @throws InputError with file, line and element.
 void read_wrap_objects(Context& context);
+/// Reads the document's joints into the model. @throws InputError with file, line and element.
 void read_joints(Context& context);
+/// Reads the document's constraints into the model. @throws InputError with file, line and element.
 void read_constraints(Context& context);
+/// Reads the document's forces into the model. @throws InputError with file, line and element.
 void read_forces(Context& context);
+/// Reads the document's markers into the model. @throws InputError with file, line and element.
 void read_markers(Context& context);
 
 /// Everything but the curves and the path of a Muscle element.
 [[nodiscard]] bool is_muscle(std::string_view type);
+/// Reads a muscle of the set of forces. @throws InputError with file, line and element.
 void read_muscle(Context& context, const Element& element);
 
 }  // namespace veridyn::muscle::osim

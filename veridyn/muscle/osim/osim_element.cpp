@@ -84,7 +84,7 @@ void Element::fail(std::string_view property, std::string_view what) const {
 }
 
 pugi::xml_node Element::property(const char* name) const {
-  if (const pugi::xml_node own = node_.child(name)) return own;
+  if (const pugi::xml_node child = node_.child(name)) return child;
   return document_->defaults(node_.name()).child(name);
 }
 
@@ -127,7 +127,7 @@ std::vector<double> Element::numbers(const char* name) const {
 double Element::number_or(const char* name, double otherwise) const {
   const std::vector<double> values = numbers(name);
   if (values.empty()) return otherwise;
-  if (values.size() > 1) fail(name, fmt::format("{} numbers where one is wanted", values.size()));
+  if (values.size() > 1) fail(name, fmt::format("{} numbers where one is expected", values.size()));
   return values.front();
 }
 
@@ -146,7 +146,7 @@ double Element::positive_or(const char* name, double otherwise) const {
 Eigen::Vector3d Element::vector_or(const char* name, const Eigen::Vector3d& otherwise) const {
   const std::vector<double> values = numbers(name);
   if (values.empty()) return otherwise;
-  if (values.size() != 3) fail(name, fmt::format("{} numbers where three are wanted", values.size()));
+  if (values.size() != 3) fail(name, fmt::format("{} numbers where three are expected", values.size()));
   return {values[0], values[1], values[2]};
 }
 

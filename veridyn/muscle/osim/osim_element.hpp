@@ -38,7 +38,8 @@ class Document {
   int version_ = 0;
 };
 
-/// One object of the file. A property that the object does not have is looked for in the defaults of its type.
+/// View of one object of a document, which must outlive it. A property that the object does not have is looked up in
+/// the defaults of its type.
 class Element {
  public:
   Element(const Document& document, pugi::xml_node node) : document_(&document), node_(node) {}

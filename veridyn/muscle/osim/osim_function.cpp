@@ -27,7 +27,7 @@ struct Points {
 Points read_points(const Element& function) {
   Points points{function.numbers("x"), function.numbers("y")};
   if (points.x.size() != points.y.size()) {
-    function.fail("x, y", fmt::format("{} and {} numbers, as many are wanted", points.x.size(), points.y.size()));
+    function.fail("x, y", fmt::format("{} and {} numbers, as many are expected", points.x.size(), points.y.size()));
   }
   if (points.x.size() < 2) function.fail("x", "a spline takes at least two points");
   for (std::size_t i = 1; i < points.x.size(); ++i) {
@@ -47,7 +47,7 @@ numerics::PiecewisePolynomial read_function(const Element& function, int depth) 
     const std::vector<double> c = function.numbers("coefficients");
     if (c.empty()) return numerics::PiecewisePolynomial::linear(1.0, 0.0);
     if (c.size() != 2)
-      function.fail("coefficients", fmt::format("{} numbers where slope and intercept are wanted", c.size()));
+      function.fail("coefficients", fmt::format("{} numbers where slope and intercept are expected", c.size()));
     return numerics::PiecewisePolynomial::linear(c[0], c[1]);
   }
   if (type == "PolynomialFunction") {

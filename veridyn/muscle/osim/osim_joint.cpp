@@ -42,7 +42,7 @@ void read_coordinates(Context& context, const Element& element, Joint& joint, st
     coordinate.low = -1e6;
     coordinate.high = 1e6;
     if (!range.empty()) {
-      if (range.size() != 2) c.fail("range", fmt::format("{} numbers where two are wanted", range.size()));
+      if (range.size() != 2) c.fail("range", fmt::format("{} numbers where two are expected", range.size()));
       if (range[0] > range[1]) c.fail("range", fmt::format("begins at {} above its end {}", range[0], range[1]));
       coordinate.low = range[0];
       coordinate.high = range[1];
@@ -123,7 +123,7 @@ void read_spatial_transform(Context& context, const Element& element, Joint& joi
     const Element function = find_function(source, "function");
     if (function) axis.function = read_function(function);
     if (names.empty()) {
-      // A function without a coordinate is evaluated at nothing: it has to be a constant.
+      // A function without a coordinate has no argument: it has to be a constant.
       if (function && !axis.function.is_constant()) {
         axis.function = numerics::PiecewisePolynomial::constant(axis.function.evaluate(0.0).value);
       }

@@ -28,7 +28,7 @@ PathPoint read_point(Context& context, const Element& element) {
     if (coordinate.empty()) coordinate = element.text_or("coordinate", "");
     point.coordinate = context.coordinate(element, "coordinate", coordinate);
     const std::vector<double> range = element.numbers("range");
-    if (range.size() != 2) element.fail("range", fmt::format("{} numbers where two are wanted", range.size()));
+    if (range.size() != 2) element.fail("range", fmt::format("{} numbers where two are expected", range.size()));
     point.low = std::min(range[0], range[1]);
     point.high = std::max(range[0], range[1]);
     return point;
@@ -74,7 +74,7 @@ PathWrap read_path_wrap(Context& context, const Element& element, std::size_t po
   }
   const std::vector<double> range = element.numbers("range");
   if (!range.empty() && range.size() != 2)
-    element.fail("range", fmt::format("{} numbers where two are wanted", range.size()));
+    element.fail("range", fmt::format("{} numbers where two are expected", range.size()));
   // 1-based and inclusive in the file, anything below 1 means "from the first" or "to the last".
   const auto index = [&](double value, int otherwise) {
     if (value < 1.0) return otherwise;
@@ -152,7 +152,7 @@ MillardCurves read_millard(const Element& e) {
     c.minimum_value = f.number_or("minimum_value", c.minimum_value);
     if (!(0.0 < c.min_norm_active_fiber_length && c.min_norm_active_fiber_length < c.transition_norm_fiber_length &&
           c.transition_norm_fiber_length < 1.0 && 1.0 < c.max_norm_active_fiber_length)) {
-      f.fail("min_norm_active_fiber_length", "0 < minimum < transition < 1 < maximum is wanted");
+      f.fail("min_norm_active_fiber_length", "0 < minimum < transition < 1 < maximum is expected");
     }
   }
   if (const Element f = e.child("ForceVelocityCurve")) {

@@ -37,7 +37,7 @@ Eigen::Matrix3d read_inertia(const Element& body) {
       v.push_back(body.number_or(part, 0.0));
     }
   }
-  if (v.size() != 6) body.fail("inertia", fmt::format("{} numbers where xx yy zz xy xz yz are wanted", v.size()));
+  if (v.size() != 6) body.fail("inertia", fmt::format("{} numbers where xx yy zz xy xz yz are expected", v.size()));
   Eigen::Matrix3d inertia;
   inertia << v[0], v[3], v[4], v[3], v[1], v[5], v[4], v[5], v[2];
   const Eigen::Vector3d principal = inertia.selfadjointView<Eigen::Lower>().eigenvalues();
@@ -136,9 +136,9 @@ FrameReference Context::frame(const Element& user, const char* property, std::st
       // <frames> or <components> within the object that owns the frame.
       const pugi::xml_node holder = candidate.node().parent().parent();
       const std::string_view holder_name = holder.attribute("name").value();
-      const bool own = holder == owner || candidate.node().parent().parent() == owner.parent().parent();
+      const bool local = holder == owner || candidate.node().parent().parent() == owner.parent().parent();
       const bool named = !folder.empty() && folder != ".." && folder == holder_name;
-      if (named || (own && (folder.empty() || folder == ".."))) {
+      if (named || (local && (folder.empty() || folder == ".."))) {
         found = &candidate;
         break;
       }

@@ -25,7 +25,7 @@ pugi::xml_node find_muscle(const osim::Document& document, const std::string& na
   return {};
 }
 
-/// Where the text of `property` stands, or where such a property can be added.
+/// Where the text of `property` is, or where such a property can be added.
 Edit edit_of(const std::string& text, pugi::xml_node muscle, const char* property, double value) {
   const std::string number = fmt::format("{}", value);
   const pugi::xml_node node = muscle.child(property);

@@ -58,30 +58,23 @@ struct SpheroidArrival {
   Scalar jacobi, jacobi_slope;
 };
 
-/// From r1 (on the surface) along the unit tangent t1, `sigma` on the auxiliary sphere. `jacobi`: J at r1, where
-/// dJ/ds = 1.
+/// Integrals over sigma along the great circle of the auxiliary sphere that starts at height z1 with slope v1 =
+/// dz/dsigma, and the end of that arc.
 template <typename Scalar>
-SpheroidArrival<Scalar> spheroid_geodesic(const Spheroid& s, const Eigen::Vector3d& a,
-                                          const Eigen::Matrix<Scalar, 3, 1>& r1, const Eigen::Matrix<Scalar, 3, 1>& t1,
-                                          const Scalar& jacobi, const Scalar& sigma) {
+struct SpheroidIntegrals {
+  Scalar length;        ///< of W
+  Scalar turn;          ///< of 1/(1 + W)
+  Scalar deviation;     ///< of z^2/W
+  Scalar cosine, sine;  ///< of `sigma`
+};
+
+template <typename Scalar>
+SpheroidIntegrals<Scalar> spheroid_integrals(const Spheroid& s, const Scalar& z1, const Scalar& v1,
+                                             const Scalar& sigma) {
   using std::cos;
   using std::sin;
-  using std::sqrt;
-  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   using Points = Eigen::Array<Scalar, 4, 1>;
-  const int k = s.axis, i = (k + 1) % 3, j = (k + 2) % 3;
-  const double e = s.eccentricity2, equator = s.equator;
-  const auto stretch = [&](const Scalar& z2) { return Scalar(1.0 - e) + z2 * e; };
-  const Vector3 inverse = a.cwiseInverse().cast<Scalar>();
-  const Vector3 y1 = r1.cwiseProduct(inverse);
-  const Scalar w1 = sqrt(stretch(y1[k] * y1[k]));
-  const Scalar clairaut = (r1[i] * t1[j] - r1[j] * t1[i]) * (1.0 / equator);
-  const Scalar turn1 = clairaut * (-e) / (Scalar(1.0) + w1);
-  Vector3 tau1 = t1.cwiseProduct(inverse) * (w1 * equator);
-  tau1[i] += turn1 * y1[j];
-  tau1[j] -= turn1 * y1[i];
-  const Scalar &z1 = y1[k], &v1 = tau1[k];
-
+  const double e = s.eccentricity2;
   // Gauss-Legendre points in pairs about the middle of a panel.
   const double panels = 1.0 + std::floor(std::abs(value_of(sigma)) / (2.0 * s.panel));
   const Scalar half = sigma * (0.5 / panels);
@@ -124,13 +117,39 @@ SpheroidArrival<Scalar> spheroid_geodesic(const Spheroid& s, const Eigen::Vector
     cos_mid = cos_mid * cos_panel - sin_mid * sin_panel;
     sin_mid = sin_mid * cos_panel + was * sin_panel;
   }
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): a copy for derivatives, a reference for double
   const Points weight = point_weight.cast<Scalar>();
-  const Scalar length = (sum_length * weight).sum() * half * equator;
-  const Scalar turn = (sum_turn * weight).sum() * half * clairaut * (-e);
-  const Scalar deviation = (sum_deviation * weight).sum() * half * e;
+  return {(sum_length * weight).sum() * half, (sum_turn * weight).sum() * half, (sum_deviation * weight).sum() * half,
+          cos_mid * cos_half - sin_mid * sin_half, sin_mid * cos_half + cos_mid * sin_half};
+}
 
-  const Scalar cos_sigma = cos_mid * cos_half - sin_mid * sin_half;
-  const Scalar sin_sigma = sin_mid * cos_half + cos_mid * sin_half;
+/// From r1 (on the surface) along the unit tangent t1, `sigma` on the auxiliary sphere. `jacobi`: J at r1, where
+/// dJ/ds = 1.
+template <typename Scalar>
+SpheroidArrival<Scalar> spheroid_geodesic(const Spheroid& s, const Eigen::Vector3d& a,
+                                          const Eigen::Matrix<Scalar, 3, 1>& r1, const Eigen::Matrix<Scalar, 3, 1>& t1,
+                                          const Scalar& jacobi, const Scalar& sigma) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  const int k = s.axis, i = (k + 1) % 3, j = (k + 2) % 3;
+  const double e = s.eccentricity2, equator = s.equator;
+  const auto stretch = [&](const Scalar& z2) { return Scalar(1.0 - e) + z2 * e; };
+  const Vector3 inverse = a.cwiseInverse().cast<Scalar>();
+  const Vector3 y1 = r1.cwiseProduct(inverse);
+  const Scalar w1 = sqrt(stretch(y1[k] * y1[k]));
+  const Scalar clairaut = (r1[i] * t1[j] - r1[j] * t1[i]) * (1.0 / equator);
+  const Scalar turn1 = clairaut * (-e) / (Scalar(1.0) + w1);
+  Vector3 tau1 = t1.cwiseProduct(inverse) * (w1 * equator);
+  tau1[i] += turn1 * y1[j];
+  tau1[j] -= turn1 * y1[i];
+  const Scalar &z1 = y1[k], &v1 = tau1[k];
+
+  const SpheroidIntegrals<Scalar> integrals = spheroid_integrals<Scalar>(s, z1, v1, sigma);
+  const Scalar turn = integrals.turn * clairaut * (-e);
+  const Scalar deviation = integrals.deviation * e;
+  const Scalar &cos_sigma = integrals.cosine, &sin_sigma = integrals.sine;
   const Vector3 y2 = y1 * cos_sigma + tau1 * sin_sigma;
   const Vector3 tau2 = tau1 * cos_sigma - y1 * sin_sigma;
   const Scalar &z2 = y2[k], &v2 = tau2[k];
@@ -138,7 +157,7 @@ SpheroidArrival<Scalar> spheroid_geodesic(const Spheroid& s, const Eigen::Vector
   const Scalar turn2 = clairaut * (-e) / (Scalar(1.0) + w2);
   const Scalar cos_turn = cos(turn), sin_turn = sin(turn);
   SpheroidArrival<Scalar> arrival;
-  arrival.length = length;
+  arrival.length = integrals.length * equator;
   arrival.speed = w2 * equator;
   const Scalar ax = y2[i] * cos_turn - y2[j] * sin_turn, ay = y2[j] * cos_turn + y2[i] * sin_turn;
   const Scalar bx = tau2[i] * cos_turn - tau2[j] * sin_turn, by = tau2[j] * cos_turn + tau2[i] * sin_turn;
@@ -161,5 +180,10 @@ SpheroidArrival<Scalar> spheroid_geodesic(const Spheroid& s, const Eigen::Vector
       (w1 * cos_sigma * equator - jacobi * sin_sigma + change * v2 * both + common * z2) / arrival.speed;
   return arrival;
 }
+
+// In muscle_path_evaluation.cpp.
+extern template SpheroidArrival<double> spheroid_geodesic<double>(const Spheroid&, const Eigen::Vector3d&,
+                                                                  const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                                                  const double&, const double&);
 
 }  // namespace veridyn::muscle::internal

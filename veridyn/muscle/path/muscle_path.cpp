@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 
@@ -64,8 +65,7 @@ MusclePaths::MusclePaths(const Model& model, const Mechanism& mechanism, WrapMod
     : mode_(mode), coordinates_(mechanism.coordinates()) {
   moves_.resize(static_cast<std::size_t>(mechanism.links()) * static_cast<std::size_t>(coordinates_));
   for (int link = 0; link < mechanism.links(); ++link)
-    for (int c = 0; c < coordinates_; ++c)
-      moves_[static_cast<std::size_t>(link * coordinates_ + c)] = mechanism.moves(c, link) ? 1 : 0;
+    for (int c = 0; c < coordinates_; ++c) moves_[at(link * coordinates_ + c)] = mechanism.moves(c, link) ? 1 : 0;
   for (const WrapObject& object : model.wrap_objects) add_object(model, mechanism, object);
   for (const Muscle& muscle : model.muscles) add_path(model, mechanism, muscle);
   for (int muscle = 0; muscle < muscles(); ++muscle) compile_path(muscle);
@@ -147,7 +147,7 @@ void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const
   muscles_.push_back(path);
 }
 
-/// Object and both ends on one link: the answer is always the same; where it is no, the wrap is not tried again.
+/// Object and both ends on one link: the answer is always the same; where it is no, the wrap is not tested again.
 bool MusclePaths::never_wraps(const Object& object, const Point& a, const Point& b) const {
   if (mode_ != WrapMode::kTaut || a.link != object.link || b.link != object.link || a.moving >= 0 || b.moving >= 0)
     return false;
@@ -155,7 +155,7 @@ bool MusclePaths::never_wraps(const Object& object, const Point& a, const Point&
   return wrap_status(object, in * a.location, in * b.location) == WrapStatus::kStraight;
 }
 
-/// The pairs of points that each wrap of a path without conditions is tried on.
+/// The pairs of points that each wrap of a path without conditions is tested on.
 void MusclePaths::list_spans(Path& path) {
   for (Wrap& wrap : path.wraps) {
     for (int i = wrap.first; i < wrap.last; ++i) {
@@ -285,7 +285,7 @@ void MusclePaths::list_points() {
       for_all.insert(p);
     }
   }
-  // Points of ground are where they are; moving ones are placed apart.
+  // Points fixed to the ground stay where they are; moving ones are placed separately.
   const auto placed = [&](int p) {
     const Point& point = points_[static_cast<std::size_t>(p)];
     return point.link != 0 && point.moving < 0;

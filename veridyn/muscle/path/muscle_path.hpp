@@ -16,6 +16,7 @@
 
 namespace veridyn::muscle {
 
+/// Which construction of wrapped paths is used.
 enum class WrapMode {
   kTaut,       ///< a taut string: continuous lengths, moment arms that are their derivatives
   kAsOpenSim,  ///< OpenSim's own constructions, to compare with; double only (`wrap_opensim.hpp`)
@@ -27,9 +28,9 @@ struct PathWorkspace;
 /// The musculotendon paths of a model, compiled: lengths L(q) and their derivatives dL/dq. A muscle's moment arm about
 /// a coordinate is -dL/dq, in OpenSim's sign (positive where tension raises the coordinate).
 ///
-/// Points are fixed, conditional or moving as in the file. Wrap objects are tried on every segment of their range; the
+/// Points are fixed, conditional or moving as in the file. Wrap objects are tested on every segment of their range; the
 /// first that meets the object wraps, otherwise the one that a quadrant's wall lengthens least. Objects that share a
-/// segment are solved together until all tangent points stand still.
+/// segment are solved together until all tangent points settle.
 ///
 /// What is the same for every pose (segments within a link) is computed once here, what several muscles share
 /// (segments, wraps of one pair of points) once per pose. Immutable, used by many threads at once; no call below
@@ -64,7 +65,7 @@ class MusclePaths {
   /// Lengths and `gradient`.
   template <typename Scalar>
   void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace) const;
-  /// The same, but of the muscles that can wrap those with skip[muscle] != 0 are left as they are.
+  /// The same, except that muscles that can wrap and have skip[muscle] != 0 are not evaluated.
   template <typename Scalar>
   void evaluate(const Kinematics<Scalar>& kinematics, const Scalar* q, PathWorkspace<Scalar>& workspace,
                 std::span<const std::uint8_t> skip) const;
@@ -206,7 +207,7 @@ class MusclePaths {
   std::vector<Variant> variants_;
   std::vector<int> variant_segments_;
   std::vector<std::array<std::size_t, 2>> variant_adds_;  ///< term -> pair
-  /// segments_ from 0 to the end of the last pair have fixed ends: side by side, so that they are computed together.
+  /// segments_ from 0 to the end of the last pair have fixed ends: contiguous, so that they are computed together.
   std::vector<LinkPair> link_pairs_;
   std::array<std::vector<double>, 3> end_a_, end_b_;  ///< of those, by axis, in their links
   std::vector<int> points_for_lengths_, points_for_all_;

@@ -1,6 +1,21 @@
 #include "veridyn/muscle/path/muscle_path_evaluation.hpp"
 
 namespace veridyn::muscle {
+namespace internal {
+
+template SpheroidArrival<double> spheroid_geodesic<double>(const Spheroid&, const Eigen::Vector3d&,
+                                                           const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                                           const double&, const double&);
+template GeodesicShot<double> shoot<double>(const Eigen::Vector3d&, const Spheroid&, const Eigen::Vector3d&,
+                                            const Eigen::Vector3d&, const TangentCircle<double>&, const double&,
+                                            const double&, const double&, int);
+template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&, WrapResult<double>&);
+template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                WrapResult<double>&);
+template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&, GeodesicMemory*,
+                                WrapResult<double>&);
+
+}  // namespace internal
 
 WrapStatus MusclePaths::wrap_status(const Object& object, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
   switch (object.shape) {

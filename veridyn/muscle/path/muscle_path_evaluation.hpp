@@ -7,7 +7,7 @@
 #include "veridyn/muscle/path/path_solver_wrapping.hpp"
 
 /// Definitions of the templates of `MusclePaths` and `PathWorkspace`. The library compiles them for double and
-/// `SimulationJet`; only who needs them of another scalar includes this.
+/// `SimulationJet`; include this only for another scalar.
 namespace veridyn::muscle {
 
 template <typename Scalar>
@@ -27,10 +27,10 @@ PathWorkspace<Scalar>::PathWorkspace(const MusclePaths& paths)
       other_nodes(nodes.size()),
       result(paths.most_wraps_),
       other_result(paths.most_wraps_),
-      own_result(paths.most_wraps_),
-      other_own_result(paths.most_wraps_),
+      result_solved(paths.most_wraps_),
+      other_result_solved(paths.most_wraps_),
       first(paths.most_wraps_),
-      own_first(paths.most_wraps_),
+      first_solved(paths.most_wraps_),
       first_segment(paths.most_wraps_),
       before(2 * paths.most_wraps_),
       start(2 * paths.most_wraps_),

@@ -1,35 +1,16 @@
 #include "veridyn/muscle/path/path_fit.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::muscle {
-namespace internal {
-
-struct PathSampler {
-  const Mechanism& mechanism;
-  const MusclePaths& exact;
-  Kinematics<double> kinematics;
-  PathWorkspace<double> workspace;
-
-  void at(const Eigen::VectorXd& q) {
-    update_positions(mechanism, q.data(), kinematics);
-    exact.evaluate(kinematics, q.data(), workspace);
-  }
-  [[nodiscard]] double slope(int muscle, int coordinate) const {
-    for (std::size_t k = exact.first_pair(muscle); k < exact.end_pair(muscle); ++k)
-      if (exact.pairs()[k].coordinate == coordinate) return workspace.gradient[k];
-    return 0.0;
-  }
-};
-
-}  // namespace internal
-
 namespace {
 
 /// Halton's sequence: point `index` of dimension `axis`, in 0..1.
@@ -72,18 +53,12 @@ double power_of(double x, int n) {
 
 }  // namespace
 
-/// Makes one `FittedPaths`: a view of what its constructor was given, which lives no longer than that.
+/// View of a model, its mechanism and its exact paths, which must outlive it: makes `FittedPaths` of them.
 class FittedPaths::Builder {
  public:
-  Builder(FittedPaths& result, const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
-          const PathFitOptions& options);
+  Builder(const Model& model, const Mechanism& mechanism, const MusclePaths& exact, const PathFitOptions& options);
 
-  void choose_muscles();
-  void fit(int muscle);
-  /// Errors of the whole, on poses of its own.
-  void check();
-  /// Leaves to `exact` what was fitted badly or not at all.
-  void drop_misfits();
+  [[nodiscard]] FittedPaths build();
 
  private:
   /// Lengths (less that at rest) and slopes of one part: the poses of the fit, then those of its check.
@@ -101,6 +76,17 @@ class FittedPaths::Builder {
     int degree = 1;
   };
 
+  void choose_muscles();
+  void fit(int muscle);
+  /// Errors of the whole, on check poses that no part of the fit used.
+  void check();
+  /// Leaves exact what was fitted badly.
+  void drop_misfits();
+
+  /// Exact paths at a pose, into `workspace_`.
+  void evaluate_exact(const Eigen::VectorXd& q);
+  /// dL/dq at the pose of the last `evaluate_exact`.
+  [[nodiscard]] double exact_slope(int muscle, int coordinate) const;
   [[nodiscard]] Eigen::VectorXd pose(const std::vector<int>& of, int index) const;
   [[nodiscard]] int axis(int coordinate);
   [[nodiscard]] std::vector<int> coordinates_that_matter(int muscle);
@@ -118,23 +104,26 @@ class FittedPaths::Builder {
 
   static constexpr int kCheckPoses = 200;  ///< of a part
 
-  FittedPaths& result_;
   const Model& model_;
+  const Mechanism& mechanism_;
   const MusclePaths& exact_;
-  const PathFitOptions& options_;
-  internal::PathSampler sampler_;
+  PathFitOptions options_;
+  FittedPaths result_;
+  Kinematics<double> kinematics_;
+  PathWorkspace<double> workspace_;
   Eigen::VectorXd rest_;
   std::vector<double> low_, high_;
   std::vector<int> axis_of_;
 };
 
-FittedPaths::Builder::Builder(FittedPaths& result, const Model& model, const Mechanism& mechanism,
-                              const MusclePaths& exact, const PathFitOptions& options)
-    : result_(result),
-      model_(model),
+FittedPaths::Builder::Builder(const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
+                              const PathFitOptions& options)
+    : model_(model),
+      mechanism_(mechanism),
       exact_(exact),
       options_(options),
-      sampler_{mechanism, exact, Kinematics<double>(mechanism), PathWorkspace<double>(exact)},
+      kinematics_(mechanism),
+      workspace_(exact),
       rest_(model.default_pose()),
       low_(static_cast<std::size_t>(exact.coordinates())),
       high_(low_.size()),
@@ -145,6 +134,25 @@ FittedPaths::Builder::Builder(FittedPaths& result, const Model& model, const Mec
     low_[static_cast<std::size_t>(c)] = range ? k.low : rest_[c] - 0.5;
     high_[static_cast<std::size_t>(c)] = range ? k.high : rest_[c] + 0.5;
   }
+}
+
+FittedPaths FittedPaths::Builder::build() {
+  choose_muscles();
+  for (int m = 0; m < exact_.muscles(); ++m) fit(m);
+  check();
+  if (options_.mixed) drop_misfits();
+  return std::move(result_);
+}
+
+void FittedPaths::Builder::evaluate_exact(const Eigen::VectorXd& q) {
+  update_positions(mechanism_, q.data(), kinematics_);
+  exact_.evaluate(kinematics_, q.data(), workspace_);
+}
+
+double FittedPaths::Builder::exact_slope(int muscle, int coordinate) const {
+  for (std::size_t k = exact_.first_pair(muscle); k < exact_.end_pair(muscle); ++k)
+    if (exact_.pairs()[k].coordinate == coordinate) return workspace_.gradient[k];
+  return 0.0;
 }
 
 Eigen::VectorXd FittedPaths::Builder::pose(const std::vector<int>& of, int index) const {
@@ -166,7 +174,8 @@ int FittedPaths::Builder::axis(int coordinate) {
   return axis_of_[c];
 }
 
-/// One exact path costs the whole machinery of exact paths: where all straight ones are cheap to fit, none is left.
+/// A single exact path needs all that exact paths need (kinematics, points): where all straight ones are cheap to fit,
+/// none stays exact.
 void FittedPaths::Builder::choose_muscles() {
   constexpr std::size_t kCheapCoordinates = 2;
   bool all_cheap = true;
@@ -188,9 +197,9 @@ std::vector<int> FittedPaths::Builder::coordinates_that_matter(int muscle) {
     candidates.push_back(exact_.pairs()[k].coordinate);
   std::vector<double> greatest(candidates.size(), 0.0);
   for (int i = 0; i < 64; ++i) {
-    sampler_.at(pose(candidates, 1000 + i));
+    evaluate_exact(pose(candidates, 1000 + i));
     for (std::size_t a = 0; a < candidates.size(); ++a)
-      greatest[a] = std::max(greatest[a], std::abs(sampler_.slope(muscle, candidates[a])));
+      greatest[a] = std::max(greatest[a], std::abs(exact_slope(muscle, candidates[a])));
   }
   for (std::size_t a = 0; a < candidates.size(); ++a)
     if (greatest[a] > 1e-9) used.push_back(candidates[a]);
@@ -208,12 +217,12 @@ std::vector<int> FittedPaths::Builder::groups(int muscle, const std::vector<int>
       double change = 0.0;
       for (int i = 0; i < 24; ++i) {
         Eigen::VectorXd q = pose(used, 2000 + i);
-        sampler_.at(q);
-        const double before = sampler_.slope(muscle, used[a]);
+        evaluate_exact(q);
+        const double before = exact_slope(muscle, used[a]);
         const auto c = static_cast<std::size_t>(used[b]);
         q[used[b]] = low_[c] + (high_[c] - low_[c]) * halton(i, 5);
-        sampler_.at(q);
-        change = std::max(change, std::abs(sampler_.slope(muscle, used[a]) - before));
+        evaluate_exact(q);
+        change = std::max(change, std::abs(exact_slope(muscle, used[a]) - before));
       }
       if (change > 1e-7) {
         const int from = group[b], to = group[a];
@@ -231,8 +240,8 @@ void FittedPaths::Builder::fit(int muscle) {
   if (result_.fitted_[m] == 0) return;
   const std::vector<int> used = coordinates_that_matter(muscle);
   const std::vector<int> group = groups(muscle, used);
-  sampler_.at(rest_);
-  const double at_rest = sampler_.workspace.length[m];
+  evaluate_exact(rest_);
+  const double at_rest = workspace_.length[m];
   result_.constant_[m] = at_rest;
   result_.errors_[m].coordinates = used;
   const std::size_t first_pair = result_.pairs_.size();
@@ -268,15 +277,15 @@ FittedPaths::Builder::Samples FittedPaths::Builder::sample(const Part& part, con
   for (int i = 0; i < all; ++i) {
     Eigen::VectorXd q = rest_;
     for (int a = 0; a < n; ++a) {
-      // Denser towards the ends, as Chebyshev's points, for the fit; even for the check.
+      // Of the fit denser towards the ends, as Chebyshev's points; of the check evenly spread.
       const double u = halton(i + (i < fit_poses ? 0 : 5000), a);
-      s.x(i, a) = i < fit_poses ? -std::cos(3.14159265358979 * u) : 2.0 * u - 1.0;
+      s.x(i, a) = i < fit_poses ? -std::cos(kPi * u) : 2.0 * u - 1.0;
       const Axis& scaled = result_.axes_[static_cast<std::size_t>(part.axes[a])];
       q[scaled.coordinate] = scaled.middle + s.x(i, a) / scaled.scale;
     }
-    sampler_.at(q);
-    s.value[i] = sampler_.workspace.length[static_cast<std::size_t>(part.muscle)] - at_rest;
-    for (int a = 0; a < n; ++a) s.slope(i, a) = sampler_.slope(part.muscle, of[static_cast<std::size_t>(a)]);
+    evaluate_exact(q);
+    s.value[i] = workspace_.length[static_cast<std::size_t>(part.muscle)] - at_rest;
+    for (int a = 0; a < n; ++a) s.slope(i, a) = exact_slope(part.muscle, of[static_cast<std::size_t>(a)]);
   }
   return s;
 }
@@ -304,7 +313,7 @@ double FittedPaths::Builder::fit_powers(const Part& part, const Samples& s, cons
     for (int a = 0; a < n; ++a) values[i * (n + 1) + 1 + a] = s.slope(i, a);
   }
   const Eigen::Index fitted = (n + 1) * s.fitted, checked = (n + 1) * kCheckPoses;
-  coefficient = rows.topRows(fitted).householderQr().solve(values.head(fitted));
+  coefficient = numerics::HouseholderQr(rows.topRows(fitted)).solve(Eigen::VectorXd(values.head(fitted)));
   return (rows.bottomRows(checked) * coefficient - values.tail(checked)).cwiseAbs().maxCoeff();
 }
 
@@ -339,9 +348,9 @@ void FittedPaths::Builder::store_pieces(Part& part, int coordinate, double at_re
   for (int i = 0; i <= options_.panels; ++i) {
     Eigen::VectorXd q = rest_;
     q[scaled.coordinate] = scaled.middle + (2.0 * i / options_.panels - 1.0) / scaled.scale;
-    sampler_.at(q);
-    l.push_back(sampler_.workspace.length[static_cast<std::size_t>(part.muscle)] - at_rest);
-    d.push_back(sampler_.slope(part.muscle, coordinate) * 2.0 / (options_.panels * scaled.scale));
+    evaluate_exact(q);
+    l.push_back(workspace_.length[static_cast<std::size_t>(part.muscle)] - at_rest);
+    d.push_back(exact_slope(part.muscle, coordinate) * 2.0 / (options_.panels * scaled.scale));
   }
   for (std::size_t i = 0; i + 1 < l.size(); ++i) {
     const double rise = l[i + 1] - l[i];
@@ -379,15 +388,15 @@ void FittedPaths::Builder::check() {
   std::vector<int> above(errors.size(), 0);
   for (int i = 0; i < options_.check_poses; ++i) {
     const Eigen::VectorXd q = pose(all_coordinates, 20000 + i);
-    sampler_.at(q);
+    evaluate_exact(q);
     result_.evaluate(q.data(), length.data(), gradient.data());
     std::vector<double> worst(errors.size(), 0.0);
     for (std::size_t m = 0; m < errors.size(); ++m)
       if (result_.fitted_[m] != 0)
-        errors[m].length = std::max(errors[m].length, std::abs(length[m] - sampler_.workspace.length[m]));
+        errors[m].length = std::max(errors[m].length, std::abs(length[m] - workspace_.length[m]));
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const auto m = static_cast<std::size_t>(pairs[k].muscle);
-      worst[m] = std::max(worst[m], std::abs(gradient[k] - sampler_.slope(pairs[k].muscle, pairs[k].coordinate)));
+      worst[m] = std::max(worst[m], std::abs(gradient[k] - exact_slope(pairs[k].muscle, pairs[k].coordinate)));
     }
     for (std::size_t m = 0; m < worst.size(); ++m) {
       errors[m].moment_arm = std::max(errors[m].moment_arm, worst[m]);
@@ -446,12 +455,7 @@ void FittedPaths::Builder::keep_exact() {
 }
 
 FittedPaths::FittedPaths(const Model& model, const Mechanism& mechanism, const MusclePaths& exact,
-                         const PathFitOptions& options) {
-  Builder builder(*this, model, mechanism, exact, options);
-  builder.choose_muscles();
-  for (int m = 0; m < exact.muscles(); ++m) builder.fit(m);
-  builder.check();
-  if (options.mixed) builder.drop_misfits();
-}
+                         const PathFitOptions& options)
+    : FittedPaths(Builder(model, mechanism, exact, options).build()) {}
 
 }  // namespace veridyn::muscle

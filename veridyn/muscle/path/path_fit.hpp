@@ -12,14 +12,15 @@
 
 namespace veridyn::muscle {
 
+/// How `FittedPaths` fits, and how well it has to.
 struct PathFitOptions {
-  double tolerance = 1.0e-4;  ///< wanted of lengths [m] and moment arms [m/rad or 1], on the check poses
+  double tolerance = 1.0e-4;  ///< of lengths [m] and moment arms [m/rad or 1], on the check poses
   int max_degree = 12;        ///< total degree of a polynomial; three less with three coordinates, six less with more
   int panels = 256;       ///< of a one-coordinate part that no polynomial up to `max_degree` meets the tolerance for
   int check_poses = 600;  ///< independent of those of the fit
-  /// Leave exact what is better so: paths without wraps, which cost less than polynomials of many coordinates (unless
-  /// all of them depend on two at most), and those whose fit misses the tolerance: in a length, or in moment arms at
-  /// more than `most_above` of the check poses. To be evaluated with kinematics.
+  /// Leave exact what is better left so: paths without wraps, which cost less than polynomials of many coordinates
+  /// (unless all of them depend on two at most), and those whose fit misses the tolerance: in a length, or in moment
+  /// arms at more than `most_above` of the check poses. To be evaluated with kinematics.
   bool mixed = false;
   double most_above = 0.05;
 };
@@ -40,8 +41,8 @@ struct PathFitError {
 /// Paths as polynomials of the coordinates: what a simulation uses where exact wrapping costs too much (the idea is
 /// common: van den Bogert et al. 2013; Meyer et al. 2017).
 ///
-/// A path's length is first parted into sums of functions of fewer coordinates where it is such a sum (the shoulder and
-/// the elbow part of a biceps). Each part becomes a total-degree polynomial in coordinates scaled to -1..1, of the
+/// A path's length is first divided into sums of functions of fewer coordinates where it is such a sum (the shoulder
+/// and the elbow part of a biceps). Each part becomes a total-degree polynomial in coordinates scaled to -1..1, of the
 /// least degree that meets the tolerance, by least squares on lengths and moment arms at Halton points of the
 /// coordinates' ranges; a part of one coordinate that would need more becomes a chain of cubic pieces through lengths
 /// and moment arms at their ends. Moment arms are the exact derivatives of the fitted lengths.
@@ -60,7 +61,7 @@ class FittedPaths {
   [[nodiscard]] const std::vector<PathFitError>& errors() const { return errors_; }
 
   /// Lengths [m] by muscle and dL/dq by pair; zero for those that are left exact. False if a coordinate that matters
-  /// lies outside its range: polynomials are then extrapolated, pieces go on straight. Does not allocate or throw.
+  /// lies outside its range: polynomials are then extrapolated, pieces continue straight. Does not allocate or throw.
   template <typename Scalar>
   bool evaluate(const Scalar* q, Scalar* length, Scalar* gradient) const;
   /// The same with the exact ones too, from the paths that the fit was made of.
@@ -70,6 +71,8 @@ class FittedPaths {
 
  private:
   class Builder;
+
+  FittedPaths() = default;
 
   static constexpr int kMostCoordinates = 8;
   static constexpr int kMostDegree = 15;

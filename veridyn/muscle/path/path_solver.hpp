@@ -8,11 +8,15 @@
 
 namespace veridyn::muscle {
 
-/// Which points `PathSolver` places.
-enum class PathPlaces { kForLengths, kForAll, kEvery };
+/// Which points `PathSolver` computes the ground positions of.
+enum class PathPlaces {
+  kForLengths,  ///< those that lengths need
+  kForAll,      ///< those that lengths and gradients need
+  kEvery,       ///< all, for drawings and checks
+};
 
-/// Evaluation of compiled paths at one pose: a view of the paths, the kinematics and the workspace that it is made of,
-/// which must outlive it. Its definitions are in `path_solver_straight.hpp` (points, objects, straight segments),
+/// View of compiled paths, the kinematics of one pose and a workspace, all of which must outlive it: evaluates the
+/// paths there. Its definitions are in `path_solver_straight.hpp` (points, objects, straight segments),
 /// `path_solver_wrapping.hpp` (which objects a path wraps over, and where), `path_solver_length.hpp` (lengths and
 /// gradients of what was found) and `path_solver_opensim.hpp` (OpenSim's own constructions).
 template <typename Scalar>
@@ -28,7 +32,7 @@ class PathSolver {
   /// All muscles but those of `skip` (by muscle, may be empty) that wrap.
   template <bool kGradient>
   void all(std::span<const std::uint8_t> skip = {});
-  /// The nodes of one path as solved (in the workspace), their number.
+  /// Solves one path; its nodes are in the workspace. Returns their number.
   std::size_t nodes_of(int muscle);
   /// Of a wrap that is on the path solved last.
   const WrapResult<Scalar>& result(std::size_t wrap) const { return *w_.result[wrap]; }
@@ -50,13 +54,13 @@ class PathSolver {
                     internal::GeodesicMemory* memory = nullptr);
   /// Active points of a path into w_.stations.
   void stations(const Path& path);
-  /// What each object does to the path of points alone: w_.first, w_.first_segment (-1: nothing).
+  /// What each object does to the path through its points only: w_.first, w_.first_segment (-1: nothing).
   bool detect(const Path& path, PathFlag& flag);
   /// Puts the wraps of `mask` on the path of points: w_.nodes, w_.result. Returns the number of nodes.
   std::size_t solve(const Path& path, unsigned mask);
-  /// The same on the side `side_`, object after object until all tangent points stand still.
+  /// The same on the side `side_`, object after object until all tangent points settle.
   std::size_t settle(const Path& path, unsigned mask);
-  /// Whether nodes come to those of the best path so far: on one side no other solution is that near.
+  /// Whether nodes lie next to those of the best path so far: on one side no other solution is that near.
   bool as_before(std::size_t n) const;
   void swap_with_other();
   /// Anderson's acceleration, two passes deep: of the point where the later of two neighbouring objects faces the
@@ -68,7 +72,7 @@ class PathSolver {
     Eigen::Matrix<double, 3, 2> image_change = Eigen::Matrix<double, 3, 2>::Zero();
   };
   void accelerate(std::size_t n, double moved, Acceleration& a);
-  /// Segment of the path as it is on which wrap i acts (n: none), with its result in w_.result[i].
+  /// Segment of the path as it is now on which wrap i acts (n: none), with its result in w_.result[i].
   std::size_t choose(std::size_t i, const MusclePaths::Wrap& wrap, std::size_t n);
   void insert(const Path& path, std::size_t i, std::size_t at, std::size_t& n);
   bool remove(int wrap, std::size_t& n);
@@ -100,9 +104,11 @@ class PathSolver {
   std::size_t n_stations_ = 0;
   unsigned done_ = 0;  ///< fading objects that `blended` has decided on
   int side_ = 0;
-  double give_up_ = 0.0;     ///< length from which another side is not followed
+  double give_up_ = 0.0;     ///< length above which another side is abandoned
   std::size_t other_n_ = 0;  ///< nodes of the best path so far
   static constexpr double kNearlySettled = 1e-3;
 };
+
+extern template class PathSolver<double>;  // in muscle_path_evaluation.cpp
 
 }  // namespace veridyn::muscle

@@ -88,13 +88,13 @@ template <typename Scalar>
 template <bool kGradient>
 inline void PathSolver<Scalar>::segments() {
   using std::sqrt;
-  std::size_t apart = 0;
+  std::size_t first_in_ground = 0;
   if constexpr (!kGradient) {
     // Lengths alone do not need ground: one end is taken to the other's link, all segments of two links together.
     for (const MusclePaths::LinkPair& pair : paths_.link_pairs_) lengths_between(pair);
-    if (!paths_.link_pairs_.empty()) apart = paths_.link_pairs_.back().end;
+    if (!paths_.link_pairs_.empty()) first_in_ground = paths_.link_pairs_.back().end;
   }
-  for (std::size_t i = apart; i < paths_.segments_.size(); ++i) {
+  for (std::size_t i = first_in_ground; i < paths_.segments_.size(); ++i) {
     const MusclePaths::Segment& s = paths_.segments_[i];
     const Vector& a = w_.position[static_cast<std::size_t>(s.a)];
     const Vector u = w_.position[static_cast<std::size_t>(s.b)] - a;

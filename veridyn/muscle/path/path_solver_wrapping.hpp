@@ -76,7 +76,7 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
   if (!r.wrapped()) return false;
   r.r1 = frame.rotation * r.r1 + frame.position;
   r.r2 = frame.rotation * r.r2 + frame.position;
-  // The straight parts' directions follow from the points; these are asked for only where an end dips in.
+  // The straight parts' directions follow from the points; these are needed only where an end dips in.
   if (r.depth > 0.0) {
     r.direction1 = frame.rotation * r.direction1;
     r.direction2 = frame.rotation * r.direction2;
@@ -138,8 +138,8 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
       const double longer = value_of(r->length) - value_of(Vector(b.x - a.x)).norm();
       if (r->meets || longer < least) {
         if (r == &w_.fresh) {
-          w_.own_first[i] = w_.fresh;
-          r = &w_.own_first[i];
+          w_.first_solved[i] = w_.fresh;
+          r = &w_.first_solved[i];
         }
         w_.first[i] = r;
         w_.first_segment[i] = static_cast<int>(k);
@@ -187,7 +187,7 @@ template <typename Scalar>
 inline void PathSolver<Scalar>::swap_with_other() {
   std::swap(w_.nodes, w_.other_nodes);
   std::swap(w_.result, w_.other_result);
-  std::swap(w_.own_result, w_.other_own_result);
+  std::swap(w_.result_solved, w_.other_result_solved);
 }
 
 template <typename Scalar>
@@ -213,7 +213,7 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
   }
   if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
   for (std::size_t i = 0; i < path.wraps.size(); ++i) w_.memory[i].clear();
-  // Jets keep on for their derivatives after the values stand.
+  // Jets continue for their derivatives after the values have settled.
   int more = std::is_same_v<Scalar, double> ? 0 : 8;
   // An object is solved again only where another one on the path has changed since.
   std::array<int, 32> solved_at, changed_at;
@@ -241,7 +241,7 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
         if (!was_there) {
           moved = 1.0;
           changed_at[i] = step;
-        } else if (w_.result[i] != was || was == &w_.own_result[i]) {
+        } else if (w_.result[i] != was || was == &w_.result_solved[i]) {
           const double by = std::max(value_of(Vector(w_.result[i]->r1 - w_.before[2 * i])).norm(),
                                      value_of(Vector(w_.result[i]->r2 - w_.before[2 * i + 1])).norm());
           moved = std::max(moved, by);
@@ -258,8 +258,8 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
       }
     }
     if (moved == 0.0 || (pass > 0 && moved < 1e-8 && more-- <= 0)) break;
-    // Nearly settled tangent points tell which solution it comes to; the length is stationary and tells if it is
-    // longer.
+    // Nearly settled tangent points show which solution they approach; the length is stationary and shows whether it
+    // is longer.
     if (side_ != 0 && moved < kNearlySettled &&
         (as_before(n) || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_))
       break;
@@ -278,7 +278,7 @@ inline void PathSolver<Scalar>::accelerate(std::size_t n, double moved, Accelera
     const int wrap = w_.nodes[k].wrap;
     if (wrap < 0 || wrap != w_.nodes[k + 1].wrap) continue;
     const auto i = static_cast<std::size_t>(wrap);
-    if (w_.result[i] != &w_.own_result[i]) continue;
+    if (w_.result[i] != &w_.result_solved[i]) continue;
     ++found;
     later = std::max(later, i);
   }
@@ -361,15 +361,15 @@ inline std::size_t PathSolver<Scalar>::choose(std::size_t i, const MusclePaths::
         wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh);
       }
     } else {
-      // Only the ends of a fading object's own segment fade it: here it counts whole.
+      // Only the ends of the segment that an object was found on fade it: here it counts fully.
       wrap_between(object, wrap.object, wrap, false, a.x, b.x, w_.fresh, &w_.memory[i]);
     }
     if (!r->wrapped()) continue;
     const double longer = value_of(r->length) - value_of(Vector(b.x - a.x)).norm();
     if (r->meets || longer < least) {
       if (r == &w_.fresh) {
-        w_.own_result[i] = w_.fresh;
-        r = &w_.own_result[i];
+        w_.result_solved[i] = w_.fresh;
+        r = &w_.result_solved[i];
       }
       w_.result[i] = r;
       best = k;

@@ -8,6 +8,7 @@
 
 namespace veridyn::muscle {
 
+/// How good a path's length is, worse values last.
 enum class PathFlag : std::uint8_t {
   kFine = 0,
   kFading = 1,  ///< a wrap counts in part: an end dips into its object, or a cylinder ends
@@ -15,7 +16,7 @@ enum class PathFlag : std::uint8_t {
   kFailed = 3,  ///< a geodesic did not converge: straight there
 };
 
-/// Results and scratch of `MusclePaths`, made once, used by one thread.
+/// Results and scratch memory of `MusclePaths`, made once, used by one thread.
 template <typename Scalar>
 struct PathWorkspace {
   explicit PathWorkspace(const MusclePaths& paths);
@@ -25,10 +26,12 @@ struct PathWorkspace {
   std::vector<PathFlag> flag;    ///< by muscle
 
   using Vector = Vector3<Scalar>;
+  /// Of a wrap object, in ground.
   struct Frame {
     Matrix3<Scalar> rotation;
     Vector position;
   };
+  /// A point of a path as solved, in ground: a path point or a tangent point.
   struct Node {
     Vector x;
     int link = 0;
@@ -47,17 +50,19 @@ struct PathWorkspace {
   std::vector<Node> nodes;
   std::vector<Node> other_nodes;
   WrapResult<Scalar> fresh;
-  /// Of the wraps on the path: in `span`, or in `own_result` where an end is a tangent point.
+  /// Of the wraps on the path: in `span`, or in `result_solved` where an end is a tangent point.
   std::vector<const WrapResult<Scalar>*> result;
   std::vector<const WrapResult<Scalar>*> other_result;
-  std::vector<WrapResult<Scalar>> own_result;
-  std::vector<WrapResult<Scalar>> other_own_result;
+  std::vector<WrapResult<Scalar>> result_solved;
+  std::vector<WrapResult<Scalar>> other_result_solved;
   std::vector<const WrapResult<Scalar>*> first;
-  std::vector<WrapResult<Scalar>> own_first;
+  std::vector<WrapResult<Scalar>> first_solved;
   std::vector<int> first_segment;
   std::vector<Vector> before;  ///< tangent points of the last pass
   std::vector<Vector> start;   ///< and of the one before
   std::vector<internal::GeodesicMemory> memory;
 };
+
+extern template struct PathWorkspace<double>;  // in muscle_path_evaluation.cpp
 
 }  // namespace veridyn::muscle

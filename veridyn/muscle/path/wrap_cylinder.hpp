@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 
 namespace veridyn::muscle {
@@ -44,6 +45,52 @@ inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, doubl
   return pass;
 }
 
+/// A path over a cylinder as seen along the axis: straight parts of length d1 and d2 and the arc between them.
+template <typename Scalar>
+struct CylinderPath {
+  Scalar radius, d1, d2;
+  Scalar angle;           ///< of the arc
+  Scalar planar;          ///< length of all three
+  Scalar flat;            ///< planar / length
+  Scalar slope;           ///< along the axis, per planar length
+  bool inside = false;    ///< an end lies inside: `radius` shrinks to it
+  bool p_nearer = false;  ///< that end is P
+  Eigen::Matrix<Scalar, 3, 1> end_slope = Eigen::Matrix<Scalar, 3, 1>::Zero();  ///< dradius / d(end inside)
+};
+
+/// Fades a wrap out whose nearer tangent point lies beyond the cylinder's ends.
+///
+/// From the slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut
+/// string's length changes by minus its direction at P, by its direction at Q.
+template <typename Scalar>
+void fade_beyond_ends(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
+                      const Eigen::Matrix<Scalar, 3, 1>& q, const CylinderPath<Scalar>& path,
+                      WrapResult<Scalar>& result) {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  const Scalar zero(0.0);
+  const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
+  const Scalar& height = first ? result.r1.z() : result.r2.z();
+  const Vector3 in(result.direction1.x() / path.flat, result.direction1.y() / path.flat, zero);
+  const Vector3 out(result.direction2.x() / path.flat, result.direction2.y() / path.flat, zero);
+  const Scalar& d = first ? path.d1 : path.d2;
+  const Scalar part = d / path.planar;
+  const Vector3 d_slope = (first ? Vector3(p.x(), p.y(), zero) : Vector3(q.x(), q.y(), zero)) / d;
+  // d part = (d d - part d planar) / planar
+  Vector3 part_p = in * part, part_q = out * (-part);
+  (first ? part_p : part_q) += d_slope;
+  if (path.inside) (path.p_nearer ? part_p : part_q) -= path.end_slope * (path.radius / d + part * path.angle);
+  const Scalar sign = first ? path.slope : Scalar(-path.slope);
+  Vector3 height_p = part_p * sign, height_q = part_q * sign;
+  height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
+  height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
+  const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
+  if (!path.inside) begin_weight(result);
+  const double band = (kEndFade - kEndStart) * cylinder.radius;
+  const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
+  const Scalar change = fade_slope(x) * Scalar(up / band);
+  times<Scalar>(result, fade(x), height_p * change, height_q * change);
+}
+
 template <typename Scalar>
 void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
                WrapResult<Scalar>& result) {
@@ -83,7 +130,7 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
   result.r2 = Vector3(q.x() * aq + q.y() * bq, q.y() * aq - q.x() * bq, Scalar(0.0));
   Scalar angle = atan2((result.r1.x() * result.r2.y() - result.r1.y() * result.r2.x()) * Scalar(turn),
                        result.r1.x() * result.r2.x() + result.r1.y() * result.r2.y());
-  if (long_way && angle < Scalar(0.0)) angle += Scalar(6.283185307179586);
+  if (long_way && angle < Scalar(0.0)) angle += Scalar(2.0 * kPi);
   const Scalar arc = radius * angle;
   const Scalar planar = d1 + arc + d2;
   const Scalar dz = q.z() - p.z();
@@ -116,32 +163,14 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
     fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
                         Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
   }
-  if (overrun > kEndStart * cylinder.radius) {
-    // Slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut string's
-    // length changes by minus its direction at P, by its direction at Q.
-    const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
-    const Scalar& height = first ? result.r1.z() : result.r2.z();
-    const Vector3 in(result.direction1.x() / flat, result.direction1.y() / flat, zero);
-    const Vector3 out(result.direction2.x() / flat, result.direction2.y() / flat, zero);
-    const Scalar d = first ? d1 : d2;
-    const Scalar part = d / planar;
-    const Vector3 own = (first ? Vector3(p.x(), p.y(), zero) : Vector3(q.x(), q.y(), zero)) / d;
-    // d part = (d d - part d planar) / planar
-    Vector3 part_p = in * part, part_q = out * (-part);
-    (first ? part_p : part_q) += own;
-    if (inside) (p2 < q2 ? part_p : part_q) -= end_slope * (radius / d + part * angle);
-    const Scalar sign = first ? slope : Scalar(-slope);
-    Vector3 height_p = part_p * sign, height_q = part_q * sign;
-    height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
-    height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
-    const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
-    if (!inside) begin_weight(result);
-    const double band = (kEndFade - kEndStart) * cylinder.radius;
-    const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
-    const Scalar change = fade_slope(x) * Scalar(up / band);
-    times<Scalar>(result, fade(x), height_p * change, height_q * change);
-  }
+  if (overrun > kEndStart * cylinder.radius)
+    fade_beyond_ends<Scalar>(cylinder, p, q, {radius, d1, d2, angle, planar, flat, slope, inside, p2 < q2, end_slope},
+                             result);
 }
+
+// In muscle_path_evaluation.cpp.
+extern template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                       WrapResult<double>&);
 
 }  // namespace internal
 

@@ -64,6 +64,7 @@ void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::
   const Scalar h = s / Scalar(static_cast<double>(steps));
   const Scalar hh = -h * h;
   const Scalar l0 = lambda[0] * hh, l1 = lambda[1] * hh, l2 = lambda[2] * hh, l3 = lambda[3] * hh;
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): scalars in registers, see above
   const Scalar i0 = inverse_square[0], i1 = inverse_square[1], i2 = inverse_square[2];
   const auto f = [&](const Scalar* at, Scalar* k) {
     const Scalar n0 = at[0] * i0, n1 = at[1] * i1, n2 = at[2] * i2;
@@ -107,6 +108,7 @@ GeodesicShot<Scalar> shoot(const Eigen::Vector3d& a, const Spheroid& spheroid, c
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   GeodesicShot<Scalar> shot;
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): a copy for derivatives, a reference for double
   const Vector3 as = a.cast<Scalar>();
   const Vector3 inverse_square = a.cwiseProduct(a).cwiseInverse().cast<Scalar>();
   shot.r1 = (circle.center + circle.e1 * cos_alpha + circle.e2 * sin_alpha).cwiseProduct(as);
@@ -155,7 +157,7 @@ namespace veridyn::muscle {
 
 /// An ellipsoid x^2/a^2 + y^2/b^2 + z^2/c^2 = 1 about the origin.
 struct WrapEllipsoid {
-  Eigen::Vector3d radii = Eigen::Vector3d::Zero();
+  Eigen::Vector3d radii = Eigen::Vector3d::Zero();  ///< [m]
   WrapQuadrant quadrant;
   /// +1, -1: of several shortest geodesics the one on this side of the quadrant's plane if there is one; 0: the
   /// shortest of all.
@@ -177,7 +179,7 @@ struct GeodesicSolution {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
 };
 
-/// Solutions of one object for ends that stand still soon: the next one starts from the last.
+/// Solutions of one object for ends that converge: each starts from the one before.
 struct GeodesicMemory {
   GeodesicSolution nearby;
   bool no_other = false;  ///< there is none on the quadrant's other side
@@ -188,7 +190,7 @@ struct GeodesicMemory {
   }
 };
 
-/// Correction of (angle at P, s) that a shot asks for, and |r2 Q|.
+/// Correction of (angle at P, s) after a shot, and |r2 Q|.
 template <typename Scalar>
 struct ShotCorrection {
   Scalar angle, s, length2, jacobi;
@@ -207,6 +209,7 @@ ShotCorrection<Scalar> correction(const GeodesicShot<Scalar>& shot, const Eigen:
   c.jacobi = shot.jacobi + c.length2 * shot.jacobi_slope;
   c.angle = miss / c.jacobi;
   // Along the geodesic, Q'A r2 - 1 vanishes to second order in s where Q is near the surface: solve the quadratic.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): a copy for derivatives, a reference for double
   const Vector3 inverse = inverse_square.cast<Scalar>();
   const Vector3 aq = q.cwiseProduct(inverse);
   const Scalar value = shot.visibility + shot.jacobi * c.angle * shot.sideways.dot(aq);
@@ -230,87 +233,55 @@ struct SolvedGeodesic : GeodesicSolution {
   ShotCorrection<double> last;
 };
 
-inline constexpr double kFineStep = 0.15;  ///< of the integration [smallest radius]
-inline constexpr double kCoarseStep = 0.35;
+/// How a segment passes an ellipsoid, in coordinates x / radii where the ellipsoid is the unit sphere.
+struct EllipsoidPass {
+  WrapStatus status = WrapStatus::kStraight;         ///< kWrapped: there is a geodesic to be found
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();   ///< from P to Q
+  Eigen::Vector3d toward = Eigen::Vector3d::Zero();  ///< from the centre to the segment's nearest point
+  double distance2 = 0.0;                            ///< of that point from the centre, squared
+  double end_distance2 = 0.0;                        ///< of the end nearer to the centre, squared
+  bool p_nearer = true;                              ///< that end is P
+  bool inside = false;                               ///< it lies inside or on the surface
+  double scale = 1.0;                                ///< below 1 where an end lies inside: leaves it just outside
+};
 
-/// Newton's method on (angle at P, s): coarse shots until the corrections are small, then fine ones. The last
-/// correction is left to the caller; what remains after it is its square.
-inline void newton(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
-                   const Eigen::Vector3d& q, const TangentCircle<double>& circle, double tolerance,
-                   SolvedGeodesic& solution) {
-  const double size = a.maxCoeff();
-  const Eigen::Vector3d inverse_square = a.cwiseProduct(a).cwiseInverse();
-  const double radius = a.minCoeff();
-  double alpha = solution.alpha;
-  double s = solution.s;
-  // Quadrature has no coarse steps that would be cheaper.
-  bool is_fine = solution.converged || spheroid.axis >= 0;
-  solution.converged = false;
-  for (int i = 0; i < 30; ++i) {
-    solution.steps = std::clamp(1 + static_cast<int>(s / (radius * (is_fine ? kFineStep : kCoarseStep))), 1, 100);
-    solution.shot = shoot<double>(a, spheroid, p, q, circle, std::cos(alpha), std::sin(alpha), s, solution.steps);
-    solution.last = correction<double>(solution.shot, inverse_square, q);
-    const ShotCorrection<double>& c = solution.last;
-    solution.iterations = i + 1;
-    if (!std::isfinite(c.angle) || !std::isfinite(c.s)) return;
-    // Where J < 0 the length has a maximum: the other direction leads to a shortest path.
-    const double towards_less = c.jacobi > 0.0 ? c.angle : -c.angle;
-    const double d_alpha = std::clamp(towards_less / solution.shot.angle_slope, -0.5, 0.5);
-    const double d_s = std::clamp(c.s, -0.4 * size, 0.4 * size);
-    solution.alpha = alpha;
-    solution.s = s;
-    solution.length = solution.shot.length1 + solution.shot.surface + c.length2;
-    solution.jacobi = c.jacobi;
-    const double step = std::max(std::abs(d_alpha), std::abs(d_s) / size);
-    // The last correction leaves about step^2 size of the tangent points, of the directions that over the straight
-    // part.
-    const double straight = std::min(solution.shot.length1, c.length2) / size;
-    if (is_fine && step < 0.5 * tolerance && step * step < tolerance * tolerance * straight && c.reached) {
-      solution.middle = solution.shot.r1 + solution.shot.r2;
-      solution.converged = c.jacobi > 0.0;
-      return;
-    }
-    if (step < 5e-3) is_fine = true;
-    alpha += d_alpha;
-    s = std::max(1e-12 * size, s + d_s / solution.shot.speed);
-  }
+[[nodiscard]] EllipsoidPass ellipsoid_pass(const WrapEllipsoid& ellipsoid, const Eigen::Vector3d& p,
+                                           const Eigen::Vector3d& q);
+
+/// On the side of a quadrant's plane where nothing wraps.
+inline bool on_inactive_side(const WrapQuadrant& quadrant, const Eigen::Vector3d& x) {
+  return x[quadrant.axis] * (quadrant.sign < 0 ? -1 : 1) < 0.0;
 }
 
 /// From the ellipse through `toward` and the centre. `p`, `q` outside the ellipsoid.
-inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
-                                     const Eigen::Vector3d& q, const Eigen::Vector3d& toward, double tolerance) {
-  SolvedGeodesic solution;
-  const Eigen::Vector3d ps = p.cwiseQuotient(a), qs = q.cwiseQuotient(a);
-  const TangentCircle<double> circle = tangent_circle<double>(ps, toward);
-  const TangentCircle<double> far_circle = tangent_circle<double>(qs, toward);
-  const Eigen::Vector3d y1 = circle.center + circle.e1;
-  const Eigen::Vector3d y2 = far_circle.center + far_circle.e1;
-  Eigen::Vector3d y_slope = y1 - ps;
-  y_slope = (y_slope - y1 * y_slope.dot(y1)).normalized();
-  const double arc = std::max(0.0, std::atan2(y2.dot(y_slope), y2.dot(y1)));
-  if (spheroid.axis >= 0) {
-    solution.s = arc;
-  } else {
-    // Length of the ellipse between them by Simpson's rule.
-    const double half_sine = std::sin(0.5 * arc), half_cosine = std::cos(0.5 * arc);
-    const Eigen::Vector3d mid = (y_slope * half_cosine - y1 * half_sine).cwiseProduct(a);
-    const double sine = 2.0 * half_sine * half_cosine, cosine = 1.0 - 2.0 * half_sine * half_sine;
-    const Eigen::Vector3d end = (y_slope * cosine - y1 * sine).cwiseProduct(a);
-    solution.s = arc * (y_slope.cwiseProduct(a).norm() + 4.0 * mid.norm() + end.norm()) / 6.0;
-  }
-  solution.toward = toward;
-  newton(a, spheroid, p, q, circle, tolerance, solution);
-  return solution;
-}
+[[nodiscard]] SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid,
+                                            const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                                            const Eigen::Vector3d& toward, double tolerance);
 
-/// From a converged solution for nearby ends, on the same side.
-inline SolvedGeodesic solve_geodesic(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
-                                     const Eigen::Vector3d& q, const GeodesicSolution& nearby, double tolerance) {
-  SolvedGeodesic solution;
-  static_cast<GeodesicSolution&>(solution) = nearby;
-  const TangentCircle<double> circle = tangent_circle<double>(p.cwiseQuotient(a), nearby.toward);
-  newton(a, spheroid, p, q, circle, tolerance, solution);
-  return solution;
+/// The shortest geodesic, on the side of `ellipsoid.side` where that has one. Starts from `nearby` unless null.
+[[nodiscard]] SolvedGeodesic find_geodesic(const WrapEllipsoid& ellipsoid, const EllipsoidPass& pass,
+                                           const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
+                                           const Eigen::Vector3d& q, const GeodesicSolution* nearby, double tolerance);
+
+/// Newton's last step, in `Scalar`: tangent points and the length between them.
+template <typename Scalar>
+void last_step(const SolvedGeodesic& from, const Eigen::Vector3d& a, const Spheroid& spheroid,
+               const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q, WrapResult<Scalar>& result) {
+  const auto take = [&](const GeodesicShot<Scalar>& shot, const ShotCorrection<Scalar>& c) {
+    const Scalar d_alpha = c.angle / shot.angle_slope;
+    result.r1 = shot.r1 + shot.r1_slope * d_alpha;
+    result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
+    result.surface_length = shot.surface + c.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+  };
+  if constexpr (std::is_same_v<Scalar, double>) {
+    take(from.shot, from.last);
+  } else {
+    const Eigen::Matrix<Scalar, 3, 1> ps = p.cwiseQuotient(a.cast<Scalar>().eval());
+    const TangentCircle<Scalar> circle = tangent_circle<Scalar>(ps, from.toward.cast<Scalar>().eval());
+    const GeodesicShot<Scalar> shot = shoot<Scalar>(a, spheroid, p, q, circle, Scalar(std::cos(from.alpha)),
+                                                    Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
+    take(shot, correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q));
+  }
 }
 
 template <typename Scalar>
@@ -320,119 +291,61 @@ void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   result.clear();
   const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
-  Eigen::Vector3d ps = pv.cwiseQuotient(ellipsoid.radii), qs = qv.cwiseQuotient(ellipsoid.radii);
-  const Eigen::Vector3d u = qs - ps;
-  const double u2 = u.squaredNorm();
-  const double along = -ps.dot(u);
-  if (!(along > 0.0 && along < u2)) return;
-  Eigen::Vector3d near = ps + u * (along / u2);
-  double near2 = near.squaredNorm();
-  if (!(near2 < 1.0)) return;
-
+  const EllipsoidPass pass = ellipsoid_pass(ellipsoid, pv, qv);
   // An end inside shrinks the ellipsoid until it lies just outside.
-  const double nearest2 = std::min(ps.squaredNorm(), qs.squaredNorm());
-  const bool inside = nearest2 * (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap) < 1.0;
-  const bool p_inside = ps.squaredNorm() <= qs.squaredNorm();
-  double scale = 1.0;
-  if (inside) {
-    scale = std::sqrt(nearest2) * (1.0 - kSurfaceGap);
-    result.depth = 1.0 - scale;
-    if (result.depth >= kInsideFade) {
-      result.status = WrapStatus::kInside;
-      return;
-    }
-    if (!(near2 < scale * scale)) return;
-  }
-  const Eigen::Vector3d a = ellipsoid.radii * scale;
+  if (pass.inside) result.depth = 1.0 - pass.scale;
+  result.status = pass.status;
+  if (!result.wrapped()) return;
+  const Eigen::Vector3d a = ellipsoid.radii * pass.scale;
   const Spheroid spheroid = internal::spheroid(a);
-  if (near2 < 1e-24) {
-    near = Eigen::Vector3d::Unit(ellipsoid.quadrant.sign != 0 ? ellipsoid.quadrant.axis : 0);
-    if (ellipsoid.quadrant.sign < 0) near = -near;
-    if (near.cross(ps).squaredNorm() < 1e-8 * ps.squaredNorm()) near = Eigen::Vector3d(near.y(), near.z(), near.x());
-  }
   // Derivatives are taken at the last shot: it has to be closer to the solution for them.
   constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-3 : 1e-7;
-  SolvedGeodesic solution;
   const bool warm = memory != nullptr && memory->nearby.converged;
-  if (warm) solution = solve_geodesic(a, spheroid, pv, qv, memory->nearby, tolerance);
-  if (!solution.converged) solution = solve_geodesic(a, spheroid, pv, qv, near, tolerance);
-  // Where the segment passes near the centre either side may be the shorter.
-  const auto inactive = [&](const Eigen::Vector3d& x) {
-    const int sign = ellipsoid.quadrant.sign < 0 ? -1 : 1;
-    return x[ellipsoid.quadrant.axis] * sign < 0.0;
-  };
-  // One that focuses strongly (J well below the length) may have a shorter neighbour on either side.
-  if (!solution.converged ||
-      (!warm && (near2 < 0.01 || solution.jacobi < 0.4 * solution.length || ellipsoid.side != 0))) {
-    const auto good = [&](const SolvedGeodesic& s) {
-      return s.converged && (ellipsoid.side == 0 || inactive(s.middle) == (ellipsoid.side < 0));
-    };
-    const Eigen::Vector3d beside = u.cross(near).normalized() * near.norm();
-    bool have = good(solution);
-    for (const Eigen::Vector3d& toward : {Eigen::Vector3d(near + beside), Eigen::Vector3d(near - beside),
-                                          Eigen::Vector3d(beside - near), Eigen::Vector3d(-beside - near)}) {
-      const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, toward, tolerance);
-      if (!good(other) && !(other.converged && !solution.converged)) continue;
-      if (have && !(other.length < solution.length)) continue;
-      solution = other;
-      have = good(other);
-    }
-  }
+  const SolvedGeodesic solution =
+      find_geodesic(ellipsoid, pass, a, spheroid, pv, qv, warm ? &memory->nearby : nullptr, tolerance);
   if (!solution.converged) {
     result.status = WrapStatus::kFailed;
     return;
   }
-  const Vector3 ps_scalar = p.cwiseQuotient(a.cast<Scalar>().eval());
-  const auto last_step = [&](const SolvedGeodesic& from) {
-    if constexpr (std::is_same_v<Scalar, double>) {
-      const GeodesicShot<double>& shot = from.shot;
-      const double d_alpha = from.last.angle / shot.angle_slope;
-      result.r1 = shot.r1 + shot.r1_slope * d_alpha;
-      result.r2 = shot.r2 + shot.sideways * (shot.jacobi * from.last.angle) + shot.t2 * from.last.s;
-      result.surface_length = shot.surface + from.last.s - shot.t1.dot(shot.r1_slope) * d_alpha;
-      return;
-    }
-    const TangentCircle<Scalar> circle = tangent_circle<Scalar>(ps_scalar, from.toward.cast<Scalar>().eval());
-    const GeodesicShot<Scalar> shot = shoot<Scalar>(a, spheroid, p, q, circle, Scalar(std::cos(from.alpha)),
-                                                    Scalar(std::sin(from.alpha)), Scalar(from.s), from.steps);
-    const auto c = correction<Scalar>(shot, a.cwiseProduct(a).cwiseInverse(), q);
-    const Scalar d_alpha = c.angle / shot.angle_slope;
-    result.r1 = shot.r1 + shot.r1_slope * d_alpha;
-    result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
-    result.surface_length = shot.surface + c.s - (shot.t1.dot(shot.r1_slope)) * d_alpha;
-  };
-  last_step(solution);
+  last_step(solution, a, spheroid, p, q, result);
   if (memory != nullptr) memory->nearby = solution;
   result.spread = solution.jacobi / solution.length;
+  const auto inactive = [&](const Eigen::Vector3d& x) { return on_inactive_side(ellipsoid.quadrant, x); };
   if (ellipsoid.quadrant.sign != 0 && ellipsoid.side == 0 && inactive(values_of(result.r1)) &&
       inactive(values_of(result.r2)) && inactive(solution.middle) && !(warm && memory->no_other)) {
     const SolvedGeodesic other = solve_geodesic(a, spheroid, pv, qv, Eigen::Vector3d(-solution.toward), tolerance);
     const bool found = other.converged && !inactive(other.middle);
-    if (found) last_step(other);
+    if (found) last_step(other, a, spheroid, p, q, result);
     if (memory != nullptr) memory->no_other = !found;
   }
   const Vector3 in = result.r1 - p;
   const Vector3 out = q - result.r2;
   const Scalar length1 = sqrt(in.squaredNorm());
   const Scalar length2 = sqrt(out.squaredNorm());
-  result.status = WrapStatus::kWrapped;
   result.direction1 = in / length1;
   result.direction2 = out / length2;
   result.length = length1 + result.surface_length + length2;
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  if (inside) {
+  if (pass.inside) {
     // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
-    const Scalar growth =
-        (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) * Scalar((1.0 - kSurfaceGap) / scale);
+    const Scalar growth = (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) *
+                          Scalar((1.0 - kSurfaceGap) / pass.scale);
     const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
-    const Vector3& end = p_inside ? p : q;
-    const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(nearest2)));
-    (p_inside ? result.gradient_p : result.gradient_q) += slope;
+    const Vector3& end = pass.p_nearer ? p : q;
+    const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(pass.end_distance2)));
+    (pass.p_nearer ? result.gradient_p : result.gradient_q) += slope;
     const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
-    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, p_inside);
+    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, pass.p_nearer);
   }
 }
+
+// In muscle_path_evaluation.cpp.
+extern template GeodesicShot<double> shoot<double>(const Eigen::Vector3d&, const Spheroid&, const Eigen::Vector3d&,
+                                                   const Eigen::Vector3d&, const TangentCircle<double>&, const double&,
+                                                   const double&, const double&, int);
+extern template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                       GeodesicMemory*, WrapResult<double>&);
 
 }  // namespace internal
 
@@ -442,8 +355,8 @@ void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>
 /// Newton's method on one angle, usually 3 to 5 shots, and one more step in `Scalar` (so that derivatives are those of
 /// the solution). Directions are accurate to about 1e-6, 1e-5 where an end nearly touches the surface. Lengths over a
 /// spheroid (quadrature, `geodesic_spheroid.hpp`) to about 3e-9 m at anatomical sizes, over three unequal radii
-/// (integration in steps) to 1e-8 m. `memory`: the solution is left there, and one that is
-/// there already starts the search.
+/// (integration in steps) to 1e-8 m. `memory`: a solution in it starts the search, and the new one
+/// is stored there.
 template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
                                       const Eigen::Matrix<Scalar, 3, 1>& q,

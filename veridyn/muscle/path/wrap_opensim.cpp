@@ -19,7 +19,7 @@ using internal::sign_of;
 // --- Ellipsoid ------------------------------------------------------------------------------------------------------
 
 /// Foot of the perpendicular from `x` on the ellipsoid (ellipse, where `keep` names a coordinate that stays): the root
-/// t of sum (a_i x_i / (t + a_i^2))^2 = 1 that lies right of all poles but the nearest point's own.
+/// t of sum (a_i x_i / (t + a_i^2))^2 = 1 that lies right of all poles: the one of the nearest point.
 Vector3d closest_point(const Vector3d& a, const Vector3d& x, int keep = -1) {
   if (keep < 0) {
     // A point on a plane of symmetry is treated as one of that plane's ellipse, of the smallest if there are several.
@@ -282,9 +282,9 @@ OpenSimWrap wrap_sphere(const WrapObject& object, const Vector3d& p, const Vecto
   const auto tangents = [&](const Vector3d& x, Vector3d& first, Vector3d& second) {
     const double distance2 = x.squaredNorm();
     const Vector3d along = x * (radius * radius / distance2);
-    const Vector3d beside = n.cross(x) * (radius * std::sqrt(distance2 - radius * radius) / distance2);
-    first = along + beside;
-    second = along - beside;
+    const Vector3d across = n.cross(x) * (radius * std::sqrt(distance2 - radius * radius) / distance2);
+    first = along + across;
+    second = along - across;
   };
   Vector3d r1a, r1b, r2a, r2b;
   tangents(p, r1a, r1b);
@@ -309,7 +309,7 @@ OpenSimWrap wrap_sphere(const WrapObject& object, const Vector3d& p, const Vecto
   const double angle = angle_between(r1, r2);
   wrap.r1 = r1;
   wrap.r2 = r2;
-  // OpenSim's own far side counts negative; its size is what a reader would expect.
+  // Negative on what OpenSim calls the far side; its absolute value is the length.
   wrap.surface_length = radius * (far_side ? angle - 2.0 * kPi : angle);
   return wrap;
 }

@@ -6,7 +6,7 @@
 
 namespace veridyn::muscle {
 
-/// What OpenSim 4.5's wrap objects answer for one straight segment (`WrapObject::wrapLine`), values as its enumeration.
+/// Result of OpenSim 4.5's wrap objects for one straight segment (`WrapObject::wrapLine`), values as its enumeration.
 enum class OpenSimWrapAction {
   kNone,       ///< the segment stays straight
   kInside,     ///< an end lies inside the object: straight
@@ -14,6 +14,7 @@ enum class OpenSimWrapAction {
   kMandatory,  ///< the segment meets the object: this one wraps
 };
 
+/// One segment as OpenSim wraps it.
 struct OpenSimWrap {
   OpenSimWrapAction action = OpenSimWrapAction::kNone;
   Eigen::Vector3d r1 = Eigen::Vector3d::Zero();  ///< where the path reaches the object
@@ -25,12 +26,12 @@ struct OpenSimWrap {
   }
 };
 
-/// OpenSim 4.5's own wrap of the segment from `p` to `q` (object frame, [m]), its approximations included, so that a
+/// OpenSim 4.5's wrap of the segment from `p` to `q` (object frame, [m]), its approximations included, so that a
 /// user can see what in a comparison is OpenSim's and what is ours: the ellipsoid's plane from closest points (hybrid,
 /// midpoint, axial; a fan of 298 samples), lengths of polygons with sides of 1 mm, the cylinder's tangent points that
-/// are shifted along the axis by a rule of thumb. `only_wrap_of_path` selects the shorter rule that OpenSim uses for
-/// the cylinder of a path with a single wrap. Facts read in opensim-core 4.5 (WrapCylinder, WrapEllipsoid, WrapSphere,
-/// WrapTorus); written again here. No memory of earlier poses.
+/// are shifted along the axis by an empirical rule. `only_wrap_of_path` selects the shorter rule that OpenSim uses for
+/// the cylinder of a path with a single wrap. After opensim-core 4.5 (WrapCylinder, WrapEllipsoid, WrapSphere,
+/// WrapTorus), implemented independently. No memory of earlier poses.
 ///
 /// Not for simulation: lengths jump, and moment arms are not their derivatives (docs/muscle).
 [[nodiscard]] OpenSimWrap wrap_as_opensim(const WrapObject& object, EllipsoidMethod method, bool only_wrap_of_path,

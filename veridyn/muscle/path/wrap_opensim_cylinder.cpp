@@ -18,8 +18,7 @@ Vector3d radial(const Vector3d& x) { return {x.x(), x.y(), 0.0}; }
 bool shift_tangent_point(const Vector3d& p, Vector3d& r, const Vector3d& w) {
   const Vector3d in = (r - p).normalized();
   const Vector3d on = (w - r).normalized();
-  if (!(std::abs(std::acos(std::clamp(in.z(), -1.0, 1.0)) - std::acos(std::clamp(on.z(), -1.0, 1.0))) >
-        0.1 * kPi / 180.0))
+  if (!(std::abs(std::acos(std::clamp(in.z(), -1.0, 1.0)) - std::acos(std::clamp(on.z(), -1.0, 1.0))) > 0.1 * kDegree))
     return false;
   // Where the line p-w passes the line through the feet of p and w on the axis-parallel through r.
   // Both feet lie on one line parallel to the axis; the nearest points of p-w to it:
@@ -30,7 +29,7 @@ bool shift_tangent_point(const Vector3d& p, Vector3d& r, const Vector3d& w) {
   return true;
 }
 
-/// The two tangent points of an end, on the circle at its own height.
+/// The two tangent points of an end, on the circle at its height.
 struct TangentPair {
   Vector3d a, b;
 };
@@ -164,11 +163,8 @@ OpenSimWrap wrap_cylinder_as_opensim(const WrapObject& object, bool only_wrap_of
   if (side != 0) {
     const double s = side;
     const bool p_active = sign_of(p[axis]) == s, q_active = sign_of(q[axis]) == s;
-    if (!p_active && !q_active) {
-      wrap.action = OpenSimWrapAction::kWrapped;
-    } else if (!meets && sign_of(p[axis]) != sign_of(q[axis]) && sign_of(near[axis]) != s) {
-      wrap.action = OpenSimWrapAction::kWrapped;
-    }
+    const bool crosses = sign_of(p[axis]) != sign_of(q[axis]) && sign_of(near[axis]) != s;
+    if ((!p_active && !q_active) || (!meets && crosses)) wrap.action = OpenSimWrapAction::kWrapped;
   }
   if (wrap.action == OpenSimWrapAction::kNone) return wrap;
   const TangentPair at_p = tangents(radius, p), at_q = tangents(radius, q);

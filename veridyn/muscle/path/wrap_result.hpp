@@ -7,7 +7,7 @@
 
 /// What the four wrap primitives share.
 ///
-/// Each answers for one straight segment P Q in the object's own frame. A wrapped length |P r1| + surface + |r2 Q| is
+/// Each wraps one straight segment P Q, in the object's frame. A wrapped length |P r1| + surface + |r2 Q| is
 /// the length of a taut string: stationary in the tangent points, so that unit tension does exactly the work of its
 /// change (dL/dP = -direction1, dL/dQ = direction2), and closed forms or Newton's method find it to rounding.
 ///
@@ -17,6 +17,7 @@
 /// lengths are OpenSim's.
 namespace veridyn::muscle {
 
+/// How a segment goes past an object.
 enum class WrapStatus {
   kStraight,  ///< the segment misses the object, or passes it on a side where it does not wrap
   kWrapped,
@@ -28,6 +29,7 @@ inline constexpr double kInsideFade = 0.03;  ///< [radii]
 inline constexpr double kEndStart = 0.1;     ///< [radii of the cylinder]
 inline constexpr double kEndFade = 0.6;      ///< [radii of the cylinder]
 
+/// One segment wrapped over one object.
 template <typename Scalar>
 struct WrapResult {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;

@@ -3,12 +3,14 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 
 namespace veridyn::muscle {
 
+/// A sphere about the origin.
 struct WrapSphere {
-  double radius = 0.0;
+  double radius = 0.0;  ///< [m]
   WrapQuadrant quadrant;
 };
 
@@ -77,7 +79,7 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
   }
   const double turn = long_way ? -1.0 : 1.0;
   Scalar angle = atan2(normal.dot(result.r1.cross(result.r2)) * Scalar(turn), result.r1.dot(result.r2));
-  if (long_way && angle < Scalar(0.0)) angle += Scalar(6.283185307179586);
+  if (long_way && angle < Scalar(0.0)) angle += Scalar(2.0 * kPi);
   result.status = WrapStatus::kWrapped;
   result.surface_length = radius * angle;
   result.length = d1 + result.surface_length + d2;
@@ -93,6 +95,10 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
     fade_inside<Scalar>(result, distance / Scalar(sphere.radius), end / (distance * Scalar(sphere.radius)), end_is_p);
   }
 }
+
+// In muscle_path_evaluation.cpp.
+extern template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+                                       WrapResult<double>&);
 
 }  // namespace internal
 

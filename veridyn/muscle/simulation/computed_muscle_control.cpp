@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
@@ -15,41 +16,33 @@
 namespace veridyn::muscle {
 namespace {
 
-/// The wished motion of the free coordinates.
-class Wish {
- public:
-  Wish(const MusculoskeletalSystem& system, const Motion& motion) : free_(system.reduction().free()) {
-    for (const int c : free_) {
-      const auto& spline = motion.coordinate[static_cast<std::size_t>(c)];
-      if (!spline) {
-        throw InputError(system.model().name,
-                         fmt::format("coordinate '{}' is free but not in the motion to follow; lock it or give it",
-                                     system.model().coordinates[static_cast<std::size_t>(c)].name));
-      }
-      splines_.push_back(&*spline);
+/// The desired motion of the free coordinates, in their order.
+std::vector<numerics::PiecewisePolynomial> desired_motion(const MusculoskeletalSystem& system, const Motion& motion) {
+  std::vector<numerics::PiecewisePolynomial> splines;
+  for (const int c : system.reduction().free()) {
+    const auto& spline = motion.coordinate[at(c)];
+    if (!spline) {
+      throw InputError(system.model().name,
+                       fmt::format("coordinate '{}' is free but not in the motion to follow; lock it or give it",
+                                   system.model().coordinates[at(c)].name));
     }
+    splines.push_back(*spline);
   }
-  [[nodiscard]] std::size_t size() const { return splines_.size(); }
-  [[nodiscard]] numerics::FunctionValue<double> at(std::size_t free, double time) const {
-    return splines_[free]->evaluate(time);
-  }
+  return splines;
+}
 
- private:
-  std::span<const int> free_;
-  std::vector<const numerics::PiecewisePolynomial*> splines_;
-};
-
+/// View of a system that is controlled, which must outlive it.
 class Controller {
  public:
   Controller(const MusculoskeletalSystem& system, const Motion& motion, const ControlOptions& options)
       : system_(system),
-        wish_(system, motion),
+        desired_(desired_motion(system, motion)),
         options_(options),
         evaluator_(system),
         ahead_(system),
-        window_(system),
+        window_(system.muscles()),
         stepper_(system.layout().size),
-        qp_(static_cast<Eigen::Index>(wish_.size()), static_cast<Eigen::Index>(system.muscles().size() + wish_.size())),
+        qp_(signed_index(desired_.size()), signed_index(system.muscles().size() + desired_.size())),
         muscles_(system.muscles().size()),
         low_(muscles_, options.min_control),
         high_(muscles_, options.max_control),
@@ -60,18 +53,18 @@ class Controller {
         optimal_(muscles_),
         activation_(muscles_),
         fiber_(muscles_),
-        demand_(wish_.size()),
-        planned_speed_(wish_.size()),
-        z_(wish_.size()),
-        zdot_(wish_.size()),
-        zddot_(wish_.size()),
+        demand_(desired_.size()),
+        planned_speed_(desired_.size()),
+        z_(desired_.size()),
+        zdot_(desired_.size()),
+        zddot_(desired_.size()),
         moment_(system.coordinates()),
         qddot_(system.coordinates()),
         reserve_(system.coordinates()) {
     for (auto& node : nodes_) node.resize(muscles_);
-    // Reserves that are not wanted are so dear that they only say what is missing.
-    constexpr double kDear = 1e-3;
-    reserve_optimal_ = options.reserve_force > 0.0 ? options.reserve_force : kDear;
+    // Reserves that the options leave out cost so much that they carry only what the muscles cannot.
+    constexpr double kCostlyReserve = 1e-3;
+    reserve_optimal_ = options.reserve_force > 0.0 ? options.reserve_force : kCostlyReserve;
     for (std::size_t m = 0; m < muscles_; ++m) {
       low_[m] = std::max(options.min_control, system.muscles().settings(m).min_control);
       high_[m] = std::min(options.max_control, system.muscles().settings(m).max_control);
@@ -82,7 +75,7 @@ class Controller {
 
  private:
   /// Moments that the accelerations zddot_ need at the state (z_, zdot_), less those of limits; moment arms.
-  void require() {
+  void update_required_moments() {
     ahead_.set_motion(z_.data(), zdot_.data());
     const ExpandedState<double>& s = ahead_.dynamics().state();
     const CoordinateReduction& reduction = system_.reduction();
@@ -109,7 +102,7 @@ class Controller {
 
   /// min sum (F/F_opt)^2 + sum (reserve/optimal)^2 with the forces between force_low_ and force_high_. Reserves act on
   /// the free coordinates. Writes force_ and reserve_.
-  void share() {
+  void distribute_forces() {
     for (std::size_t m = 0; m < muscles_; ++m) {
       const auto i = static_cast<Eigen::Index>(m);
       const RigidTendonForces rigid =
@@ -120,7 +113,7 @@ class Controller {
       qp_.low(i) = std::min(force_low_[m], force_high_[m]);
       qp_.high(i) = std::max(force_low_[m], force_high_[m]);
     }
-    for (std::size_t f = 0; f < wish_.size(); ++f) {
+    for (std::size_t f = 0; f < desired_.size(); ++f) {
       const auto i = static_cast<Eigen::Index>(muscles_ + f);
       qp_.weight(i) = 2.0 / (reserve_optimal_ * reserve_optimal_);
       qp_.A(static_cast<Eigen::Index>(f), i) = 1.0;
@@ -128,18 +121,18 @@ class Controller {
     static_cast<void>(qp_.solve());
     for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(static_cast<Eigen::Index>(m));
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
-    for (std::size_t f = 0; f < wish_.size(); ++f) {
+    for (std::size_t f = 0; f < desired_.size(); ++f) {
       reserve_[static_cast<std::size_t>(system_.reduction().free()[f])] =
           qp_.x()(static_cast<Eigen::Index>(muscles_ + f));
     }
   }
 
   void start_muscles(double* x);
-  [[nodiscard]] bool plan(double t, double end, const double* x);
+  [[nodiscard]] bool plan_window(double t, double end, const double* x);
 
   const MusculoskeletalSystem& system_;
-  Wish wish_;
-  const ControlOptions& options_;
+  std::vector<numerics::PiecewisePolynomial> desired_;  ///< by free coordinate
+  ControlOptions options_;
   SystemEvaluator<double> evaluator_, ahead_;
   MuscleWindow window_;
   numerics::DormandPrince<double> stepper_;
@@ -152,19 +145,19 @@ class Controller {
   std::array<std::vector<double>, MuscleWindow::kNodes> nodes_;
 };
 
-/// Muscles in equilibrium at the wished start, at activations that share the wished moments.
+/// Muscles in equilibrium at the desired start, at activations that produce the desired moments together.
 void Controller::start_muscles(double* x) {
-  for (std::size_t f = 0; f < wish_.size(); ++f) {
-    const numerics::FunctionValue<double> w = wish_.at(f, options_.begin);
+  for (std::size_t f = 0; f < desired_.size(); ++f) {
+    const numerics::FunctionValue<double> w = desired_[f].evaluate(options_.begin);
     z_[f] = w.value;
     zdot_[f] = w.slope;
     zddot_[f] = w.curvature;
     x[f] = w.value;
-    x[wish_.size() + f] = w.slope;
+    x[desired_.size() + f] = w.slope;
     demand_[f] = w.curvature;
     planned_speed_[f] = w.slope;
   }
-  require();
+  update_required_moments();
   const auto force_at = [&](std::span<const double> activation, std::span<double> force) {
     std::vector<double> fibers(muscles_);
     system_.muscles().equilibrium(activation, ahead_.path_length(), fibers);
@@ -172,8 +165,8 @@ void Controller::start_muscles(double* x) {
   };
   force_at(low_, force_low_);
   force_at(high_, force_high_);
-  share();
-  // Bisection: done once, so that it may be plain.
+  distribute_forces();
+  // Bisection: simple rather than fast, because it is done once.
   std::vector<double> a = low_, b = high_, middle(muscles_), reached(muscles_);
   for (int i = 0; i < 40; ++i) {
     for (std::size_t m = 0; m < muscles_; ++m) middle[m] = 0.5 * (a[m] + b[m]);
@@ -181,20 +174,20 @@ void Controller::start_muscles(double* x) {
     for (std::size_t m = 0; m < muscles_; ++m) (reached[m] < force_[m] ? a[m] : b[m]) = middle[m];
   }
   for (std::size_t m = 0; m < muscles_; ++m) middle[m] = force_high_[m] - force_low_[m] < 1.0 ? low_[m] : middle[m];
-  evaluator_.set_motion(x, x + wish_.size());
+  evaluator_.set_motion(x, x + desired_.size());
   evaluator_.start_muscles(middle.data(), x);
   excitation_ = middle;
 }
 
 /// Excitations and reserves of the window from t to `end`.
-bool Controller::plan(double t, double end, const double* x) {
-  const std::size_t n = wish_.size();
+bool Controller::plan_window(double t, double end, const double* x) {
+  const std::size_t n = desired_.size();
   const double* speed = x + n;
-  // Path lengths along the wished motion, shifted by the present error and its rate.
+  // Path lengths along the desired motion, shifted by the present error and its rate.
   for (std::size_t k = 0; k < MuscleWindow::kNodes; ++k) {
     const double s = static_cast<double>(k) / static_cast<double>(MuscleWindow::kNodes - 1) * (end - t);
     for (std::size_t f = 0; f < n; ++f) {
-      const numerics::FunctionValue<double> now = wish_.at(f, t), then = wish_.at(f, t + s);
+      const numerics::FunctionValue<double> now = desired_[f].evaluate(t), then = desired_[f].evaluate(t + s);
       z_[f] = then.value + (x[f] - now.value) + s * (speed[f] - now.slope);
       zdot_[f] = then.slope + (speed[f] - now.slope);
       // What the last window fell short of in speed is made up in this one.
@@ -204,7 +197,7 @@ bool Controller::plan(double t, double end, const double* x) {
     if (k + 1 < MuscleWindow::kNodes) {
       ahead_.set_motion(z_.data(), zdot_.data());
     } else {
-      require();  // the last node: the window's end
+      update_required_moments();  // the last node: the window's end
     }
     std::copy(ahead_.path_length().begin(), ahead_.path_length().end(), nodes_[k].begin());
   }
@@ -222,7 +215,7 @@ bool Controller::plan(double t, double end, const double* x) {
   if (!window_.end_forces(low_, options_.accuracy, force_low_) ||
       !window_.end_forces(high_, options_.accuracy, force_high_))
     return false;
-  share();
+  distribute_forces();
   return window_.find_excitations(low_, high_, force_low_, force_high_, force_, options_.accuracy, excitation_);
 }
 
@@ -234,10 +227,10 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
   const StateLayout& layout = system_.layout();
   std::vector<double> x(layout.size);
   start_muscles(x.data());
-  for (std::size_t f = 0; f < wish_.size(); ++f) {
+  for (std::size_t f = 0; f < desired_.size(); ++f) {
     const int c = system_.reduction().free()[f];
     result.start.q(c) = x[f];
-    result.start.qdot(c) = x[wish_.size() + f];
+    result.start.qdot(c) = x[desired_.size() + f];
   }
   result.start.activation = Eigen::Map<const Eigen::VectorXd>(excitation_.data(), static_cast<Eigen::Index>(muscles_));
 
@@ -248,7 +241,7 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
   double t = options_.begin;
   for (std::size_t w = 0; w < windows; ++w) {
     const double end = std::min(options_.end, options_.begin + static_cast<double>(w + 1) * options_.window);
-    if (!plan(t, end, x.data())) {
+    if (!plan_window(t, end, x.data())) {
       result.trajectory.end = SimulationEnd::kStepSize;
       result.trajectory.trouble = "the muscles alone could not be integrated over a window";
       break;
@@ -288,7 +281,7 @@ void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
   require(o.window > 0.0 && o.window <= o.end - o.begin, "the window must be > 0 and within the motion");
   require(o.kp >= 0.0 && o.kv >= 0.0, "gains must not be negative");
   require(o.min_control >= 0.0 && o.min_control < o.max_control && o.max_control <= 1.0,
-          "0 <= min_control < max_control <= 1 is wanted");
+          "0 <= min_control < max_control <= 1 is required");
   require(o.reserve_force >= 0.0, "the reserve's optimal force must not be negative");
   require(system.muscles().size() > 0, "the model has no muscles");
 }
@@ -296,7 +289,7 @@ void check(const MusculoskeletalSystem& system, const ControlOptions& o) {
 }  // namespace
 
 double ControlResult::tracking_error(int coordinate) const {
-  return (trajectory.q.col(coordinate) - wished.col(coordinate)).cwiseAbs().maxCoeff();
+  return (trajectory.q.col(coordinate) - desired.col(coordinate)).cwiseAbs().maxCoeff();
 }
 
 ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const Motion& motion,
@@ -320,10 +313,10 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
     result.trajectory.end = end;
     result.trajectory.trouble = trouble;
   }
-  result.wished = result.trajectory.q;
+  result.desired = result.trajectory.q;
   for (const int c : system.reduction().free()) {
     for (std::size_t i = 0; i < result.trajectory.time.size(); ++i) {
-      result.wished(static_cast<Eigen::Index>(i), c) =
+      result.desired(static_cast<Eigen::Index>(i), c) =
           motion.coordinate[static_cast<std::size_t>(c)]->evaluate(result.trajectory.time[i]).value;
     }
   }

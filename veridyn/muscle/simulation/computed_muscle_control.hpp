@@ -26,38 +26,38 @@ struct ControlOptions {
 
 /// A motion found by computed muscle control, and what reproduces it.
 struct ControlResult {
-  /// Where it starts: the wished pose and speeds at `begin`, muscles at rest at activations that balance the wished
+  /// Where it starts: the desired pose and speeds at `begin`, muscles at rest at activations that balance the desired
   /// acceleration there.
   StartState start;
   /// Excitations and reserves, held over each window: `simulate_forward(system, start, drive, ...)` with the same
   /// accuracy repeats the motion to rounding.
   Drive drive;
   MuscleTrajectory trajectory;
-  estimation::RowMatrix wished;  ///< q of the motion to follow, rows as `trajectory`
-  /// Windows in which the muscles could not make the wished acceleration and the reserves had to do more than their
+  estimation::RowMatrix desired;  ///< q of the motion to follow, rows as `trajectory`
+  /// Windows in which the muscles could not produce the desired acceleration and the reserves had to exceed their
   /// optimal force.
   std::vector<double> overloaded;  ///< their beginnings [s]
 
   [[nodiscard]] bool usable() const { return trajectory.usable(); }
-  /// Largest |q - wished| of a coordinate, over the rows. [rad or m]
+  /// Largest |q - desired| of a coordinate over the rows [rad or m].
   [[nodiscard]] double tracking_error(int coordinate) const;
 };
 
 /// Computed muscle control (Thelen & Anderson 2006): the excitations with which the muscles follow a motion.
 ///
-/// In each window of length T: (1) wished accelerations qddot_ref(t + T) + kv (qdot_ref - qdot) + kp (q_ref - q), plus
-/// what the last window fell short of in speed, over T (forces meet their wish at the end of a window but grow towards
-/// it late: without this the motion lags by a third of a window, as OpenSim's does); (2)
-/// the muscles alone, along the reference path shifted by the present error, with least and greatest excitation: the
-/// forces they can reach by t + T; (3) min sum (F/F_opt)^2 + sum (reserve/optimal)^2 subject to the wished
-/// accelerations and these bounds, F_opt the active force along a rigid tendon at full activation; (4) for each muscle
-/// the constant excitation that ends at its force; (5) the whole system over the window. Excitations are held over
-/// their window, and stay so in the result: OpenSim writes them as samples to be interpolated, which is why its replay
-/// leaves its own motion.
+/// In each window of length T: (1) desired accelerations qddot_ref(t + T) + kv (qdot_ref - qdot) + kp (q_ref - q), plus
+/// what the last window fell short of in speed, over T (forces reach their desired value at the end of a window but
+/// grow towards it late: without this the motion lags by a third of a window, as OpenSim's does); (2) the muscles
+/// alone, along the reference path shifted by the present error, with least and greatest excitation: the forces they
+/// can reach by t + T; (3) min sum (F/F_opt)^2 + sum (reserve/optimal)^2 subject to the desired accelerations and these
+/// bounds, F_opt the active force along a rigid tendon at full activation; (4) for each muscle the constant excitation
+/// that ends at its force; (5) the whole system over the window. Excitations are held over their window, and stay so in
+/// the result: OpenSim writes them as samples to be interpolated, which is why a replay of its controls departs from
+/// its motion.
 ///
 /// Locked coordinates are held where the motion, if it has them, is at `begin`; else at the model's default.
-/// Every free coordinate must be in the motion. @throws InputError naming the one that is not, or options that make no
-/// sense.
+/// Every free coordinate must be in the motion. @throws InputError naming the one that is not, or options outside their
+/// range.
 [[nodiscard]] ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const Motion& motion,
                                                     const ControlOptions& options, Progress& progress);
 

@@ -10,8 +10,8 @@
 
 namespace veridyn::muscle {
 
-/// Excitations and reserves of a drive at an instant; a view of the drive, which must outlive it. Held signals keep the
-/// value that `begin_piece` found until the piece ends.
+/// View of a drive, which must outlive it: its excitations and reserves at an instant. Held signals keep the value that
+/// `begin_piece` found until the piece ends.
 class DriveState {
  public:
   DriveState(const Drive& drive, std::size_t muscles, std::size_t coordinates)
@@ -44,8 +44,8 @@ class DriveState {
 };
 
 /// Integrates the state `x` of a driven system from `t` to `end`, piece by piece between the instants at which held
-/// signals jump; `signals` stands at `t` (`begin_piece`). After each step `on_step(begin, end)`, which may ask the
-/// stepper for states in between and returns false to stop.
+/// signals jump; `signals.begin_piece(t)` was called before. After each step `on_step(begin, end)` is called, which may
+/// interpolate states by the stepper and returns false to stop.
 /// @returns kReached also when `on_step` stopped it; then t < end.
 template <typename Scalar, typename OnStep>
 numerics::IntegrationEnd integrate_driven(SystemEvaluator<Scalar>& evaluator, std::span<const double> scales,

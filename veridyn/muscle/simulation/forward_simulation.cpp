@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/simulation/driven_integration.hpp"
@@ -13,14 +14,14 @@ namespace {
 
 using Stepper = numerics::DormandPrince<double>;
 
-/// Rows of the trajectory and its events, taken while the integrator goes along.
+/// View of a system, which must outlive it: collects rows and events of its trajectory while the integrator advances.
 class Recorder {
  public:
-  Recorder(const MusculoskeletalSystem& system, const ForwardOptions& options, MuscleTrajectory& trajectory)
+  Recorder(const MusculoskeletalSystem& system, const ForwardOptions& options)
       : system_(system),
         between_(system),
-        options_(options),
-        t_(trajectory),
+        begin_(options.begin),
+        rate_Hz_(options.rate_Hz),
         state_(system.layout().size),
         rate_(state_.size()),
         before_(2 * system.muscles().size()),
@@ -34,16 +35,16 @@ class Recorder {
   void start(SystemEvaluator<double>& evaluator, const double* x, const SystemInputs& inputs) {
     between_ = evaluator;
     static_cast<void>(between_.derivative(x, inputs, rate_.data()));
-    append(options_.begin, between_, inputs);
+    append(begin_, between_, inputs);
     event_functions(between_, before_);
   }
 
-  /// After an accepted step, at whose end `evaluator` stands: its last evaluation was the derivative there.
+  /// After an accepted step, at whose end `evaluator` was evaluated last.
   void step(const Stepper& stepper, const SystemEvaluator<double>& evaluator, DriveState& drive, double begin,
             double end) {
-    if (options_.rate_Hz > 0.0) {
+    if (rate_Hz_ > 0.0) {
       while (t_.time.size() <= last_row_) {
-        const double sample = options_.begin + static_cast<double>(t_.time.size()) / options_.rate_Hz;
+        const double sample = begin_ + static_cast<double>(t_.time.size()) / rate_Hz_;
         if (sample > end + 1e-12) break;
         const SystemInputs inputs = drive.at(std::min(sample, end));
         evaluate_between(stepper, std::min(sample, end), inputs);
@@ -59,8 +60,9 @@ class Recorder {
     std::swap(before_, after_);
   }
 
-  void finish() {
-    // Rows were gathered one after the other; now they become matrices.
+  /// The trajectory's rows and events.
+  [[nodiscard]] MuscleTrajectory finish() {
+    // Rows were collected one after the other; here they become matrices.
     const auto n = static_cast<Eigen::Index>(system_.coordinates()),
                m = static_cast<Eigen::Index>(system_.muscles().size());
     const auto rows = static_cast<Eigen::Index>(t_.time.size());
@@ -75,6 +77,7 @@ class Recorder {
     fill(t_.fiber_length, fiber_, m);
     fill(t_.tendon_force, force_, m);
     fill(t_.path_length, path_, m);
+    return std::move(t_);
   }
 
  private:
@@ -139,8 +142,8 @@ class Recorder {
 
   const MusculoskeletalSystem& system_;
   SystemEvaluator<double> between_;
-  const ForwardOptions& options_;
-  MuscleTrajectory& t_;
+  double begin_, rate_Hz_;
+  MuscleTrajectory t_;
   std::size_t last_row_ = 0;
   std::vector<double> state_, rate_, before_, after_, middle_;
   std::vector<double> q_, qdot_, reserve_, excitation_, activation_, fiber_, force_, path_;
@@ -171,7 +174,7 @@ SimulationEnd end_of(numerics::IntegrationEnd end) {
   return SimulationEnd::kDiverged;
 }
 
-/// The state furthest out of its usual size.
+/// The state that is largest in units of its scale.
 std::string worst_state(const MusculoskeletalSystem& system, const Eigen::VectorXd& x) {
   std::size_t worst = 0;
   double largest = -1.0;
@@ -211,7 +214,13 @@ std::string MuscleTrajectory::message() const {
       return fmt::format("no step is small enough at {:.6g} s: {}", end_time, trouble);
     case SimulationEnd::kStepLimit:
       return fmt::format("the limit of {} steps was reached at {:.6g} s: {}", steps, end_time, trouble);
-    default:
+    case SimulationEnd::kInterrupted:
+    case SimulationEnd::kNoTrim:  // this and the following: of aircraft and vehicles
+    case SimulationEnd::kGround:
+    case SimulationEnd::kUpset:
+    case SimulationEnd::kStopped:
+    case SimulationEnd::kSpun:
+    case SimulationEnd::kRolledOver:
       break;
   }
   return fmt::format("interrupted at {:.6g} s", end_time);
@@ -231,7 +240,6 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
                                   const ForwardOptions& options, Progress& progress) {
   check_start(system.model(), start);
   const StateLayout& layout = system.layout();
-  MuscleTrajectory result;
   DriveState signals(drive, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
   Eigen::VectorXd x(static_cast<Eigen::Index>(layout.size));
@@ -248,12 +256,13 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
     if (layout.fiber_length[m] >= 0) x(layout.fiber_length[m]) = start.fiber_length(static_cast<Eigen::Index>(m));
   }
 
-  Recorder recorder(system, options, result);
+  Recorder recorder(system, options);
   recorder.start(evaluator, x.data(), signals.at(options.begin));
   const double span = options.end - options.begin;
   const numerics::StepControl control{
       .tolerance = options.accuracy, .smallest_step = 1e-12 * span, .max_steps = options.max_steps};
   constexpr double kFarAway = 1e4;
+  SimulationEnd stopped = SimulationEnd::kCompleted;
   double shown = options.begin;
   double t = options.begin;
   Stepper stepper(layout.size);
@@ -261,16 +270,16 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
       evaluator, system.scales(), signals, stepper, t, x.data(), options.end, control, [&](double from, double to) {
         recorder.step(stepper, evaluator, signals, from, to);
         for (std::size_t i = 0; i < layout.free; ++i) {
-          if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) result.end = SimulationEnd::kDiverged;
+          if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) stopped = SimulationEnd::kDiverged;
         }
         if (to - shown > 0.01 * span) {
           shown = to;
-          if (!progress.update((to - options.begin) / span)) result.end = SimulationEnd::kInterrupted;
+          if (!progress.update((to - options.begin) / span)) stopped = SimulationEnd::kInterrupted;
         }
-        return result.end == SimulationEnd::kCompleted;
+        return stopped == SimulationEnd::kCompleted;
       });
-  if (end != numerics::IntegrationEnd::kReached) result.end = end_of(end);
-  recorder.finish();
+  MuscleTrajectory result = recorder.finish();
+  result.end = end == numerics::IntegrationEnd::kReached ? stopped : end_of(end);
   result.end_time = t;
   result.steps = stepper.steps();
   result.evaluations = evaluator.evaluations();

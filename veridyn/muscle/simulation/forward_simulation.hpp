@@ -24,21 +24,23 @@ struct StartState {
 /// The model's default pose and speeds.
 [[nodiscard]] StartState default_start(const Model& model);
 
+/// What `simulate_forward` integrates over, and how accurately.
 struct ForwardOptions {
-  double begin = 0.0;
-  double end = 1.0;
+  double begin = 0.0;      ///< [s]
+  double end = 1.0;        ///< [s]
   double rate_Hz = 200.0;  ///< of the rows of the result; 0: a row at each step of the integrator
-  /// Largest error of a step in units of `MusculoskeletalSystem::scales`; OpenSim's tools take 1e-5 for their own norm.
+  /// Largest error of a step in units of `MusculoskeletalSystem::scales`; OpenSim's tools take 1e-5 for theirs.
   double accuracy = 1e-5;
   long max_steps = 1000000;
 };
 
 /// A muscle that reached a limit of its model, or left it.
 struct MuscleEvent {
-  double time = 0.0;
-  int muscle = 0;
+  double time = 0.0;  ///< [s]
+  int muscle = 0;     ///< in the model's order
   enum class Kind { kTendonSlack, kTendonTaut, kFiberShortest, kFiberFree } kind = Kind::kTendonSlack;
 };
+/// What happened, for tables: "tendon goes slack".
 [[nodiscard]] std::string event_text(MuscleEvent::Kind kind);
 
 /// A motion with its muscles, a row a sample. Matrices are samples x coordinates or samples x muscles.
@@ -55,10 +57,11 @@ struct MuscleTrajectory {
   double end_time = 0.0;
   long steps = 0;
   long evaluations = 0;
-  std::string trouble;  ///< which state, when it did not complete
+  std::string trouble;  ///< unless it completed: which state caused the end
   Eigen::VectorXd final_state;
 
   [[nodiscard]] bool usable() const { return end == SimulationEnd::kCompleted; }
+  /// How it ended, and when.
   [[nodiscard]] std::string message() const;
 };
 
@@ -70,7 +73,7 @@ struct Drive {
 };
 
 /// Integrates the system from `start`, with the error-controlled Dormand-Prince method. Instants at which held signals
-/// jump are ends of steps. Slack tendons and shortest fibres are located on the way as events. Never throws on a
+/// jump are ends of steps. Slack tendons and shortest fibres are located as events. Never throws on a
 /// diverging simulation and always ends: the result says how.
 /// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.
 [[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,

@@ -2,65 +2,48 @@
 
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
-/// Evaluates a system along a motion.
-class Follower {
- public:
-  Follower(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest)
-      : system_(system),
-        motion_(motion),
-        rest_(rest),
-        evaluator_(system),
-        q(rest.size()),
-        qdot(rest.size()),
-        qddot(rest.size()),
-        moment(rest.size()) {}
-
-  void go_to(double time) {
-    for (Eigen::Index c = 0; c < q.size(); ++c) {
-      const auto& spline = motion_.coordinate[static_cast<std::size_t>(c)];
-      const numerics::FunctionValue<double> value =
-          spline ? spline->evaluate(time) : numerics::FunctionValue<double>{rest_(c), 0.0, 0.0};
-      q(c) = value.value;
-      qdot(c) = value.slope;
-      qddot(c) = value.curvature;
-    }
-    // What is coupled follows, whatever the file says of it.
-    for (const CoordinateReduction::Coupler& coupler : system_.reduction().couplers()) {
-      const numerics::FunctionValue<double> f = coupler.function.evaluate(q(coupler.independent));
-      q(coupler.dependent) = f.value;
-      qdot(coupler.dependent) = f.slope * qdot(coupler.independent);
-      qddot(coupler.dependent) =
-          f.slope * qddot(coupler.independent) + f.curvature * qdot(coupler.independent) * qdot(coupler.independent);
-    }
-    evaluator_.set_all(q.data(), qdot.data());
-    evaluator_.dynamics().dynamics().inverse_dynamics(qddot.data(), nullptr, moment.data());
-  }
-
-  [[nodiscard]] const SystemEvaluator<double>& evaluator() const { return evaluator_; }
-  /// dq / d(the free coordinate that this one follows).
-  [[nodiscard]] Eigen::VectorXd slopes() const {
-    Eigen::VectorXd slope = Eigen::VectorXd::Ones(q.size());
-    for (const CoordinateReduction::Coupler& coupler : system_.reduction().couplers()) {
-      slope(coupler.dependent) = coupler.function.evaluate(q(coupler.independent)).slope * slope(coupler.independent);
-    }
-    return slope;
-  }
-
- private:
-  const MusculoskeletalSystem& system_;
-  const Motion& motion_;
-  const Eigen::VectorXd& rest_;
-  SystemEvaluator<double> evaluator_;
-
- public:
-  Eigen::VectorXd q, qdot, qddot, moment;
+/// All coordinates at an instant.
+struct Instant {
+  Eigen::VectorXd q, qdot, qddot;
 };
+
+/// Coordinates without a motion rest at `rest`; coupled ones follow, whatever the motion says of them.
+Instant instant_of(const Motion& motion, const Eigen::VectorXd& rest, const CoordinateReduction& reduction,
+                   double time) {
+  Instant now{rest, Eigen::VectorXd::Zero(rest.size()), Eigen::VectorXd::Zero(rest.size())};
+  for (Eigen::Index c = 0; c < rest.size(); ++c) {
+    const auto& spline = motion.coordinate[at(c)];
+    if (!spline) continue;
+    const numerics::FunctionValue<double> value = spline->evaluate(time);
+    now.q(c) = value.value;
+    now.qdot(c) = value.slope;
+    now.qddot(c) = value.curvature;
+  }
+  for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
+    const numerics::FunctionValue<double> f = coupler.function.evaluate(now.q(coupler.independent));
+    const double speed = now.qdot(coupler.independent);
+    now.q(coupler.dependent) = f.value;
+    now.qdot(coupler.dependent) = f.slope * speed;
+    now.qddot(coupler.dependent) = f.slope * now.qddot(coupler.independent) + f.curvature * speed * speed;
+  }
+  return now;
+}
+
+/// By coordinate: dq / d(the free coordinate that it follows).
+Eigen::VectorXd slopes_at(const Eigen::VectorXd& q, const CoordinateReduction& reduction) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Ones(q.size());
+  for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
+    slope(coupler.dependent) = coupler.function.evaluate(q(coupler.independent)).slope * slope(coupler.independent);
+  }
+  return slope;
+}
 
 MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::vector<double>& time) {
   MotionAnalysis a;
@@ -72,14 +55,16 @@ MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::ve
   return a;
 }
 
-void store(const Follower& f, Eigen::Index row, MotionAnalysis& a) {
-  a.q.row(row) = f.q;
-  a.qdot.row(row) = f.qdot;
-  a.qddot.row(row) = f.qddot;
-  a.moment.row(row) = f.moment;
+/// Sets the evaluator to an instant and writes what inverse dynamics finds there into a row.
+void analyse(const Instant& now, Eigen::Index row, SystemEvaluator<double>& evaluator, MotionAnalysis& a) {
+  evaluator.set_all(now.q.data(), now.qdot.data());
+  a.q.row(row) = now.q;
+  a.qdot.row(row) = now.qdot;
+  a.qddot.row(row) = now.qddot;
+  evaluator.dynamics().dynamics().inverse_dynamics(now.qddot.data(), nullptr, a.moment.row(row).data());
   for (Eigen::Index m = 0; m < a.path_length.cols(); ++m) {
-    a.path_length(row, m) = f.evaluator().path_length()[static_cast<std::size_t>(m)];
-    a.path_speed(row, m) = f.evaluator().path_speed()[static_cast<std::size_t>(m)];
+    a.path_length(row, m) = evaluator.path_length()[at(m)];
+    a.path_speed(row, m) = evaluator.path_speed()[at(m)];
   }
 }
 
@@ -95,11 +80,9 @@ std::vector<double> frame_times(double begin, double end, double rate_Hz) {
 MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion, const Eigen::VectorXd& rest,
                               const std::vector<double>& time) {
   MotionAnalysis analysis = empty_analysis(system, time);
-  Follower follower(system, motion, rest);
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    follower.go_to(time[i]);
-    store(follower, static_cast<Eigen::Index>(i), analysis);
-  }
+  SystemEvaluator<double> evaluator(system);
+  for (std::size_t i = 0; i < time.size(); ++i)
+    analyse(instant_of(motion, rest, system.reduction(), time[i]), signed_index(i), evaluator, analysis);
   return analysis;
 }
 
@@ -122,27 +105,26 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   }
   StaticOptimizer optimizer(muscle_parameters(system.model()), reduced);
   StaticOptimizationFrame frame;
-  Follower follower(system, motion, rest);
+  SystemEvaluator<double> evaluator(system);
   Eigen::MatrixXd arms(muscles, n);
-  Eigen::VectorXd required(n), limits(follower.q.size());
+  Eigen::VectorXd required(n), limits(rest.size());
   for (std::size_t i = 0; i < time.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    follower.go_to(time[i]);
-    store(follower, row, analysis);
-    const Eigen::VectorXd slope = follower.slopes();
+    const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
+    analyse(now, row, evaluator, analysis);
+    const Eigen::VectorXd slope = slopes_at(now.q, system.reduction());
     limits.setZero();
-    add_limit_forces<double>(system.model().limit_forces, follower.q.data(), follower.qdot.data(), limits.data());
+    add_limit_forces<double>(system.model().limit_forces, now.q.data(), now.qdot.data(), limits.data());
     required.setZero();
-    for (Eigen::Index c = 0; c < follower.q.size(); ++c) {
+    for (Eigen::Index c = 0; c < rest.size(); ++c) {
       const int root = system.reduction().free_root(static_cast<int>(c));
-      if (root >= 0) required(root) += slope(c) * (follower.moment(c) - limits(c));
+      if (root >= 0) required(root) += slope(c) * (analysis.moment(row, c) - limits(c));
     }
     arms.setZero();
     const auto pairs = system.pairs();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const int root = system.reduction().free_root(pairs[k].coordinate);
-      if (root >= 0)
-        arms(pairs[k].muscle, root) -= slope(pairs[k].coordinate) * follower.evaluator().path_gradient()[k];
+      if (root >= 0) arms(pairs[k].muscle, root) -= slope(pairs[k].coordinate) * evaluator.path_gradient()[k];
     }
     optimizer.solve(arms, analysis.path_length.row(row).transpose(), analysis.path_speed.row(row).transpose(), required,
                     frame);

@@ -14,14 +14,14 @@ namespace veridyn::muscle {
 /// A prescribed motion, frame by frame: matrices are frames x coordinates or frames x muscles.
 struct MotionAnalysis {
   std::vector<double> time;                       ///< [s]
-  estimation::RowMatrix q, qdot, qddot;           ///< coordinates without a wish rest; coupled ones follow
+  estimation::RowMatrix q, qdot, qddot;           ///< coordinates without a motion rest; coupled ones follow
   estimation::RowMatrix moment;                   ///< generalised forces that the motion needs [N m or N]
   estimation::RowMatrix path_length, path_speed;  ///< [m], [m/s]
   // Of static optimisation; empty otherwise.
   estimation::RowMatrix activation;
   estimation::RowMatrix force;          ///< of each muscle, as the formulation counts it [N]
   estimation::RowMatrix reserve;        ///< generalised force of the reserves [N m or N]
-  std::vector<std::size_t> infeasible;  ///< frames whose moments could not be made
+  std::vector<std::size_t> infeasible;  ///< frames whose moments could not be produced
   bool interrupted = false;
 };
 
@@ -33,8 +33,9 @@ struct MotionAnalysis {
 [[nodiscard]] MotionAnalysis analyse_motion(const MusculoskeletalSystem& system, const Motion& motion,
                                             const Eigen::VectorXd& rest, const std::vector<double>& time);
 
-/// And who makes these moments: static optimisation of every frame over the free coordinates (coupled coordinates hand
-/// their moments to the ones they follow; locked ones need none). Limit forces of the model are taken off first.
+/// The same, and the muscles that produce these moments: static optimisation of every frame over the free coordinates
+/// (moments of coupled coordinates count at the ones they follow; locked ones need none). Limit forces of the model are
+/// subtracted first.
 [[nodiscard]] MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion& motion,
                                              const Eigen::VectorXd& rest, const std::vector<double>& time,
                                              const StaticOptimizationOptions& options, Progress& progress);

@@ -29,13 +29,13 @@ struct MotionSegment {
   std::vector<double> time;  ///< increasing; the first is where it starts [s]
 };
 
-/// Forward simulations of a muscle model as estimators see them (`estimation::ParametricModel`): theta are parameters
-/// of its muscles, and of each segment the values and speeds of the free coordinates where it starts; outputs are the
-/// free coordinates. Exact derivatives by automatic differentiation through paths, muscles, equilibrium at the start
-/// and dynamics; steps are those of the values, so that derivatives are those of the numerical solution.
+/// View of a system, which must outlive it: its forward simulations as estimators see them
+/// (`estimation::ParametricModel`). theta are parameters of its muscles, and of each segment the values and speeds of
+/// the free coordinates where it starts; outputs are the free coordinates. Exact derivatives by automatic
+/// differentiation through paths, muscles, equilibrium at the start and dynamics; steps are those of the values, so
+/// that derivatives are those of the numerical solution.
 ///
-/// Initial conditions are fixed at the segment's start unless `estimate_start`. A view of its system, which must
-/// outlive it.
+/// Initial conditions are fixed at the segment's start unless `estimate_start`.
 class MuscleParametricModel final : public estimation::AutodiffModel<MuscleParametricModel, SimulationJet::DIMENSION> {
  public:
   /// Parameters start at the model's values, with bounds of half and one and a half of them.

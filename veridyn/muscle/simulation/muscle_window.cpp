@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace veridyn::muscle {
 
-MuscleWindow::MuscleWindow(const MusculoskeletalSystem& system)
-    : system_(&system),
-      stepper_(2 * system.muscles().size()),
-      n_(system.muscles().size()),
+MuscleWindow::MuscleWindow(MuscleGroup<double> muscles)
+    : muscles_(std::move(muscles)),
+      stepper_(2 * muscles_.size()),
+      n_(muscles_.size()),
       cubic_(n_),
       start_(2 * n_),
       state_(2 * n_),
@@ -25,8 +26,7 @@ MuscleWindow::MuscleWindow(const MusculoskeletalSystem& system)
       trial_(n_),
       trial_force_(n_),
       side_(n_) {
-  for (std::size_t m = 0; m < n_; ++m)
-    scales_[n_ + m] = 0.1 * system.muscles().settings(m).musculotendon.optimal_fiber_length;
+  for (std::size_t m = 0; m < n_; ++m) scales_[n_ + m] = 0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length;
 }
 
 void MuscleWindow::set_paths(double duration, const std::array<std::vector<double>, kNodes>& length) {
@@ -56,10 +56,9 @@ void MuscleWindow::path_at(double t) {
 }
 
 bool MuscleWindow::end_forces(std::span<const double> excitation, double tolerance, std::span<double> force) {
-  const MuscleGroup<double>& muscles = system_->muscles();
   const auto derivative = [&](double t, const double* x, double* rate) {
     path_at(t);
-    muscles.rates({excitation, {x, n_}, {x + n_, n_}, length_, speed_}, {{rate, n_}, {rate + n_, n_}, scratch_force_});
+    muscles_.rates({excitation, {x, n_}, {x + n_, n_}, length_, speed_}, {{rate, n_}, {rate + n_, n_}, scratch_force_});
     return true;
   };
   state_ = start_;
@@ -70,21 +69,21 @@ bool MuscleWindow::end_forces(std::span<const double> excitation, double toleran
       {.tolerance = tolerance, .max_steps = stepper_.steps() + 100000}, [](double, double) { return true; });
   if (end != numerics::IntegrationEnd::kReached) return false;
   path_at(duration_);
-  muscles.tendon_forces({excitation, {state_.data(), n_}, {state_.data() + n_, n_}, length_, speed_}, force);
+  muscles_.tendon_forces({excitation, {state_.data(), n_}, {state_.data() + n_, n_}, length_, speed_}, force);
   return true;
 }
 
 bool MuscleWindow::find_excitations(std::span<const double> low, std::span<const double> high,
                                     std::span<const double> force_low, std::span<const double> force_high,
-                                    std::span<const double> wished, double tolerance, std::span<double> excitation) {
+                                    std::span<const double> desired, double tolerance, std::span<double> excitation) {
   constexpr double kNarrow = 1.0;     // [N]
-  constexpr double kRounding = 1e-7;  // in the excitation: far below what a window of 10 ms can tell
+  constexpr double kRounding = 1e-7;  // of an excitation: far below what matters within a window of 10 ms
   constexpr int kMostIterations = 30;
   for (std::size_t m = 0; m < n_; ++m) {
     a_[m] = low[m];
     b_[m] = high[m];
-    fa_[m] = force_low[m] - wished[m];
-    fb_[m] = force_high[m] - wished[m];
+    fa_[m] = force_low[m] - desired[m];
+    fb_[m] = force_high[m] - desired[m];
     side_[m] = 0;
     excitation[m] = fa_[m] >= 0.0 || force_high[m] - force_low[m] < kNarrow ? low[m] : high[m];
     if (excitation[m] == low[m] || fb_[m] <= 0.0) a_[m] = b_[m] = excitation[m];
@@ -101,9 +100,9 @@ bool MuscleWindow::find_excitations(std::span<const double> low, std::span<const
     if (!end_forces(trial_, tolerance, trial_force_)) return false;
     for (std::size_t m = 0; m < n_; ++m) {
       if (b_[m] - a_[m] <= kRounding) continue;
-      const double error = trial_force_[m] - wished[m];
+      const double error = trial_force_[m] - desired[m];
       excitation[m] = trial_[m];
-      // A force within a millionth of the reachable range is the wished one.
+      // A force within a millionth of the reachable range counts as the desired one.
       if (std::abs(error) <= 1e-6 * (force_high[m] - force_low[m])) {
         a_[m] = b_[m] = trial_[m];
       } else if (error < 0.0) {

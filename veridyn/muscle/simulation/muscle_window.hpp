@@ -4,20 +4,20 @@
 #include <span>
 #include <vector>
 
-#include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+#include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/numerics/dormand_prince.hpp"
 
 namespace veridyn::muscle {
 
-/// The muscles of a system alone over a short window of time, along path lengths that are known beforehand: what force
-/// each can reach by its end, and which constant excitation reaches a wished one (steps 2 and 4 of computed muscle
-/// control).
+/// Muscles without their skeleton over a short window of time, along path lengths that are known beforehand: which
+/// force each can reach by its end, and which constant excitation reaches a desired one (steps 2 and 4 of computed
+/// muscle control).
 class MuscleWindow {
  public:
   /// Points in time of a window at which path lengths are given, its ends included.
   static constexpr std::size_t kNodes = 4;
 
-  explicit MuscleWindow(const MusculoskeletalSystem& system);
+  explicit MuscleWindow(MuscleGroup<double> muscles);
 
   /// A new window of length `duration` [s]. Path lengths [m] at evenly spaced nodes, muscles one after the other within
   /// a node; a cubic goes through them.
@@ -28,16 +28,17 @@ class MuscleWindow {
   /// Tendon forces [N] at the window's end under constant excitations. False when the muscles could not be integrated.
   [[nodiscard]] bool end_forces(std::span<const double> excitation, double tolerance, std::span<double> force);
 
-  /// Excitations between `low` and `high`, with end forces `force_low` and `force_high`, whose end forces are `wished`:
-  /// regula falsi (Illinois), all muscles at once. A muscle whose bounds are less than 1 N apart keeps `low`.
+  /// Excitations between `low` and `high`, with end forces `force_low` and `force_high`, whose end forces are
+  /// `desired`: regula falsi (Illinois), all muscles at once. A muscle whose end forces differ by less than 1 N keeps
+  /// `low`.
   [[nodiscard]] bool find_excitations(std::span<const double> low, std::span<const double> high,
                                       std::span<const double> force_low, std::span<const double> force_high,
-                                      std::span<const double> wished, double tolerance, std::span<double> excitation);
+                                      std::span<const double> desired, double tolerance, std::span<double> excitation);
 
  private:
   void path_at(double time);
 
-  const MusculoskeletalSystem* system_;
+  MuscleGroup<double> muscles_;
   numerics::DormandPrince<double> stepper_;
   std::size_t n_;
   double duration_ = 0.0;

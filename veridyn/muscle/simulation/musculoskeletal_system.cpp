@@ -13,7 +13,7 @@ int find_coordinate(const Model& model, const std::string& name) {
   return index;
 }
 
-/// The model as it moves: coordinates locked and unlocked as asked, muscles that are off left out.
+/// The model as it moves: coordinates locked and unlocked by the options, disabled muscles left out.
 Model prepare(Model model, const SystemOptions& options, std::vector<std::string>& notes) {
   for (const std::string& name : options.locked)
     model.coordinates[static_cast<std::size_t>(find_coordinate(model, name))].locked = true;
@@ -26,7 +26,7 @@ Model prepare(Model model, const SystemOptions& options, std::vector<std::string
   if (!left_out.empty() && !options.without_unsupported) {
     throw InputError(
         model.name,
-        fmt::format("{} would change the motion and {} not understood; without_unsupported = true goes on without",
+        fmt::format("{} would change the motion and {} not understood; without_unsupported = true continues without",
                     fmt::join(left_out, ", "), left_out.size() == 1 ? "is" : "are"));
   }
   if (!left_out.empty()) notes.push_back(fmt::format("left out, not understood: {}", fmt::join(left_out, ", ")));

@@ -21,17 +21,18 @@ enum class PathSource {
   kAsOpenSim,  ///< OpenSim's own wrapping, jumps included, for comparisons; no derivatives
 };
 
+/// How a model is prepared for simulation.
 struct SystemOptions {
   PathSource paths = PathSource::kExact;
-  /// Coordinates held at their start value, beside those that the model locks.
+  /// Coordinates held at their start value, in addition to those that the model locks.
   std::vector<std::string> locked{};
-  /// Coordinates that the model locks and that move all the same.
+  /// Coordinates that the model locks and that move nevertheless.
   std::vector<std::string> unlocked{};
-  /// Go on although forces or constraints of the model are not understood.
+  /// Continue without forces and constraints of the model that are not understood.
   bool without_unsupported = false;
 };
 
-/// Where the states of a system stand in its state vector: free coordinates [rad or m], their speeds, activations of
+/// Positions of a system's states in its state vector: free coordinates [rad or m], their speeds, activations of
 /// the muscles that have one, fibre lengths [m] of the muscles that have one.
 struct StateLayout {
   std::size_t free = 0;           ///< free coordinates; their speeds follow
@@ -40,7 +41,7 @@ struct StateLayout {
   std::size_t size = 0;
 };
 
-/// A model made ready for dynamics: tree, constraints, paths, muscles. Muscles that the file switches off are left out.
+/// A model prepared for dynamics: tree, constraints, paths, muscles. Muscles that the file disables are left out.
 /// Immutable; used by many threads at once, each with its own `SystemEvaluator`.
 class MusculoskeletalSystem {
  public:
@@ -67,7 +68,7 @@ class MusculoskeletalSystem {
   [[nodiscard]] std::span<const double> scales() const { return scales_; }
   /// "speed of coordinate 'elbow_flexion'", for messages.
   [[nodiscard]] std::string state_name(std::size_t index) const;
-  /// What a user should know of it: forces left out, muscles switched off, the error of fitted paths.
+  /// For reports: forces left out, muscles disabled, the error of fitted paths.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:

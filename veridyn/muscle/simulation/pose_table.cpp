@@ -22,7 +22,7 @@ void check_range(const Model& model, const std::string& place, Eigen::Index inde
   if (!c.in_range(value)) throw InputError(place, c.outside_range(value));
 }
 
-std::string trimmed(std::string text) {
+std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   if (begin == std::string::npos) return {};
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);

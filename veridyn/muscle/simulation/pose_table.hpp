@@ -8,7 +8,7 @@
 
 namespace veridyn::muscle {
 
-/// Poses at which a model is asked for lengths, moment arms and forces.
+/// Poses at which lengths, moment arms and forces of a model are computed.
 struct PoseTable {
   std::vector<double> time;                     ///< of the rows; empty: the poses have none [s]
   std::vector<Eigen::VectorXd> q, qdot, qddot;  ///< by row; all coordinates

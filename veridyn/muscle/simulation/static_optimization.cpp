@@ -71,7 +71,7 @@ struct SeparableProgram {
         const double next = primal(trial, mu);
         better = next >= value + 1e-4 * length * ascent;
         if (!better) {
-          // At rounding the value no longer tells; a smaller gradient does.
+          // At rounding the value no longer decides; a smaller gradient does.
           const double after = (tau - B * x - mu * (trial - centre)).cwiseAbs().maxCoeff();
           better =
               std::abs(next - value) <= 1e-13 * (1.0 + std::abs(value)) && after < 0.9 * gradient.cwiseAbs().maxCoeff();
@@ -97,7 +97,7 @@ struct SeparableProgram {
       maximise(mu, 1e-4 * tolerance);
       primal(lambda, mu);
       if (move > 0 && (tau - B * x).cwiseAbs().maxCoeff() <= tolerance) return true;
-      if (lambda.cwiseAbs().maxCoeff() * std::sqrt(scale) > 1e8) return false;  // it runs away: out of reach
+      if (lambda.cwiseAbs().maxCoeff() * std::sqrt(scale) > 1e8) return false;  // diverges: no balance exists
     }
     return false;
   }
@@ -190,7 +190,7 @@ bool StaticOptimizer::balance(const Eigen::MatrixXd& arms, const Eigen::VectorXd
   return w.program.solve(tolerance);
 }
 
-/// The same with forces that are not linear in a: linearised at the last activations until these stand.
+/// The same with forces that are not linear in a: linearised at the last activations until these settle.
 StaticOptimizer::Balance StaticOptimizer::balance_with_passive(const Eigen::MatrixXd& arms,
                                                                std::span<const double> length,
                                                                std::span<const double> speed,
@@ -291,7 +291,7 @@ void StaticOptimizer::solve(const Eigen::MatrixXd& arms, const Eigen::VectorXd& 
     const bool small = frame.unbalanced.cwiseAbs().maxCoeff() <= 10.0 * tolerance;
     frame.end = result.balanced && small ? StaticEnd::kBalanced : StaticEnd::kInfeasible;
   }
-  // Multipliers that ran away are no start for the next frame.
+  // Diverged multipliers are no start for the next frame.
   if (frame.end != StaticEnd::kBalanced) w.program.lambda.setZero();
 }
 

@@ -18,6 +18,7 @@ enum class StaticForce {
   kIsometric,    ///< a F0 ("without muscle physiology")
 };
 
+/// Objective, reserves and accuracy of `StaticOptimizer`.
 struct StaticOptimizationOptions {
   double exponent = 2.0;  ///< p > 1 of the sum of |a|^p over muscles and |c|^p over reserves
   StaticForce force = StaticForce::kAsOpenSim;
@@ -31,12 +32,14 @@ struct StaticOptimizationOptions {
   void validate() const;
 };
 
+/// How a frame ended.
 enum class StaticEnd {
   kBalanced,    ///< optimal, and forces balance to the tolerance
   kInfeasible,  ///< bounds leave no balance: the controls with the least sum of squares of what stays unbalanced
-  kIterations,  ///< not finished in 200 iterations (never seen; a defect or NaN in the input)
+  kIterations,  ///< not finished in 200 iterations (not observed; a defect or NaN in the input)
 };
 
+/// The controls of one frame and how good they are.
 struct StaticOptimizationFrame {
   Eigen::VectorXd activation;  ///< of each muscle
   Eigen::VectorXd force;       ///< of each muscle, as the formulation counts it [N]
@@ -55,7 +58,7 @@ struct StaticOptimizationFrame {
 /// Solved through its dual: as many unknowns as there are coordinates, a concave function whose Newton steps end after
 /// finitely many for p = 2 (it then is a quadratic programme, solved exactly) and converge quadratically otherwise;
 /// where the required forces cannot be had it still has one solution, the least squares of what is missing. With
-/// passive forces a muscle's force is not linear in a (Thelen): it is linearised again until it stands. Frames start
+/// passive forces a muscle's force is not linear in a (Thelen): it is linearised again until it settles. Frames start
 /// from the multipliers of the last one.
 class StaticOptimizer {
  public:
@@ -79,7 +82,7 @@ class StaticOptimizer {
   struct Work;
   struct Balance {
     bool balanced = false;
-    bool settled = false;  ///< activations stand
+    bool settled = false;  ///< activations have settled
   };
   void bound_controls(Eigen::Index muscles, Eigen::Index coordinates);
   [[nodiscard]] bool balance(const Eigen::MatrixXd& arms, const Eigen::VectorXd& required, double tolerance);

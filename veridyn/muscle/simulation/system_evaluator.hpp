@@ -10,14 +10,14 @@
 
 namespace veridyn::muscle {
 
-/// What drives a system at an instant.
+/// View of what drives a system at an instant: valid while the arrays that it names are.
 struct SystemInputs {
   std::span<const double> excitation;        ///< by muscle
-  std::span<const double> coordinate_force;  ///< by coordinate, beside the model's own; empty: zero [N m or N]
+  std::span<const double> coordinate_force;  ///< by coordinate, in addition to the model's; empty: zero [N m or N]
 };
 
-/// The workspace of one thread: derivative of a state, and everything computed on the way. No call allocates. A view of
-/// its system, which must outlive it. Compiled for double and `SimulationJet`.
+/// View of a system, which must outlive it: the workspace of one thread for the derivative of a state and everything
+/// that is computed for it. No call allocates. Compiled for double and `SimulationJet`.
 template <typename Scalar>
 class SystemEvaluator {
  public:
@@ -33,7 +33,8 @@ class SystemEvaluator {
 
   /// Positions and speeds, path lengths, speeds and gradients for free coordinates z; muscles are not evaluated.
   void set_motion(const Scalar* z, const Scalar* zdot);
-  /// The same for q and qdot of all coordinates, constraints not heeded.
+  /// The same for q and qdot of all coordinates, without regard to constraints. Both arrays must stay while results are
+  /// read.
   void set_all(const Scalar* q, const Scalar* qdot);
   /// Sets activations (by muscle) and fibre lengths in equilibrium with their tendons at the pose set, in the state x.
   void start_muscles(const Scalar* activation, Scalar* x);
@@ -50,7 +51,7 @@ class SystemEvaluator {
   [[nodiscard]] std::span<const Scalar> fiber_length() const { return fiber_; }
   [[nodiscard]] const MuscleGroup<Scalar>& muscles() const { return muscles_; }
   [[nodiscard]] ReducedDynamics<Scalar>& dynamics() { return reduced_; }
-  /// Whether fitted paths were ever asked for a pose outside the ranges they were fitted over.
+  /// Whether fitted paths were ever evaluated outside the ranges that they were fitted over.
   [[nodiscard]] bool beyond_fit() const { return beyond_fit_; }
   /// Evaluations of the derivative so far.
   [[nodiscard]] long evaluations() const { return evaluations_; }

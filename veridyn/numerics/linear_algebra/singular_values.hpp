@@ -12,7 +12,7 @@ enum class SingularVectors {
   kFullUAndV,
 };
 
-/// A = U diag(values) V', values descending; min(rows, columns) of them. Vectors that were not asked for are empty.
+/// A = U diag(values) V', values descending; min(rows, columns) of them. Vectors that are not requested are empty.
 struct SingularValues {
   Eigen::VectorXd values;
   Eigen::MatrixXd U;

@@ -19,6 +19,7 @@ struct Polyline {
 /// Cost: one pass. `x` increasing, sizes equal, `limit` >= 8.
 [[nodiscard]] Polyline decimate_line(std::span<const double> x, std::span<const double> y, std::size_t limit);
 
+/// A band with fewer points, each the extremes of a bucket of samples.
 struct DecimatedBand {
   std::vector<double> x;
   std::vector<double> low;

@@ -33,6 +33,7 @@ enum class Status {
 /// The status of such a word; `kNone` for any other.
 [[nodiscard]] Status status_from_name(std::string_view name);
 
+/// How a verdict is shown: green, amber, red.
 enum class Level { kGood, kCaution, kBad };
 
 /// What a pilot reads before anything else.
@@ -44,7 +45,7 @@ struct Verdict {
   std::vector<std::string> lines = {};  ///< a few more, in plain words
 };
 
-/// The verdict's word, the level's own when none is given.
+/// The verdict's word, that of its level when none is given.
 [[nodiscard]] std::string_view verdict_word(const Verdict& verdict);
 
 /// "Aircraft: Skywalker X8".
@@ -53,8 +54,10 @@ struct Fact {
   std::string value = {};
 };
 
+/// How a text is set: as body text, small, or marked as a warning.
 enum class Tone { kPlain, kNote, kWarning };
 
+/// Running text.
 struct Paragraph {
   std::string text = {};
   Tone tone = Tone::kPlain;
@@ -80,15 +83,20 @@ struct Cell {
   Status status = Status::kNone;
 };
 
+/// A text.
 [[nodiscard]] Cell text_cell(std::string text);
+/// A number with the digits of its column.
 [[nodiscard]] Cell number_cell(double value);
+/// A number with so many decimals.
 [[nodiscard]] Cell number_cell(double value, int decimals);
+/// A badge; `text` replaces its words.
 [[nodiscard]] Cell status_cell(Status status, std::string text = {});
 /// A value with as many decimals as its standard deviation has at two significant digits: 0.4231 with sigma 0.0123 is
 /// "0.423". Use it for the value, its sigma and the ends of its interval alike. Falls back to the column's digits when
 /// sigma is not a positive number.
 [[nodiscard]] Cell measured_cell(double value, double sigma);
 
+/// Where the texts of a column stand.
 enum class Align {
   kAuto,  ///< right when the column holds numbers, left otherwise
   kLeft,
@@ -96,6 +104,7 @@ enum class Align {
   kCenter,
 };
 
+/// Head of a column and how its cells are set.
 struct Column {
   std::string name = {};
   std::string unit = {};
@@ -104,12 +113,14 @@ struct Column {
   std::string group = {};  ///< neighbours of one group stand under a common head ("OLS", "TLS")
 };
 
+/// A row of a table.
 struct Row {
   std::vector<Cell> cells = {};  ///< as many as columns
   /// Colours the row's margin and softens what should not be used; shows no badge by itself.
   Status status = Status::kNone;
 };
 
+/// Rows under named columns; `sortable` by a click on a head.
 struct Table {
   std::string title = {};
   std::string caption = {};
@@ -124,12 +135,14 @@ struct Quantity {
   std::string unit = {};
 };
 
+/// What a line stands for, which decides its colour and weight.
 enum class Role {
   kEstimate,   ///< coloured
   kMeasured,   ///< grey, thin
   kReference,  ///< dashed: truth, a model line, a bound
 };
 
+/// How samples are drawn.
 enum class Style {
   kLine,
   kMarkers,
@@ -148,12 +161,13 @@ struct Line {
   std::vector<double> y = {};
   /// 95 % band; sizes as `y`. Empty for none.
   std::optional<Band> band = {};
-  /// Own abscissae for a line that is sampled otherwise than the figure; empty: the figure's.
+  /// Abscissae of a line that is sampled otherwise than the figure; empty: the figure's.
   std::vector<double> x = {};
   Role role = Role::kEstimate;
   Style style = Style::kLine;
 };
 
+/// One ordinate of a time series with its lines.
 struct Panel {
   std::string label = {};
   std::string unit = {};
@@ -161,6 +175,7 @@ struct Panel {
   int height = 150;  ///< [CSS px]
 };
 
+/// Shade of a span.
 enum class SpanTone { kPrimary, kSecondary, kMuted, kBad };
 
 /// A shaded piece of the abscissa: "identification", "hold-out", "no GNSS".
@@ -187,10 +202,11 @@ struct TimeSeries {
   std::vector<Span> spans = {};
   std::string axis = "time";
   /// When not empty, these alone are shown, side by side, each with its own part of the width: short stretches of a
-  /// long recording would else be slivers. Increasing and apart from each other.
+  /// long recording would else be slivers. Increasing, and they do not overlap.
   std::vector<Window> windows = {};
 };
 
+/// Points of an XY plot, as markers or joined.
 struct XYSeries {
   std::string name = {};
   std::vector<double> x = {};
@@ -210,7 +226,7 @@ struct Guide {
 };
 
 /// Points or lines over a free abscissa: normal probability plot, autocorrelation, fit against measured. Neighbours in
-/// a section stand side by side where there is room.
+/// a section stand side by side where the page is wide enough.
 struct XYPlot {
   std::string title = {};
   std::string caption = {};
@@ -231,6 +247,7 @@ struct Interval {
   Status status = Status::kNone;
 };
 
+/// The estimates of one parameter, and its reference (the truth, a published value) where there is one.
 struct IntervalRow {
   std::string name = {};
   std::string unit = {};
@@ -261,8 +278,10 @@ struct Matrix {
   int decimals = 2;
 };
 
+/// Whatever a section may hold.
 using Block = std::variant<Paragraph, List, FactList, Table, TimeSeries, XYPlot, IntervalPlot, Matrix>;
 
+/// A titled part of a report.
 struct Section {
   std::string title = {};
   /// Link target of the table of contents; made from the title when empty, made unique in any case.
@@ -271,6 +290,7 @@ struct Section {
   bool folded = false;  ///< shown on a click (and always on paper)
 };
 
+/// A whole report.
 struct Document {
   std::string title = {};
   std::string subtitle = {};
@@ -281,7 +301,7 @@ struct Document {
 };
 
 /// Checks shapes: cells per row, samples per line and band, estimates per method, rows of a matrix.
-/// Our own mistake when violated: asserts, naming the block.
+/// A violation is a programming error: asserts, naming the block.
 void check(const Document& document);
 
 /// The sections' link targets: lower-case letters, digits and dashes, all different.

@@ -92,7 +92,7 @@ class Abscissae {
   json list_ = json::array();
 };
 
-/// Markers need no gaps between them, and what is no number takes no room.
+/// Markers need no gaps between them, and non-finite values take no space.
 Polyline without_gaps(const std::vector<double>& x, const std::vector<double>& y) {
   Polyline line;
   for (std::size_t k = 0; k < y.size(); ++k) {

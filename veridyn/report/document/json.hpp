@@ -7,6 +7,7 @@
 
 namespace veridyn::report {
 
+/// How finely lines and bands are drawn.
 struct JsonOptions {
   /// Most points of a line: twice the pixels of a wide screen, so that nothing is lost before zooming in.
   std::size_t points_per_line = 4000;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
 
 #include "veridyn/core/constants.hpp"
 
@@ -87,6 +89,24 @@ std::vector<double> round_for_storage(const std::vector<double>& values, double 
     if (value == 0.0) value = 0.0;  // no "-0.0"
   }
   return rounded;
+}
+
+ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
+  const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
+  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * kPi), "Hz"};
+  static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
+      {"rad", "deg", 1.0 / kDegree},
+      {"rad/s", "deg/s", 1.0 / kDegree},
+      {"rad/s^2", "deg/s^2", 1.0 / kDegree},
+      {"s rad", "s deg", 1.0 / kDegree},
+      {"rad s^2/m", "deg/g", kGravity / kDegree},
+      {"rad/(m/s^2)", "deg/g", kGravity / kDegree},
+      {"m/s^2/rad", "m/s^2/deg", kDegree},
+      {"m/(s^2 rad)", "m/s^2/deg", kDegree},
+  }};
+  for (const auto& [si, shown, factor] : kReadable)
+    if (unit == si) return {value * factor, shown};
+  return {value, unit == "1" ? "" : unit};
 }
 
 }  // namespace veridyn::report

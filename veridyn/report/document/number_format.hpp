@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/report/document/document.hpp"
@@ -23,5 +24,13 @@ namespace veridyn::report {
 /// Rounds samples for storage as decimal text: to a 1/`steps` of their range or finer (a plot is some hundred pixels
 /// high), so that each takes few characters. What is not finite becomes NaN.
 [[nodiscard]] std::vector<double> round_for_storage(const std::vector<double>& values, double steps);
+
+/// A number in the unit that people read.
+struct ReadableNumber {
+  double value = 0.0;
+  std::string unit;
+};
+/// Angles in deg, understeer gradients in deg/g, and what its name calls a frequency or bandwidth in Hz.
+[[nodiscard]] ReadableNumber readable(double value, const std::string& unit, std::string_view name = {});
 
 }  // namespace veridyn::report

@@ -92,7 +92,7 @@ bool same_windows(const std::vector<Window>& a, const std::vector<Window>& b) {
                     [](const Window& i, const Window& j) { return i.from == j.from && i.to == j.to; });
 }
 
-/// Errors of the state estimates of a simulated flight beside what the sensors allow at best.
+/// Errors of the state estimates of a simulated flight alongside the best that the sensors allow.
 Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
   Table table{.title = "Against the truth and the information bound",
               .caption =
@@ -110,7 +110,7 @@ Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
   if (airspeed == nullptr || airspeed->empty()) return table;
   double mean = 0.0;
   for (const double v : airspeed->value) mean += v / static_cast<double>(airspeed->size());
-  const Channel* vane = study.mapped.recording.find("alpha");
+  const Channel* vane = analysis.aligned.recording.find("alpha");
   const double rate = vane != nullptr ? vane->rate_Hz() : 0.0;
   InformationBound bound;
   if (rate > 0.0) bound = information_bound(rec.turbulence, mean, rec.sigma.alpha, rate);
@@ -132,7 +132,7 @@ Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
 Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis) {
   Section section{.title = "The flight", .id = "flight"};
   const Recording& smoothed = analysis.reconstruction.smoothed;
-  const Recording& measured = study.mapped.recording;
+  const Recording& measured = analysis.aligned.recording;
   TimeSeries air{.title = "Motion through the air",
                  .caption =
                      "Estimates of the smoother with 95 % bands. Shaded: what was used to identify (longitudinal and "
@@ -190,7 +190,7 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
       if (r.axis != axis || r.time.empty()) continue;
       Panel panel{.label = r.name};
       panel.lines.push_back({.name = "measured", .y = r.measured, .x = r.time, .role = Role::kMeasured});
-      if (r.verdict == CoefficientVerdict::kIdentified)
+      if (r.verdict == estimation::GroupVerdict::kIdentified)
         panel.lines.push_back({.name = "model", .y = r.modelled, .x = r.time});
       figure.panels.push_back(std::move(panel));
     }

@@ -17,7 +17,9 @@ namespace veridyn::report {
 /// Predicted against measured airspeed, alpha and beta, the stretches held out side by side.
 [[nodiscard]] std::vector<TimeSeries> validation_figures(const aircraft::Validation& validation);
 
+/// Autocorrelation of a coefficient's residual over lag [s], with the bound of white noise.
 [[nodiscard]] XYPlot residual_autocorrelation_plot(const aircraft::CoefficientResult& result);
+/// Normal probability plot of a coefficient's residual.
 [[nodiscard]] XYPlot residual_normal_plot(const aircraft::CoefficientResult& result);
 
 }  // namespace veridyn::report

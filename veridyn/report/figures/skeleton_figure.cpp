@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/dynamics/skeleton.hpp"
 
 namespace veridyn::report {
@@ -20,7 +21,7 @@ struct View {
 
 constexpr std::array<const char*, 3> kAxisNames{"x, forward", "y, up", "z, to the right"};
 
-/// Positions of a model row by row.
+/// View of a study and its result, both of which must outlive it: positions of the model row by row.
 class Poses {
  public:
   Poses(const MuscleStudy& study, const MuscleResult& result)
@@ -65,8 +66,8 @@ class Poses {
 
 void append(XYSeries& series, const std::vector<Eigen::Vector3d>& points, const View& view, bool gap) {
   if (gap && !series.x.empty()) {
-    series.x.push_back(std::nan(""));
-    series.y.push_back(std::nan(""));
+    series.x.push_back(kNaN);
+    series.y.push_back(kNaN);
   }
   for (const Eigen::Vector3d& p : points) {
     series.x.push_back(p(view.across));

@@ -68,10 +68,10 @@ class Panels {
 
  private:
   [[nodiscard]] Line line(const ShownDrive& drive, std::string name, std::vector<double> y) const {
-    const bool own = &drive != &drives_.front() && drive.trajectory->time != drives_.front().trajectory->time;
+    const bool separate_time = &drive != &drives_.front() && drive.trajectory->time != drives_.front().trajectory->time;
     return {.name = std::move(name),
             .y = std::move(y),
-            .x = own ? drive.trajectory->time : std::vector<double>(),
+            .x = separate_time ? drive.trajectory->time : std::vector<double>(),
             .role = drive.role};
   }
 

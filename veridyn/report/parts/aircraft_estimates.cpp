@@ -9,6 +9,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 
 namespace veridyn::report {
@@ -26,70 +27,12 @@ std::vector<Column> estimate_columns(std::vector<Column> names, Column last) {
 }
 
 /// A row of these columns: what names an estimate, its numbers with the interval, and one more number.
-template <typename AnyEstimate>
-Row estimate_row(std::vector<Cell> names, const AnyEstimate& e, Cell last) {
+Row estimate_row(std::vector<Cell> names, const estimation::Parameter& e, Cell last) {
   Row row{.cells = std::move(names)};
   for (Cell& cell : interval_cells(e.value, e.sigma, e.low95, e.high95)) row.cells.push_back(std::move(cell));
   row.cells.push_back(text_cell(e.unit));
   row.cells.push_back(std::move(last));
   return row;
-}
-
-std::vector<const CoefficientResult*> identified_of(const FlightAnalysis& analysis) {
-  std::vector<const CoefficientResult*> found;
-  for (const CoefficientResult& r : analysis.coefficients) {
-    if (identified(r)) found.push_back(&r);
-  }
-  return found;
-}
-
-Table parameter_table(const FlightStudy& study, std::span<const CoefficientResult* const> results) {
-  Table table{
-      .title = "Parameters",
-      .caption =
-          "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter whose interval "
-          "holds zero is "
-          "marked insignificant, not set to zero.",
-      .columns = estimate_columns({{.name = "Parameter"}, {.name = "Status"}}, {.name = "t", .digits = 3})};
-  if (study.true_subject) table.columns.insert(table.columns.begin() + 6, {.name = "Truth"});
-  for (const CoefficientResult* r : results) {
-    for (std::size_t i = 0; i < r->chosen->parameters.size(); ++i) {
-      const auto& p = r->chosen->parameters[i];
-      Row row = estimate_row({text_cell(p.name), status_cell(status_of(p.status))}, p, number_cell(p.t));
-      row.status = status_of(p.status);
-      if (study.true_subject) {
-        const CoefficientModel* truth = study.true_subject->model.find(r->coefficient);
-        const std::optional<double> value = truth ? truth->value_of(r->model.terms[i].expression) : std::nullopt;
-        row.cells.insert(row.cells.begin() + 6, measured_cell(value.value_or(kNaN), p.sigma));
-      }
-      table.rows.push_back(std::move(row));
-    }
-  }
-  return table;
-}
-
-IntervalPlot interval_plot(const FlightStudy& study, const CoefficientResult& r) {
-  IntervalPlot plot{.title = fmt::format("{}: estimates of all methods", r.name), .reference_name = "truth"};
-  for (const RegressionEstimate& e : r.comparison.estimates) plot.methods.emplace_back(estimation::to_string(e.method));
-  for (std::size_t i = 0; i < r.model.size(); ++i) {
-    IntervalRow row{.name = regressed_parameter_name(r.coefficient, r.model.terms[i], study.subject),
-                    .unit = regressed_parameter_unit(r.coefficient, r.model.terms[i], study.subject)};
-    for (const RegressionEstimate& e : r.comparison.estimates) {
-      if (e.usable()) {
-        const auto& p = e.parameters[i];
-        row.estimates.push_back({p.value, p.low95, p.high95, status_of(p.status)});
-      } else {
-        row.estimates.push_back({kNaN, kNaN, kNaN, Status::kNone});
-      }
-    }
-    if (study.true_subject) {
-      if (const CoefficientModel* truth = study.true_subject->model.find(r.coefficient)) {
-        row.reference = truth->value_of(r.model.terms[i].expression);
-      }
-    }
-    plot.rows.push_back(std::move(row));
-  }
-  return plot;
 }
 
 Table comparison_table(const FlightAnalysis& analysis) {
@@ -104,11 +47,11 @@ Table comparison_table(const FlightAnalysis& analysis) {
                         status_cell(status_of(p.status))},
                        p, number_cell(kNaN)));
       for (const OtherParameter& other : analysis.others.parameters) {
-        const estimation::MethodEstimate& e = other.estimate;
-        if (e.parameter != p.name) continue;
-        const bool contradicts = std::abs(other.apart_sigma) > 3.0;
-        table.rows.push_back(estimate_row({text_cell(""), text_cell(e.method), status_cell(status_of(e.status))}, e,
-                                          number_cell(other.apart_sigma)));
+        const auto& [method, e] = other.estimate;
+        if (e.name != p.name) continue;
+        const bool contradicts = std::abs(other.normalised_difference) > 3.0;
+        table.rows.push_back(estimate_row({text_cell(""), text_cell(method), status_cell(status_of(e.status))}, e,
+                                          number_cell(other.normalised_difference)));
         if (contradicts) table.rows.back().status = Status::kCaution;
       }
     }
@@ -136,39 +79,7 @@ Table output_table(const AxisOutputError& run) {
 
 }  // namespace
 
-Status status_of(CoefficientVerdict verdict) {
-  switch (verdict) {
-    case CoefficientVerdict::kIdentified:
-      return Status::kIdentified;
-    case CoefficientVerdict::kNotExcited:
-      return Status::kNotExcited;
-    case CoefficientVerdict::kRejected:
-      return Status::kRejected;
-    case CoefficientVerdict::kSkipped:
-      break;
-  }
-  return Status::kNone;
-}
-
-std::string_view meaning(Coefficient c) {
-  switch (c) {
-    case Coefficient::kCL:
-      return "lift";
-    case Coefficient::kCD:
-      return "drag";
-    case Coefficient::kCY:
-      return "side force";
-    case Coefficient::kCl:
-      return "rolling moment";
-    case Coefficient::kCm:
-      return "pitching moment";
-    case Coefficient::kCn:
-      return "yawing moment";
-  }
-  return "";
-}
-
-bool identified(const CoefficientResult& r) { return r.chosen && r.verdict == CoefficientVerdict::kIdentified; }
+bool identified(const CoefficientResult& r) { return r.chosen && r.verdict == estimation::GroupVerdict::kIdentified; }
 
 Section coefficients_section(const FlightAnalysis& analysis) {
   Section section{.title = "Coefficients", .id = "coefficients"};
@@ -188,8 +99,8 @@ Section coefficients_section(const FlightAnalysis& analysis) {
                   {.name = "Equation error", .digits = 3}}};
   for (const CoefficientResult& r : analysis.coefficients) {
     const bool has = r.chosen.has_value();
-    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", r.name, meaning(r.coefficient))),
-                                    status_cell(status_of(r.verdict), to_string(r.verdict)),
+    table.rows.push_back({.cells = {text_cell(fmt::format("{} {}", r.name, meaning_of(r.coefficient))),
+                                    status_cell(status_of(r.verdict), std::string(to_string(r.verdict))),
                                     text_cell(has ? std::string(estimation::to_string(r.chosen->method)) : ""),
                                     number_cell(has ? 100.0 * r.identification_fit.r2 : kNaN, 1),
                                     number_cell(r.holdout_fit.count > 0 ? 100.0 * r.holdout_fit.r2 : kNaN, 1),
@@ -201,24 +112,6 @@ Section coefficients_section(const FlightAnalysis& analysis) {
   List reasons;
   for (const CoefficientResult& r : analysis.coefficients) reasons.items.push_back(r.reason);
   section.blocks.emplace_back(std::move(reasons));
-  return section;
-}
-
-Section parameters_section(const FlightStudy& study, const FlightAnalysis& analysis) {
-  Section section{.title = "Parameters", .id = "parameters"};
-  const std::vector<const CoefficientResult*> usable = identified_of(analysis);
-  if (usable.empty()) {
-    section.blocks.emplace_back(
-        Paragraph{"No coefficient was identified, so there is no table of derivatives.", Tone::kNote});
-  } else {
-    section.blocks.emplace_back(parameter_table(study, usable));
-  }
-  return section;
-}
-
-Section methods_section(const FlightStudy& study, const FlightAnalysis& analysis) {
-  Section section{.title = "Estimates of all methods", .id = "methods", .folded = true};
-  for (const CoefficientResult* r : identified_of(analysis)) section.blocks.emplace_back(interval_plot(study, *r));
   return section;
 }
 
@@ -265,21 +158,6 @@ Section structure_section(const FlightAnalysis& analysis) {
     }
     section.blocks.emplace_back(std::move(table));
   }
-  return section;
-}
-
-Section rejected_section(const FlightStudy& study, const FlightAnalysis& analysis) {
-  Section section{.title = "Rejected estimates (do not use)", .id = "rejected", .folded = true};
-  section.blocks.emplace_back(
-      Paragraph{"For those who want to see what went wrong. These numbers are not the aircraft's.", Tone::kWarning});
-  std::size_t count = 0;
-  for (const CoefficientResult& r : analysis.coefficients) {
-    if (r.verdict != CoefficientVerdict::kRejected || !r.chosen) continue;
-    section.blocks.emplace_back(Paragraph{r.reason});
-    section.blocks.emplace_back(interval_plot(study, r));
-    ++count;
-  }
-  if (count == 0) section.blocks.clear();
   return section;
 }
 

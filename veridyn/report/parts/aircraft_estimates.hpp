@@ -9,31 +9,17 @@
 /// nothing to say and is not shown.
 namespace veridyn::report {
 
-[[nodiscard]] Status status_of(aircraft::CoefficientVerdict verdict);
-
-/// What a coefficient is to someone who flies: "lift".
-[[nodiscard]] std::string_view meaning(aircraft::Coefficient coefficient);
-
 /// Whether its parameters may be shown as the aircraft's.
 [[nodiscard]] bool identified(const aircraft::CoefficientResult& result);
 
 /// Verdict and reason of each coefficient.
 [[nodiscard]] Section coefficients_section(const aircraft::FlightAnalysis& analysis);
 
-/// The parameters of the coefficients that were identified.
-[[nodiscard]] Section parameters_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
-
-/// Their estimates by all methods, side by side.
-[[nodiscard]] Section methods_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
-
 /// Estimators other than regression; no blocks when none was requested.
 [[nodiscard]] Section other_estimators_section(const aircraft::FlightAnalysis& analysis);
 
 /// How the terms were chosen; no blocks when the subject's were taken.
 [[nodiscard]] Section structure_section(const aircraft::FlightAnalysis& analysis);
-
-/// Values of rejected coefficients; no blocks when there are none.
-[[nodiscard]] Section rejected_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
 
 /// Error of one measured coefficient by source.
 [[nodiscard]] Section uncertainty_section(const aircraft::UncertaintyReport& report);

@@ -8,7 +8,7 @@
 
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
-#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -67,18 +67,7 @@ Section excitation_section(const FlightAnalysis& analysis) {
 
 Section residual_section(const FlightAnalysis& analysis) {
   Section section{.title = "Residuals", .id = "residuals", .folded = true};
-  Table table{
-      .title = "Honesty checks",
-      .caption =
-          "What would make an estimate look better than it is. A coefficient whose check fails is not recommended.",
-      .columns = {{.name = "Coefficient"}, {.name = "Check"}, {.name = "Result"}, {.name = "Finding"}}};
-  for (const CoefficientResult& r : analysis.coefficients) {
-    for (const estimation::HonestyCheck& check : r.comparison.checks) {
-      Row row{.cells = check_cells(check, Status::kCaution)};
-      row.cells.insert(row.cells.begin(), text_cell(r.name));
-      table.rows.push_back(std::move(row));
-    }
-  }
+  Table table = evidence_table(analysis);
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   for (const CoefficientResult& r : analysis.coefficients) {
     if (!r.chosen || r.residual_autocorrelation.value.empty()) continue;
@@ -92,29 +81,7 @@ Section validation_section(const FlightAnalysis& analysis) {
   Section section{.title = "Validation on held-out data", .id = "validation", .folded = true};
   const Validation& v = analysis.validation;
   section.blocks.emplace_back(Paragraph{v.text, v.available() ? Tone::kPlain : Tone::kNote});
-  Table table{
-      .title = "Prediction",
-      .caption =
-          "MAE: mean absolute error, RMSE: root mean square error, R2: share of the variance explained, Theil: "
-          "inequality "
-          "coefficient (0 perfect). Coefficients are compared sample by sample; airspeed, alpha and beta are flown.",
-      .columns = {{.name = "Quantity"},
-                  {.name = "MAE", .digits = 3},
-                  {.name = "RMSE", .digits = 3},
-                  {.name = "R2", .digits = 3},
-                  {.name = "Theil", .digits = 3},
-                  {.name = "Unit"},
-                  {.name = "Samples"}}};
-  const auto row = [&](std::string name, const numerics::FitMeasures& fit, const std::string& unit, Status status) {
-    table.rows.push_back(
-        {.cells = {text_cell(std::move(name)), number_cell(fit.mae), number_cell(fit.rmse), number_cell(fit.r2),
-                   number_cell(fit.theil), text_cell(unit), number_cell(static_cast<double>(fit.count), 0)},
-         .status = status});
-  };
-  for (const PredictedQuantity& q : v.quantities) row(q.name, q.fit, q.unit, Status::kNone);
-  for (const CoefficientResult& r : analysis.coefficients) {
-    if (r.holdout_fit.count > 0) row(r.name, r.holdout_fit, "1", status_of(r.verdict));
-  }
+  Table table = prediction_table(analysis.predictions, "Prediction");
   if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   for (TimeSeries& figure : validation_figures(v)) section.blocks.emplace_back(std::move(figure));
   return section;

@@ -3,16 +3,16 @@
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/report/document/document.hpp"
 
-/// Why a flight's estimates may or may not be believed, a section each.
+/// Why a flight's estimates may or may not be trusted, a section each.
 namespace veridyn::report {
 
 /// What moved, and which combinations of parameters it determines.
 [[nodiscard]] Section excitation_section(const aircraft::FlightAnalysis& analysis);
 
-/// Honesty checks and what the models leave.
+/// Checks and what the models leave.
 [[nodiscard]] Section residual_section(const aircraft::FlightAnalysis& analysis);
 
-/// The models on data that they had not seen.
+/// The models on held-out data.
 [[nodiscard]] Section validation_section(const aircraft::FlightAnalysis& analysis);
 
 }  // namespace veridyn::report

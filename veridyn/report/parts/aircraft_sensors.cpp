@@ -11,7 +11,7 @@ namespace {
 
 using namespace veridyn::aircraft;
 
-Status status_of(Observability observability) {
+Status badge_of(Observability observability) {
   return observability == Observability::kObservable ? Status::kGood
          : observability == Observability::kWeak     ? Status::kCaution
                                                      : Status::kBad;
@@ -32,14 +32,14 @@ Table sensor_error_table(const Reconstruction& rec) {
                           {.name = "Correlation", .digits = 2},
                           {.name = "Verdict"}}};
   for (const SensorErrorReport& e : rec.sensor_errors) {
-    const Status status = status_of(e.observability);
-    const std::string unit = shown_unit(e.unit);
-    table.rows.push_back(
-        {.cells = {text_cell(e.name), number_cell(aircraft::shown(e.value, e.unit)),
-                   number_cell(aircraft::shown(e.sigma, e.unit)), number_cell(aircraft::shown(e.prior_sigma, e.unit)),
-                   text_cell(unit.empty() ? unit : unit.substr(1)), number_cell(100.0 * e.information),
-                   text_cell(e.correlated_with), number_cell(e.correlation),
-                   status_cell(status, to_string(e.observability))}});
+    const Status status = badge_of(e.observability);
+    const std::string unit = display_unit(e.unit);
+    table.rows.push_back({.cells = {text_cell(e.name), number_cell(aircraft::display_value(e.value, e.unit)),
+                                    number_cell(aircraft::display_value(e.sigma, e.unit)),
+                                    number_cell(aircraft::display_value(e.prior_sigma, e.unit)),
+                                    text_cell(unit.empty() ? unit : unit.substr(1)), number_cell(100.0 * e.information),
+                                    text_cell(e.correlated_with), number_cell(e.correlation),
+                                    status_cell(status, to_string(e.observability))}});
   }
   return table;
 }
@@ -61,9 +61,11 @@ Table comparison_table(const Reconstruction& rec) {
                           {.name = "Error/signal, model-free", .unit = "%", .digits = 3},
                           {.name = "model-based", .unit = "%", .digits = 3}}};
   for (const FilterError& e : rec.comparison) {
-    const auto value = [&](double v) { return number_cell(v > 0.0 ? aircraft::shown(v, e.unit) : std::nan("")); };
+    const auto value = [&](double v) {
+      return number_cell(v > 0.0 ? aircraft::display_value(v, e.unit) : std::nan(""));
+    };
     const auto share = [&](double rms) { return number_cell(100.0 * std::pow(rms / e.signal_sd, 2)); };
-    const std::string unit = shown_unit(e.unit);
+    const std::string unit = display_unit(e.unit);
     table.rows.push_back(
         {.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)), value(e.model_free.filter_rms),
                    value(e.model_free.smoother_rms), value(e.model_based.filter_rms), value(e.model_based.smoother_rms),
@@ -126,7 +128,7 @@ Table innovation_table(const Reconstruction& rec) {
 }
 
 Table quantity_table(const Reconstruction& rec) {
-  Table quantities{.title = "What the sensors can tell",
+  Table quantities{.title = "What the sensors determine",
                    .columns = {{.name = "Quantity"},
                                {.name = "Sigma", .digits = 3},
                                {.name = "Assumed beforehand", .digits = 3},
@@ -135,7 +137,7 @@ Table quantity_table(const Reconstruction& rec) {
                                {.name = "In words"}}};
   for (const QuantityReport& q : rec.quantities) {
     const double scale = q.unit == "rad" ? 1.0 / kDegree : 1.0;
-    const Status status = status_of(q.observability);
+    const Status status = badge_of(q.observability);
     quantities.rows.push_back(
         {.cells = {text_cell(q.quantity), number_cell(q.sigma * scale), number_cell(q.prior_sigma * scale),
                    text_cell(q.unit == "rad" ? "deg" : q.unit), status_cell(status, to_string(q.observability)),

@@ -25,7 +25,7 @@ std::vector<Column> parameter_columns(bool with_truth) {
   return columns;
 }
 
-Row parameter_row(const estimation::EstimatedParameter& p, double factor, std::string unit) {
+Row parameter_row(const estimation::Parameter& p, double factor, std::string unit) {
   const double sigma = p.sigma * factor;
   return {.cells = {text_cell(p.name), measured_cell(p.value * factor, sigma), number_cell(sigma),
                     measured_cell(p.low95 * factor, sigma), measured_cell(p.high95 * factor, sigma),
@@ -33,7 +33,7 @@ Row parameter_row(const estimation::EstimatedParameter& p, double factor, std::s
           .status = status_of(p.status)};
 }
 
-std::vector<Cell> check_cells(const estimation::HonestyCheck& check, Status failed) {
+std::vector<Cell> check_cells(const estimation::Evidence& check, Status failed) {
   return {text_cell(check.name), status_cell(check.passed ? Status::kGood : failed), text_cell(check.text)};
 }
 

@@ -12,6 +12,7 @@
 /// Estimates, checks, fits and changes as tables: the same rows for every domain.
 namespace veridyn::report {
 
+/// The badge of a parameter's status.
 [[nodiscard]] Status status_of(estimation::ParameterStatus status);
 
 /// Value, sigma and both ends of the 95 % interval, with as many decimals as sigma deserves.
@@ -21,10 +22,10 @@ namespace veridyn::report {
 [[nodiscard]] std::vector<Column> parameter_columns(bool with_truth);
 
 /// A row of these columns without the truth. @param factor from the estimate's unit to `unit`
-[[nodiscard]] Row parameter_row(const estimation::EstimatedParameter& parameter, double factor, std::string unit);
+[[nodiscard]] Row parameter_row(const estimation::Parameter& parameter, double factor, std::string unit);
 
 /// "0.42" of what passed or failed and why. @param failed  how a failed check is marked
-[[nodiscard]] std::vector<Cell> check_cells(const estimation::HonestyCheck& check, Status failed);
+[[nodiscard]] std::vector<Cell> check_cells(const estimation::Evidence& check, Status failed);
 
 /// "innovation moved by 3.1 sigma": what was noticed.
 [[nodiscard]] std::string change_words(const estimation::Change& change);

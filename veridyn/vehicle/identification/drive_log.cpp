@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 13> kTurned{
     "steer",    "steering_wheel", "yaw_rate", "gyro_y", "gyro_z", "accel_y", "accel_z", "lateral_velocity",
     "sideslip", "pitch",          "yaw",      "course", "pos_y"};
 
-Recording in_flu(const Recording& recording) {
+Recording turned_to_flu(const Recording& recording) {
   Recording out = recording::without_channels(recording);
   out.frame = Frame::kFlu;
   for (Channel channel : recording.channels()) {
@@ -32,12 +32,16 @@ Recording in_flu(const Recording& recording) {
   return out;
 }
 
-/// The runs on one time axis.
-Recording laid_out(const std::vector<Recording>& runs, std::vector<TimeSpan>& spans) {
-  if (runs.size() == 1) {
-    spans = {runs.front().span()};
-    return runs.front();
-  }
+/// Several recordings as one, and where each is in it.
+struct JoinedRuns {
+  Recording recording;
+  std::vector<TimeSpan> spans;
+};
+
+/// The runs one after the other on one time axis.
+JoinedRuns joined(const std::vector<Recording>& runs) {
+  if (runs.size() == 1) return {runs.front(), {runs.front().span()}};
+  std::vector<TimeSpan> spans;
   Recording out = recording::without_channels(runs.front());
   std::vector<std::string> sources, names;
   for (const Recording& run : runs) {
@@ -74,7 +78,7 @@ Recording laid_out(const std::vector<Recording>& runs, std::vector<TimeSpan>& sp
     made.value = std::move(values);
     out.add(std::move(made));
   }
-  return out;
+  return {std::move(out), std::move(spans)};
 }
 
 }  // namespace
@@ -126,7 +130,7 @@ recording::MappedRecording map_drive_channels(const Recording& log, const StudyT
     mapped.notes.emplace_back("the recording does not say its frame: taken as flu (y left, z up; data.frame)");
   }
   if (turn) {
-    mapped.recording = in_flu(mapped.recording);
+    mapped.recording = turned_to_flu(mapped.recording);
     mapped.notes.emplace_back("turned from frd (y right, z down) to flu (y left, z up)");
   }
   mapped.recording.frame = Frame::kFlu;
@@ -150,7 +154,9 @@ DriveLog read_drive_log(const StudyTable& data) {
       runs.push_back(recording::without_missing(recording::read_study_file(data, path)));
       runs.back().source = path.string();
     }
-    recording = laid_out(runs, log.runs);
+    JoinedRuns all = joined(runs);
+    recording = std::move(all.recording);
+    log.runs = std::move(all.spans);
     log.holdout_runs.assign(log.runs.begin() + static_cast<std::ptrdiff_t>(for_identification), log.runs.end());
     log.inputs = paths;
   } else {

@@ -21,15 +21,15 @@ namespace veridyn::vehicle {
 /// A drive as the study's `[data]` names it: channels with standard names, in frame flu.
 struct DriveLog {
   recording::MappedRecording mapped;
-  std::vector<TimeSpan> runs;          ///< each recording's own stretch of time; runs that follow are laid behind
-  std::vector<TimeSpan> holdout_runs;  ///< of these, those that identification must not see
+  std::vector<TimeSpan> runs;          ///< the stretch of each recording; later runs follow earlier ones
+  std::vector<TimeSpan> holdout_runs;  ///< of these, those that identification must not use
   std::vector<std::filesystem::path> inputs;
 };
 
 /// Gives the channels of a log their standard names and turns them into flu.
 ///
-/// `frame` says in which frame the log is, "flu" or "frd" (then y, z, yaw, steering and course change their sign);
-/// empty: what the log itself says, flu with a note where it says nothing.
+/// `frame` is that of the log, "flu" or "frd" (then y, z, yaw, steering and course change their sign);
+/// empty: the frame of the log itself, flu with a note where it has none.
 /// @throws InputError for unknown names, sources that the log lacks, units of another kind, an unknown frame.
 [[nodiscard]] recording::MappedRecording map_drive_channels(const Recording& log, const StudyTable& map,
                                                             std::string_view frame = {},
@@ -39,7 +39,7 @@ struct DriveLog {
 /// vehicle,
 ///
 ///     runs = ["run1.csv", "run2.csv"]       # for identification (and hold-out, where nothing else is named for that)
-///     holdout_runs = ["run3.csv"]           # never seen by identification
+///     holdout_runs = ["run3.csv"]           # never used by identification
 ///
 /// which are laid one after the other on the time axis with 10 s between them.
 /// @throws InputError

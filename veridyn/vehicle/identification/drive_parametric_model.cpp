@@ -49,6 +49,65 @@ Scalar between(const std::vector<Value>& samples, const Scalar& position) {
   return y1 + 0.5 * s * (y2 - y0 + s * (2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3 + s * (3.0 * (y1 - y2) + y3 - y0)));
 }
 
+/// The cut-off of the smoothing that the noise of a steering signal needs [Hz]; 0: none.
+double smoothing_for(const GridSignal& steer, double rate_Hz) {
+  double power = 0.0, count = 0.0;
+  for (const double v : steer.value) {
+    if (!std::isfinite(v)) continue;
+    power += v * v;
+    count += 1.0;
+  }
+  const bool noisy = steer.sigma * steer.sigma * count > kNoNoise * kNoNoise * power;
+  return noisy ? std::min(kSmoothing_Hz, 0.1 * rate_Hz) : 0.0;
+}
+
+std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz, double cutoff_Hz) {
+  if (!(cutoff_Hz > 0.0) || x.empty()) return x;
+  return numerics::filter(x, numerics::modulating_kernel(rate_Hz, cutoff_Hz).smooth);
+}
+
+/// Lowest and highest value of an unknown that starts at `start`.
+std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase) {
+  switch (unknown) {
+    case DriveUnknown::kCf:
+    case DriveUnknown::kCr:
+    case DriveUnknown::kIz:
+      return {1e-3 * start, 1e3 * start};
+    case DriveUnknown::kA:
+      return {0.02 * wheelbase, 0.98 * wheelbase};
+    case DriveUnknown::kMu:
+      return {0.02, 5.0};
+    case DriveUnknown::kShape:
+      return {0.8, 2.5};
+    case DriveUnknown::kCurvature:
+      return {-10.0, 1.0};
+    case DriveUnknown::kSteerScale:
+    case DriveUnknown::kAccelYScale:
+      return {-0.9, kInfinity};
+    case DriveUnknown::kSteerDelay:
+    case DriveUnknown::kYawRateDelay:
+    case DriveUnknown::kAccelYDelay:
+      return {-kReach_s, kReach_s};
+    default:
+      return {-kInfinity, kInfinity};
+  }
+}
+
+estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
+  const auto i = static_cast<std::size_t>(unknown);
+  estimation::ModelParameter p;
+  p.name = std::string(kDriveUnknownNames[i]);
+  p.unit = std::string(kDriveUnknownUnits[i]);
+  p.start = options.start[i];
+  p.prior_sigma = options.prior[i];
+  p.fixed = !options.free[i];
+  // Bounds must hold at the start, whatever was given.
+  const auto [low, high] = bounds_of(unknown, p.start, wheelbase);
+  p.low = std::min(low, p.start);
+  p.high = std::max(high, p.start);
+  return p;
+}
+
 }  // namespace
 
 template <typename Scalar>
@@ -136,7 +195,7 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
 
 DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                            const VehicleParameters<double>& start, const DriveModelOptions& options)
-    : signals_(signals), start_(start), options_(options) {
+    : grid_(signals.grid), accel_position_(signals.accel_position), start_(start), options_(options) {
   for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate}) {
     if (!signals[s].available()) {
       throw InputError(signals.source, fmt::format("has no {}, which output error is driven by or compared with",
@@ -149,117 +208,53 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   if (accel_) outputs_.push_back({"accel_y", "m/s^2"});
   if (lateral_velocity_) outputs_.push_back({"lateral_velocity", "m/s"});
 
-  smooth();
-  const std::array<double, 4> own{start.C_f, start.C_r, start.I_z, start.a};
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    if (!std::isfinite(options_.start[i])) options_.start[i] = own[i];
-  }
-  parameters_.resize(kDriveUnknowns);
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
-    estimation::ModelParameter& p = parameters_[i];
-    p.name = std::string(kDriveUnknownNames[i]);
-    p.unit = std::string(kDriveUnknownUnits[i]);
-    p.start = options_.start[i];
-    p.prior_sigma = options_.prior[i];
-    p.fixed = !options_.free[i];
-    switch (static_cast<DriveUnknown>(i)) {
-      case DriveUnknown::kCf:
-      case DriveUnknown::kCr:
-      case DriveUnknown::kIz:
-        p.low = 1e-3 * p.start;
-        p.high = 1e3 * p.start;
-        break;
-      case DriveUnknown::kA:
-        p.low = 0.02 * start.wheelbase();
-        p.high = 0.98 * start.wheelbase();
-        break;
-      case DriveUnknown::kMu:
-        p.low = 0.02;
-        p.high = 5.0;
-        break;
-      case DriveUnknown::kShape:
-        p.low = 0.8;
-        p.high = 2.5;
-        break;
-      case DriveUnknown::kCurvature:
-        p.low = -10.0;
-        p.high = 1.0;
-        break;
-      case DriveUnknown::kSteerScale:
-      case DriveUnknown::kAccelYScale:
-        p.low = -0.9;
-        break;
-      case DriveUnknown::kSteerDelay:
-      case DriveUnknown::kYawRateDelay:
-      case DriveUnknown::kAccelYDelay:
-        p.low = -kReach_s;
-        p.high = kReach_s;
-        break;
-      default:
-        break;
-    }
-    // Bounds must hold at the start, whatever was given.
-    p.low = std::min(p.low, p.start);
-    p.high = std::max(p.high, p.start);
-  }
+  smoothing_Hz_ =
+      options.smoothing_Hz < 0.0 ? smoothing_for(signals[DriveSignal::kSteer], grid_.rate_Hz()) : options.smoothing_Hz;
+  steer_ = smoothed(signals[DriveSignal::kSteer].value, grid_.rate_Hz(), smoothing_Hz_);
+  speed_ = smoothed(signals[DriveSignal::kSpeed].value, grid_.rate_Hz(), smoothing_Hz_);
+  yaw_rate_ = smoothed(signals[DriveSignal::kYawRate].value, grid_.rate_Hz(), smoothing_Hz_);
+  accel_y_ = smoothed(signals[DriveSignal::kAccelY].value, grid_.rate_Hz(), smoothing_Hz_);
+  lateral_velocity_meas_ = smoothed(signals[DriveSignal::kLateralVelocity].value, grid_.rate_Hz(), smoothing_Hz_);
 
-  const double C_f = options_.start[0], C_r = options_.start[1], I_z = options_.start[2];
-  const std::vector<double>& u = speed_;
-  const std::vector<double>& r = yaw_rate_;
+  const std::array<double, 4> of_the_vehicle{start.C_f, start.C_r, start.I_z, start.a};
+  for (std::size_t i = 0; i < of_the_vehicle.size(); ++i) {
+    if (!std::isfinite(options_.start[i])) options_.start[i] = of_the_vehicle[i];
+  }
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i)
+    parameters_.push_back(model_parameter(static_cast<DriveUnknown>(i), options_, start.wheelbase()));
   for (const TimeSpan& span : spans) {
     const auto [begin, end] = signals.indices(span);
-    if (end <= begin + 1) continue;
-    Segment segment;
-    segment.begin = begin;
-    segment.samples = static_cast<Eigen::Index>(end - begin);
-    const double slowest =
-        *std::min_element(u.begin() + static_cast<std::ptrdiff_t>(begin), u.begin() + static_cast<std::ptrdiff_t>(end));
-    const double rate =
-        2.0 / slowest * ((C_f + C_r) / start.mass + (start.a * start.a * C_f + start.b * start.b * C_r) / I_z);
-    const double step = signals.grid.step;
-    segment.substeps =
-        static_cast<int>(std::clamp(std::ceil(std::max(step / kLongestStep_s, step * rate / kStepTimesRate) - 1e-9),
-                                    1.0, static_cast<double>(kMostSubsteps)));
-    // Steady cornering at the measured yaw rate, averaged over a tenth of a second.
-    const std::size_t few = std::min(end - begin, static_cast<std::size_t>(std::max(1.0, 0.1 / step)));
-    double r0 = 0.0;
-    for (std::size_t k = 0; k < few; ++k) r0 += r[begin + k] / static_cast<double>(few);
-    const double v0 = r0 * (start.b - start.a * start.mass * u[begin] * u[begin] / (2.0 * C_r * start.wheelbase()));
-    segment.initial = {{.name = "lateral_velocity", .unit = "m/s", .start = v0},
-                       {.name = "yaw_rate", .unit = "rad/s", .start = r0}};
-    segments_.push_back(std::move(segment));
+    if (end > begin + 1) segments_.push_back(make_segment(begin, end));
   }
 }
 
-void DriveParametricModel::smooth() {
-  const GridSignal& steer = signals_[DriveSignal::kSteer];
-  const double rate = signals_.grid.rate_Hz();
-  smoothing_Hz_ = options_.smoothing_Hz;
-  if (smoothing_Hz_ < 0.0) {
-    double power = 0.0, count = 0.0;
-    for (const double v : steer.value) {
-      if (!std::isfinite(v)) continue;
-      power += v * v;
-      count += 1.0;
-    }
-    const bool noisy = steer.sigma * steer.sigma * count > kNoNoise * kNoNoise * power;
-    smoothing_Hz_ = noisy ? std::min(kSmoothing_Hz, 0.1 * rate) : 0.0;
-  }
-  steer_ = steer.value;
-  speed_ = signals_[DriveSignal::kSpeed].value;
-  yaw_rate_ = signals_[DriveSignal::kYawRate].value;
-  accel_y_ = signals_[DriveSignal::kAccelY].value;
-  lateral_velocity_meas_ = signals_[DriveSignal::kLateralVelocity].value;
-  if (!(smoothing_Hz_ > 0.0)) return;
-  const numerics::ModulatingKernel kernel = numerics::modulating_kernel(rate, smoothing_Hz_);
-  for (std::vector<double>* x : {&steer_, &speed_, &yaw_rate_, &accel_y_, &lateral_velocity_meas_}) {
-    if (!x->empty()) *x = numerics::filter(*x, kernel.smooth);
-  }
+DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t begin, std::size_t end) const {
+  const double C_f = options_.start[0], C_r = options_.start[1], I_z = options_.start[2];
+  const double slowest = *std::min_element(speed_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                           speed_.begin() + static_cast<std::ptrdiff_t>(end));
+  const double rate =
+      2.0 / slowest * ((C_f + C_r) / start_.mass + (start_.a * start_.a * C_f + start_.b * start_.b * C_r) / I_z);
+  const double step = grid_.step;
+  Segment out;
+  out.begin = begin;
+  out.samples = static_cast<Eigen::Index>(end - begin);
+  out.substeps =
+      static_cast<int>(std::clamp(std::ceil(std::max(step / kLongestStep_s, step * rate / kStepTimesRate) - 1e-9), 1.0,
+                                  static_cast<double>(kMostSubsteps)));
+  // Steady cornering at the measured yaw rate, averaged over a tenth of a second.
+  const std::size_t few = std::min(end - begin, static_cast<std::size_t>(std::max(1.0, 0.1 / step)));
+  double r0 = 0.0;
+  for (std::size_t k = 0; k < few; ++k) r0 += yaw_rate_[begin + k] / static_cast<double>(few);
+  const double u0 = speed_[begin];
+  const double v0 = r0 * (start_.b - start_.a * start_.mass * u0 * u0 / (2.0 * C_r * start_.wheelbase()));
+  out.initial = {{.name = "lateral_velocity", .unit = "m/s", .start = v0},
+                 {.name = "yaw_rate", .unit = "rad/s", .start = r0}};
+  return out;
 }
 
 TimeSpan DriveParametricModel::segment_span(std::size_t segment) const {
   const Segment& s = segments_[segment];
-  return {signals_.grid.at(s.begin), signals_.grid.at(s.begin + static_cast<std::size_t>(s.samples) - 1)};
+  return {grid_.at(s.begin), grid_.at(s.begin + static_cast<std::size_t>(s.samples) - 1)};
 }
 
 std::string DriveParametricModel::segment_name(std::size_t segment) const {
@@ -285,13 +280,12 @@ std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
 
 template <typename Scalar, typename Tyre>
 bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scalar, Tyre>& model,
-                                 const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-                                 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+                                 const Parameters<Scalar>& theta, Outputs<Scalar>& output) const {
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   const std::vector<double>& steer_all = steer_;
   const std::vector<double>& speed_all = speed_;
   const std::size_t n = static_cast<std::size_t>(segment.samples);
-  const double step = signals_.grid.step;
+  const double step = grid_.step;
   // The steering before and after the segment, as far as it is there, for its delay.
   const auto reach = static_cast<std::size_t>(kReach_s / step);
   std::size_t lead = 0, tail = 0;
@@ -318,7 +312,7 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
                        options_.free[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)];
   std::vector<Scalar> yaw_rate(delayed ? n : 0), accel(delayed && accel_ ? n : 0);
 
-  const auto [x, y, z] = signals_.accel_position;
+  const auto [x, y, z] = accel_position_;
   static_cast<void>(z);
   const double h = step / segment.substeps;
   const auto first = static_cast<Eigen::Index>(parameters_.size());
@@ -326,8 +320,8 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
   Input now = input(0.0);
   for (std::size_t k = 0; k < n; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    const bool sane = v < 2.0 * now.u && -v < 2.0 * now.u && r < kLargestYawRate && -r < kLargestYawRate;
-    if (!sane) return false;
+    const bool plausible = v < 2.0 * now.u && -v < 2.0 * now.u && r < kLargestYawRate && -r < kLargestYawRate;
+    if (!plausible) return false;
     for (int i = 0; i < segment.substeps; ++i) {
       const BicycleRates<Scalar> k1 = model.rates(v, r, now.delta, now.u);
       if (i == 0) {
@@ -357,23 +351,28 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
       now = next;
     }
   }
-  if (!delayed) return true;
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const Scalar at_r = static_cast<double>(k) - unknown(DriveUnknown::kYawRateDelay) / step;
-    output(row, 0) = between(yaw_rate, at_r) + unknown(DriveUnknown::kYawRateBias);
-    if (!accel_) continue;
-    const Scalar at_a = static_cast<double>(k) - unknown(DriveUnknown::kAccelYDelay) / step;
-    output(row, 1) =
-        (1.0 + unknown(DriveUnknown::kAccelYScale)) * between(accel, at_a) + unknown(DriveUnknown::kAccelYBias);
-  }
+  if (delayed) delay_outputs(theta, yaw_rate, accel, output);
   return true;
 }
 
 template <typename Scalar>
-bool DriveParametricModel::simulate(
-    std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
+void DriveParametricModel::delay_outputs(const Parameters<Scalar>& theta, const std::vector<Scalar>& yaw_rate,
+                                         const std::vector<Scalar>& accel, Outputs<Scalar>& output) const {
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
+  for (std::size_t k = 0; k < yaw_rate.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const Scalar at_r = static_cast<double>(k) - unknown(DriveUnknown::kYawRateDelay) / grid_.step;
+    output(row, 0) = between(yaw_rate, at_r) + unknown(DriveUnknown::kYawRateBias);
+    if (!accel_) continue;
+    const Scalar at_a = static_cast<double>(k) - unknown(DriveUnknown::kAccelYDelay) / grid_.step;
+    output(row, 1) =
+        (1.0 + unknown(DriveUnknown::kAccelYScale)) * between(accel, at_a) + unknown(DriveUnknown::kAccelYBias);
+  }
+}
+
+template <typename Scalar>
+bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar>& theta,
+                                    Outputs<Scalar>& output) const {
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   VehicleParameters<Scalar> p = start_.cast<Scalar>();
   p.C_f = unknown(DriveUnknown::kCf);
@@ -403,11 +402,8 @@ bool DriveParametricModel::simulate(
   return drive(segments_[segment], model, theta, output);
 }
 
-template bool DriveParametricModel::simulate(
-    std::size_t, const Eigen::Matrix<double, Eigen::Dynamic, 1>&,
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>&) const;
-template bool DriveParametricModel::simulate(
-    std::size_t, const Eigen::Matrix<ceres::Jet<double, 8>, Eigen::Dynamic, 1>&,
-    Eigen::Matrix<ceres::Jet<double, 8>, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>&) const;
+template bool DriveParametricModel::simulate(std::size_t, const Parameters<double>&, Outputs<double>&) const;
+template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres::Jet<double, 8>>&,
+                                             Outputs<ceres::Jet<double, 8>>&) const;
 
 }  // namespace veridyn::vehicle

@@ -36,7 +36,9 @@ enum class DriveUnknown : std::size_t {
   kYawRateDelay,  ///< how late the yaw rate is recorded [s]
   kAccelYDelay
 };
+/// How many unknowns there are.
 inline constexpr std::size_t kDriveUnknowns = 15;
+/// Their names in studies and results, in the order of the enum.
 inline constexpr std::array<std::string_view, kDriveUnknowns> kDriveUnknownNames{"C_f",
                                                                                  "C_r",
                                                                                  "I_z",
@@ -52,9 +54,11 @@ inline constexpr std::array<std::string_view, kDriveUnknowns> kDriveUnknownNames
                                                                                  "steer_delay",
                                                                                  "yaw_rate_delay",
                                                                                  "accel_y_delay"};
+/// Their units, in the same order.
 inline constexpr std::array<std::string_view, kDriveUnknowns> kDriveUnknownUnits{
     "N/rad", "N/rad", "kg m^2", "m", "1", "1", "1", "rad", "1", "rad/s", "m/s^2", "1", "s", "s", "s"};
 
+/// Tyres of the drive model.
 enum class DriveTyre {
   kLinear,        ///< F = C alpha
   kMagicFormula,  ///< F = D sin(C atan(B alpha - E (B alpha - atan(B alpha)))), D = mu F_z, B C D = cornering stiffness
@@ -69,8 +73,8 @@ struct DriveModelOptions {
   /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior.
   std::array<double, kDriveUnknowns> start{};
   /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
-  /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are not
-  /// told apart without), steer_scale and accel_y_scale 0.1, delays 0.1 s, C 0.2, E 0.5.
+  /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
+  /// indistinguishable without), steer_scale and accel_y_scale 0.1, delays 0.1 s, C 0.2, E 0.5.
   std::array<double, kDriveUnknowns> prior{};
   /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
   /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
@@ -97,7 +101,7 @@ struct SampledInput {
 };
 
 /// The drive as a parametric model for output error: the nonlinear bicycle (exact geometry) driven by measured steering
-/// and speed, with lateral velocity and yaw rate of each segment's beginning as its own unknowns.
+/// and speed, with lateral velocity and yaw rate of each segment's beginning as further unknowns.
 ///
 /// Outputs: yaw_rate, accel_y at the sensor's place, a_y + x r' - y r^2 (where recorded), lateral_velocity (where
 /// recorded).
@@ -106,13 +110,20 @@ struct SampledInput {
 /// Integrated by RK4 with steps of at most 5 ms and a third of the fastest tyre relaxation at the start values. Delays
 /// shift inputs and outputs by cubic interpolation. The mass only scales C_f, C_r and I_z: it is never free.
 ///
-/// What the bicycle leaves out shows as colour in the residual: load transfer and roll (a sensor on the body feels
-/// g sin(roll): free `accel_y_scale`, or give `roll_gradient`), tyre relaxation (0.3 to 0.6 m of travel: a
-/// `steer_delay` of 15 to 30 ms at 20 m/s), compliance of the steering (`steer_scale`, not told apart from C_f).
-/// Diverged: |v| above 2 u, |r| above 20 rad/s.
+/// What the bicycle leaves out shows as autocorrelation of the residual: load transfer and roll (a sensor on the body
+/// feels g sin(roll): free `accel_y_scale`, or give `roll_gradient`), tyre relaxation (0.3 to 0.6 m of travel: a
+/// `steer_delay` of 15 to 30 ms at 20 m/s), compliance of the steering (`steer_scale`, indistinguishable from C_f).
+/// Diverged: |v| above 2 u, |r| above 50 rad/s.
 class DriveParametricModel : public estimation::AutodiffModel<DriveParametricModel> {
  public:
-  /// @throws InputError when steering or speed is missing
+  /// All DriveUnknowns, then lateral velocity and yaw rate at the segment's beginning.
+  template <typename Scalar>
+  using Parameters = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  /// A row per sample, a column per output.
+  template <typename Scalar>
+  using Outputs = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  /// Takes what it needs of the signals. @throws InputError when steering, speed or yaw rate is missing
   DriveParametricModel(const DriveSignals& signals, std::span<const TimeSpan> spans,
                        const VehicleParameters<double>& start, const DriveModelOptions& options);
 
@@ -124,16 +135,18 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
     return segments_[segment].initial;
   }
   [[nodiscard]] std::string segment_name(std::size_t segment) const override;
+  /// From its first to its last sample [s].
   [[nodiscard]] TimeSpan segment_span(std::size_t segment) const;
   [[nodiscard]] double smoothing_Hz() const { return smoothing_Hz_; }  ///< as applied; 0: none
+  /// Where it begins on the signals' grid.
   [[nodiscard]] std::size_t first_sample(std::size_t segment) const { return segments_[segment].begin; }
 
   /// What was measured of the outputs, per segment, smoothed; NaN where missing.
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const;
 
+  /// Fills `output`; false where the motion diverged. Compiled for double and Jets of 8.
   template <typename Scalar>
-  bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-                Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
+  bool simulate(std::size_t segment, const Parameters<Scalar>& theta, Outputs<Scalar>& output) const;
 
  private:
   struct Segment {
@@ -143,13 +156,18 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
     std::vector<estimation::ModelParameter> initial;
   };
 
-  void smooth();
+  /// Over samples [begin, end) of the grid.
+  [[nodiscard]] Segment make_segment(std::size_t begin, std::size_t end) const;
   template <typename Scalar, typename Tyre>
-  bool drive(const Segment& segment, const BicycleModel<Scalar, Tyre>& model,
-             const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-             Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const;
+  bool drive(const Segment& segment, const BicycleModel<Scalar, Tyre>& model, const Parameters<Scalar>& theta,
+             Outputs<Scalar>& output) const;
+  /// Yaw rate and accel_y of `output` as the sensors' delays let them be recorded.
+  template <typename Scalar>
+  void delay_outputs(const Parameters<Scalar>& theta, const std::vector<Scalar>& yaw_rate,
+                     const std::vector<Scalar>& accel, Outputs<Scalar>& output) const;
 
-  const DriveSignals& signals_;
+  numerics::UniformGrid grid_;
+  std::array<double, 3> accel_position_{};
   std::vector<double> steer_, speed_;                               // smoothed
   std::vector<double> yaw_rate_, accel_y_, lateral_velocity_meas_;  // what is compared with
   VehicleParameters<double> start_;

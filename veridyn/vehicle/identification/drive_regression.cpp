@@ -29,16 +29,11 @@ constexpr double kRowsPerCutoff = 4.0;
 constexpr std::size_t kCovarianceRows = 100;
 /// Relative error of the coefficients that small angles may make.
 constexpr double kSmallAngles = 0.01;
-/// Relative variation of the speed from which a gyro bias is told apart from a constant.
+/// Relative variation of the speed from which a gyro bias is distinguishable from a constant.
 constexpr double kSpeedVaries = 0.05;
 
 /// Sensors whose noise enters, in this order.
 enum Source : std::size_t { kSteerNoise, kSpeedNoise, kYawRateNoise, kAccelNoise, kLateralNoise, kSources };
-
-/// The slow part of a signal, for coefficients of noise and the rate of change of the speed.
-std::vector<double> slow(const std::vector<double>& x, const numerics::FirKernel& kernel) {
-  return numerics::filter(x, kernel);
-}
 
 /// A term of a column: `coefficient(k)` times the kernel over one sensor's noise.
 struct NoiseTerm {
@@ -47,10 +42,12 @@ struct NoiseTerm {
   const numerics::FirKernel* kernel;
 };
 
-class Builder {
+/// View of a drive's signals, the spans within them and the vehicle's geometry, which forms the rows of both
+/// regressions and the noise of their columns.
+class RegressionRows {
  public:
-  Builder(const DriveSignals& signals, std::span<const TimeSpan> spans, const VehicleParameters<double>& known,
-          double pass_Hz)
+  RegressionRows(const DriveSignals& signals, std::span<const TimeSpan> spans, const VehicleParameters<double>& known,
+                 double pass_Hz)
       : s_(signals),
         spans_(spans),
         p_(known),
@@ -73,9 +70,9 @@ class Builder {
   }
 
   DriveRegressions run() {
-    u_slow_ = slow(s_[DriveSignal::kSpeed].value, kernel_.smooth);
-    r_slow_ = slow(s_[DriveSignal::kYawRate].value, kernel_.smooth);
-    a_slow_ = slow(s_[DriveSignal::kAccelY].value, kernel_.smooth);
+    u_slow_ = numerics::filter(s_[DriveSignal::kSpeed].value, kernel_.smooth);
+    r_slow_ = numerics::filter(s_[DriveSignal::kYawRate].value, kernel_.smooth);
+    a_slow_ = numerics::filter(s_[DriveSignal::kAccelY].value, kernel_.smooth);
     du_ = numerics::filter(s_[DriveSignal::kSpeed].value, kernel_.first);
     for (std::size_t i = 0; i < spans_.size(); ++i) take_span(spans_[i], static_cast<int>(i));
     finish();
@@ -252,8 +249,8 @@ class Builder {
   std::size_t stride_;
   double x_ = 0.0, y_ = 0.0;
   std::array<double, kSources> variance_{};
-  std::vector<double> u_slow_, r_slow_, a_slow_, du_;
-  std::vector<double> first_, second_;  // rows [x, z]
+  std::vector<double> u_slow_, r_slow_, a_slow_, du_;  // smoothed, for coefficients of noise; rate of the speed
+  std::vector<double> first_, second_;                 // rows [x, z]
   std::vector<int> segment_;
   std::vector<std::size_t> index_;
   DriveRegressions out_;
@@ -286,7 +283,7 @@ Eigen::MatrixXd influence(const RegressionData& data, const RegressionEstimate& 
   return all.topRows(2).transpose();
 }
 
-/// The four coefficients' covariance: what each regression says of its own two, and the correlation between the two
+/// The four coefficients' covariance: what each regression gives for its two, and the correlation between the two
 /// regressions from their scores over the same rows.
 Eigen::Matrix4d joint_covariance(const DriveRegressions& data, const RegressionEstimate& first,
                                  const RegressionEstimate& second) {
@@ -318,18 +315,26 @@ Eigen::Matrix4d joint_covariance(const DriveRegressions& data, const RegressionE
   return P;
 }
 
-/// The four coefficients of a bicycle (C_f, C_r, I_z) and their derivatives.
-void coefficients(const Eigen::Vector3d& x, const VehicleParameters<double>& p, bool direct, Eigen::Vector4d& f,
-                  Eigen::Matrix<double, 4, 3>& J) {
+/// The four coefficients of the regressions, and their derivatives with respect to C_f, C_r and I_z.
+struct BicycleCoefficients {
+  Eigen::Vector4d value;
+  Eigen::Matrix<double, 4, 3> slope;
+};
+
+/// Those of the bicycle with x = (C_f, C_r, I_z).
+BicycleCoefficients coefficients(const Eigen::Vector3d& x, const VehicleParameters<double>& p, bool direct) {
   const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
   const double C_f = x(0), C_r = x(1), I = x(2);
+  BicycleCoefficients out;
+  Eigen::Vector4d& f = out.value;
+  Eigen::Matrix<double, 4, 3>& J = out.slope;
   if (direct) {
     f << 2.0 * C_f / m, 2.0 * C_r / m, 2.0 * a * C_f / I, -2.0 * b * C_r / I;
     J << 2.0 / m, 0.0, 0.0,           //
         0.0, 2.0 / m, 0.0,            //
         2.0 * a / I, 0.0, -f(2) / I,  //
         0.0, -2.0 * b / I, -f(3) / I;
-    return;
+    return out;
   }
   const double g_f = 0.5 / (L * C_f), g_r = 0.5 / (L * C_r);
   f << m * (b * g_f - a * g_r), I * (g_f + g_r), m * a * g_r, I * g_r;
@@ -337,84 +342,105 @@ void coefficients(const Eigen::Vector3d& x, const VehicleParameters<double>& p, 
       -I * g_f / C_f, -I * g_r / C_r, g_f + g_r,    //
       0.0, -m * a * g_r / C_r, 0.0,                 //
       0.0, -I * g_r / C_r, g_r;
+  return out;
 }
 
-AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& first, const RegressionEstimate& second,
-                      const VehicleParameters<double>& p) {
+/// A bicycle (C_f, C_r, I_z) from coefficients, exact where they are consistent.
+Eigen::Vector3d bicycle_of(const Eigen::Vector4d& theta, const VehicleParameters<double>& p, bool direct) {
+  const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
+  if (direct)
+    return {0.5 * m * theta(0), 0.5 * m * theta(1), 0.5 * m * (a * theta(0) / theta(2) - b * theta(1) / theta(3))};
+  const double g_r = theta(2) / (m * a), g_f = (theta(0) + theta(2)) / (m * b);
+  return {0.5 / (L * g_f), 0.5 / (L * g_r), theta(3) / g_r};
+}
+
+/// The bicycle nearest to four coefficients under their covariance.
+struct NearestBicycle {
+  Eigen::Vector3d value;       ///< C_f, C_r, I_z
+  Eigen::Matrix3d covariance;  ///< of value
+  double chi_square = 0.0;     ///< of what the coefficients are off by, small angles allowed for
+};
+
+/// By Gauss-Newton from `start`, in units of it; the consistency equation is one, so few steps.
+NearestBicycle nearest_bicycle(const Eigen::Vector4d& theta, const Eigen::Matrix4d& P, const Eigen::Vector3d& start,
+                               const VehicleParameters<double>& p, bool direct) {
+  const Eigen::Vector4d scale = P.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const numerics::PivotedCholesky factor(scale.asDiagonal() * P * scale.asDiagonal());
+  Eigen::Vector3d x = start;
+  Eigen::Matrix3d normal;
+  for (int step = 0; step < 30; ++step) {
+    const BicycleCoefficients at = coefficients(x, p, direct);
+    const Eigen::Matrix<double, 4, 3> A = scale.asDiagonal() * at.slope * start.asDiagonal();
+    const Eigen::Vector4d e = scale.asDiagonal() * (theta - at.value);
+    normal = A.transpose() * factor.solve(Eigen::MatrixXd(A));
+    const Eigen::Vector3d move =
+        numerics::solve_symmetric(normal, Eigen::VectorXd(A.transpose() * factor.solve(Eigen::VectorXd(e))));
+    Eigen::Vector3d next = x + start.cwiseProduct(move);
+    for (int halving = 0; halving < 20 && !(next.minCoeff() > 0.0); ++halving) next = 0.5 * (next + x);
+    const double moved = (next - x).cwiseQuotient(start).cwiseAbs().maxCoeff();
+    x = next;
+    if (moved < 1e-12) break;
+  }
+  const Eigen::Vector4d e = scale.asDiagonal() * (theta - coefficients(x, p, direct).value);
+  // The error of the small angles is no contradiction.
+  const Eigen::Vector4d small_angles =
+      kSmallAngles * Eigen::Vector4d(direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
+  Eigen::Matrix4d widened = P;
+  widened.diagonal() += small_angles.cwiseAbs2();
+  const numerics::PivotedCholesky allowed(scale.asDiagonal() * widened * scale.asDiagonal());
+  return {x, start.asDiagonal() * normal.inverse() * start.asDiagonal(), e.dot(allowed.solve(Eigen::VectorXd(e)))};
+}
+
+/// What (1) alone determines: the understeer gradient and the steer bias.
+AxleEstimate understeer_of(const DriveRegressions& data, const RegressionEstimate& first) {
   AxleEstimate out;
   out.method = first.method;
   out.covariance.setConstant(kInfinity);
   out.understeer_sigma = out.steer_bias_sigma = kInfinity;
-  const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
+  if (!first.usable() || data.direct) return out;
+  out.understeer = first.theta(0);
+  out.understeer_sigma = std::sqrt(first.covariance(0, 0));
+  out.steer_bias = first.theta(2);
+  out.steer_bias_sigma = std::sqrt(first.covariance(2, 2));
+  out.understeer_only = true;
+  out.degrees_of_freedom = first.degrees_of_freedom;
+  return out;
+}
+
+AxleEstimate axles_of(const DriveRegressions& data, const RegressionEstimate& first, const RegressionEstimate& second,
+                      const VehicleParameters<double>& p) {
+  AxleEstimate out = understeer_of(data, first);
   if (!first.usable() || !second.usable()) {
     out.message = first.usable() ? second.message : first.message;
+    return out;
   }
-  if (first.usable() && !data.direct) {
-    out.understeer = first.theta(0);
-    out.understeer_sigma = std::sqrt(first.covariance(0, 0));
-    out.steer_bias = first.theta(2);
-    out.steer_bias_sigma = std::sqrt(first.covariance(2, 2));
-    out.understeer_only = true;
-    out.degrees_of_freedom = first.degrees_of_freedom;
-  }
-  if (!first.usable() || !second.usable()) return out;
   const auto unexcited = [](const RegressionEstimate& e) {
     return std::max(e.parameters[0].unexcited_share, e.parameters[1].unexcited_share) > 0.05;
   };
   Eigen::Vector4d theta;
   theta << first.theta.head(2), second.theta.head(2);
-  Eigen::Vector3d x;
-  if (data.direct) {
-    x << 0.5 * m * theta(0), 0.5 * m * theta(1), 0.5 * m * (a * theta(0) / theta(2) - b * theta(1) / theta(3));
-  } else {
-    const double g_r = theta(2) / (m * a), g_f = (theta(0) + theta(2)) / (m * b);
-    x << 0.5 / (L * g_f), 0.5 / (L * g_r), theta(3) / g_r;
-  }
-  if (unexcited(first) || unexcited(second) || !(x.minCoeff() > 0.0) || !x.allFinite()) {
-    out.message =
-        unexcited(first) || unexcited(second)
-            ? fmt::format("not excited: {}{}{}", first.unexcited.empty() ? "" : first.unexcited[0].text,
-                          first.unexcited.empty() || second.unexcited.empty() ? "" : ", ",
-                          second.unexcited.empty() ? "" : second.unexcited[0].text)
-            : fmt::format("gives C_f = {:.4g}, C_r = {:.4g}, I_z = {:.4g}: none of a vehicle", x(0), x(1), x(2));
+  const Eigen::Vector3d start = bicycle_of(theta, p, data.direct);
+  if (unexcited(first) || unexcited(second)) {
+    out.message = fmt::format("not excited: {}{}{}", first.unexcited.empty() ? "" : first.unexcited[0].text,
+                              first.unexcited.empty() || second.unexcited.empty() ? "" : ", ",
+                              second.unexcited.empty() ? "" : second.unexcited[0].text);
     return out;
   }
-  const Eigen::Matrix4d P = joint_covariance(data, first, second);
-  const Eigen::Vector4d scale = P.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const numerics::PivotedCholesky factor(scale.asDiagonal() * P * scale.asDiagonal());
-  const Eigen::Vector3d size = x;
-  Eigen::Vector4d f;
-  Eigen::Matrix<double, 4, 3> J;
-  Eigen::Matrix3d normal;
-  // Gauss-Newton in units of the start; the surplus is one equation, so few steps.
-  for (int step = 0; step < 30; ++step) {
-    coefficients(x, p, data.direct, f, J);
-    const Eigen::Matrix<double, 4, 3> A = scale.asDiagonal() * J * size.asDiagonal();
-    const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
-    normal = A.transpose() * factor.solve(Eigen::MatrixXd(A));
-    const Eigen::Vector3d move =
-        numerics::solve_symmetric(normal, Eigen::VectorXd(A.transpose() * factor.solve(Eigen::VectorXd(e))));
-    Eigen::Vector3d next = x + size.cwiseProduct(move);
-    for (int halving = 0; halving < 20 && !(next.minCoeff() > 0.0); ++halving) next = 0.5 * (next + x);
-    const double moved = (next - x).cwiseQuotient(size).cwiseAbs().maxCoeff();
-    x = next;
-    if (moved < 1e-12) break;
+  if (!(start.minCoeff() > 0.0) || !start.allFinite()) {
+    out.message =
+        fmt::format("gives C_f = {:.4g}, C_r = {:.4g}, I_z = {:.4g}: none of a vehicle", start(0), start(1), start(2));
+    return out;
   }
-  coefficients(x, p, data.direct, f, J);
-  const Eigen::Vector4d e = scale.asDiagonal() * (theta - f);
-  // The small angles' own error is no contradiction.
-  const Eigen::Vector4d own =
-      kSmallAngles * Eigen::Vector4d(data.direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
-  Eigen::Matrix4d doubt = P;
-  doubt.diagonal() += own.cwiseAbs2();
-  const numerics::PivotedCholesky doubted(scale.asDiagonal() * doubt * scale.asDiagonal());
-  const double chi_square = e.dot(doubted.solve(Eigen::VectorXd(e)));
+  const NearestBicycle nearest = nearest_bicycle(theta, joint_covariance(data, first, second), start, p, data.direct);
+  const Eigen::Vector3d& x = nearest.value;
   out.value = x;
-  out.covariance = size.asDiagonal() * normal.inverse() * size.asDiagonal();
-  out.consistency_p = std::isfinite(chi_square) ? numerics::chi_square_upper_p(std::max(0.0, chi_square), 1.0) : 0.0;
+  out.covariance = nearest.covariance;
+  out.consistency_p =
+      std::isfinite(nearest.chi_square) ? numerics::chi_square_upper_p(std::max(0.0, nearest.chi_square), 1.0) : 0.0;
   out.degrees_of_freedom = std::min(first.degrees_of_freedom, second.degrees_of_freedom);
   out.usable = x.allFinite() && x.minCoeff() > 0.0 && out.covariance.allFinite();
   out.understeer_only = false;
+  const double m = p.mass, a = p.a, b = p.b, L = p.wheelbase();
   const Eigen::Vector3d slope(-0.5 * m * b / (L * x(0) * x(0)), 0.5 * m * a / (L * x(1) * x(1)), 0.0);
   out.understeer = 0.5 * m / L * (b / x(0) - a / x(1));
   out.understeer_sigma = std::sqrt(slope.dot(out.covariance * slope));
@@ -439,7 +465,7 @@ DriveRegressions drive_regressions(const DriveSignals& signals, std::span<const 
                                                    kDriveSignalNames[static_cast<std::size_t>(s)]));
     }
   }
-  return Builder(signals, spans, known, pass_Hz).run();
+  return RegressionRows(signals, spans, known, pass_Hz).run();
 }
 
 DriveRegressionResult equation_error(DriveRegressions data, const VehicleParameters<double>& known,

@@ -23,7 +23,7 @@ namespace veridyn::vehicle {
 ///
 /// where (2) is d/dt of u alpha_r = -(v - b r) with v' = a_y - r u. K is the understeer gradient. Constants take the
 /// biases of steering, accelerometer and gyro; the column u is there when the speed varies by 5 % rms or more. Four
-/// coefficients for three unknowns: the surplus tests the model.
+/// coefficients for three unknowns: the consistency equation between them tests the model.
 ///
 /// Where the lateral velocity is measured the direct form is used instead, with alpha from the measurement:
 ///     a_y = (2 C_f/m) alpha_f cos(delta) + (2 C_r/m) alpha_r + const                                             (1')
@@ -57,13 +57,15 @@ struct AxleEstimate {
   double degrees_of_freedom = 0.0;
 };
 
+/// Equation error by all methods.
 struct DriveRegressionResult {
   DriveRegressions data;
   estimation::RegressionComparison first, second;
-  std::vector<AxleEstimate> axles;  ///< one a method
+  std::vector<AxleEstimate> axles;  ///< one per method
   estimation::Method recommended = estimation::Method::kGtls;
-  bool recommends = false;
-  std::string reason;
+  bool recommends = false;  ///< both regressions' comparisons recommend a method
+  std::string reason;       ///< why, or why there is nothing to recommend
+  /// Null where the method gave no estimate.
   [[nodiscard]] const AxleEstimate* find(estimation::Method method) const;
 };
 
@@ -74,7 +76,7 @@ struct DriveRegressionResult {
 
 /// Both regressions by all methods, and the parameters behind them: the point (1/C_f, 1/C_r, I_z) nearest to the four
 /// coefficients under their joint covariance, which comes from the scores of both regressions over the same rows with
-/// the colour of their residuals.
+/// the autocorrelation of their residuals.
 [[nodiscard]] DriveRegressionResult equation_error(DriveRegressions data, const VehicleParameters<double>& known,
                                                    const estimation::RegressionOptions& options);
 

@@ -11,10 +11,10 @@
 
 namespace veridyn::vehicle {
 
-/// Which stretches of a drive tell about its tyres: keys of recording::SegmentOptions (`window`: 2 s by default, the
+/// Which stretches of a drive are used: keys of recording::SegmentOptions (`window`: 2 s by default, the
 /// rms of r u is taken over it) and these. Study table `[segments]`; every key is optional.
 struct DriveSegmentOptions : recording::SegmentOptions {
-  double min_speed_mps = 3.0;     ///< `min_speed`: slip angles lose their meaning below it
+  double min_speed_mps = 3.0;     ///< `min_speed`: slip angles mean nothing below it
   double max_steer_rad = 1.0472;  ///< `max_steer` (60 deg): beyond it the drive is not used
   /// `min_lateral_acceleration`: rms of r u over `window` from which a stretch counts as excited.
   double min_lateral_mps2 = 0.3;
@@ -34,7 +34,7 @@ struct DriveSegments : recording::Segments {
 /// Finds them. Blocks are assigned in turn, so that both uses see every kind of driving; whole runs where runs are
 /// named for hold-out.
 /// @param holdout_runs stretches that belong to the hold-out as a whole
-/// @throws InputError when the vehicle stands throughout, when no stretch is usable (saying why: speed, steering beyond
+/// @throws InputError when the vehicle never moves, when no stretch is usable (saying why: speed, steering beyond
 /// the limit, gaps), or spans lie outside the recording.
 [[nodiscard]] DriveSegments find_drive_segments(const DriveSignals& signals, const DriveSegmentOptions& options,
                                                 std::span<const TimeSpan> holdout_runs = {});

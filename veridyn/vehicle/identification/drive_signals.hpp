@@ -24,9 +24,12 @@ enum class DriveSignal : std::size_t {
   kY,
   kYaw  ///< heading [rad], unwrapped
 };
+/// How many signals there are.
 inline constexpr std::size_t kDriveSignals = 9;
+/// Their standard names, in the order of the enum.
 inline constexpr std::array<std::string_view, kDriveSignals> kDriveSignalNames{
     "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "pos_x", "pos_y", "yaw"};
+/// Their units, in the same order.
 inline constexpr std::array<std::string_view, kDriveSignals> kDriveSignalUnits{"rad", "m/s", "rad/s", "m/s^2", "m/s^2",
                                                                                "m/s", "m",   "m",     "rad"};
 

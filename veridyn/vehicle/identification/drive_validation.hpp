@@ -4,22 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/progress.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/vehicle/identification/drive_parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
 namespace veridyn::vehicle {
-
-/// One quantity predicted over all spans.
-struct PredictedDriveQuantity {
-  std::string name;  ///< "yaw_rate", "accel_y", "lateral_velocity", "yaw", "path"
-  std::string unit;
-  numerics::FitMeasures fit;
-  double lag1 = 0.0;  ///< autocorrelation of the residual at one sample: 0 when the model explains all but white noise
-};
 
 /// Measured and predicted motion over one span.
 struct PredictedStretch {
@@ -35,20 +28,28 @@ struct PredictedStretch {
   std::vector<double> x, y, x_predicted, y_predicted;
 };
 
+/// A drive as a model predicts it.
 struct DriveValidation {
-  std::vector<PredictedDriveQuantity> quantities;
+  /// "yaw_rate", "accel_y", "lateral_velocity", "yaw", "path", each over all spans.
+  std::vector<estimation::PredictedQuantity> quantities;
   std::vector<PredictedStretch> stretches;
   std::string text;  ///< one sentence
-  [[nodiscard]] const PredictedDriveQuantity* find(std::string_view name) const;
+  /// Null where the quantity was not compared.
+  [[nodiscard]] const estimation::PredictedQuantity* find(std::string_view name) const;
+};
+
+/// Values of all DriveUnknowns, in their order, and their covariance.
+struct DriveTheta {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance = {};  ///< empty: not known
 };
 
 /// Simulates a vehicle over spans and compares. Per span two numbers are fitted, v and r at its beginning (the sideslip
 /// is not measured on most cars); all else is given. Measured yaw angle is the integral of the measured yaw rate less
-/// its bias.
-/// @param theta values of all DriveUnknowns, in their order
-/// @param covariance of theta, for the bands of the prediction; empty: none
+/// its bias. The covariance of theta gives the bands of the prediction. An interrupted `progress` leaves out the spans
+/// that are not yet predicted.
 [[nodiscard]] DriveValidation predict_drive(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                             const VehicleParameters<double>& vehicle, const DriveModelOptions& options,
-                                            const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance = {});
+                                            const DriveTheta& theta, Progress& progress);
 
 }  // namespace veridyn::vehicle

@@ -11,7 +11,7 @@ namespace veridyn::vehicle {
 namespace {
 
 using estimation::Method;
-using estimation::ParameterEstimate;
+using estimation::Parameter;
 using estimation::ParameterStatus;
 
 /// Cut-off of the regressions' filter where none is given [Hz].
@@ -21,25 +21,17 @@ constexpr double kLongestLag_s = 2.0;
 
 constexpr auto row_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
 
-ParameterEstimate describe(std::string name, std::string unit, double value, double variance, double freedom,
-                           double significance) {
-  ParameterEstimate p;
+Parameter describe(std::string name, std::string unit, double value, double variance, double freedom,
+                   double significance) {
+  Parameter p;
   p.name = std::move(name);
   p.unit = std::move(unit);
   p.value = value;
   p.sigma = p.sigma_white = std::sqrt(std::max(0.0, variance));
-  const bool known = std::isfinite(p.sigma);
-  const double dof = std::max(1.0, freedom);
-  const double quantile = numerics::student_t_quantile(0.975, dof);
-  p.low95 = known ? value - quantile * p.sigma : -kInfinity;
-  p.high95 = known ? value + quantile * p.sigma : kInfinity;
-  if (!known) {
-    p.status = ParameterStatus::kNotExcited;
-    return p;
-  }
-  p.t = p.sigma > 0.0 ? value / p.sigma : std::copysign(kInfinity, value);
-  p.p_value = numerics::student_t_two_sided_p(p.t, dof);
-  p.status = p.p_value < significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+  estimation::set_interval(p, std::max(1.0, freedom));
+  p.status = !std::isfinite(p.sigma)    ? ParameterStatus::kNotExcited
+             : p.p_value < significance ? ParameterStatus::kIdentified
+                                        : ParameterStatus::kInsignificant;
   return p;
 }
 
@@ -51,11 +43,12 @@ Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
 }
 
 /// Physical parameters that are hardly known are not excited, whatever their t-test says.
-void mark_unexcited(VehicleEstimate& e, double max_relative_sigma) {
-  for (ParameterEstimate& p : e.parameters) {
+std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double max_relative_sigma) {
+  for (Parameter& p : parameters) {
     const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
     if (physical && !(p.sigma <= max_relative_sigma * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
   }
+  return parameters;
 }
 
 /// What the uncertainty of mass, a and b adds to the covariance of C_f, C_r, I_z and the understeer gradient.
@@ -135,10 +128,10 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& a
   add("I_z", "kg m^2", axle.usable ? axle.value(2) : problem.start.I_z);
   add("understeer_gradient", "rad s^2/m", axle.understeer);
   if (steer_bias) add("steer_offset", "rad", axle.steer_bias);
-  mark_unexcited(e, problem.options.max_relative_sigma);
+  e.parameters = with_unexcited(std::move(e.parameters), problem.options.max_relative_sigma);
   // Without the lateral velocity all three come out of the same coefficients: what noise does to one of them (it
   // pulls p and q towards zero) it does to all.
-  const auto unexcited = [](const ParameterEstimate& p) { return p.status == ParameterStatus::kNotExcited; };
+  const auto unexcited = [](const Parameter& p) { return p.status == ParameterStatus::kNotExcited; };
   if (std::any_of(e.parameters.begin(), e.parameters.begin() + 3, unexcited)) {
     for (std::size_t i = 0; i < 3; ++i) e.parameters[i].status = ParameterStatus::kNotExcited;
   }
@@ -163,7 +156,7 @@ VehicleParameters<double> begin_of_search(const VehicleProblem& problem, const E
   return begin;
 }
 
-/// The free unknowns in their order, with the understeer gradient behind the vehicle's own.
+/// The free unknowns in their order, with the understeer gradient after those of the vehicle.
 struct Places {
   std::vector<Eigen::Index> unknown;  // of each free one
   Eigen::Index understeer = 0;        // row of the understeer gradient
@@ -188,11 +181,11 @@ Places places_of(const DriveModelOptions& options) {
 Eigen::MatrixXd output_error_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
                                         const estimation::OutputErrorEstimate& result,
                                         const VehicleParameters<double>& p, const Places& places) {
-  const Eigen::Index n = places.rows(), own = places.understeer;
+  const Eigen::Index n = places.rows(), understeer = places.understeer;
   const Eigen::Vector3d g = understeer_slope(p);
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(kDriveUnknowns));
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (i == own) {
+    if (i == understeer) {
       J(i, 0) = g(0);
       J(i, 1) = g(1);
       J(i, 3) = g(2);
@@ -210,10 +203,10 @@ Eigen::MatrixXd output_error_covariance(const VehicleProblem& problem, const Geo
   const Eigen::Matrix4d extra =
       known_covariance(problem, slopes, {result.theta(0), result.theta(1), result.theta(2), understeer_gradient(p)});
   // Rows of C_f, C_r, I_z (where free) and the understeer gradient.
-  std::array<Eigen::Index, 4> row{-1, -1, -1, own};
+  std::array<Eigen::Index, 4> row{-1, -1, -1, understeer};
   for (std::size_t i = 0; i < places.unknown.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (places.unknown[i] < 3) row[static_cast<std::size_t>(places.unknown[i])] = at < own ? at : at + 1;
+    if (places.unknown[i] < 3) row[static_cast<std::size_t>(places.unknown[i])] = at < understeer ? at : at + 1;
   }
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) {
@@ -246,8 +239,8 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
                                       result.degrees_of_freedom, o.significance));
       continue;
     }
-    const ParameterEstimate& given = result.parameters[static_cast<std::size_t>(places.at(i))];
-    ParameterEstimate made =
+    const Parameter& given = result.parameters[static_cast<std::size_t>(places.at(i))];
+    Parameter made =
         describe(given.name, given.unit, given.value, e.covariance(i, i), result.degrees_of_freedom, o.significance);
     made.sigma_white = given.sigma_white;
     made.variance_inflation = given.variance_inflation;
@@ -255,7 +248,7 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
     if (given.status == ParameterStatus::kNotExcited) made.status = given.status;
     e.parameters.push_back(std::move(made));
   }
-  mark_unexcited(e, o.max_relative_sigma);
+  e.parameters = with_unexcited(std::move(e.parameters), o.max_relative_sigma);
   return e;
 }
 

@@ -34,6 +34,7 @@ struct OutputErrorResult {
 [[nodiscard]] DriveRegressionResult regress(const VehicleProblem& problem, std::span<const TimeSpan> spans,
                                             const VehicleParameters<double>& known);
 
+/// All regressions over the identification segments; what the uncertainty of mass, a and b adds is in the covariances.
 [[nodiscard]] EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem);
 
 /// Starts from the equation error where that is known well enough; `equation_error` may be null.

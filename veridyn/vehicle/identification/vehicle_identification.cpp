@@ -11,13 +11,13 @@
 namespace veridyn::vehicle {
 namespace {
 
-using estimation::ParameterEstimate;
+using estimation::Parameter;
 using estimation::ParameterStatus;
 
 VehicleIdentification not_excited(const VehicleProblem& problem) {
   VehicleIdentification out;
   out.identified = problem.start;
-  out.verdict = VehicleVerdict::kNotExcited;
+  out.verdict = estimation::GroupVerdict::kNotExcited;
   out.reason = fmt::format("there is nothing to identify from: {}", problem.segments.text);
   out.estimates.push_back(unexcited_estimate(problem, out.reason));
   return out;
@@ -34,7 +34,7 @@ std::string why_no_estimate(std::span<const VehicleEstimate> estimates, const Eq
 /// What the drive does that the model does not is in all methods.
 std::vector<VehicleEstimate> rejected(std::vector<VehicleEstimate> estimates) {
   for (VehicleEstimate& e : estimates) {
-    for (ParameterEstimate& p : e.parameters) {
+    for (Parameter& p : e.parameters) {
       if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
         p.status = ParameterStatus::kRejected;
     }
@@ -78,13 +78,13 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   }
 
   progress.stage("validating on the hold-out");
-  const DriveTheta theta = theta_of(problem, *chosen, out.output_error ? &*out.output_error : nullptr);
+  const DriveTheta theta = theta_of(problem, *chosen, out.output_error ? &*out.output_error : nullptr, progress);
   const DriveModelOptions& model = problem.options.model;
-  out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta.value,
-                          theta.covariance);
-  out.validation =
-      predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta.value, theta.covariance);
-  const DriveValidation by_noise = with_noisier_inputs(problem, theta, out.fit);
+  out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta, progress);
+  out.validation = predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta, progress);
+  const DriveValidation by_noise = with_noisier_inputs(problem, theta, out.fit, progress);
+  out.interrupted = progress.interrupted();
+  if (out.interrupted) return out;
   VehicleJudgement judgement = judge_vehicle(problem, {.chosen = *chosen,
                                                        .equation_error = by_regression,
                                                        .output_error = output_error ? &*output_error : nullptr,
@@ -95,7 +95,7 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   out.reason = std::move(judgement.reason);
   out.checks = std::move(judgement.checks);
   out.warnings = std::move(judgement.warnings);
-  if (out.verdict == VehicleVerdict::kRejected) {
+  if (out.verdict == estimation::GroupVerdict::kRejected) {
     out.estimates = rejected(std::move(out.estimates));
   } else {
     out.identified = identified_vehicle(problem, *chosen);
@@ -103,23 +103,8 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   return out;
 }
 
-std::string_view to_string(VehicleVerdict verdict) {
-  switch (verdict) {
-    case VehicleVerdict::kIdentified:
-      return "identified";
-    case VehicleVerdict::kNotExcited:
-      return "not excited";
-    case VehicleVerdict::kRejected:
-      break;
-  }
-  return "rejected";
-}
-
-const ParameterEstimate* VehicleEstimate::find(std::string_view name) const {
-  for (const ParameterEstimate& p : parameters) {
-    if (p.name == name) return &p;
-  }
-  return nullptr;
+const Parameter* VehicleEstimate::find(std::string_view name) const {
+  return estimation::find_parameter(parameters, name);
 }
 
 const VehicleEstimate* VehicleIdentification::find(VehicleMethod method) const {
@@ -131,26 +116,37 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   out.subject = subject;
   if (const VehicleEstimate* best = identification.best()) {
     out.method = to_string(best->method);
-    for (const ParameterEstimate& p : best->parameters)
-      out.parameters.push_back({p.name, p.value, p.sigma, p.low95, p.high95, p.unit, p.status});
+    out.parameters = best->parameters;
     out.covariance = best->covariance;
   }
   for (const VehicleEstimate& e : identification.estimates) {
     if (e.method == identification.chosen || !e.usable) continue;
-    for (const ParameterEstimate& p : e.parameters)
-      out.other_methods.push_back(
-          {p.name, std::string(to_string(e.method)), p.value, p.sigma, p.low95, p.high95, p.unit, p.status});
+    for (const Parameter& p : e.parameters) out.other_methods.push_back({std::string(to_string(e.method)), p});
   }
-  for (const PredictedDriveQuantity& q : identification.fit.quantities) {
+  for (const estimation::PredictedQuantity& q : identification.fit.quantities) {
     out.fit[q.name + ".r2"] = q.fit.r2;
     out.fit[q.name + ".rmse"] = q.fit.rmse;
     if (std::isfinite(q.lag1)) out.fit[q.name + ".lag1"] = q.lag1;
   }
-  for (const PredictedDriveQuantity& q : identification.validation.quantities)
+  for (const estimation::PredictedQuantity& q : identification.validation.quantities)
     out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   out.verdict = identification.reason;
   out.warnings = identification.warnings;
   return out;
+}
+
+estimation::ParameterGroup parameter_group(const VehicleIdentification& identification, const std::string& subject) {
+  estimation::ParameterGroup group{.name = subject,
+                                   .verdict = identification.verdict,
+                                   .reason = identification.reason,
+                                   .evidence = identification.checks};
+  for (const VehicleEstimate& e : identification.estimates)
+    group.methods.push_back({std::string(to_string(e.method)), e.usable, e.message, e.parameters});
+  if (const VehicleEstimate* best = identification.best()) {
+    group.parameters = best->parameters;
+    group.method = to_string(best->method);
+  }
+  return group;
 }
 
 }  // namespace veridyn::vehicle

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
@@ -32,7 +33,7 @@ struct VehicleIdentifyOptions {
   double signal_to_noise = 1.0;  ///< `signal_to_noise`: S/n of the excitation threshold, 1 to 10
   double significance = 0.05;    ///< `significance`: level of the t-tests
   double min_holdout_r2 = 0.5;   ///< `min_holdout_r2`: of the predicted yaw rate; below it everything is rejected
-  /// `max_unmodelled`: largest share of an output's power that may be left as coloured residual.
+  /// `max_unmodelled`: largest share of an output's power that may be left as autocorrelated residual.
   double max_unmodelled = 0.1;
   double contradiction_level = 1e-3;  ///< `contradiction_level`: p below which methods or data parts contradict
   /// `max_relative_sigma`: a stiffness or inertia whose standard error is a larger share of it counts as not excited.
@@ -54,37 +55,31 @@ struct VehicleEstimate {
   std::string message;
   /// C_f, C_r, I_z [, mu, ...], understeer_gradient [rad/(m/s^2)], nuisances: sensors' biases; of
   /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
-  std::vector<estimation::ParameterEstimate> parameters;
+  std::vector<estimation::Parameter> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
-  [[nodiscard]] const estimation::ParameterEstimate* find(std::string_view name) const;
+  /// Null where the method does not estimate it.
+  [[nodiscard]] const estimation::Parameter* find(std::string_view name) const;
 };
 
-/// What may be said of the vehicle as a whole.
-enum class VehicleVerdict {
-  kIdentified,  ///< predicts the hold-out and its checks passed; single parameters may still be insignificant
-  kNotExcited,  ///< the drive does not move the tyres
-  kRejected     ///< an estimate exists and must not be used
-};
-[[nodiscard]] std::string_view to_string(VehicleVerdict verdict);
-
-/// Everything that became of a drive.
+/// Everything that identification made of a drive.
 struct VehicleIdentification {
-  std::optional<DriveRegressionResult> regression;              ///< equation error, where it was asked for
+  std::optional<DriveRegressionResult> regression;              ///< equation error, where it was tried
   std::optional<estimation::OutputErrorEstimate> output_error;  ///< as the estimator gave it
-  std::vector<VehicleEstimate> estimates;                       ///< one a method, chosen one among them
+  std::vector<VehicleEstimate> estimates;                       ///< one per method, the chosen one among them
   VehicleMethod chosen = VehicleMethod::kNone;                  ///< its method
-  VehicleVerdict verdict = VehicleVerdict::kRejected;
-  std::string reason;                            ///< one sentence
-  std::vector<estimation::HonestyCheck> checks;  ///< colour, agreement of methods, of data parts, hold-out
-  VehicleParameters<double> identified;          ///< the subject with what was identified
-  DriveValidation fit;                           ///< on the identification segments
-  DriveValidation validation;                    ///< on the hold-out
+  estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
+  std::string reason;                        ///< one sentence
+  std::vector<estimation::Evidence> checks;  ///< residuals, agreement of methods, of data parts, hold-out
+  VehicleParameters<double> identified;      ///< the subject with what was identified
+  DriveValidation fit;                       ///< on the identification segments
+  DriveValidation validation;                ///< on the hold-out
   std::vector<std::string> warnings;
   bool interrupted = false;
 
   /// Null where that method was not tried.
   [[nodiscard]] const VehicleEstimate* find(VehicleMethod method) const;
-  /// The chosen estimate; null where no method gave one. What was not excited has one too, which says so.
+  /// The chosen estimate; null where no method gave one. What was not excited has one too, whose parameters are marked
+  /// so.
   [[nodiscard]] const VehicleEstimate* best() const { return find(chosen); }
 };
 
@@ -104,6 +99,11 @@ struct VehicleProblem {
 
 /// As estimate.json has it; `subject` is the vehicle's name.
 [[nodiscard]] estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification,
+                                                         const std::string& subject);
+
+/// The vehicle as the one group of parameters that there is, and what was predicted of its hold-out, in the terms that
+/// all domains share.
+[[nodiscard]] estimation::ParameterGroup parameter_group(const VehicleIdentification& identification,
                                                          const std::string& subject);
 
 /// m/(2 L) (b/C_f - a/C_r) [rad/(m/s^2)]: extra steer angle per lateral acceleration of the linear bicycle. Positive:

@@ -20,17 +20,18 @@ struct VehicleFindings {
 
 /// The verdict on an identified vehicle and what it rests on.
 struct VehicleJudgement {
-  VehicleVerdict verdict = VehicleVerdict::kRejected;
-  std::string reason;                            ///< one sentence
-  std::vector<estimation::HonestyCheck> checks;  ///< in the order of the report
-  std::vector<std::string> warnings;             ///< texts of the checks that failed, and what could not be checked
+  estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
+  std::string reason;                        ///< one sentence
+  std::vector<estimation::Evidence> checks;  ///< in the order of the report
+  std::vector<std::string> warnings;         ///< texts of the checks that failed, and what could not be checked
 };
 
 /// Equation error against output error and hold-out, and the regressions' consistency equation; each is missing where
 /// there is nothing to compare.
 struct AgreementChecks {
-  std::optional<estimation::HonestyCheck> consistency, methods, data_parts;
+  std::optional<estimation::Evidence> consistency, methods, data_parts;
 };
+/// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
 
 /// Rejected: when the identified model cannot be simulated, leaves more than `max_unmodelled` of an output's power

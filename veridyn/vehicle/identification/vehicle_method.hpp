@@ -8,18 +8,20 @@
 
 namespace veridyn::vehicle {
 
-/// By which the parameters of a vehicle are found.
+/// How the parameters of a vehicle are estimated.
 enum class VehicleMethod : std::size_t {
   kOutputError,
-  kOls,  ///< equation error by ordinary least squares; the others alike
+  kOls,  ///< equation error by ordinary least squares; so also the next three
   kTls,
   kGtls,
   kPcaGtls,
   kGiven,  ///< not found here: an estimate of a method that is none of these, which is validated
   kNone
 };
+/// Their names in studies and results, in the order of the enum.
 inline constexpr std::array<std::string_view, 7> kVehicleMethodNames{"output error", "OLS",   "TLS", "GTLS",
                                                                      "PCA-GTLS",     "given", "none"};
+/// As study files and estimates name it.
 [[nodiscard]] constexpr std::string_view to_string(VehicleMethod method) {
   return kVehicleMethodNames[static_cast<std::size_t>(method)];
 }

@@ -14,7 +14,8 @@ constexpr auto index_of(DriveUnknown u) { return static_cast<std::size_t>(u); }
 }  // namespace
 
 Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const TimeSpan> spans,
-                                 const VehicleParameters<double>& vehicle, const DriveModelOptions& options) {
+                                 const VehicleParameters<double>& vehicle, const DriveModelOptions& options,
+                                 Progress& progress) {
   DriveModelOptions biases_only = options;
   biases_only.free.fill(false);
   for (const DriveUnknown u : {DriveUnknown::kSteerBias, DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
@@ -22,7 +23,7 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
     biases_only.start[index_of(u)] = kNaN;
   const DriveParametricModel model(signals, spans, vehicle, biases_only);
-  const estimation::OutputErrorEstimate biases = estimation::output_error(model, model.measured());
+  const estimation::OutputErrorEstimate biases = estimation::output_error(model, model.measured(), {}, progress);
   if (biases.usable()) return biases.theta;
   Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns));
   for (std::size_t i = 0; i < kDriveUnknowns; ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
@@ -30,7 +31,7 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
 }
 
 DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estimate,
-                    const estimation::OutputErrorEstimate* output_error) {
+                    const estimation::OutputErrorEstimate* output_error, Progress& progress) {
   if (estimate.method == VehicleMethod::kOutputError && output_error != nullptr) {
     return {output_error->theta,
             output_error->covariance.unaryExpr([](double c) { return std::isfinite(c) ? c : 0.0; })};
@@ -42,16 +43,16 @@ DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estima
   p.I_z = estimate.find("I_z")->value;
   DriveTheta theta;
   theta.covariance = Eigen::MatrixXd::Zero(n, n);
-  const Eigen::MatrixXd own = estimate.covariance.topLeftCorner(3, 3);
-  if (own.allFinite()) theta.covariance.topLeftCorner(3, 3) = own;
-  theta.value = fit_drive_biases(problem.signals, problem.segments.identification, p, problem.options.model);
+  const Eigen::MatrixXd axles = estimate.covariance.topLeftCorner(3, 3);
+  if (axles.allFinite()) theta.covariance.topLeftCorner(3, 3) = axles;
+  theta.value = fit_drive_biases(problem.signals, problem.segments.identification, p, problem.options.model, progress);
   return theta;
 }
 
 VehicleParameters<double> identified_vehicle(const VehicleProblem& problem, const VehicleEstimate& estimate) {
   VehicleParameters<double> p = problem.start;
   const auto take = [&](const char* name, double& to) {
-    const estimation::ParameterEstimate* found = estimate.find(name);
+    const estimation::Parameter* found = estimate.find(name);
     if (found != nullptr && found->status != estimation::ParameterStatus::kNotExcited) to = found->value;
   };
   take("C_f", p.C_f);
@@ -63,16 +64,16 @@ VehicleParameters<double> identified_vehicle(const VehicleProblem& problem, cons
   return p;
 }
 
-DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTheta& theta,
-                                    const DriveValidation& fit) {
+DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTheta& theta, const DriveValidation& fit,
+                                    Progress& progress) {
   DriveSignals noisier = problem.signals;
   for (const DriveSignal which : {DriveSignal::kSteer, DriveSignal::kSpeed}) {
     GridSignal& signal = noisier[which];
     numerics::RandomStream noise(1, kDriveSignalNames[static_cast<std::size_t>(which)]);
     for (double& v : signal.value) v += signal.sigma * noise.normal();
   }
-  DriveValidation other =
-      predict_drive(noisier, problem.segments.identification, problem.start, problem.options.model, theta.value);
+  DriveValidation other = predict_drive(noisier, problem.segments.identification, problem.start, problem.options.model,
+                                        {theta.value}, progress);
   const auto compare = [&](const char* name, std::vector<double> PredictedStretch::*series) {
     std::vector<double> x, y;
     for (std::size_t s = 0; s < std::min(other.stretches.size(), fit.stretches.size()); ++s) {
@@ -81,7 +82,7 @@ DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTh
       x.insert(x.end(), a.begin(), a.end());
       y.insert(y.end(), b.begin(), b.end());
     }
-    for (PredictedDriveQuantity& q : other.quantities) {
+    for (estimation::PredictedQuantity& q : other.quantities) {
       if (q.name == name) q.fit = numerics::fit_measures(x, y);
     }
   };

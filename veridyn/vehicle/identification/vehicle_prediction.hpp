@@ -7,22 +7,16 @@
 
 namespace veridyn::vehicle {
 
-/// Values of all DriveUnknowns, in their order, and their covariance.
-struct DriveTheta {
-  Eigen::VectorXd value;
-  Eigen::MatrixXd covariance;  ///< empty: not known
-};
-
 /// All DriveUnknowns of a vehicle on a drive whose constant biases (steering, yaw rate, accel_y) are fitted to it, for
 /// predictions: biases belong to the day, not to the vehicle.
 [[nodiscard]] Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                                const VehicleParameters<double>& vehicle,
-                                               const DriveModelOptions& options);
+                                               const DriveModelOptions& options, Progress& progress);
 
 /// As the chosen estimate has them; constant biases that it does not know are fitted. `output_error` may be null where
 /// the estimate is of another method.
 [[nodiscard]] DriveTheta theta_of(const VehicleProblem& problem, const VehicleEstimate& estimate,
-                                  const estimation::OutputErrorEstimate* output_error);
+                                  const estimation::OutputErrorEstimate* output_error, Progress& progress);
 
 /// The start with what the estimate determines.
 [[nodiscard]] VehicleParameters<double> identified_vehicle(const VehicleProblem& problem,
@@ -31,6 +25,6 @@ struct DriveTheta {
 /// What noise of steering and speed does to a prediction over the identification segments: that much noise once more,
 /// and the difference to `fit` as its quantities' fits.
 [[nodiscard]] DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTheta& theta,
-                                                  const DriveValidation& fit);
+                                                  const DriveValidation& fit, Progress& progress);
 
 }  // namespace veridyn::vehicle

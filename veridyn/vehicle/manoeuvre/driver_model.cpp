@@ -13,7 +13,7 @@
 namespace veridyn::vehicle {
 namespace {
 
-/// Below this speed nobody needs to look ahead [m/s]; the bicycle's stiffness grows as 1/u.
+/// Below this speed a driver does not look ahead [m/s]; the bicycle's stiffness grows as 1/u.
 constexpr double kSlowest = 0.5;
 
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
@@ -144,7 +144,7 @@ void PreviewDriver::look(double time, const PlanarMotion& motion) {
 }
 
 Controls PreviewDriver::controls(double time) const {
-  // What was asked for one delay ago, straight between decisions.
+  // The decision one delay ago, straight between decisions.
   const double then = time - options_.delay;
   const std::size_t capacity = history_time_.size();
   double later_time = 0.0, later_steer = 0.0;
@@ -186,10 +186,10 @@ void SpeedControlledDriver::look(double time, const PlanarMotion& motion) {
   const double since = time - last_;
   last_ = time;
   const double error = speed_(time) - motion.u;
-  const double wanted = options_.proportional * error + integral_ + options_.integral * error * since;
-  const double given = std::clamp(wanted, -options_.max_deceleration, options_.max_acceleration);
-  // The integral stands still while it would only push further into a limit.
-  if (given == wanted || (wanted - given) * error < 0.0) integral_ += options_.integral * error * since;
+  const double desired = options_.proportional * error + integral_ + options_.integral * error * since;
+  const double given = std::clamp(desired, -options_.max_deceleration, options_.max_acceleration);
+  // The integral is held while it would only push further into a limit.
+  if (given == desired || (desired - given) * error < 0.0) integral_ += options_.integral * error * since;
   torque_ = options_.mass * options_.wheel_radius * given;
 }
 

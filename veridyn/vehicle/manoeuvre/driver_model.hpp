@@ -11,7 +11,7 @@
 
 namespace veridyn::vehicle {
 
-/// A driver who looks ahead.
+/// Options of a driver who looks ahead.
 struct PreviewDriverOptions {
   /// How far ahead the error is weighed [s]. About 1 s fits people (MacAdam 1981); shorter follows closer and needs
   /// more lateral acceleration, longer cuts corners. 1.0 keeps the lanes of ISO 3888-1 at 80 km/h, 1.3 does not.
@@ -56,11 +56,11 @@ class PreviewDriver : public Driver {
   LinearBicycle<double> bicycle_;
   std::shared_ptr<const Path> path_;
   PreviewDriverOptions options_;
-  // Prediction for the speed `predicted_speed_`, a value a preview point.
+  // Prediction for the speed `predicted_speed_`, a value per preview point.
   double predicted_speed_ = 0.0;
   double step_ = 0.0;
   std::vector<double> from_v_, from_r_, from_steer_, weight_;
-  std::vector<double> history_time_, history_steer_;  // ring buffers of what is asked for, before the delay
+  std::vector<double> history_time_, history_steer_;  // ring buffers of decisions, before the delay
   std::size_t history_begin_ = 0, history_size_ = 0;
   double last_decision_ = -kInfinity;
   double s_ = 0.0;
@@ -77,6 +77,8 @@ struct SpeedControllerOptions {
   double integral = 0.1;          ///< [1/s^2]
   double max_acceleration = 3.0;  ///< of the drive torque [m/s^2]
   double max_deceleration = 6.0;  ///< of the brakes [m/s^2]
+
+  /// @throws InputError naming the option.
   void validate() const;
 };
 

@@ -47,7 +47,7 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
                    {first + 95.0, first + 125.0, right, right + width[2]}}};
   for (Lane& lane : course.lanes) lane = {scale * lane.begin, scale * lane.end, scale * lane.right, scale * lane.left};
   const auto middle = [&](std::size_t i) { return 0.5 * (course.lanes[i].right + course.lanes[i].left); };
-  // Shifts begin and end a little within the lanes, where the room beside the vehicle allows it: a gentler curve. A
+  // Shifts begin and end a little within the lanes, where the lane is wide enough for the vehicle: a gentler curve. A
   // driver who looks ahead rounds it further.
   const double early = 2.0 * scale;
   course.path.append_line((kApproach + 15.0) * scale - early)

@@ -44,6 +44,7 @@ struct LaneCheck {
   double time = 0.0;      ///< of it [s]
   int lane = 0;           ///< 1, 2, 3
 };
+/// By the corners of the body at every sample of the trajectory.
 [[nodiscard]] LaneCheck check_lanes(const VehicleTrajectory& trajectory, const DoubleLaneChange& course,
                                     const BodyOutline& body);
 

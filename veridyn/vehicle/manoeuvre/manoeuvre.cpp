@@ -190,6 +190,11 @@ Manoeuvre sweep_steer(double amplitude, double low, double high, double duration
 }
 
 Manoeuvre random_steer(double amplitude, double low, double high, double duration, std::uint64_t seed, double start) {
+  return random_steer(amplitude, low, high, duration, seed, start, Progress());
+}
+
+Manoeuvre random_steer(double amplitude, double low, double high, double duration, std::uint64_t seed, double start,
+                       const Progress& progress) {
   require_steer(amplitude);
   require_start(start);
   require_positive(low, "low", "Hz");
@@ -209,15 +214,16 @@ Manoeuvre random_steer(double amplitude, double low, double high, double duratio
   constexpr double kFade = 1.0;
   for (std::size_t i = 0; i <= samples; ++i) {
     const double t = duration * static_cast<double>(i) / static_cast<double>(samples);
+    time[i] = start + t;
+    if (progress.interrupted()) continue;
     double sum = 0.0;
     for (int k = first; k <= last; ++k) {
       sum += std::cos(2.0 * kPi * k * t / duration + phase[static_cast<std::size_t>(k - first)]);
     }
-    time[i] = start + t;
     value[i] = sum * smooth(t / kFade) * smooth((duration - t) / kFade);
     peak = std::max(peak, std::abs(value[i]));
   }
-  for (double& one : value) one *= amplitude / peak;
+  for (double& one : value) one *= peak > 0.0 ? amplitude / peak : 0.0;
   Manoeuvre m = with(ManoeuvreKind::kRandomSteer,
                      std::make_unique<SignalDriver>(PiecewiseLinear(std::move(time), std::move(value))),
                      start + duration + 2.0, start, amplitude);
@@ -267,18 +273,20 @@ Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque, P
               end > 0.0 ? end : 20.0, begin, peak);
 }
 
-void add_torques(Manoeuvre& manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque) {
+Manoeuvre with_torques(Manoeuvre manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque) {
   for (const double torque : brake_torque.values()) require(torque >= 0.0, "brake_torque", torque, "N m", ">= 0");
   manoeuvre.driver =
       std::make_unique<TorqueDriver>(std::move(manoeuvre.driver), std::move(drive_torque), std::move(brake_torque));
+  return manoeuvre;
 }
 
-void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context) {
+Manoeuvre with_speed_control(Manoeuvre manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context) {
   for (const double u : speed.values()) require_positive(u, "target_speed", "m/s");
   manoeuvre.speed = speed;
   manoeuvre.driver = std::make_unique<SpeedControlledDriver>(
       std::move(manoeuvre.driver), std::move(speed),
       SpeedControllerOptions{.mass = context.parameters.mass, .wheel_radius = context.wheel_radius});
+  return manoeuvre;
 }
 
 LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context) {
@@ -319,8 +327,7 @@ Manoeuvre constant_radius_circle(const ManoeuvreContext& context, double radius,
   m.kind = ManoeuvreKind::kSteadyStateCircle;
   m.radius = radius;
   m.default_duration = duration;
-  add_speed_control(m, PiecewiseLinear({0.0, duration}, {context.speed, end_speed}), context);
-  return m;
+  return with_speed_control(std::move(m), PiecewiseLinear({0.0, duration}, {context.speed, end_speed}), context);
 }
 
 }  // namespace veridyn::vehicle

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
@@ -17,6 +18,7 @@
 
 namespace veridyn::vehicle {
 
+/// What a drive tests; most are those of a standard.
 enum class ManoeuvreKind {
   kReference,          ///< steer 0 until 2 s, ramp to 5 deg at 3 s, held to 15 s, ramp to 0 at 16 s
   kStepSteer,          ///< ISO 7401: a ramp of `rise_time` to `amplitude`, held
@@ -31,6 +33,7 @@ enum class ManoeuvreKind {
   kFollowPath,         ///< a path from a file or a circle, driven by a preview driver
   kSignal              ///< a recorded or written steering signal
 };
+/// As studies and reports name it.
 [[nodiscard]] std::string_view to_string(ManoeuvreKind kind);
 
 /// A driver and what metrics and reports need to know of the test.
@@ -54,10 +57,13 @@ struct Manoeuvre {
 // Open loop. Angles at the road wheels [rad], times [s], frequencies [Hz]. All throw InputError for amplitudes beyond
 // 90 deg, times and frequencies that are not > 0.
 
+/// 5 deg: that of the published similarity study (see ManoeuvreKind::kReference).
 [[nodiscard]] Manoeuvre reference_manoeuvre();
-/// The ramp crosses half the amplitude at start + rise_time/2. ISO 7401 asks for at most 0.15 s between 10 and 90 %.
+/// The ramp crosses half the amplitude at start + rise_time/2. ISO 7401 allows at most 0.15 s between 10 and 90 %.
 [[nodiscard]] Manoeuvre step_steer(double amplitude, double start = 1.0, double rise_time = 0.1);
+/// `periods` of a sine from `start` on.
 [[nodiscard]] Manoeuvre sine_steer(double amplitude, double frequency, double start = 1.0, int periods = 1);
+/// One period that waits for `dwell` at its second peak.
 [[nodiscard]] Manoeuvre sine_with_dwell(double amplitude, double start = 1.0, double frequency = 0.7,
                                         double dwell = 0.5);
 /// Instantaneous frequency low (high/low)^((t - start)/duration); begins at phase 0, fades out over
@@ -68,9 +74,15 @@ struct Manoeuvre {
 /// of `amplitude`: a stationary band-limited signal without trend.
 [[nodiscard]] Manoeuvre random_steer(double amplitude, double low = 0.1, double high = 4.0, double duration = 60.0,
                                      std::uint64_t seed = 1, double start = 1.0);
+/// The same; the number of cosines grows with the square of the duration, 10 minutes take seconds. Once `progress` is
+/// interrupted the rest of the signal is 0.
+[[nodiscard]] Manoeuvre random_steer(double amplitude, double low, double high, double duration, std::uint64_t seed,
+                                     double start, const Progress& progress);
+/// A ramp to the amplitude at `rate` [rad/s], dwell, a ramp to the opposite one, held for 3 s.
 [[nodiscard]] Manoeuvre fishhook(double amplitude, double rate, double start = 1.0, double dwell = 0.25);
 /// Steer growing at `rate` [rad/s] to `amplitude`.
 [[nodiscard]] Manoeuvre slowly_increasing_steer(double amplitude, double rate, double start = 1.0);
+/// Steer and torques [N m] over time, straight between samples.
 [[nodiscard]] Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque = {},
                                         PiecewiseLinear brake_torque = {});
 
@@ -87,11 +99,11 @@ struct ManoeuvreContext {
 
 // Torques, for models with longitudinal dynamics; whatever steers goes on.
 
-/// Adds drive and brake torques over time [N m]: braking or power off in a turn (ISO 7975, ISO 9816).
+/// A manoeuvre with drive and brake torques over time [N m]: braking or power off in a turn (ISO 7975, ISO 9816).
 /// @throws InputError for a negative brake torque.
-void add_torques(Manoeuvre& manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque);
-/// Drive and brakes hold a speed over time [m/s] (`SpeedControlledDriver`).
-void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context);
+[[nodiscard]] Manoeuvre with_torques(Manoeuvre manoeuvre, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque);
+/// A manoeuvre in which drive and brakes hold a speed over time [m/s] (`SpeedControlledDriver`).
+[[nodiscard]] Manoeuvre with_speed_control(Manoeuvre manoeuvre, PiecewiseLinear speed, const ManoeuvreContext& context);
 
 /// What a driver expects of the vehicle. @throws InputError when the speed is not > 0.
 [[nodiscard]] LinearBicycle<double> expected_bicycle(const ManoeuvreContext& context);
@@ -101,6 +113,7 @@ void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const Manoeu
 /// `vehicle_width` 0: 7/6 of the track.
 [[nodiscard]] Manoeuvre double_lane_change(const ManoeuvreContext& context, double vehicle_width = 0.0,
                                            double course_scale = 1.0, const PreviewDriverOptions& options = {});
+/// From the beginning of the path, moved to the origin along x; ends after its length at the speed of the context.
 [[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
                                     const PreviewDriverOptions& options = {});
 /// A circle of constant radius (negative: to the right) on which the speed grows from `context.speed` to `end_speed`
@@ -125,12 +138,13 @@ void add_speed_control(Manoeuvre& manoeuvre, PiecewiseLinear speed, const Manoeu
 ///   `drive_torque`, `brake_torque` [N m]: a number, or as many as there are in `torque_time` [s], straight between.
 /// - drivers of both: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
 /// - signal: `file` (CSV with time[s], steer[rad], and optionally drive_torque[N m], brake_torque[N m]) or arrays
-/// `time`
-///   and `steer`.
+///   `time` and `steer`.
 ///
-/// Keys that other readers take from `[drive]` (speed, duration, step, ...) are left to them.
+/// Keys that other readers take from `[drive]` (speed, duration, step, ...) are left to them. An interrupted `progress`
+/// ends the preparation of a random steer early.
 /// @throws InputError with file, line and key: unknown manoeuvres with the nearest name, steer beyond 90 deg, a speed
 /// that is not > 0.
-[[nodiscard]] Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context);
+[[nodiscard]] Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context,
+                                       const Progress& progress);
 
 }  // namespace veridyn::vehicle

@@ -37,7 +37,7 @@ PiecewiseLinear column(const io::Table& table, std::string_view name, std::strin
   }
 }
 
-/// A torque that is one number or one a moment of `torque_time`.
+/// A torque that is one number or one per moment of `torque_time`.
 PiecewiseLinear read_torque(const StudyTable& drive, const char* key) {
   if (!drive.has(key)) return {};
   if (!drive.is_array(key)) return PiecewiseLinear(drive.number(key, "N m"));
@@ -50,18 +50,24 @@ PiecewiseLinear read_torque(const StudyTable& drive, const char* key) {
   }
 }
 
-/// What drives and brakes, beside the steering.
-void read_longitudinal(Manoeuvre& manoeuvre, const StudyTable& drive, const ManoeuvreContext& context) {
+/// The manoeuvre with what drives and brakes.
+Manoeuvre with_longitudinal(Manoeuvre manoeuvre, const StudyTable& drive, const ManoeuvreContext& context) {
   const bool hold = drive.flag_or("hold_speed", false);
   const bool torques = drive.has("drive_torque") || drive.has("brake_torque");
   for (const char* key : {"hold_speed", "target_speed", "drive_torque", "brake_torque"}) {
     if (drive.has(key) && !drive.flag_or("longitudinal", false)) drive.fail(key, "needs longitudinal = true");
   }
-  if (torques) add_torques(manoeuvre, read_torque(drive, "drive_torque"), read_torque(drive, "brake_torque"));
-  if (hold || drive.has("target_speed")) {
-    if (!manoeuvre.speed.empty()) drive.fail(hold ? "hold_speed" : "target_speed", "this manoeuvre has its own speed");
-    add_speed_control(manoeuvre, PiecewiseLinear(drive.positive_or("target_speed", "m/s", context.speed)), context);
+  if (torques) {
+    manoeuvre =
+        with_torques(std::move(manoeuvre), read_torque(drive, "drive_torque"), read_torque(drive, "brake_torque"));
   }
+  if (hold || drive.has("target_speed")) {
+    if (!manoeuvre.speed.empty())
+      drive.fail(hold ? "hold_speed" : "target_speed", "this manoeuvre sets the speed itself");
+    return with_speed_control(std::move(manoeuvre),
+                              PiecewiseLinear(drive.positive_or("target_speed", "m/s", context.speed)), context);
+  }
+  return manoeuvre;
 }
 
 Manoeuvre read_signal(const StudyTable& drive) {
@@ -110,7 +116,8 @@ Manoeuvre read_lane_change(const StudyTable& drive, const ManoeuvreContext& cont
   return m;
 }
 
-Manoeuvre read_one(const std::string& name, const StudyTable& drive, const ManoeuvreContext& context) {
+Manoeuvre read_one(const std::string& name, const StudyTable& drive, const ManoeuvreContext& context,
+                   const Progress& progress) {
   if (name == "reference") return reference_manoeuvre();
   if (name == "signal") return read_signal(drive);
   if (name == "double lane change") return read_lane_change(drive, context);
@@ -135,12 +142,12 @@ Manoeuvre read_one(const std::string& name, const StudyTable& drive, const Manoe
   const double length = drive.positive_or("length", "s", 60.0);
   if (name == "sweep") return sweep_steer(amplitude, low, high, length, start);
   const auto seed = static_cast<std::uint64_t>(drive.integer_or("seed", static_cast<long long>(context.seed)));
-  return random_steer(amplitude, low, high, length, seed, start);
+  return random_steer(amplitude, low, high, length, seed, start, progress);
 }
 
 }  // namespace
 
-Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context) {
+Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context, const Progress& progress) {
   static const std::array<std::string, 12> names{"reference",          "step steer",      "sine",
                                                  "continuous sine",    "sine with dwell", "sweep",
                                                  "random steer",       "fishhook",        "steady-state circle",
@@ -151,11 +158,9 @@ Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& contex
   }
   if (!(context.speed > 0.0)) drive.fail("speed", fmt::format("= {:g} m/s must be > 0", context.speed));
   try {
-    Manoeuvre manoeuvre = read_one(name, drive, context);
-    read_longitudinal(manoeuvre, drive, context);
-    return manoeuvre;
+    return with_longitudinal(read_one(name, drive, context, progress), drive, context);
   } catch (const InputError& wrong) {
-    // What the library refuses is told with the place of the key that asked for it, where it can be known.
+    // A refusal by the library names the key behind it, where that can be known.
     if (wrong.place() != "manoeuvre" && wrong.place() != "driver" && wrong.place() != "signal") throw;
     const std::string_view what = std::string_view(wrong.what()).substr(wrong.place().size() + 2);
     std::string key(what.substr(0, what.find(' ')));

@@ -49,6 +49,7 @@ class Path {
   /// @throws InputError for fewer, unequal numbers, or neighbours that coincide.
   [[nodiscard]] static Path through(std::span<const double> x, std::span<const double> y);
 
+  /// [m]
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool closed() const { return closed_; }
   /// At arc length s [m], to about 1e-10 of a piece's length. Does not allocate.
@@ -81,6 +82,7 @@ class Path {
 /// knots are joined by a spline). Heights are ignored.
 /// @throws InputError with file and line.
 [[nodiscard]] Path read_path(const std::filesystem::path& file);
+/// The same from a text; `source` names it in errors.
 [[nodiscard]] Path parse_bezier_path(std::string_view text, const std::string& source);
 
 }  // namespace veridyn::vehicle

@@ -22,12 +22,14 @@ struct LinearBicycle {
   Scalar u{0.0};
 
   [[nodiscard]] Scalar wheelbase() const { return a + b; }
+  /// Matrices of x' = A x + B delta, y = C x + D delta.
   [[nodiscard]] Eigen::Matrix<Scalar, 2, 2> A() const;
   [[nodiscard]] Eigen::Matrix<Scalar, 2, 1> B() const;
   [[nodiscard]] Eigen::Matrix<Scalar, 3, 2> C() const;
   [[nodiscard]] Eigen::Matrix<Scalar, 3, 1> D() const;
 };
 
+/// The linear bicycle about straight running at the speed u [m/s].
 template <typename Scalar, typename Tyre>
 [[nodiscard]] LinearBicycle<Scalar> linearise(const BicycleModel<Scalar, Tyre>& model, const Scalar& u) {
   const VehicleParameters<Scalar>& p = model.parameters;
@@ -63,11 +65,13 @@ struct BicycleCharacteristics {
   Scalar bandwidth{0.0};
   Scalar peak_frequency{0.0};  ///< of the yaw rate gain [rad/s]; 0 when it falls from the beginning
   Scalar peak_ratio{0.0};      ///< its height over the steady value, >= 1
-  /// 1/omega where the phase of the yaw rate is -45 deg: the time constant of a first-order lag alike [s].
+  /// 1/omega where the phase of the yaw rate is -45 deg: the time constant of a first-order lag with that phase [s].
   Scalar equivalent_time{0.0};
 };
+/// How many of them there are.
 inline constexpr std::size_t kBicycleCharacteristics = 16;
 
+/// The characteristics of a linear bicycle.
 template <typename Scalar>
 [[nodiscard]] BicycleCharacteristics<Scalar> characteristics(const LinearBicycle<Scalar>& bicycle);
 
@@ -76,7 +80,9 @@ struct CharacteristicField {
   const char* name;
   const char* unit;
 };
+/// Of all characteristics.
 extern const std::array<CharacteristicField, kBicycleCharacteristics> kBicycleCharacteristicFields;
+/// The characteristics in the order of `kBicycleCharacteristicFields`.
 template <typename Scalar>
 [[nodiscard]] std::array<Scalar, kBicycleCharacteristics> to_array(const BicycleCharacteristics<Scalar>& c) {
   return {
@@ -116,6 +122,7 @@ struct BicycleResponse {
   std::complex<double> lateral_acceleration;  ///< [m/s^2/rad]
   std::complex<double> sideslip;              ///< [1]
 };
+/// At one frequency [Hz].
 [[nodiscard]] BicycleResponse frequency_response(const LinearBicycle<double>& bicycle, double frequency_Hz);
 /// At `count` frequencies in equal ratios from `low_Hz` to `high_Hz`.
 [[nodiscard]] std::vector<BicycleResponse> frequency_response(const LinearBicycle<double>& bicycle, double low_Hz,
@@ -125,6 +132,7 @@ struct BicycleResponse {
 struct BicycleStepResponse {
   double v = 0.0, r = 0.0, lateral_acceleration = 0.0;
 };
+/// After a step of `steer` [rad], at `time` [s].
 [[nodiscard]] BicycleStepResponse step_response(const LinearBicycle<double>& bicycle, double steer, double time);
 
 // ---- Templates ----
@@ -161,7 +169,7 @@ namespace internal {
 /// Peak, bandwidth and equivalent time of (1 + T s)/(1 + 2 zeta s/w + s^2/w^2), all from closed forms; x = frequency
 /// squared.
 template <typename Scalar>
-void yaw_frequency_characteristics(BicycleCharacteristics<Scalar>& c) {
+BicycleCharacteristics<Scalar> with_yaw_frequencies(BicycleCharacteristics<Scalar> c) {
   using std::sqrt;
   const Scalar w2 = c.natural_frequency * c.natural_frequency;
   const Scalar T2 = c.yaw_rate_zero_time * c.yaw_rate_zero_time;
@@ -199,7 +207,7 @@ void yaw_frequency_characteristics(BicycleCharacteristics<Scalar>& c) {
   while (value(high, T, L, square) > 0.0 && high < 1e9) high *= 2.0;
   if (!(high < 1e9)) {
     c.equivalent_time = Scalar(0.0);
-    return;
+    return c;
   }
   for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
     const double middle = 0.5 * (low + high);
@@ -208,6 +216,7 @@ void yaw_frequency_characteristics(BicycleCharacteristics<Scalar>& c) {
   const double slope = -2.0 * low / square + 2.0 * L * T * low + T - 3.0 * T * low * low / square - L;
   const Scalar w = low - value(Scalar(low), c.yaw_rate_zero_time, lag, w2) / slope;
   c.equivalent_time = 1.0 / w;
+  return c;
 }
 
 }  // namespace internal
@@ -235,11 +244,10 @@ BicycleCharacteristics<Scalar> characteristics(const LinearBicycle<Scalar>& s) {
   if (determinant > 0.0) {
     c.natural_frequency = sqrt(determinant);
     c.damping_ratio = -trace / (2.0 * c.natural_frequency);
-    internal::yaw_frequency_characteristics(c);
-  } else {
-    const Scalar none(kNaN);
-    c.natural_frequency = c.damping_ratio = c.bandwidth = c.peak_frequency = c.peak_ratio = c.equivalent_time = none;
+    return internal::with_yaw_frequencies(c);
   }
+  const Scalar none(kNaN);
+  c.natural_frequency = c.damping_ratio = c.bandwidth = c.peak_frequency = c.peak_ratio = c.equivalent_time = none;
   return c;
 }
 

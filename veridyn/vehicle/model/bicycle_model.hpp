@@ -15,7 +15,7 @@ enum class BicycleGeometry {
   kSmallAngles  ///< slip = (v + a r)/u, cos(delta) = 1: with linear tyres the linear bicycle model
 };
 
-/// What the model says about one moment.
+/// Rates and forces at one moment.
 template <typename Scalar>
 struct BicycleRates {
   Scalar dv{0.0};                      ///< [m/s^2]
@@ -31,7 +31,7 @@ struct BicycleRates {
 ///     alpha_f = delta - atan((v + a r)/u),         alpha_r = -atan((v - b r)/u)
 ///
 /// with tyre forces at the static loads and zero slip ratio (Milliken & Milliken 1995, chapter 5). No load transfer:
-/// two tyres of an axle are alike. u must be > 0.
+/// two tyres of an axle are equal. u must be > 0.
 template <typename Scalar, typename Tyre>
 struct BicycleModel {
   VehicleParameters<Scalar> parameters;
@@ -40,6 +40,7 @@ struct BicycleModel {
   double gravity = kGravity;  ///< for the static loads [m/s^2]
   BicycleGeometry geometry = BicycleGeometry::kExact;
 
+  /// At lateral velocity v and yaw rate r of the centre of gravity, steer of the road wheels [rad], forward speed u.
   [[nodiscard]] BicycleRates<Scalar> rates(const Scalar& v, const Scalar& r, const Scalar& steer,
                                            const Scalar& u) const {
     using std::atan;

@@ -18,7 +18,7 @@ struct BuiltinVehicle {
 
 /// - "reference": the full-size car of the reference manoeuvre, 1100 kg at 20 m/s;
 /// - "reference_1to5": the published model of one fifth its size, 8.8 kg at 4 m/s, with its rounded tyre stiffnesses
-///   (100 and 200 N/rad where exact similarity asks for 96 and 192) and roll inertia.
+///   (100 and 200 N/rad where exact similarity needs 96 and 192) and roll inertia.
 [[nodiscard]] std::span<const BuiltinVehicle> builtin_vehicles();
 
 /// @throws InputError at `place` with the nearest name.

@@ -18,7 +18,7 @@ struct Controls {
   double brake_torque = 0.0;  ///< of all wheels together, >= 0 [N m]
 };
 
-/// Somebody or something that drives: a recorded signal, a manoeuvre, a driver model.
+/// What drives a vehicle: a recorded signal, a manoeuvre, a driver model.
 class Driver {
  public:
   virtual ~Driver() = default;

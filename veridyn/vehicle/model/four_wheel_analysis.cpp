@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
@@ -15,8 +17,8 @@ struct NamedShare {
   double energy;
 };
 
-/// What moves most in an eigenvector.
-void name(const LinearFourWheel& model, const Eigen::VectorXcd& vector, FourWheelMode& mode) {
+/// What moves most in an eigenvector, and its share.
+std::pair<std::string, double> main_motion(const LinearFourWheel& model, const Eigen::VectorXcd& vector) {
   const auto component = [&](Eigen::Index state) -> std::complex<double> {
     const auto found = std::ranges::find(model.states, state);
     return vector(found - model.states.begin());
@@ -41,19 +43,15 @@ void name(const LinearFourWheel& model, const Eigen::VectorXcd& vector, FourWhee
       lag += std::norm(vector(static_cast<Eigen::Index>(i)));
     }
   }
-  if (lag > 0.999 * vector.squaredNorm()) {
-    mode.name = "tyre lag";
-    mode.share = lag / vector.squaredNorm();
-    return;
-  }
+  if (lag > 0.999 * vector.squaredNorm()) return {"tyre lag", lag / vector.squaredNorm()};
   const NamedShare most = *std::ranges::max_element(shares, {}, &NamedShare::energy);
-  mode.name = most.name;
-  mode.share = all > 0.0 ? most.energy / all : 0.0;
-  if (mode.name.ends_with("wheel hop")) {
-    const Eigen::Index left = kWheelHeightRate + (mode.name.starts_with("front") ? 0 : 2);
+  std::string name = most.name;
+  if (name.ends_with("wheel hop")) {
+    const Eigen::Index left = kWheelHeightRate + (name.starts_with("front") ? 0 : 2);
     const double together = (component(left) * std::conj(component(left + 1))).real();
-    mode.name += together > 0.0 ? ", in phase" : ", opposed";
+    name += together > 0.0 ? ", in phase" : ", opposed";
   }
+  return {std::move(name), all > 0.0 ? most.energy / all : 0.0};
 }
 
 }  // namespace
@@ -94,7 +92,7 @@ std::vector<FourWheelMode> modes(const LinearFourWheel& model) {
     mode.damping_ratio = size > 0.0 ? -value.real() / size : 0.0;
     mode.oscillates = value.imag() > 0.0;
     mode.stable = value.real() < 0.0;
-    name(model, eigen.vectors.col(i), mode);
+    std::tie(mode.name, mode.share) = main_motion(model, eigen.vectors.col(i));
     list.push_back(mode);
   }
   std::ranges::stable_sort(list, {}, &FourWheelMode::frequency_Hz);

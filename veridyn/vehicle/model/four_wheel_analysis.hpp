@@ -41,6 +41,7 @@ struct FourWheelResponse {
   std::complex<double> sideslip;              ///< [1]
   std::complex<double> roll;                  ///< [1]
 };
+/// Steady response of a stable model; undefined on an eigenvalue.
 [[nodiscard]] FourWheelResponse frequency_response(const LinearFourWheel& model, double frequency_Hz);
 
 /// By central differences of 1e-6 (m, rad, m/s, rad/s): relative errors of 1e-9. Longitudinal dynamics are left out.

@@ -18,7 +18,7 @@
 
 namespace veridyn::vehicle {
 
-/// Where each state stands in a `FourWheelState`. Per-wheel states follow one another in wheel order.
+/// Where each state is in a `FourWheelState`. Per-wheel states follow one another in wheel order.
 enum FourWheelIndex : Eigen::Index {
   kX,                                   ///< centre of gravity, earth axes [m]
   kY,                                   ///< [m]
@@ -39,6 +39,7 @@ enum FourWheelIndex : Eigen::Index {
   kLaggedSlip = kWheelSpin + 4,         ///< 4: slip angles [rad]; at rest without relaxation length
   kFourWheelStates = kLaggedSlip + 4
 };
+/// State vector of the model; `FourWheelIndex` names its entries.
 template <typename Scalar>
 using FourWheelState = Eigen::Matrix<Scalar, kFourWheelStates, 1>;
 
@@ -52,16 +53,18 @@ enum class FourWheelConvention {
   kSource
 };
 
-/// Below these speeds of a wheel [m/s] slip is what it would be at them: slips of a standing wheel have no meaning.
+/// Below this speed of a wheel [m/s] the slip angle is what it would be at it: that of a standing wheel has no meaning.
 inline constexpr double kLeastSpeedOfAngle = 1e-6;
+/// The same for the slip ratio [m/s].
 inline constexpr double kLeastSpeedOfRatio = 0.5;
 
+/// What of the four-wheel model can be chosen.
 struct FourWheelOptions {
   FourWheelConvention convention = FourWheelConvention::kFirstPrinciples;
   /// kSmallAngles: slip angle delta - V_y/V_x and forces not turned by delta.
   BicycleGeometry geometry = BicycleGeometry::kExact;
   double gravity = kGravity;  ///< [m/s^2]
-  /// 0: both front wheels steered alike; 1: Ackermann, their axes meet on the line of the rear axle. Between: linear.
+  /// 0: both front wheels steered equally; 1: Ackermann, their axes meet on the line of the rear axle. Between: linear.
   double ackermann = 0.0;
   double camber_per_roll = 0.0;  ///< inclination of the wheels as a share of the body's roll
   /// Distance rolled in which the slip angle follows by 63 % [m]; 0: at once.
@@ -81,7 +84,7 @@ struct WheelControls {
   WheelArray<double> drive, brake;  ///< torques [N m]
 };
 
-/// What the model says about one moment.
+/// Rates and forces at one moment.
 template <typename Scalar>
 struct FourWheelRates {
   FourWheelState<Scalar> derivative;
@@ -89,7 +92,7 @@ struct FourWheelRates {
   Scalar lateral_acceleration{0.0};       ///< v' + r u [m/s^2]
   /// Constant speed only: the force that keeps u as it is, along the vehicle, at the road [N]; 0 otherwise.
   Scalar holding_force{0.0};
-  WheelArray<Scalar> slip_angle;  ///< that the tyre feels [rad]
+  WheelArray<Scalar> slip_angle;  ///< at which the tyre works [rad]
   WheelArray<Scalar> slip_ratio;
   WheelArray<Scalar> Fx, Fy;                ///< wheel axes [N]
   WheelArray<Scalar> Fz;                    ///< normal force, static load included; 0 off the ground [N]
@@ -103,7 +106,7 @@ struct FourWheelRates {
 ///
 /// Our convention (`FourWheelConvention::kFirstPrinciples`)
 /// - `mass` is the whole vehicle: lateral, longitudinal and yaw motion use it, and I_z. The sprung mass
-///   m_s = m - 4 M_w moves in heave, with I_x and I_y about its own centre of gravity. All mass is at one height c.
+///   m_s = m - 4 M_w moves in heave, with I_x and I_y about its centre of gravity. All mass is at one height c.
 ///   The wheels' masses sit at the axles, so the sprung centre of gravity is x_s = 2 M_w (b - a)/m_s ahead of the
 ///   whole one: the arms x_i of the corner heights count from there. Static tyre loads are m g b/(2 L), m g a/(2 L).
 /// - Exact planar motion, small roll and pitch. Height of a corner to second order, less its rest,
@@ -117,7 +120,7 @@ struct FourWheelRates {
 ///   neglected.
 /// - At constant speed the force that holds u acts at the road too and pitches the body.
 ///
-/// Left and right are treated alike to the last bit: mirrored steering, road and state give mirrored rates.
+/// Left and right are treated equally to the last bit: mirrored steering, road and state give mirrored rates.
 /// `tyres[i]` serves wheel i (side-dependent tyres come in mirrored copies). Usable with double and ceres::Jet; the
 /// functions do not allocate.
 template <typename Scalar, typename Tyre>
@@ -140,7 +143,7 @@ class FourWheelModel {
   }
 
   /// Derivative and forces at `state` over a road of the heights `road` under the wheels. (Its definition is flattened:
-  /// compilers give up inlining small array operations where many tyres are compiled at once, and lose half the speed.)
+  /// compilers give up inlining small array operations where many tyres are compiled at once, which halves the speed.)
   void rates(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
              FourWheelRates<Scalar>& out) const;
 
@@ -155,6 +158,28 @@ class FourWheelModel {
   [[nodiscard]] const WheelArray<Scalar>& rest_loads() const { return rest_; }
 
  private:
+  using Wheels = WheelArray<Scalar>;
+  /// What the rates are made of: how the tyres slip, what pushes up, and what the tyres do in the plane.
+  struct Slips {
+    Wheels angle, ratio;
+  };
+  struct VerticalForces {
+    Wheels lift;  ///< of the suspension on the body, less its share at rest [N]
+    Wheels load;  ///< of the tyres [N]
+  };
+  struct PlaneForces {
+    Wheels Fx;    ///< in wheel axes [N]
+    Wheels X, Y;  ///< in vehicle axes [N]
+  };
+  /// Each also fills what it knows of `out`.
+  Slips slips(const State& s, const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
+  VerticalForces vertical_forces(const State& s, const PerWheel<double>& road, FourWheelRates<Scalar>& out) const;
+  PlaneForces plane_forces(const Slips& slips, const Wheels& load, const Scalar& camber,
+                           const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
+  /// Rates of the wheels' spins from what turns them.
+  void spin_up(const State& s, const WheelControls<Scalar>& controls, const Wheels& Fx, const Wheels& load,
+               FourWheelRates<Scalar>& out) const;
+
   VehicleParameters<Scalar> p_;
   PerWheel<Tyre> tyres_;
   FourWheelOptions options_;
@@ -252,22 +277,11 @@ template <typename Scalar, typename Tyre>
 }
 
 template <typename Scalar, typename Tyre>
-[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
-                                                          const PerWheel<double>& road,
-                                                          FourWheelRates<Scalar>& out) const {
-  using std::sqrt;
-  using Wheels = WheelArray<Scalar>;
-  const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
-  State& d = out.derivative;
-  const Scalar u = s(kU), v = s(kV), r = s(kR);
-  const Scalar roll = s(kRoll), pitch = s(kPitch);
-  const Scalar heave_rate = s(kHeaveRate), roll_rate = s(kRollRate), pitch_rate = s(kPitchRate);
-  const Wheels height = s.template segment<4>(kWheelHeight).array();
-  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
-
-  // Slips: the velocity of the contact points in vehicle axes, then in wheel axes.
-  const Wheels contact_x = (u - contact_height_ * pitch_rate) - r * y_;
-  const Wheels contact_y = (v + contact_height_ * roll_rate) + r * x_;
+auto FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Scalar>& controls,
+                                         FourWheelRates<Scalar>& out) const -> Slips {
+  // The velocity of the contact points in vehicle axes, then in wheel axes.
+  const Wheels contact_x = (s(kU) - contact_height_ * s(kPitchRate)) - s(kR) * y_;
+  const Wheels contact_y = (s(kV) + contact_height_ * s(kRollRate)) + s(kR) * x_;
   out.contact_x = contact_x;
   out.contact_y = contact_y;
   const Wheels along = controls.cos * contact_x + controls.sin * contact_y;
@@ -286,17 +300,25 @@ template <typename Scalar, typename Tyre>
     slip_angle = lagged;
   }
   slip_ratio.setConstant(Scalar(0.0));
-  const Wheels spin = s.template segment<4>(kWheelSpin).array();
   if (options_.longitudinal) {
+    const Wheels spin = s.template segment<4>(kWheelSpin).array();
     slip_ratio = (Scalar(options_.longitudinal->wheel_radius) * spin - along) / speed.max(Scalar(kLeastSpeedOfRatio));
   }
   out.slip_angle = slip_angle;
   out.slip_ratio = slip_ratio;
-  d.template segment<4>(kLaggedSlip) = lag.matrix();
+  out.derivative.template segment<4>(kLaggedSlip) = lag.matrix();
+  return {slip_angle, slip_ratio};
+}
 
-  // Suspension and tyres up and down, as deviations from rest.
+template <typename Scalar, typename Tyre>
+auto FourWheelModel<Scalar, Tyre>::vertical_forces(const State& s, const PerWheel<double>& road,
+                                                   FourWheelRates<Scalar>& out) const -> VerticalForces {
+  // As deviations from rest.
+  const Scalar roll = s(kRoll), pitch = s(kPitch), roll_rate = s(kRollRate), pitch_rate = s(kPitchRate);
+  const Wheels height = s.template segment<4>(kWheelHeight).array();
+  const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
   const Scalar body = s(kHeave) + 0.5 * contact_height_ * (roll * roll + pitch * pitch);
-  const Scalar body_rate = heave_rate + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
+  const Scalar body_rate = s(kHeaveRate) + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
   const Wheels travel = height - ((body - pitch * arm_) + roll * y_);
   const Scalar bar_f = bar_[0] * (travel[0] - travel[1]), bar_r = bar_[1] * (travel[2] - travel[3]);
   const Wheels bars(bar_f, -bar_f, bar_r, -bar_r);
@@ -304,47 +326,73 @@ template <typename Scalar, typename Tyre>
       spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_)) + bars;
   const Wheels ground{{Scalar(road[0]), Scalar(road[1]), Scalar(road[2]), Scalar(road[3])}};
   Wheels normal = tyre_ * (ground - height);
-  if (ours) normal = normal.max(-rest_);
-  const Wheels Fz = (rest_ + normal).max(Scalar(0.0));
+  if (options_.convention == FourWheelConvention::kFirstPrinciples) normal = normal.max(-rest_);
+  const Wheels load = (rest_ + normal).max(Scalar(0.0));
   out.suspension_travel = travel;
   out.suspension_force = lift;
-  out.Fz = Fz;
-  d.template segment<4>(kWheelHeight) = height_rate.matrix();
-  d.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
-  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
-  const Scalar lift_rolls = sum_of_wheels<Scalar>(y_ * lift), lift_pitches = sum_of_wheels<Scalar>(arm_ * lift);
+  out.Fz = load;
+  out.derivative.template segment<4>(kWheelHeight) = height_rate.matrix();
+  out.derivative.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
+  return {lift, load};
+}
 
-  // Forces of the tyres, in wheel axes, then in vehicle axes.
-  const Scalar camber = options_.camber_per_roll * roll;
+template <typename Scalar, typename Tyre>
+auto FourWheelModel<Scalar, Tyre>::plane_forces(const Slips& slips, const Wheels& load, const Scalar& camber,
+                                                const WheelControls<Scalar>& controls,
+                                                FourWheelRates<Scalar>& out) const -> PlaneForces {
   const auto force = [&](std::size_t wheel) {
     const auto w = static_cast<Eigen::Index>(wheel);
-    return tyres_[wheel].forces(Fz[w], slip_ratio[w], slip_angle[w], camber);
+    return tyres_[wheel].forces(load[w], slips.ratio[w], slips.angle[w], camber);
   };
   const TyreForces<Scalar> fl = force(0), fr = force(1), rl = force(2), rr = force(3);
   const Wheels Fx(fl.Fx, fr.Fx, rl.Fx, rr.Fx), Fy(fl.Fy, fr.Fy, rl.Fy, rr.Fy);
   out.Fx = Fx;
   out.Fy = Fy;
-  const Wheels X = controls.cos * Fx - controls.sin * Fy;
-  const Wheels Y = controls.sin * Fx + controls.cos * Fy;
+  return {Fx, controls.cos * Fx - controls.sin * Fy, controls.sin * Fx + controls.cos * Fy};
+}
+
+template <typename Scalar, typename Tyre>
+void FourWheelModel<Scalar, Tyre>::spin_up(const State& s, const WheelControls<Scalar>& controls, const Wheels& Fx,
+                                           const Wheels& load, FourWheelRates<Scalar>& out) const {
+  auto rate = out.derivative.template segment<4>(kWheelSpin);
+  rate.setConstant(Scalar(0.0));
+  if (!options_.longitudinal) return;
+  const LongitudinalParameters& l = *options_.longitudinal;
+  const Wheels spin = s.template segment<4>(kWheelSpin).array();
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    // Coulomb friction: against the spin, and at rest as much as it takes to stay there.
+    const Scalar turning = controls.drive[i] - l.wheel_radius * Fx[i];
+    const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * load[i];
+    const bool rests = !(spin[i] > 0.0) && !(spin[i] < 0.0);
+    if (spin[i] > 0.0 || (rests && turning > friction)) rate[i] = (turning - friction) / l.wheel_inertia;
+    if (spin[i] < 0.0 || (rests && turning < -friction)) rate[i] = (turning + friction) / l.wheel_inertia;
+  }
+}
+
+template <typename Scalar, typename Tyre>
+[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
+                                                          const PerWheel<double>& road,
+                                                          FourWheelRates<Scalar>& out) const {
+  using std::sqrt;
+  const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
+  State& d = out.derivative;
+  const Scalar u = s(kU), v = s(kV), r = s(kR), roll = s(kRoll), pitch = s(kPitch);
+  const Slips slip = slips(s, controls, out);
+  const VerticalForces vertical = vertical_forces(s, road, out);
+  const Wheels& lift = vertical.lift;
+  const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
+  const Scalar lift_rolls = sum_of_wheels<Scalar>(y_ * lift), lift_pitches = sum_of_wheels<Scalar>(arm_ * lift);
+  const auto [Fx, X, Y] = plane_forces(slip, vertical.load, Scalar(options_.camber_per_roll * roll), controls, out);
   const Scalar sum_X = sum_of_wheels<Scalar>(X), sum_Y = sum_of_wheels<Scalar>(Y);
+  spin_up(s, controls, Fx, vertical.load, out);
 
   // The body in the plane.
   Scalar longitudinal_acceleration, holding_force(0.0), pitching_force = sum_X, u_rate(0.0);
-  auto spin_up = d.template segment<4>(kWheelSpin);
-  spin_up.setConstant(Scalar(0.0));
   if (options_.longitudinal) {
     const LongitudinalParameters& l = *options_.longitudinal;
     const Scalar drag = 0.5 * l.air_density * l.drag_area * u * (u < 0.0 ? Scalar(-u) : u);
     longitudinal_acceleration = (sum_X - drag) * per_mass_ - gravity_along_;
     u_rate = longitudinal_acceleration + r * v;
-    for (Eigen::Index i = 0; i < 4; ++i) {
-      // Coulomb friction: against the spin, and at rest as much as it takes to stay there.
-      const Scalar turning = controls.drive[i] - l.wheel_radius * Fx[i];
-      const Scalar friction = controls.brake[i] + l.rolling_resistance * l.wheel_radius * Fz[i];
-      const bool rests = !(spin[i] > 0.0) && !(spin[i] < 0.0);
-      if (spin[i] > 0.0 || (rests && turning > friction)) spin_up[i] = (turning - friction) / l.wheel_inertia;
-      if (spin[i] < 0.0 || (rests && turning < -friction)) spin_up[i] = (turning + friction) / l.wheel_inertia;
-    }
   } else {
     longitudinal_acceleration = -(r * v);
     holding_force = p_.mass * longitudinal_acceleration - sum_X;
@@ -354,7 +402,6 @@ template <typename Scalar, typename Tyre>
   out.longitudinal_acceleration = longitudinal_acceleration;
   out.lateral_acceleration = lateral_acceleration;
   out.holding_force = holding_force;
-  const Scalar r_rate = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
   const SineCosine<Scalar> yaw = sine_cosine<Scalar>(s(kYaw));
 
   // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
@@ -367,10 +414,10 @@ template <typename Scalar, typename Tyre>
   d(kYaw) = r;
   d(kU) = u_rate;
   d(kV) = lateral_acceleration - r * u;
-  d(kR) = r_rate;
-  d(kHeave) = heave_rate;
-  d(kRoll) = roll_rate;
-  d(kPitch) = pitch_rate;
+  d(kR) = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
+  d(kHeave) = s(kHeaveRate);
+  d(kRoll) = s(kRollRate);
+  d(kPitch) = s(kPitchRate);
   d(kHeaveRate) = sum_lift * per_heaving_mass_;
   d(kRollRate) = roll_moment * per_I_x_;
   d(kPitchRate) = pitch_moment * per_I_y_;

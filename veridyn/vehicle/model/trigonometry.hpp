@@ -8,10 +8,11 @@
 
 #include "veridyn/vehicle/model/wheel_arrays.hpp"
 
-/// Angles of vehicles are many and mostly small: their functions, inline, for the hot loops. Polynomials are our own
+/// Angles of vehicles are many and mostly small: their functions, inline, for the hot loops. Polynomials are ours
 /// Chebyshev fits in 50 digits, with errors below 2e-17.
 namespace veridyn::vehicle {
 
+/// Sine and cosine of one angle.
 template <typename Scalar>
 struct SineCosine {
   Scalar sin, cos;

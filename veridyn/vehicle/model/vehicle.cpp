@@ -14,7 +14,11 @@
 namespace veridyn::vehicle {
 namespace {
 
-using Given = std::array<bool, kVehicleFields.size()>;
+/// A vehicle while it is read, and which of its parameters are given.
+struct KnownVehicle {
+  Vehicle vehicle;
+  std::array<bool, kVehicleFields.size()> given{};
+};
 
 std::size_t index_of(std::string_view name) {
   const auto found =
@@ -22,7 +26,7 @@ std::size_t index_of(std::string_view name) {
   return static_cast<std::size_t>(found - kVehicleFields.begin());
 }
 
-/// What a number typically is, where nothing that is asked depends on it.
+/// Typical values, for numbers on which no result depends.
 double typical(const VehicleParameters<double>& p, std::size_t field) {
   const double L = p.wheelbase(), m = p.mass;
   const PerWheel<double> load = static_loads(p, kGravity);
@@ -58,8 +62,9 @@ std::vector<std::string_view> needed(VehicleNeeds needs) {
   return names;
 }
 
-/// Reads what the table gives of the parameters; both axles by one key first.
-void read_parameters(const StudyTable& table, VehicleParameters<double>& p, Given& given) {
+/// With the parameters that the table gives; both axles by one key first.
+KnownVehicle with_parameters(const StudyTable& table, KnownVehicle known) {
+  VehicleParameters<double>& p = known.vehicle.parameters;
   constexpr std::array<std::array<std::string_view, 3>, 5> kBoth{{{"track", "track_f", "track_r"},
                                                                   {"K_s", "K_sf", "K_sr"},
                                                                   {"C_s", "C_sf", "C_sr"},
@@ -70,14 +75,15 @@ void read_parameters(const StudyTable& table, VehicleParameters<double>& p, Give
     for (const std::string_view name : {front, rear}) {
       const std::size_t i = index_of(name);
       field_of(p, i) = table.number(both, kVehicleFields[i].unit);
-      given[i] = true;
+      known.given[i] = true;
     }
   }
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     if (!table.has(kVehicleFields[i].name)) continue;
     field_of(p, i) = table.number(kVehicleFields[i].name, kVehicleFields[i].unit);
-    given[i] = true;
+    known.given[i] = true;
   }
+  return known;
 }
 
 LongitudinalParameters read_longitudinal(const StudyTable& table) {
@@ -101,88 +107,89 @@ void check(const StudyTable& subject, const VehicleParameters<double>& p) {
 
 bool is_file(const std::string& tyre) { return tyre.ends_with(".tir") || tyre.ends_with(".TIR"); }
 
-/// The tyre file of an axle, and what it says beside the forces.
-TirFile read_axle(const std::filesystem::path& path, Vehicle& vehicle, std::string_view stiffness, Given& given) {
-  TirFile file = read_tir(path);
+/// With what the tyre file of an axle gives apart from the forces.
+KnownVehicle with_axle(const TirFile& file, const std::filesystem::path& path, std::string_view stiffness,
+                       KnownVehicle known) {
+  Vehicle& vehicle = known.vehicle;
   vehicle.inputs.push_back(path);
   for (const std::string& warning : file.warnings)
     vehicle.warnings.push_back(path.filename().string() + ": " + warning);
   const std::size_t i = index_of(stiffness);
-  if (!given[i] && file.vertical_stiffness > 0.0) {
+  if (!known.given[i] && file.vertical_stiffness > 0.0) {
     field_of(vehicle.parameters, i) = file.vertical_stiffness;
-    given[i] = true;
+    known.given[i] = true;
   }
-  return file;
+  return known;
 }
 
-void read_tyres(const StudyTable& subject, Vehicle& vehicle, Given& given) {
-  VehicleParameters<double>& p = vehicle.parameters;
+/// With the tyres of files, or the kind of tyres that numbers of the vehicle describe.
+KnownVehicle with_tyres(const StudyTable& subject, KnownVehicle known) {
   const StudyTable details = subject.table_or_empty("tyres");
   std::string kind = subject.text_or("tyre", "linear");
-  const bool own_files = details.has("front") || details.has("rear");
-  if (own_files || is_file(kind)) {
-    const std::filesystem::path both = is_file(kind) ? subject.file("tyre") : std::filesystem::path();
+  const bool by_axle = details.has("front") || details.has("rear");
+  if (by_axle || is_file(kind)) {
+    std::filesystem::path both = is_file(kind) ? subject.file("tyre") : std::filesystem::path();
     const auto path_of = [&](const char* axle) {
       if (details.has(axle)) return details.file(axle);
       if (both.empty()) details.fail(axle, "is missing: both axles need a tyre file");
       return both;
     };
     const std::filesystem::path front = path_of("front"), rear = path_of("rear");
-    AxleTyres<MagicFormulaTyre<double>> tyres;
+    const TirFile front_file = read_tir(front), rear_file = read_tir(rear);
+    known = with_axle(rear_file, rear, "K_tr", with_axle(front_file, front, "K_tf", std::move(known)));
     // Files are of a tyre for one side: those of the right are brought to the left.
-    const auto left = [](const TirFile& file) { return file.on(TyreSide::kLeft); };
-    tyres.front = left(read_axle(front, vehicle, "K_tf", given));
-    tyres.rear = left(read_axle(rear, vehicle, "K_tr", given));
+    const AxleTyres<MagicFormulaTyre<double>> tyres{front_file.on(TyreSide::kLeft), rear_file.on(TyreSide::kLeft)};
+    VehicleParameters<double>& p = known.vehicle.parameters;
     const PerWheel<double> load = static_loads(p, kGravity);
     p.C_f = tyres.front.symmetric().cornering_stiffness(load[kFrontLeft]);
     p.C_r = tyres.rear.symmetric().cornering_stiffness(load[kRearLeft]);
-    given[index_of("C_f")] = given[index_of("C_r")] = true;
-    vehicle.tyre_text =
+    known.given[index_of("C_f")] = known.given[index_of("C_r")] = true;
+    known.vehicle.tyre_text =
         front == rear ? "Magic Formula of " + front.filename().string()
                       : fmt::format("Magic Formula of {} and {}", front.filename().string(), rear.filename().string());
-    vehicle.tyres = tyres;
-    return;
+    known.vehicle.tyres = tyres;
+    return known;
   }
   static const std::vector<std::string> kKinds{"linear", "fiala", "magic formula"};
   kind = subject.choice_or("tyre", kKinds, "linear");
-  vehicle.tyre_text = kind;
+  known.vehicle.tyre_text = kind;
+  return known;
 }
 
-/// Tyres that are described by the vehicle's own numbers.
-void make_tyres(const StudyTable& subject, Vehicle& vehicle) {
-  if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) return;
+/// Tyres that are described by numbers of the vehicle.
+decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehicle) {
+  if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) return vehicle.tyres;
   const VehicleParameters<double>& p = vehicle.parameters;
   const StudyTable details = subject.table_or_empty("tyres");
   const auto slip = [&](double C) { return details.positive_or("slip_stiffness", "N", 1.3 * C); };
   const bool limited = std::isfinite(p.mu);
   if (vehicle.tyre_text == "linear") {
-    vehicle.tyres = AxleTyres<LinearTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
-                                                  {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
-  } else if (!limited) {
-    subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
-  } else if (vehicle.tyre_text == "fiala") {
-    vehicle.tyres = AxleTyres<FialaTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
-                                                 {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
-  } else {
-    const PerWheel<double> load = static_loads(p, kGravity);
-    const auto axle = [&](double C, double nominal) {
-      SimpleMagicFormulaTyre<double> t;
-      t.stiffness = C;
-      t.slip_stiffness = slip(C);
-      t.mu = p.mu;
-      t.nominal_load = nominal;
-      t.C = details.number_or("C", "1", t.C);
-      t.E = details.number_or("E", "1", t.E);
-      t.mu_load = details.number_or("mu_load", "1", t.mu_load);
-      t.stiffness_saturation = details.number_or("stiffness_saturation", "1", t.stiffness_saturation);
-      if (!(t.C >= 1.0 && t.C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t.C));
-      if (!(t.E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t.E));
-      if (!(t.mu_load >= 0.0 && t.mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
-      return t;
-    };
-    vehicle.tyres =
-        AxleTyres<SimpleMagicFormulaTyre<double>>{axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
+    return AxleTyres<LinearTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
+                                         {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
   }
+  if (!limited)
+    subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
+  if (vehicle.tyre_text == "fiala") {
+    return AxleTyres<FialaTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
+                                        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
+  }
+  const PerWheel<double> load = static_loads(p, kGravity);
+  const auto axle = [&](double C, double nominal) {
+    SimpleMagicFormulaTyre<double> t;
+    t.stiffness = C;
+    t.slip_stiffness = slip(C);
+    t.mu = p.mu;
+    t.nominal_load = nominal;
+    t.C = details.number_or("C", "1", t.C);
+    t.E = details.number_or("E", "1", t.E);
+    t.mu_load = details.number_or("mu_load", "1", t.mu_load);
+    t.stiffness_saturation = details.number_or("stiffness_saturation", "1", t.stiffness_saturation);
+    if (!(t.C >= 1.0 && t.C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t.C));
+    if (!(t.E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t.E));
+    if (!(t.mu_load >= 0.0 && t.mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
+    return t;
+  };
+  return AxleTyres<SimpleMagicFormulaTyre<double>>{axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
 }
 
 }  // namespace
@@ -194,9 +201,9 @@ bool is_vehicle_study(const StudyTable& root) {
 }
 
 Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
-  Vehicle vehicle;
+  KnownVehicle known;
+  Vehicle& vehicle = known.vehicle;
   VehicleParameters<double>& p = vehicle.parameters;
-  Given given{};
   static_cast<void>(subject.text_or("kind", "vehicle"));
   if (subject.has("builtin")) {
     const BuiltinVehicle& builtin = builtin_vehicle(subject.text("builtin"), subject.place("builtin"));
@@ -204,31 +211,31 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
     vehicle.name = builtin.name;
     vehicle.description = builtin.description;
     vehicle.speed = builtin.speed;
-    given.fill(true);
+    known.given.fill(true);
   }
   vehicle.name = subject.text_or("name", vehicle.name.empty() ? "vehicle" : vehicle.name);
   vehicle.description = subject.text_or("description", vehicle.description);
-  read_parameters(subject, p, given);
+  known = with_parameters(subject, std::move(known));
   for (const std::string_view name : {"mass", "a", "b"}) {
     const std::size_t i = index_of(name);
-    if (!given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));  // says that it is missing
+    if (!known.given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));  // says that it is missing
     // What is assumed below follows from these.
     if (!(field_of(p, i) > 0.0))
       subject.fail(name, fmt::format("is {:g} {}; must be > 0", field_of(p, i), kVehicleFields[i].unit));
   }
-  read_tyres(subject, vehicle, given);
+  known = with_tyres(subject, std::move(known));
   for (const std::string_view name : needed(needs)) {
     const std::size_t i = index_of(name);
-    if (!given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));
+    if (!known.given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));
   }
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     const std::string_view name = kVehicleFields[i].name;
-    if (given[i] || name == "mu" || name == "K_bf" || name == "K_br") continue;
+    if (known.given[i] || name == "mu" || name == "K_bf" || name == "K_br") continue;
     field_of(p, i) = typical(p, i);
     vehicle.assumed.push_back(fmt::format("{} = {:.4g} {}", name, field_of(p, i), kVehicleFields[i].unit));
   }
   check(subject, p);
-  make_tyres(subject, vehicle);
+  vehicle.tyres = tyres_of(subject, vehicle);
   if (subject.has("longitudinal")) vehicle.longitudinal = read_longitudinal(subject.table("longitudinal"));
   vehicle.ackermann = subject.number_or("ackermann", "1", 0.0);
   vehicle.camber_per_roll = subject.number_or("camber_per_roll", "1", 0.0);

@@ -8,13 +8,9 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
-#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/magic_formula.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
 
@@ -37,7 +33,7 @@ struct Vehicle {
   VehicleTyres tyres;
   std::string tyre_text = "linear";  ///< "linear", "Magic Formula of car.tir"
   LongitudinalParameters longitudinal;
-  double ackermann = 0.0;          ///< 0: front wheels steered alike, 1: Ackermann
+  double ackermann = 0.0;          ///< 0: front wheels steered equally, 1: Ackermann
   double camber_per_roll = 0.0;    ///< inclination of the wheels as a share of the body's roll
   double relaxation_length = 0.0;  ///< of the tyres [m]; 0: forces follow at once
   std::optional<double> speed;     ///< of a built-in vehicle's published drive [m/s]
@@ -47,7 +43,7 @@ struct Vehicle {
   std::vector<std::filesystem::path> inputs;  ///< files read
 };
 
-/// What a vehicle is wanted for decides which numbers it must have.
+/// The use of a vehicle decides which numbers it must have.
 enum class VehicleNeeds {
   kGeometry,  ///< mass, a, b: identification finds the rest
   kBicycle,   ///< and I_z, and tyres: C_f, C_r where they are not described otherwise

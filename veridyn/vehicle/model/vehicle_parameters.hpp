@@ -39,6 +39,7 @@ struct VehicleParameters {
 
   [[nodiscard]] Scalar wheelbase() const { return a + b; }
 
+  /// The same numbers in another scalar type, without derivatives.
   template <typename Other>
   [[nodiscard]] VehicleParameters<Other> cast() const;
 };
@@ -49,6 +50,7 @@ struct VehicleField {
   const char* unit;  ///< SI
   const char* meaning;
 };
+/// All parameters that a study may give.
 inline constexpr std::array<VehicleField, 21> kVehicleFields{{
     {"mass", "kg", "whole vehicle"},
     {"unsprung_mass", "kg", "what moves with one wheel"},
@@ -82,6 +84,7 @@ template <typename Scalar>
   static_assert(std::size(fields) == kVehicleFields.size());
   return *fields[field];
 }
+/// A parameter by its place in `kVehicleFields`.
 template <typename Scalar>
 [[nodiscard]] const Scalar& field_of(const VehicleParameters<Scalar>& p, std::size_t field) {
   return field_of(const_cast<VehicleParameters<Scalar>&>(p), field);

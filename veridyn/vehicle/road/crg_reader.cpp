@@ -52,8 +52,9 @@ class CrgParser {
     grid.start_y = number_or("REFERENCE_LINE_START_Y", 0.0);
     grid.heading = number_or("REFERENCE_LINE_START_PHI", 0.0);
     refuse_what_is_not_straight(grid);
-    place_sections(grid);
-    read_values(grid);
+    Sections sections = place_sections();
+    grid.v = std::move(sections.v);
+    grid.z = read_values(grid, sections.mirrored);
     return CrgRoad(std::move(grid));
   }
 
@@ -189,7 +190,13 @@ class CrgParser {
 
   // ---- where the long sections are
 
-  void place_sections(CrgRoad::Grid& grid) {
+  /// The lateral positions of the long sections, and whether the file lists them from left to right.
+  struct Sections {
+    std::vector<double> v;
+    bool mirrored = false;
+  };
+  [[nodiscard]] Sections place_sections() const {
+    Sections out;
     std::size_t sections = 0;
     for (const Channel& channel : channels_) sections += channel.along_reference ? 0U : 1U;
     if (sections < 2) fail(0, fmt::format("has {} long sections; at least 2 make a surface", sections));
@@ -201,19 +208,21 @@ class CrgParser {
       if (channel.along_reference) continue;
       if (!channel.v && !(step > 0.0))
         fail(channel.line, "no LONG_SECTION_V_INCREMENT > 0 says where the long sections are");
-      grid.v.push_back(channel.v ? *channel.v : right + step * static_cast<double>(channel.number - 1));
+      out.v.push_back(channel.v ? *channel.v : right + step * static_cast<double>(channel.number - 1));
     }
     // From right to left, or all the other way round.
-    mirrored_ = grid.v.back() < grid.v.front();
-    if (mirrored_) std::reverse(grid.v.begin(), grid.v.end());
-    for (std::size_t i = 1; i < grid.v.size(); ++i) {
-      if (!(grid.v[i] > grid.v[i - 1])) fail(channels_.front().line, "the long sections are not in order of v");
+    out.mirrored = out.v.back() < out.v.front();
+    if (out.mirrored) std::reverse(out.v.begin(), out.v.end());
+    for (std::size_t i = 1; i < out.v.size(); ++i) {
+      if (!(out.v[i] > out.v[i - 1])) fail(channels_.front().line, "the long sections are not in order of v");
     }
+    return out;
   }
 
   // ---- values
 
-  void read_values(CrgRoad::Grid& grid) {
+  /// The heights, row by row, for a grid that lacks only them.
+  [[nodiscard]] std::vector<float> read_values(const CrgRoad::Grid& grid, bool mirrored) const {
     const bool text = format_.front() == 'L';
     const std::vector<double> values = text ? text_values() : binary_values();
     const std::size_t per_row = channels_.size();
@@ -233,7 +242,8 @@ class CrgParser {
         --rows;
     }
     if (rows < 2) fail(0, "has fewer than two cross sections");
-    grid.z.reserve(rows * grid.v.size());
+    std::vector<float> z;
+    z.reserve(rows * grid.v.size());
     std::vector<double> section;
     for (std::size_t row = 0; row < rows; ++row) {
       section.clear();
@@ -252,13 +262,14 @@ class CrgParser {
           section.push_back(value);
         }
       }
-      if (mirrored_) std::reverse(section.begin(), section.end());
-      fill_missing(section, row);
-      for (const double z : section) grid.z.push_back(static_cast<float>(z));
+      if (mirrored) std::reverse(section.begin(), section.end());
+      for (const double height : without_missing_heights(section, row)) z.push_back(static_cast<float>(height));
     }
+    return z;
   }
 
-  void fill_missing(std::vector<double>& section, std::size_t row) const {
+  /// Missing heights are those of the nearest section to the right, of the first known one at the edge.
+  [[nodiscard]] std::vector<double> without_missing_heights(std::vector<double> section, std::size_t row) const {
     std::size_t known = section.size();
     for (std::size_t i = 0; i < section.size() && known == section.size(); ++i) {
       if (!std::isnan(section[i])) known = i;
@@ -268,6 +279,7 @@ class CrgParser {
     for (std::size_t i = known + 1; i < section.size(); ++i) {
       if (std::isnan(section[i])) section[i] = section[i - 1];
     }
+    return section;
   }
 
   /// Fields of 10 (LRFI) or 20 (LDFI) characters, at most 80 a line; every cross section starts a line.
@@ -292,7 +304,7 @@ class CrgParser {
         const std::string_view field = trimmed(from < line.size() ? line.substr(from, width) : std::string_view());
         if (field.empty() && end == std::string_view::npos) return values;  // cut here: counted by the caller
         const auto value = to_number(field);
-        // "**unused**", "**missing*" and the like stand where there is no number.
+        // "**unused**", "**missing*" and the like stand for missing values.
         if (!value && !field.starts_with('*'))
           throw InputError(source_, fmt::format("'{}' of cross section {} is not a number", shown(field),
                                                 values.size() / channels_.size()));
@@ -319,7 +331,6 @@ class CrgParser {
   std::string_view rest_;
   std::string source_;
   std::string format_;
-  bool mirrored_ = false;
   std::map<std::string, Entry> keys_;
   std::vector<Channel> channels_;
 };

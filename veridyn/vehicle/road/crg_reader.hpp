@@ -14,6 +14,7 @@ namespace veridyn::vehicle {
 /// where the wheel is (x, y), not how far it travelled.
 class CrgRoad final : public Road {
  public:
+  /// Heights over distance along the reference line and lateral offset.
   struct Grid {
     double start_x = 0.0, start_y = 0.0;  ///< of the reference line, earth axes [m]
     double heading = 0.0;                 ///< [rad]
@@ -39,6 +40,7 @@ class CrgRoad final : public Road {
 /// ($ROAD_CRG_MODS, $ROAD_CRG_OPTS) other than empty ones.
 /// @throws InputError with file:line of the header, or the byte of the data.
 [[nodiscard]] CrgRoad read_crg(const std::filesystem::path& path);
+/// The same from bytes; `source` names them in errors.
 [[nodiscard]] CrgRoad parse_crg(std::string_view bytes, std::string source);
 
 }  // namespace veridyn::vehicle

@@ -75,7 +75,7 @@ Iso8608Road::Iso8608Road(const Iso8608Options& options) : fade_in_(options.fade_
   std::vector<Complex> left(size), right(size);
   for (std::size_t k = 1; k < size / 2; ++k) {
     const double n = spacing * static_cast<double>(k);
-    // Each wave stands for the part of the band next to it, so that the variances sum to that of the whole band.
+    // Each wave represents the part of the band next to it, so that the variances sum to that of the whole band.
     const double from = std::max(options.low, n - 0.5 * spacing);
     const double to = std::min(options.high, n + 0.5 * spacing);
     if (!(from < to)) continue;

@@ -23,7 +23,8 @@ struct Iso8608Options {
       10.0;  ///< the road grows from a level one over this distance, so that nothing jumps at the start [m]
   /// Left and right track have the coherence (of amplitudes) exp(-n coherence_length): waves much longer than that are
   /// the same on both sides and shorter ones independent. Exponential as Bogsjoe (2008), Veh. Syst. Dyn. 46 S1:599,
-  /// fits to measured roads; the length is a choice, about that of paved roads and tracks 1.5 m apart. 0: equal tracks.
+  /// fits to measured roads; the length is a choice, about that of paved roads and tracks at a distance of 1.5 m. 0:
+  /// equal tracks.
   double coherence_length = 4.0;
   std::uint64_t seed = 1;
 

@@ -15,6 +15,7 @@ class FlatRoad final : public Road {
 
 /// A level road with one obstacle across it.
 struct Obstacle {
+  /// Profile along the road.
   enum class Shape {
     kStep,  ///< rises over `length` by half a cosine, at once where that is 0, and stays
     kRamp,  ///< rises linearly over `length`, and stays

@@ -25,6 +25,7 @@ class ProfileRoad final : public Road {
 /// From a table with the columns `distance[m]`, and `left[m]` and `right[m]` or `height[m]` for both.
 /// @throws InputError naming file and column.
 [[nodiscard]] ProfileRoad profile_road(const io::Table& table);
+/// The same from a CSV file. @throws InputError as `profile_road`, and when it cannot be read.
 [[nodiscard]] ProfileRoad read_profile_road(const std::filesystem::path& path);
 
 }  // namespace veridyn::vehicle

@@ -45,9 +45,9 @@ std::shared_ptr<const Road> read_random(const StudyTable& road, std::uint64_t se
   options.length = road.positive_or("length", "m", options.length);
   options.coherence_length = road.number_or("coherence_length", "m", options.coherence_length);
   options.fade_in = road.number_or("fade_in", "m", options.fade_in);
-  const long long own = road.integer_or("seed", 0);
-  if (own < 0) road.fail("seed", fmt::format("= {} must be >= 0", own));
-  options.seed = road.has("seed") ? static_cast<std::uint64_t>(own) : seed;
+  const long long given = road.integer_or("seed", 0);
+  if (given < 0) road.fail("seed", fmt::format("= {} must be >= 0", given));
+  options.seed = road.has("seed") ? static_cast<std::uint64_t>(given) : seed;
   try {
     options.validate();
   } catch (const InputError& error) {

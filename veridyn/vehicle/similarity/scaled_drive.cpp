@@ -4,13 +4,13 @@
 
 namespace veridyn::vehicle {
 void ScaledDriver::look(double time, const PlanarMotion& motion) {
-  PlanarMotion seen = motion;
-  seen.x /= factors_.length;
-  seen.y /= factors_.length;
-  seen.u /= factors_.speed;
-  seen.v /= factors_.speed;
-  seen.r *= factors_.time();
-  driver_.look(time / factors_.time(), seen);
+  PlanarMotion of_prototype = motion;
+  of_prototype.x /= factors_.length;
+  of_prototype.y /= factors_.length;
+  of_prototype.u /= factors_.speed;
+  of_prototype.v /= factors_.speed;
+  of_prototype.r *= factors_.time();
+  driver_.look(time / factors_.time(), of_prototype);
 }
 
 Controls ScaledDriver::controls(double time) const {

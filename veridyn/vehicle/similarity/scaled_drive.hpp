@@ -7,8 +7,8 @@
 
 namespace veridyn::vehicle {
 
-/// The driver of a prototype in its scaled model: does at the model's time what the prototype's driver does at the
-/// prototype's, sees the motion in the prototype's size and turns torques into the model's.
+/// View of a prototype's driver, as the driver of its scaled model: does at the model's time what the prototype's
+/// driver does at the prototype's, looks at the motion in the prototype's size and turns torques into the model's.
 class ScaledDriver : public Driver {
  public:
   /// @param driver outlives this
@@ -23,7 +23,7 @@ class ScaledDriver : public Driver {
   ScaleFactors factors_;
 };
 
-/// A road whose lengths and heights are those of another times the factor of length.
+/// View of a road with all lengths and heights times a factor.
 class ScaledRoad : public Road {
  public:
   /// @param road outlives this

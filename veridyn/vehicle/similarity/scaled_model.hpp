@@ -1,11 +1,7 @@
 #pragma once
 
-#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
 #include "veridyn/vehicle/similarity/similarity.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/magic_formula.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
 
@@ -14,16 +10,19 @@ namespace veridyn::vehicle {
 // stiffness depends on its load works at the same point of its curve where weight scales with force: for a Froude twin,
 // or under `ScaledVehicle::similar_gravity`.
 
+/// The tyre of the scaled vehicle.
 template <typename Scalar>
 [[nodiscard]] LinearTyre<Scalar> scaled(const LinearTyre<Scalar>& tyre, const ScaleFactors& factors) {
   return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
 }
 
+/// The tyre of the scaled vehicle.
 template <typename Scalar>
 [[nodiscard]] FialaTyre<Scalar> scaled(const FialaTyre<Scalar>& tyre, const ScaleFactors& factors) {
   return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
 }
 
+/// The tyre of the scaled vehicle.
 template <typename Scalar>
 [[nodiscard]] SimpleMagicFormulaTyre<Scalar> scaled(SimpleMagicFormulaTyre<Scalar> tyre, const ScaleFactors& factors) {
   tyre.stiffness *= factors.force();
@@ -56,6 +55,7 @@ template <typename Scalar>
   return options;
 }
 
+/// The scaled vehicle.
 template <typename Tyre>
 [[nodiscard]] FourWheelModel<double, Tyre> scaled(const FourWheelModel<double, Tyre>& model,
                                                   const ScaleFactors& factors) {
@@ -64,6 +64,7 @@ template <typename Tyre>
   return {scaled(model.parameters(), factors), tyres, scaled(model.options(), factors)};
 }
 
+/// The scaled vehicle.
 template <typename Tyre>
 [[nodiscard]] BicycleModel<double, Tyre> scaled(const BicycleModel<double, Tyre>& model, const ScaleFactors& factors) {
   return {scaled(model.parameters, factors), scaled(model.front, factors), scaled(model.rear, factors),

@@ -107,12 +107,11 @@ std::vector<SimilarityParameter> similarity_parameters(const SimilaritySubject& 
   return list;
 }
 
-std::vector<SimilarityGroup> similarity_groups(const std::vector<SimilarityParameter>& parameters,
-                                               std::span<const std::string> repeating, std::size_t* rank) {
+RankedGroups similarity_groups(const std::vector<SimilarityParameter>& parameters,
+                               std::span<const std::string> repeating) {
   std::vector<numerics::DimensionalQuantity> quantities;
   for (const SimilarityParameter& parameter : parameters) quantities.push_back({symbol_of(parameter), parameter.unit});
   const numerics::PiGroups pi = numerics::pi_groups(quantities, repeating);
-  if (rank != nullptr) *rank = pi.rank;
   for (const std::size_t i : pi.repeating) {
     if (!(parameters[i].value > 0.0 && std::isfinite(parameters[i].value))) {
       throw InputError("repeating variables",
@@ -131,7 +130,7 @@ std::vector<SimilarityGroup> similarity_groups(const std::vector<SimilarityParam
     }
     groups.push_back({about.name, group.formula, group.exponents, value});
   }
-  return groups;
+  return {std::move(groups), pi.rank};
 }
 
 }  // namespace internal
@@ -147,7 +146,7 @@ std::span<const std::string> default_repeating_variables() {
 
 std::vector<SimilarityGroup> similarity_groups(const SimilaritySubject& subject,
                                                std::span<const std::string> repeating) {
-  return internal::similarity_groups(similarity_parameters(subject), repeating, nullptr);
+  return internal::similarity_groups(similarity_parameters(subject), repeating).groups;
 }
 
 double ScaleFactors::of(const Unit& unit) const {

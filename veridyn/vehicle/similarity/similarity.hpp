@@ -30,7 +30,7 @@ struct SimilaritySubject {
   double speed = 20.0;                         ///< u [m/s]
   double gravity = kGravity;                   ///< g [m/s^2]
   std::optional<double> steer{};               ///< amplitude of the manoeuvre [rad]; no group of it when absent
-  std::vector<SimilarityParameter> further{};  ///< the user's own; names must be new
+  std::vector<SimilarityParameter> further{};  ///< given by the user; names must be new
 };
 
 /// All quantities of a subject: the numbers of `kVehicleFields` (mu only where it is finite), wheelbase L = a + b,
@@ -61,6 +61,7 @@ struct ScaleFactors {
   double mass = 1.0;
   double speed = 1.0;
 
+  /// Model over prototype, as the three above.
   [[nodiscard]] double time() const { return length / speed; }
   [[nodiscard]] double acceleration() const { return speed * speed / length; }
   [[nodiscard]] double force() const { return mass * acceleration(); }
@@ -73,7 +74,7 @@ struct ScaleFactors {
 /// Wheelbase, mass and speed of the model over those of the prototype.
 [[nodiscard]] ScaleFactors scale_factors(const SimilaritySubject& prototype, const SimilaritySubject& model);
 
-/// What is wanted of a scaled vehicle; at least one of the three.
+/// What a scaled vehicle should have; at least one of the three.
 struct ScaleRequest {
   std::optional<double> length_ratio{};  ///< model/prototype: 0.2 for 1:5; by default the cube root of the mass ratio,
                                          ///< or with speed alone what keeps the time axis (Froude: (speed ratio)^2)
@@ -83,12 +84,12 @@ struct ScaleRequest {
   bool froude = false;
 };
 
-/// A vehicle of another size that moves alike.
+/// A dynamically similar vehicle of another size.
 struct ScaledVehicle {
   SimilaritySubject model;
   ScaleFactors factors;
-  /// The gravity under which even loads, lift-off and the friction limit would be alike [m/s^2]; that of the prototype
-  /// for a Froude twin. `model.gravity` is that of the prototype: one cannot build another.
+  /// The gravity under which even loads, lift-off and the friction limit would be similar [m/s^2]; that of the
+  /// prototype for a Froude twin. `model.gravity` is that of the prototype: one cannot build another.
   double similar_gravity = kGravity;
   std::vector<std::string> chosen{};  ///< which of the three ratios were not given and how they were chosen, in words
 };
@@ -122,13 +123,13 @@ struct BehaviourComparison {
   double change_percent = 0.0;
 };
 
-/// How alike two vehicles are.
+/// How similar two vehicles are.
 struct SimilarityReport {
   ScaleFactors factors;  ///< model over prototype
   std::vector<std::string> repeating;
   std::size_t parameters = 0, rank = 0;  ///< groups = parameters - rank
   std::vector<GroupComparison> groups;   ///< all but gravity
-  /// g L/u^2, reported apart: it is the one group that building a model of other size at equal times cannot keep.
+  /// g L/u^2, reported separately: it is the one group that building a model of other size at equal times cannot keep.
   GroupComparison gravity;
   /// What a mismatch of gravity changes, in sentences with figures; empty when it is within the tolerance.
   std::vector<std::string> gravity_changes;
@@ -138,8 +139,9 @@ struct SimilarityReport {
 
   /// Groups whose mismatch is above the tolerance, largest first.
   [[nodiscard]] std::vector<GroupComparison> mismatches() const;
-  /// All groups but gravity are within the tolerance: motions that do not depend on weight are alike.
+  /// All groups but gravity are within the tolerance: motions that do not depend on weight are similar.
   [[nodiscard]] bool similar_without_gravity() const;
+  /// All groups, gravity too, are within the tolerance.
   [[nodiscard]] bool similar() const;
   /// One sentence.
   [[nodiscard]] std::string message() const;
@@ -157,11 +159,16 @@ struct SimilarityReport {
 
 namespace internal {
 
-/// As the public functions, but mu may be infinite when it is `with_friction`, and the rank is told.
+/// As the public functions, but mu may be infinite when it is `with_friction`, and with the rank.
 [[nodiscard]] std::vector<SimilarityParameter> similarity_parameters(const SimilaritySubject& subject,
                                                                      bool with_friction);
-[[nodiscard]] std::vector<SimilarityGroup> similarity_groups(const std::vector<SimilarityParameter>& parameters,
-                                                             std::span<const std::string> repeating, std::size_t* rank);
+/// Groups, and the rank of the dimensional matrix.
+struct RankedGroups {
+  std::vector<SimilarityGroup> groups;
+  std::size_t rank = 0;
+};
+[[nodiscard]] RankedGroups similarity_groups(const std::vector<SimilarityParameter>& parameters,
+                                             std::span<const std::string> repeating);
 
 }  // namespace internal
 

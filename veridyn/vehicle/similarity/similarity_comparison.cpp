@@ -110,8 +110,10 @@ SimilarityReport compare(const SimilaritySubject& prototype, const SimilaritySub
   const std::vector<SimilarityParameter> ours = internal::similarity_parameters(prototype, friction);
   const std::vector<SimilarityParameter> theirs = internal::similarity_parameters(model, friction);
   report.parameters = ours.size();
-  const std::vector<SimilarityGroup> left = internal::similarity_groups(ours, repeating, &report.rank);
-  const std::vector<SimilarityGroup> right = internal::similarity_groups(theirs, repeating, nullptr);
+  const internal::RankedGroups ranked = internal::similarity_groups(ours, repeating);
+  report.rank = ranked.rank;
+  const std::vector<SimilarityGroup>& left = ranked.groups;
+  const std::vector<SimilarityGroup> right = internal::similarity_groups(theirs, repeating).groups;
 
   const auto affects = [](const std::vector<SimilarityParameter>& list, const std::string& name) {
     const auto found = std::ranges::find(list, name, &SimilarityParameter::name);
@@ -123,9 +125,10 @@ SimilarityReport compare(const SimilaritySubject& prototype, const SimilaritySub
     const auto found = std::ranges::find(right, group.parameter, &SimilarityGroup::parameter);
     const double value = found == right.end() ? kNone : found->value;
     // The same name with another dimension is another quantity.
-    const bool alike = found != right.end() && found->formula == group.formula;
+    const bool comparable = found != right.end() && found->formula == group.formula;
     report.groups.push_back({group.parameter, group.formula, group.value, value,
-                             alike ? mismatch_percent(group.value, value) : kInfinity, affects(ours, group.parameter)});
+                             comparable ? mismatch_percent(group.value, value) : kInfinity,
+                             affects(ours, group.parameter)});
   }
   for (const SimilarityGroup& group : right) {
     if (group.parameter == "gravity" ||

@@ -11,13 +11,13 @@
 
 namespace veridyn::vehicle {
 
-/// Error model of one channel: y = bias + (1 + scale) y_true + white noise, at its own rate, stamped late.
+/// Error model of one channel: y = bias + (1 + scale) y_true + white noise, at the rate of the sensor, stamped late.
 struct DriveSensor {
   bool enabled = true;
   double rate_Hz = 100.0;   ///< `rate`
   double sigma = 0.0;       ///< `sigma`: standard deviation of the white noise
   double bias = 0.0;        ///< `bias`: fixed
-  double bias_sigma = 0.0;  ///< `bias_sigma`: standard deviation of a further fixed bias, drawn once a drive
+  double bias_sigma = 0.0;  ///< `bias_sigma`: standard deviation of a further fixed bias, drawn once per drive
   double scale = 0.0;       ///< `scale`: error of scale [-]
   double delay_s = 0.0;     ///< `delay`: from event to time stamp
   friend bool operator==(const DriveSensor&, const DriveSensor&) = default;
@@ -25,17 +25,21 @@ struct DriveSensor {
 
 /// The sensors of a drive, in this order.
 enum class DriveSensorKind : std::size_t { kSteer, kSpeed, kYawRate, kAccelY, kAccelX, kLateralVelocity, kPosition };
+/// How many sensors there are.
 inline constexpr std::size_t kDriveSensors = 7;
+/// Their names in studies, in the order of the enum.
 inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorNames{
     "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "position"};
+/// Units of their errors, in the same order.
 inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorUnits{"rad",   "m/s", "rad/s", "m/s^2",
                                                                                "m/s^2", "m/s", "m"};
 
+/// The sensors of a vehicle and where its accelerometer is.
 struct DriveSensorSet {
   std::array<DriveSensor, kDriveSensors> sensors;
   std::array<double, 3> accel_position{};  ///< of the accelerometer from the centre of gravity, forward, left, up [m]
-  /// A sensor on the body of a vehicle that rolls and pitches feels gravity: g sin(roll) along y, -g sin(pitch) along
-  /// x. Only where the trajectory has these angles.
+  /// A sensor on the body of a vehicle that rolls and pitches measures gravity too: g sin(roll) along y, -g sin(pitch)
+  /// along x. Only where the trajectory has these angles.
   bool feels_gravity = true;
   double gravity = kGravity;
   [[nodiscard]] const DriveSensor& operator[](DriveSensorKind k) const { return sensors[static_cast<std::size_t>(k)]; }
@@ -57,8 +61,8 @@ struct DriveSensorSet {
 /// @throws InputError naming file, line and key.
 [[nodiscard]] DriveSensorSet read_drive_sensors(const StudyTable& table);
 
-/// What the sensors record of a drive: a recording in frame flu, each sensor on its own time base, values between the
-/// trajectory's samples on the straight line. Each sensor draws from a random stream of its own.
+/// What the sensors record of a drive: a recording in frame flu, each sensor on a time base of its rate, values between
+/// the trajectory's samples on the straight line. Each sensor draws from another random stream.
 [[nodiscard]] Recording record_drive(const VehicleTrajectory& trajectory, const DriveSensorSet& sensors,
                                      std::uint64_t seed);
 

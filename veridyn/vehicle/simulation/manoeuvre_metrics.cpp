@@ -72,9 +72,10 @@ std::vector<double> sideslip_of(const VehicleTrajectory& t) {
   return beta;
 }
 
-/// Response of one quantity to a step, and its metrics.
-void add_step(std::vector<Metric>& list, const char* name, const char* unit, const VehicleTrajectory& t, Series x,
-              double steer, double begin) {
+/// Metrics of one quantity's response to a step.
+std::vector<Metric> step_metrics(const char* name, const char* unit, const VehicleTrajectory& t, Series x, double steer,
+                                 double begin) {
+  std::vector<Metric> list;
   const double steady = final_mean(x);
   const Peak peak = peak_of(t.time, x, steady < 0.0 ? -1.0 : 1.0, 0, x.size());
   list.push_back({fmt::format("{}_gain", name), steady / steer, unit, "ISO 7401", "steady value per steer"});
@@ -87,6 +88,7 @@ void add_step(std::vector<Metric>& list, const char* name, const char* unit, con
                   "from half the steer to the first maximum"});
   list.push_back(
       {fmt::format("{}_overshoot", name), peaks ? overshoot : 0.0, "1", "ISO 7401", "over the steady value"});
+  return list;
 }
 
 /// Slope and intercept of y over x.
@@ -122,8 +124,12 @@ std::vector<Metric> step_steer_metrics(const VehicleTrajectory& t) {
   const double steer = final_mean(t.steer);
   if (steer == 0.0) return list;
   const double begin = crossing(t.time, t.steer, 0.5 * steer);
-  add_step(list, "yaw_rate", "1/s", t, t.r, steer, begin);
-  add_step(list, "lateral_acceleration", "m/s^2/rad", t, t.lateral_acceleration, steer, begin);
+  const auto add = [&](const char* name, const char* unit, Series x) {
+    const std::vector<Metric> more = step_metrics(name, unit, t, x, steer, begin);
+    list.insert(list.end(), more.begin(), more.end());
+  };
+  add("yaw_rate", "1/s", t.r);
+  add("lateral_acceleration", "m/s^2/rad", t.lateral_acceleration);
   const std::vector<double> beta = sideslip_of(t);
   const double sideslip = final_mean(beta);
   list.push_back({"sideslip_gain", sideslip / steer, "1", "ISO 7401", "steady value per steer"});
@@ -133,7 +139,7 @@ std::vector<Metric> step_steer_metrics(const VehicleTrajectory& t) {
   }
   list.push_back({"tb_factor", peak_time * std::abs(sideslip), "s rad", "ISO 7401",
                   "peak response time of the yaw rate times the steady sideslip angle"});
-  if (t.roll.size() == t.size()) add_step(list, "roll", "1", t, t.roll, steer, begin);
+  if (t.roll.size() == t.size()) add("roll", "1", t.roll);
   return list;
 }
 
@@ -211,10 +217,10 @@ MeasuredFrequencyResponse measured_frequency_response(const VehicleTrajectory& t
   if (t.size() < 64) throw InputError("frequency response", fmt::format("{} samples are too few", t.size()));
   const double duration = t.time.back() - t.time.front();
   const double rate = static_cast<double>(t.size() - 1) / duration;
-  const double wanted = std::min(std::max(2.0 / low_Hz, 8.0), 0.25 * duration);
-  const auto segment = static_cast<std::size_t>(wanted * rate);
+  const double length = std::min(std::max(2.0 / low_Hz, 8.0), 0.25 * duration);
+  const auto segment = static_cast<std::size_t>(length * rate);
   const auto respond = [&](Series x) {
-    return numerics::spectral_response(t.steer, x, rate, segment, std::max(low_Hz, 1.0 / wanted), high_Hz);
+    return numerics::spectral_response(t.steer, x, rate, segment, std::max(low_Hz, 1.0 / length), high_Hz);
   };
   out.yaw_rate = respond(t.r);
   out.lateral_acceleration = respond(t.lateral_acceleration);
@@ -304,7 +310,7 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
     case ManoeuvreKind::kSweep:
     case ManoeuvreKind::kRandomSteer:
       if (t.end == SimulationEnd::kCompleted && t.size() >= 64) {
-        // No higher than the samples can tell, and nothing from a drive too short for the band.
+        // No higher than the samples allow, and nothing from a drive too short for the band.
         const double duration = t.time.back() - t.time.front();
         const double high = std::min(manoeuvre.end_frequency, 0.5 * static_cast<double>(t.size() - 1) / duration);
         const double low = std::max(manoeuvre.frequency, 8.0 / duration);

@@ -21,7 +21,7 @@ struct Metric {
   std::string meaning{};
 };
 
-/// The metrics of a manoeuvre's own standard, then peaks, then those of the ride where the road is uneven.
+/// The metrics of a manoeuvre's standard, then peaks, then those of the ride where the road is uneven.
 [[nodiscard]] std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& trajectory, const Manoeuvre& manoeuvre,
                                                     const VehicleParameters<double>& parameters,
                                                     double gravity = kGravity);

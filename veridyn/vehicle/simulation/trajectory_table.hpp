@@ -25,6 +25,7 @@ struct WheelQuantity {
 
 /// All quantities but time.
 [[nodiscard]] std::span<const TrajectoryQuantity> trajectory_quantities();
+/// The quantities that each wheel has.
 [[nodiscard]] std::span<const WheelQuantity> wheel_quantities();
 
 /// A trajectory as a recording in frame flu: what the model has, each a channel of the common time base; `speed` is u.

@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <string>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/magic_formula.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
 
@@ -64,7 +61,7 @@ void check_parameters(const VehicleParameters<double>& parameters) {
 
 double fastest_eigenvalue(const Eigen::MatrixXd& matrix) {
   if (!matrix.allFinite()) return kInfinity;
-  return matrix.eigenvalues().cwiseAbs().maxCoeff();
+  return numerics::general_eigenvalues(matrix).cwiseAbs().maxCoeff();
 }
 
 void check_step(double step, double fastest) {
@@ -165,13 +162,15 @@ SimulationEnd ended(const FourWheelState<double>& s, bool speed_varies) {
 
 }  // namespace internal
 
-// One line a tyre.
+// One line per tyre.
+// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none
 #define VERIDYN_SIMULATE_ON(Tyre)                                                                                      \
   template VehicleTrajectory simulate(const FourWheelModel<double, Tyre>&, Driver&, const Road*,                       \
                                       const SimulationOptions&, Progress&,                                             \
                                       std::span<const ModelChange<FourWheelModel<double, Tyre>>>);                     \
   template VehicleTrajectory simulate(const BicycleModel<double, Tyre>&, Driver&, const SimulationOptions&, Progress&, \
                                       std::span<const ModelChange<BicycleModel<double, Tyre>>>)
+// NOLINTEND(bugprone-macro-parentheses)
 
 VERIDYN_SIMULATE_ON(LinearTyre<double>);
 VERIDYN_SIMULATE_ON(FialaTyre<double>);

@@ -11,6 +11,7 @@
 
 namespace veridyn::vehicle {
 
+/// Length, steps and speed of a simulated drive.
 struct SimulationOptions {
   double duration = 20.0;     ///< [s]
   double step = 1e-3;         ///< of the Runge-Kutta method [s]

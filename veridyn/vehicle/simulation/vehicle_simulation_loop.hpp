@@ -20,7 +20,7 @@ template <int kMoving, typename Scalar, typename Tyre, typename Heights>
 void runge_kutta_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& heights,
                       const std::array<WheelControls<Scalar>, 3>& controls, double h,
                       const FourWheelRates<Scalar>& first, FourWheelState<Scalar>& state) {
-  // Plain loops, which compilers vectorise wherever they stand.
+  // Plain loops, which compilers vectorise everywhere.
   const auto each = [](const auto& set) {
     for (Eigen::Index i = 0; i < kMoving; ++i) set(i);
   };
@@ -58,7 +58,8 @@ void four_wheel_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& h
   }
 }
 
-/// The heights of a road under the four wheels of a model; null: flat. Derivatives do not go through it.
+/// View of a model and the road under its four wheels, for the heights there; null: flat. Derivatives do not go through
+/// it.
 template <typename Model>
 struct RoadUnderWheels {
   const Model& model;
@@ -115,7 +116,7 @@ struct StepPlan {
 };
 [[nodiscard]] StepPlan plan_steps(const SimulationOptions& options);
 
-/// Says how far it is now and then. False: stop.
+/// Reports every 1024th step. False: stop.
 [[nodiscard]] inline bool report_progress(Progress& progress, long k, const StepPlan& plan) {
   return k % 1024 != 0 || progress.update(static_cast<double>(k) / static_cast<double>(plan.steps));
 }
@@ -191,6 +192,35 @@ void change_model(double time, std::span<const ModelChange<Model>>& changes, Mod
   }
 }
 
+/// Into how many equal parts a step is cut. A wheel's spin relaxes the faster the slower it rolls: `rates_speed` is the
+/// step times rate times speed at which the rate holds; twice the stiffness at rest is left for load transfer.
+[[nodiscard]] inline int parts_of_step(double rates_speed, const VehicleParameters<double>& p,
+                                       const FourWheelState<double>& state) {
+  const double slowest =
+      std::max(kLeastSpeedOfRatio, state(kU) - 0.5 * std::max(p.track_f, p.track_r) * std::abs(state(kR)));
+  return std::clamp(static_cast<int>(std::ceil(rates_speed / (1.25 * slowest))), 1, 256);
+}
+
+/// The controls of the wheels, worked out again only where the driver's change: mostly they stay as they were, at the
+/// latest from the end of a step to the beginning of the next.
+template <typename Model>
+class LatestControls {
+ public:
+  explicit LatestControls(const Model& model) : at_wheels_(model.wheel_controls(latest_)) {}
+  const WheelControls<double>& of(const Model& model, const Controls& now) {
+    if (now.steer != latest_.steer || now.drive_torque != latest_.drive_torque ||
+        now.brake_torque != latest_.brake_torque) {
+      latest_ = now;
+      at_wheels_ = model.wheel_controls(now);
+    }
+    return at_wheels_;
+  }
+
+ private:
+  Controls latest_;
+  WheelControls<double> at_wheels_;
+};
+
 /// Whether the vehicle's motion ends here, and how; kCompleted: it goes on.
 [[nodiscard]] SimulationEnd ended(const FourWheelState<double>& state, bool speed_varies);
 
@@ -214,19 +244,8 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
   FourWheelState<double> state = model.steady_start(options.speed);
   FourWheelRates<double> rates;
   std::array<WheelControls<double>, 3> controls;
-  // Controls mostly stay as they were, at the latest from the end of a step to the beginning of the next.
-  struct {
-    Controls controls;
-    WheelControls<double> at_wheels;
-  } latest{{}, model.wheel_controls(Controls{})};
-  const auto at_wheels = [&](const Controls& now) -> const WheelControls<double>& {
-    const Controls& before = latest.controls;
-    if (now.steer != before.steer || now.drive_torque != before.drive_torque ||
-        now.brake_torque != before.brake_torque) {
-      latest = {now, model.wheel_controls(now)};
-    }
-    return latest.at_wheels;
-  };
+  internal::LatestControls latest(model);
+  const auto at_wheels = [&](const Controls& now) -> const WheelControls<double>& { return latest.of(model, now); };
   internal::LiftOffs lift_offs;
   progress.stage("driving");
   for (long k = 0;; ++k) {
@@ -252,15 +271,8 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
     }
 
     const double step = plan.time(k + 1) - begin;
-    int parts = 1;
-    if (spins) {
-      // A wheel's spin relaxes the faster the slower it rolls; twice the stiffness at rest is left for load transfer.
-      const double slowest = std::max(
-          kLeastSpeedOfRatio,
-          state(kU) - 0.5 * std::max(model.parameters().track_f, model.parameters().track_r) * std::abs(state(kR)));
-      parts = static_cast<int>(std::ceil(step * fastest.spins * options.speed / (1.25 * slowest)));
-      parts = std::clamp(parts, 1, 256);
-    }
+    const int parts =
+        spins ? internal::parts_of_step(step * fastest.spins * options.speed, model.parameters(), state) : 1;
     const double h = step / parts;
     for (int part = 0; part < parts; ++part) {
       const double t = begin + part * h;

@@ -74,7 +74,8 @@ DriveTrackOptions DriveTrackOptions::read(const StudyTable& table) {
   o.read_keys(table);
   o.pass_Hz = table.positive_or("pass_band", "Hz", o.pass_Hz);
   o.start_sigma = table.positive_or("start_sigma", "1", o.start_sigma);
-  if (table.has("estimate")) o.estimate_file = table.file("estimate").string();
+  const std::string_view estimate = table.renamed("estimate_file", "estimate");
+  if (table.has(estimate)) o.estimate_file = table.file(estimate).string();
   return o;
 }
 
@@ -95,7 +96,7 @@ DriveTracker::DriveTracker(const VehicleParameters<double>& start, const DriveTr
   ring_.resize(kernel_.smooth.taps.size());
   if (estimate == nullptr) return;
   const auto take = [&](const char* name, double& value, double* sigma) {
-    const estimation::EstimatedParameter* p = estimate->find(name);
+    const estimation::Parameter* p = estimate->find(name);
     const bool usable = p != nullptr && p->value > 0.0 && std::isfinite(p->value) && p->sigma > 0.0 &&
                         std::isfinite(p->sigma) && p->status != ParameterStatus::kRejected &&
                         p->status != ParameterStatus::kNotExcited;
@@ -287,7 +288,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
   for (std::size_t i = 0; i < kTrackedAxles; ++i) {
     const auto axle = static_cast<TrackedAxle>(i);
     const double v = value(axle), s = sigma(axle);
-    estimation::EstimatedParameter p{
+    estimation::Parameter p{
         std::string(kTrackedAxleNames[i]), v, s, v - 1.96 * s, v + 1.96 * s, std::string(kTrackedAxleUnits[i]),
         ParameterStatus::kNotExcited};
     const auto at = static_cast<Eigen::Index>(i);

@@ -31,8 +31,11 @@ enum class TrackedAxle : std::size_t {
   kRear,       ///< of the rear axle: C_r
   kUndersteer  ///< understeer gradient, from quasi-steady cornering too
 };
+/// How many quantities are followed.
 inline constexpr std::size_t kTrackedAxles = 3;
+/// Their names, in the order of the enum.
 inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleNames{"C_f", "C_r", "understeer_gradient"};
+/// Their units, in the same order.
 inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad", "rad s^2/m"};
 
 /// A change that one of the regressions revealed.
@@ -47,7 +50,7 @@ struct DriveSample {
   double steer = 0.0, speed = 0.0, yaw_rate = 0.0, accel_y = 0.0;  ///< SI, ISO 8855, at the centre of gravity
 };
 
-/// History of the followed parameters, in their own units (the regressions' histories are those of compliances).
+/// History of the tracked parameters, in their units (the regressions' histories are those of compliances).
 struct DriveTrackHistory {
   std::vector<double> time;
   std::vector<double> value, sigma;  ///< sigma infinite before it is usable
@@ -55,7 +58,7 @@ struct DriveTrackHistory {
   std::vector<double> suspicion;     ///< of the change detector: 1 is an alarm
 };
 
-/// Cornering stiffnesses followed sample by sample.
+/// Cornering stiffnesses tracked sample by sample.
 ///
 /// The axles' equations with the lateral velocity eliminated by differentiation and the yaw inertia known (k = I_z/m):
 ///     d/dt(u delta) - a_y + r u - a r' = 1/C_f [m/(2L) d/dt(u (b a_y + k r'))] + const          (front)
@@ -63,9 +66,10 @@ struct DriveTrackHistory {
 ///     delta - L r/u = K a_y + T r' + const                                                       (understeer)
 /// (the first two divided by the speed, so that their noise hardly depends on it), each a recursive regression with
 /// forgetting, held where it is not excited (steady cornering excites only the last, straight driving none), watched
-/// for changes. The constants are noise-free columns. Rows come from modulating kernels over the past: what is said at
-/// time t is about `latency_s` earlier, and no later sample enters. Work and memory per sample are bounded (but for the
-/// history). A hole of missing or unusable samples (slower than `min_speed`) empties the filters; estimates stay.
+/// for changes. The constants are noise-free columns. Rows come from modulating kernels over the past: the estimate at
+/// time t is that of about `latency_s` earlier, and no later sample enters. Work and memory per sample are bounded (but
+/// for the history). A hole of missing or unusable samples (slower than `min_speed`) empties the filters; estimates
+/// stay.
 class DriveTracker {
  public:
   /// @param start mass, a, b and I_z as given; stiffnesses begin at its C_f and C_r
@@ -74,15 +78,17 @@ class DriveTracker {
   DriveTracker(const VehicleParameters<double>& start, const DriveTrackOptions& options, double min_speed_mps,
                double rate_Hz, const std::array<double, 4>& noise, const estimation::Estimate* estimate = nullptr);
 
-  /// Is there a row yet? Before it the values are those of the start.
+  /// Whether there is a row. Before it the values are those of the start.
   [[nodiscard]] bool started() const { return !trackers_.empty(); }
 
   /// Takes the next sample, `1/rate` after the last one (a larger step is a hole).
   /// @return the changes that it reveals
   std::vector<DriveChange> append(const DriveSample& sample);
 
+  /// By how much the estimates lag behind the last sample [s].
   [[nodiscard]] double latency_s() const;
   [[nodiscard]] double rate_Hz() const { return rate_Hz_; }
+  /// Of the regressions' rows, which are fewer than the samples.
   [[nodiscard]] double row_rate_Hz() const { return rate_Hz_ / static_cast<double>(stride_); }
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] double last_time() const { return last_; }  ///< of the last sample; -infinity before
@@ -90,11 +96,14 @@ class DriveTracker {
   /// Only when started.
   [[nodiscard]] const estimation::RegressionTracker& regression(TrackedAxle axle) const;
   [[nodiscard]] const DriveTrackHistory& history(TrackedAxle axle) const;
+  /// All that were found, by time.
   [[nodiscard]] const std::vector<DriveChange>& changes() const { return changes_; }
+  /// Latest value and standard deviation, in the units of the history; those of the start before the first
+  /// row.
   [[nodiscard]] double value(TrackedAxle axle) const;
   [[nodiscard]] double sigma(TrackedAxle axle) const;
   [[nodiscard]] const VehicleParameters<double>& start() const { return start_; }
-  /// The estimates as they stand, for estimate.json.
+  /// The latest estimates, for estimate.json.
   [[nodiscard]] estimation::Estimate estimate(const std::string& subject) const;
 
  private:

@@ -13,7 +13,7 @@ namespace veridyn::vehicle {
 ///
 ///     F = S - S^2/(3 N) + S^3/(27 N^2)   for S < 3 N,   N beyond: the whole contact patch slides
 ///
-/// The slip angle itself stands in place of its tangent, so that for small slip this is `LinearTyre` with the same
+/// The slip angle itself takes the place of its tangent, so that for small slip this is `LinearTyre` with the same
 /// numbers. Twice continuously differentiable away from zero slip; at zero slip the slope is continuous.
 template <typename Scalar>
 struct FialaTyre {

@@ -13,14 +13,14 @@ namespace veridyn::vehicle {
 enum class CombinedSlip {
   /// By the weighting functions of the R coefficients (Pacejka 2006, 4.E50 to 4.E67).
   kWeighting,
-  /// By an equivalent slip, for files without R coefficients: both slips, each in units of its own friction over
+  /// By an equivalent slip, for files without R coefficients: both slips, each in units of friction over
   /// stiffness, make one vector; each pure curve is taken at that vector's length and shared by its direction. Pure
   /// slip is reproduced exactly, and without shifts the force stays within the friction ellipse.
   kEquivalentSlip,
   kNone  ///< each force as if alone: beyond the friction circle by up to sqrt(2)
 };
 
-/// Where a file says that its coefficients hold. Slips and camber beyond are taken at the limit.
+/// Where, by its file, a tyre's coefficients hold. Slips and camber beyond are taken at the limit.
 struct MagicFormulaRange {
   double load_min = 0.0;
   double load_max = kInfinity;  ///< [N]
@@ -41,8 +41,8 @@ struct MagicFormulaRange {
 ///     K_y  = PKY1 F_z0 sin(2 atan(F_z/(PKY2 F_z0))) (1 - PKY3 |gamma|)
 ///     F_x = G_xa(alpha, kappa) F_x0,   F_y = G_yk(kappa, alpha) F_y0 + S_Vyk
 ///
-/// Two layers. `Fx0`, `Fy0` and `combined` speak the tyre file's convention (ISO, TYDEX W axes): x forward, y left,
-/// camber positive with the top to the right, but slip angle +atan(V_y/|V_x|). `forces` speaks the project's
+/// Two layers. `Fx0`, `Fy0` and `combined` use the tyre file's convention (ISO, TYDEX W axes): x forward, y left,
+/// camber positive with the top to the right, but slip angle +atan(V_y/|V_x|). `forces` uses the project's
 /// (`tyre.hpp`): the same but for the slip angle, whose sign it turns.
 ///
 /// Shifts make a real tyre unsymmetric: it belongs to one side of the car. `mirrored` makes it the one for the other
@@ -84,8 +84,8 @@ struct MagicFormulaTyre {
     return other;
   }
 
-  /// The same tyre without what tells left from right (and, of longitudinal shifts, driving from braking at zero slip):
-  /// all shifts that do not come from camber, RBY3 and the sign terms of the lateral curvature are 0.
+  /// The same tyre without the asymmetry of left and right (and, of longitudinal shifts, driving from braking at zero
+  /// slip): all shifts that do not come from camber, RBY3 and the sign terms of the lateral curvature are 0.
   [[nodiscard]] MagicFormulaTyre symmetric() const;
 
   template <typename Other>
@@ -118,6 +118,7 @@ struct MagicFormulaTyre {
 
 namespace magic_formula {
 
+/// x between two limits; its derivatives vanish beyond them.
 template <typename Scalar>
 [[nodiscard]] Scalar clamped(const Scalar& x, double lowest, double highest) {
   if (x < lowest) return Scalar(lowest);

@@ -7,7 +7,7 @@
 
 namespace veridyn::vehicle {
 
-/// Coefficients of the Magic Formula as `.tir` files name them (PAC2002, MF-Tyre 5.2), in the file's own convention:
+/// Coefficients of the Magic Formula as `.tir` files name them (PAC2002, MF-Tyre 5.2), in the file's convention:
 /// SI, radians, slip angle positive where the contact point moves to the LEFT of the wheel plane, so that PKY1 is
 /// negative. P: pure slip; R: combined slip; Q, S: moments; L: scaling. X, Y, Z: of F_x, F_y and the aligning moment.
 ///

@@ -7,8 +7,8 @@
 
 namespace veridyn::vehicle {
 
-/// The Magic Formula in the few numbers that a drive log can tell (Pacejka, Tyre and Vehicle Dynamics, 2nd ed. 2006,
-/// section 4.3.1): no shifts, no camber, equal friction in all directions.
+/// The Magic Formula in the few numbers that a drive log can determine (Pacejka, Tyre and Vehicle Dynamics, 2nd ed.
+/// 2006, section 4.3.1): no shifts, no camber, equal friction in all directions.
 ///
 ///     F_y = D sin(C atan(B a - E (B a - atan(B a)))),   D = mu F_z,   B = K/(C D)
 ///

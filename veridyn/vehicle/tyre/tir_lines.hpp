@@ -11,6 +11,7 @@ namespace veridyn::vehicle::internal {
 /// The lines `KEY = value` of a tyre file, by key (in capitals).
 class TirLines {
  public:
+  /// A line KEY = value.
   struct Entry {
     std::string value;
     bool quoted = false;
@@ -21,6 +22,7 @@ class TirLines {
   TirLines(std::string_view text, std::string source);
 
   [[nodiscard]] const std::map<std::string, Entry, std::less<>>& entries() const { return entries_; }
+  /// Null where the file does not have the key.
   [[nodiscard]] const Entry* find(std::string_view key) const;
   /// "file:line" of a key; the file where it does not have it.
   [[nodiscard]] std::string place(std::string_view key) const;

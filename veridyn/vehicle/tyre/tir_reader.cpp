@@ -20,7 +20,7 @@ namespace {
 
 using internal::TirLines;
 
-/// How the words of tyre files are called in this project.
+/// A unit by its name in tyre files.
 struct UnitWord {
   std::string_view word;
   std::string_view unit;
@@ -40,12 +40,10 @@ constexpr UnitWord kUnitWords[] = {{"METER", "m"},         {"METRE", "m"},      
                                    {"PA", "Pa"},           {"KPASCAL", "kPa"},    {"KPA", "kPa"},
                                    {"MPASCAL", "MPa"},     {"BAR", "bar"},        {"PSI", "psi"}};
 
-double scale_of(const TirLines& lines, std::string_view key, std::string_view si, TirFile& file) {
+/// What a unit of [UNITS] is in SI; 1 where the file does not have it.
+double scale_of(const TirLines& lines, std::string_view key, std::string_view si) {
   const TirLines::Entry* entry = lines.find(key);
-  if (entry == nullptr) {
-    if (key != "PRESSURE") file.warnings.push_back(fmt::format("[UNITS] has no {}; taken as {}", key, si));
-    return 1.0;
-  }
+  if (entry == nullptr) return 1.0;
   const std::string word = upper(entry->value);
   for (const UnitWord& known : kUnitWords) {
     if (word != known.word) continue;
@@ -134,12 +132,11 @@ bool known_without_effect(std::string_view key) {
   return false;
 }
 
-void check_format(const TirLines& lines, TirFile& file) {
+std::string checked_format(const TirLines& lines, const std::string& source) {
   const TirLines::Entry* entry = lines.find("PROPERTY_FILE_FORMAT");
-  if (entry == nullptr) throw InputError(file.source, "PROPERTY_FILE_FORMAT is missing: is this a tyre file?");
-  file.format = entry->value;
+  if (entry == nullptr) throw InputError(source, "PROPERTY_FILE_FORMAT is missing: is this a tyre file?");
   const std::string format = upper(entry->value);
-  if (format == "PAC2002") return;
+  if (format == "PAC2002") return entry->value;
   const bool tno =
       format == "MF-TYRE" || format == "MF_TYRE" || format == "MF_05" || format == "MF05" || format == "MF52";
   if (!tno)
@@ -150,9 +147,10 @@ void check_format(const TirLines& lines, TirFile& file) {
     throw InputError(
         lines.find("FITTYP") != nullptr ? lines.place("FITTYP") : lines.place("PROPERTY_FILE_FORMAT"),
         fmt::format("FITTYP {} of '{}' is not supported; 6 and 52 (MF-Tyre 5.2) are", version, shown(entry->value)));
+  return entry->value;
 }
 
-void read_coefficients(const TirLines& lines, TirFile& file) {
+MagicFormulaCoefficients<double> read_coefficients(const TirLines& lines, const std::string& source) {
   constexpr std::array<std::string_view, 9> kEssential{
       "FNOMIN", "UNLOADED_RADIUS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2"};
   std::vector<std::string_view> missing;
@@ -160,19 +158,21 @@ void read_coefficients(const TirLines& lines, TirFile& file) {
     if (lines.find(key) == nullptr) missing.push_back(key);
   }
   if (!missing.empty())
-    throw InputError(file.source, fmt::format("has no {}: without {} there is no tyre (was the file cut?)",
-                                              fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them"));
-  MagicFormulaCoefficients<double>& c = file.tyre.coefficients;
+    throw InputError(source, fmt::format("has no {}: without {} there is no tyre (was the file cut?)",
+                                         fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them"));
+  MagicFormulaCoefficients<double> c;
   for (const MagicFormulaField<double>& field : kMagicFormulaFields<double>) {
     const bool scaling = field.name.front() == 'L';
     c.*field.member = lines.number_or(field.name, scaling ? 1.0 : 0.0);
     if (scaling && !(c.*field.member >= 0.0))
       lines.fail(field.name, fmt::format("= {} is a scaling factor: must be >= 0", c.*field.member));
   }
+  return c;
 }
 
-void read_ranges(const TirLines& lines, TirFile& file, double force, double angle) {
-  MagicFormulaRange& range = file.tyre.range;
+/// The ranges with the units of force and angle of the file.
+MagicFormulaRange read_ranges(const TirLines& lines, double force, double angle) {
+  MagicFormulaRange range;
   const auto read = [&](std::string_view key, double scale, double& limit) {
     if (const auto number = lines.number(key)) limit = scale * *number;
   };
@@ -192,13 +192,14 @@ void read_ranges(const TirLines& lines, TirFile& file, double force, double angl
   ordered("KPUMIN", "KPUMAX", range.slip_ratio_min, range.slip_ratio_max);
   ordered("ALPMIN", "ALPMAX", range.slip_angle_min, range.slip_angle_max);
   ordered("CAMMIN", "CAMMAX", range.camber_min, range.camber_max);
+  return range;
 }
 
 // (4.E13), (4.E15), (4.E23), (4.E25) with the factors of a pressure that is not the nominal one.
-void apply_pressure(const TirLines& lines, TirFile& file) {
+TirFile with_pressure(const TirLines& lines, TirFile file) {
   const double nominal = lines.number_or("IP_NOM", 0.0);
   const double actual = lines.number_or("IP", nominal) * lines.number_or("LIP", 1.0);
-  if (!(nominal > 0.0) || actual == nominal) return;
+  if (!(nominal > 0.0) || actual == nominal) return file;
   const double p = (actual - nominal) / nominal;
   const auto k = [&](std::string_view key) { return lines.number_or(key, 0.0); };
   MagicFormulaCoefficients<double>& c = file.tyre.coefficients;
@@ -218,9 +219,10 @@ void apply_pressure(const TirLines& lines, TirFile& file) {
       fmt::format("inflation pressure is {:.3g} of nominal: its effect is in the coefficients, "
                   "not in the aligning moment",
                   actual / nominal));
+  return file;
 }
 
-void read_use_mode(const TirLines& lines, TirFile& file) {
+TirFile with_use_mode(const TirLines& lines, TirFile file) {
   const MagicFormulaCoefficients<double>& c = file.tyre.coefficients;
   const bool weighting = c.RBX1 != 0.0 || c.RBY1 != 0.0 || c.RCX1 != 0.0 || c.RCY1 != 0.0;
   file.tyre.combined_slip = weighting ? CombinedSlip::kWeighting : CombinedSlip::kEquivalentSlip;
@@ -234,9 +236,12 @@ void read_use_mode(const TirLines& lines, TirFile& file) {
   }
   if (kind != 3.0 && !weighting)
     file.warnings.emplace_back("has no combined slip coefficients (R...): combined slip by an equivalent slip");
+  return file;
 }
 
-void check_admissible(const TirLines& lines, TirFile& file) {
+/// Refuses coefficients beyond what the formulas allow; warns where they are changed.
+std::vector<std::string> check_admissible(const TirLines& lines, const TirFile& file) {
+  std::vector<std::string> warnings;
   const MagicFormulaCoefficients<double>& c = file.tyre.coefficients;
   const auto positive = [&](std::string_view key, double value) {
     if (!(value > 0.0)) lines.fail(key, fmt::format("= {} must be > 0", value));
@@ -259,7 +264,7 @@ void check_admissible(const TirLines& lines, TirFile& file) {
     lines.fail("VERTICAL_STIFFNESS", fmt::format("= {} must be >= 0", file.vertical_stiffness));
   const double unfit = c.PKX2 < 0.0 ? c.FNOMIN * c.LFZO * (1.0 - 0.9 * c.PKX1 / c.PKX2) : 0.0;
   if (c.PKX2 < 0.0 && file.tyre.range.load_max > unfit)
-    file.warnings.push_back(
+    warnings.push_back(
         fmt::format("longitudinal stiffness per load falls below a tenth of nominal above {:.0f} N "
                     "(PKX2 = {}), within FZMAX: kept at that tenth",
                     unfit, c.PKX2));
@@ -286,6 +291,7 @@ void check_admissible(const TirLines& lines, TirFile& file) {
       refuse("cornering stiffness", camber == 0.0 ? "PKY2" : "PKY3", -t.K_y);
     }
   }
+  return warnings;
 }
 
 }  // namespace
@@ -294,12 +300,14 @@ TirFile parse_tir(std::string_view text, std::string source) {
   TirFile file;
   file.source = source;
   const TirLines lines(text, std::move(source));
-  check_format(lines, file);
-  read_coefficients(lines, file);
-  const double length = scale_of(lines, "LENGTH", "m", file);
-  const double force = scale_of(lines, "FORCE", "N", file);
-  const double angle = scale_of(lines, "ANGLE", "rad", file);
-  const double time = scale_of(lines, "TIME", "s", file);
+  file.format = checked_format(lines, file.source);
+  file.tyre.coefficients = read_coefficients(lines, file.source);
+  const auto unit = [&](std::string_view key, std::string_view si) {
+    if (lines.find(key) == nullptr) file.warnings.push_back(fmt::format("[UNITS] has no {}; taken as {}", key, si));
+    return scale_of(lines, key, si);
+  };
+  const double length = unit("LENGTH", "m"), force = unit("FORCE", "N"), angle = unit("ANGLE", "rad"),
+               time = unit("TIME", "s");
   if (angle != 1.0)
     file.warnings.emplace_back(
         "angles are not in radians: converted in the ranges; coefficients are in radians always");
@@ -310,16 +318,15 @@ TirFile parse_tir(std::string_view text, std::string source) {
   file.width = length * lines.number_or("WIDTH", 0.0);
   file.vertical_stiffness = force / length * lines.number_or("VERTICAL_STIFFNESS", 0.0) * lines.number_or("LCZ", 1.0);
   file.vertical_damping = force * time / length * lines.number_or("VERTICAL_DAMPING", 0.0);
-  read_ranges(lines, file, force, angle);
-  apply_pressure(lines, file);
-  read_use_mode(lines, file);
+  file.tyre.range = read_ranges(lines, force, angle);
+  file = with_use_mode(lines, with_pressure(lines, std::move(file)));
   const std::string side = upper(lines.text_or("TYRESIDE", "LEFT"));
   if (side == "RIGHT") {
     file.side = TyreSide::kRight;
   } else if (side != "LEFT") {
     file.warnings.push_back(fmt::format("TYRESIDE is '{}'; taken as LEFT", shown(side)));
   }
-  check_admissible(lines, file);
+  for (std::string& warning : check_admissible(lines, file)) file.warnings.push_back(std::move(warning));
 
   if (lines.number_or("LKG", 1.0) != 1.0) file.warnings.emplace_back("LKG is not 1; it is not modelled");
   for (const auto& entry : lines.entries()) {

@@ -37,7 +37,7 @@ struct TirFile {
 ///
 /// Formats: PAC2002, and MF-Tyre 5.2 (PROPERTY_FILE_FORMAT 'MF-TYRE', 'MF_05', 'MF52' with FITTYP 6 or 52), which has
 /// the same formulas. The units of [UNITS] hold for lengths, forces, stiffnesses, ranges and pressures; Magic Formula
-/// coefficients are dimensionless or in radians whatever stands there. Inflation pressure other than nominal (IP,
+/// coefficients are dimensionless or in radians whatever [UNITS] gives. Inflation pressure other than nominal (IP,
 /// IP_NOM) is put into the coefficients (PPX, PPY). USE_MODE 3 switches combined slip off, a negative one mirrors; a
 /// file without R coefficients gets `CombinedSlip::kEquivalentSlip`.
 ///
@@ -45,6 +45,7 @@ struct TirFile {
 /// appear twice, unknown units and formats, missing coefficients without which there is no tyre (all are named), and
 /// coefficients outside what the formulas allow.
 [[nodiscard]] TirFile read_tir(const std::filesystem::path& path);
+/// The same from a text; `source` names it in errors.
 [[nodiscard]] TirFile parse_tir(std::string_view text, std::string source);
 
 }  // namespace veridyn::vehicle

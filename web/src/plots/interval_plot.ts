@@ -13,6 +13,8 @@ type Row = IntervalPlot['rows'][number];
 const kTrack = 15;
 const kAxis = 20;
 const kTop = 5;
+/** Least room at either end of a row [CSS px]. */
+const kSide = 10;
 
 // Shapes distinguish the methods where colours do not.
 const kMarkers = ['circle', 'square', 'diamond', 'triangle'] as const;
@@ -27,6 +29,11 @@ function marker(method: number, x: number, y: number): SVGElement {
       ? `M${x} ${y - r - 1}L${x + r + 1} ${y}L${x} ${y + r + 1}L${x - r - 1} ${y}Z`
       : `M${x} ${y - r - 0.5}L${x + r + 0.5} ${y + r - 0.5}L${x - r - 0.5} ${y + r - 0.5}Z`;
   return svg('path', { d: path });
+}
+
+/** A name that may go on in a new line after an underscore. */
+function breakable(name: string): (string | Node)[] {
+  return name.split(/(?<=_)/).flatMap((part) => [part, h('wbr')]);
 }
 
 function finite(values: (number | null)[]): number[] {
@@ -69,14 +76,17 @@ function describe(plot: IntervalPlot, row: Row, each: Estimate): string {
   return `${plot.methods[each.method] ?? ''}: ${row.name} = ${format_number(each.value)} ${row.unit}, 95 % from ${format_number(each.low)} to ${format_number(each.high)}${status}`;
 }
 
-function draw_row(plot: IntervalPlot, row: Row, range: [number, number], width: number, left: number, hidden: Set<number>): SVGSVGElement {
+function draw_row(plot: IntervalPlot, row: Row, range: [number, number], width: number, hidden: Set<number>): SVGSVGElement {
   const tracks = plot.methods.length;
   const height = kTop + tracks * kTrack + kAxis;
-  const right = width - 14;
+  const { ticks, step } = nice_ticks(range[0], range[1], Math.max(2, Math.min(6, (width - 2 * kSide) / 90)));
+  const labels = format_ticks(ticks, step);
+  // Half a label stands beyond either end.
+  const side = Math.max(kSide, ...labels.map((label) => Math.ceil(0.5 * text_width(label)) + 1));
+  const left = side;
+  const right = width - side;
   const x = (value: number) => left + ((value - range[0]) / (range[1] - range[0])) * (right - left);
   const picture = svg('svg', { width, height, viewBox: `0 0 ${width} ${height}`, role: 'img', 'aria-label': row.estimates.map((each) => describe(plot, row, each)).join('; ') });
-  const { ticks, step } = nice_ticks(range[0], range[1], Math.max(2, Math.min(6, (right - left) / 90)));
-  const labels = format_ticks(ticks, step);
   const bottom = kTop + tracks * kTrack;
   ticks.forEach((tick, k) => {
     picture.append(svg('line', { class: tick === 0 || Math.abs(tick) < step * 1e-6 ? 'zero' : 'grid', x1: x(tick), x2: x(tick), y1: 0, y2: bottom }));
@@ -122,7 +132,7 @@ function picture_rules(): string {
 function interval_picture(plot: IntervalPlot, hidden: Set<number>, ranges: [number, number][]): SVGSVGElement {
   const width = 960;
   const name_width = 190;
-  const rows = plot.rows.map((row, k) => draw_row(plot, row, ranges[k] as [number, number], width - name_width, 6, hidden));
+  const rows = plot.rows.map((row, k) => draw_row(plot, row, ranges[k] as [number, number], width - name_width, hidden));
   const height = rows.reduce((sum, each) => sum + Number(each.getAttribute('height')) + 6, 0) + 44;
   const picture = blank(width, height);
   picture.append(svg('style', {}, picture_rules()));
@@ -153,7 +163,7 @@ export function draw_interval_plot(plot: IntervalPlot): DrawnFigure {
   const hosts = plot.rows.map((row) => {
     const host = h('div', { class: 'interval-picture' });
     list.append(
-      h('div', { class: 'interval-row' }, h('div', { class: 'interval-name' }, h('span', {}, row.name), row.unit === '' ? null : h('small', {}, `[${row.unit}]`)), host),
+      h('div', { class: 'interval-row' }, h('div', { class: 'interval-name' }, h('span', {}, ...breakable(row.name)), row.unit === '' ? null : h('small', {}, `[${row.unit}]`)), host),
     );
     return host;
   });
@@ -169,7 +179,7 @@ export function draw_interval_plot(plot: IntervalPlot): DrawnFigure {
     if (width <= 0 || (width === drawn && !again)) return;
     drawn = width;
     const all = ranges();
-    plot.rows.forEach((row, k) => hosts[k]?.replaceChildren(draw_row(plot, row, all[k] as [number, number], width, 6, hidden)));
+    plot.rows.forEach((row, k) => hosts[k]?.replaceChildren(draw_row(plot, row, all[k] as [number, number], width, hidden)));
   };
   new ResizeObserver(() => draw(false)).observe(list);
   const method_entry = (method: string, k: number) => {

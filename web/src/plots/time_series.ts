@@ -14,6 +14,8 @@ import { follow_touch, zoom_group, type PanelView, type ZoomGroup } from './zoom
 const kExpand = 2 as uPlot.JoinNullMode;
 /** A selection thinner than this in one direction zooms in the other only [CSS px]. */
 const kThinSelection = 30;
+/** Room for half a label of the abscissa at its right end [CSS px]. */
+const kRightPadding = 14;
 
 /** What the panels of a figure share. */
 interface Shared {
@@ -174,54 +176,72 @@ function zoom_selection(plot: uPlot, group: ZoomGroup, view: PanelView): void {
   plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 }
 
-function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean): HTMLElement {
-  const { figure, group, ordinates, shown, clock, windows } = shared;
-  const drawn = drawn_lines(shared, panel);
-  const view: PanelView = { y: null };
-  let plot: uPlot | null = null;
-  let ordinate: Ordinate = { range: [0, 1], off_scale: new Set() };
-  const values = drawn.map(() => h('span', { class: 'value' }));
-  const visible = () => drawn.filter(({ line }) => shown.shows(line.name, line.role));
-  const range = range_button(() => plot && group.refresh(plot));
-  const entries = drawn.map((each, k) => legend_entry(each.line, each.look, each.line.style, each.band !== undefined, shown, values[k] as HTMLElement));
-  const host = h('div', { class: 'plot' });
-  const element = h(
-    'div',
-    { class: 'panel' },
-    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(panel.label, panel.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map((each) => each.element))),
-    host,
-  );
+/** A panel on the page. */
+interface DrawnPanel {
+  drawn: Drawn[];
+  view: PanelView;
+  ordinate: Ordinate;
+  visible: () => Drawn[];
+  /** Whether the user wants the range of all lines, those that flatten the others too. */
+  full_range: () => boolean;
+  /** Says in the legend which lines leave the panel. */
+  mark: (off_scale: Set<Drawn>) => void;
+  /** Shows the values at an abscissa; null: none. */
+  read: (at: number | null) => void;
+}
 
-  const read = (at: number | null) => {
-    const moment = at === null || !windows ? at : windows.moment(at);
-    drawn.forEach((each, k) => {
-      const seen = at !== null && each.x.length > 0 && shown.shows(each.line.name, each.line.role);
-      (values[k] as HTMLElement).textContent = seen ? reading(each, at) : '';
-    });
-    clock.textContent = moment === null ? '' : `${figure.x.label} ${format_number(moment, 6)} ${figure.x.unit}`;
-  };
-  const y_range = (): [number, number] => {
-    ordinate = ordinate_of(visible(), ...group.window, range.pressed());
-    return view.y ?? ordinate.range;
-  };
-  const options = (width: number, height: number): uPlot.Options => ({
-    width,
-    height,
-    legend: { show: false },
-    padding: [6, 10, last ? 0 : 4, 0],
-    scales: {
-      x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
-      y: { range: y_range },
+function panel_scales({ group }: Shared, drawing: DrawnPanel): uPlot.Scales {
+  return {
+    x: { time: false, range: (_plot, min, max) => (min === null || max === null ? group.full() : [min, max]), min: group.full()[0], max: group.full()[1] },
+    y: {
+      range: () => {
+        drawing.ordinate = ordinate_of(drawing.visible(), ...group.window, drawing.full_range());
+        return drawing.view.y ?? drawing.ordinate.range;
+      },
     },
+  };
+}
+
+function panel_hooks({ figure, group, windows }: Shared, drawing: DrawnPanel, first: boolean): uPlot.Hooks.Arrays {
+  return {
+    drawAxes: [
+      (plot) => {
+        if (windows) draw_breaks(plot, windows);
+        draw_spans(plot, figure, first);
+        for (const { band, look } of drawing.visible()) if (band) draw_band(plot, band, look.colour(palette()));
+      },
+    ],
+    draw: [
+      (plot) => {
+        for (const line of drawing.ordinate.off_scale) draw_beyond(plot, line);
+        drawing.mark(drawing.ordinate.off_scale);
+      },
+    ],
+    setSelect: [(plot) => zoom_selection(plot, group, drawing.view)],
+    setCursor: [
+      (plot) => {
+        const left = plot.cursor.left ?? -1;
+        drawing.read(left >= 0 ? plot.posToVal(left, 'x') : null);
+      },
+    ],
+  };
+}
+
+function panel_options(shared: Shared, drawing: DrawnPanel, first: boolean, last: boolean): Omit<uPlot.Options, 'width' | 'height'> {
+  const { figure, group, ordinates, windows } = shared;
+  return {
+    legend: { show: false },
+    padding: [6, kRightPadding, last ? 0 : 4, 0],
+    scales: panel_scales(shared, drawing),
     axes: [
-      axis('x', { size: last ? 26 : 4, labels: last, ...(windows ? { ticks: (each, low, high) => windows.ticks(low, high, each.bbox.width / uPlot.pxRatio, 70) } : {}) }),
+      axis('x', { size: last ? 26 : 4, labels: last, ...(windows ? { ticks: (plot, low, high) => windows.ticks(low, high, plot.bbox.width / uPlot.pxRatio, 70) } : {}) }),
       axis('y', { size: ordinates.size }),
     ],
-    series: [{}, ...drawn.map(series_options)],
+    series: [{}, ...drawing.drawn.map(series_options)],
     cursor: {
       y: false,
       points: { size: 6, width: 0 },
-      dataIdx: marked_sample(drawn) as unknown as uPlot.Cursor.DataIdxRefiner,
+      dataIdx: marked_sample(drawing.drawn) as unknown as uPlot.Cursor.DataIdxRefiner,
       drag: { x: true, y: true, uni: kThinSelection, setScale: false },
       sync: { key: `time/${figure.axis}`, setSeries: false, scales: ['x', null] },
       bind: {
@@ -231,43 +251,56 @@ function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean)
         },
       },
     },
-    hooks: {
-      drawAxes: [
-        (each) => {
-          if (windows) draw_breaks(each, windows);
-          draw_spans(each, figure, first);
-          for (const { band, look } of visible()) if (band) draw_band(each, band, look.colour(palette()));
-        },
-      ],
-      draw: [
-        (each) => {
-          for (const line of ordinate.off_scale) draw_beyond(each, line);
-          entries.forEach((entry, k) => entry.mark(ordinate.off_scale.has(drawn[k] as Drawn)));
-          range.offer(ordinate.off_scale.size > 0);
-        },
-      ],
-      setSelect: [(each) => zoom_selection(each, group, view)],
-      setCursor: [
-        (each) => {
-          const left = each.cursor.left ?? -1;
-          read(left >= 0 ? each.posToVal(left, 'x') : null);
-        },
-      ],
+    hooks: panel_hooks(shared, drawing, first),
+  };
+}
+
+function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean): HTMLElement {
+  const { figure, group, shown, clock, windows } = shared;
+  const drawn = drawn_lines(shared, panel);
+  let plot: uPlot | null = null;
+  const values = drawn.map(() => h('span', { class: 'value' }));
+  const range = range_button(() => plot && group.refresh(plot));
+  const entries = drawn.map((each, k) => legend_entry(each.line, each.look, each.line.style, each.band !== undefined, shown, values[k] as HTMLElement));
+  const drawing: DrawnPanel = {
+    drawn,
+    view: { y: null },
+    ordinate: { range: [0, 1], off_scale: new Set() },
+    visible: () => drawn.filter(({ line }) => shown.shows(line.name, line.role)),
+    full_range: () => range.pressed(),
+    mark: (off_scale) => {
+      entries.forEach((entry, k) => entry.mark(off_scale.has(drawn[k] as Drawn)));
+      range.offer(off_scale.size > 0);
     },
-  });
+    read: (at) => {
+      const moment = at === null || !windows ? at : windows.moment(at);
+      drawn.forEach((each, k) => {
+        const seen = at !== null && each.x.length > 0 && shown.shows(each.line.name, each.line.role);
+        (values[k] as HTMLElement).textContent = seen ? reading(each, at) : '';
+      });
+      clock.textContent = moment === null ? '' : `${figure.x.label} ${format_number(moment, 6)} ${figure.x.unit}`;
+    },
+  };
   shown.on_change(() => {
     plot?.batch(() => drawn.forEach(({ line }, k) => plot?.setSeries(k + 1, { show: shown.shows(line.name, line.role) })));
-    read(null);
+    drawing.read(null);
   });
-  shared.pictures.push(() => ({ panel, drawn: visible(), y: view.y ?? ordinate.range }));
+  shared.pictures.push(() => ({ panel, drawn: drawing.visible(), y: drawing.view.y ?? drawing.ordinate.range }));
+  const host = h('div', { class: 'plot' });
   queueMicrotask(() => {
-    const made = mount(host, () => panel.height + (last ? 22 : 0), (width, height) => new uPlot(options(width, height), table_of(drawn), host));
+    const options = panel_options(shared, drawing, first, last);
+    const made = mount(host, () => panel.height + (last ? 22 : 0), (width, height) => new uPlot({ ...options, width, height }, table_of(drawn), host));
     plot = made;
-    group.add(made, view);
+    group.add(made, drawing.view);
     follow_touch(made);
     (host as HTMLElement & { uplot?: uPlot }).uplot = made;
   });
-  return element;
+  return h(
+    'div',
+    { class: 'panel' },
+    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(panel.label, panel.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map((each) => each.element))),
+    host,
+  );
 }
 
 /** What the shaded spans are, also where they are too narrow for their label. */

@@ -166,126 +166,162 @@ function full_ranges(figure: XYPlot, visible: XYSeries[], everything: boolean): 
   return { x: padded(x, 0.04), y: padded(y, 0.07), off_scale: new Set(visible.filter((_, k) => leaves[k])) };
 }
 
-/** Markers, lines and stems over a free abscissa. */
-export function draw_xy_plot(figure: XYPlot): DrawnFigure {
-  const looks = new Looks();
-  const look = new Map(figure.series.map((series) => [series, looks.of(series.name, series.role)]));
-  const shown = new SeriesSwitch();
-  const visible = () => figure.series.filter((each) => shown.shows(each.name, each.role));
-  const readout = h('span', { class: 'clock' });
-  const host = h('div', { class: 'plot' });
-  const element = h('div', { class: 'xy' });
-  let plot: uPlot | null = null;
-  let zoomed: { x: Range; y: Range } | null = null;
-  const range = range_button(() => refresh());
-  let full = full_ranges(figure, visible(), false);
-  const ordinates = new OrdinateWidth((width) => {
-    element.style.setProperty('--ordinate', `${width}px`);
-    apply();
-  }, true);
+/** What is in sight. */
+interface Window {
+  x: Range;
+  y: Range;
+}
 
-  // One length of a unit for both axes: the range that has more room is made longer.
-  const scaled = (plot_width: number, plot_height: number): [Range, Range] => {
-    const { x, y } = zoomed ?? full;
-    if (!figure.equal_scale) return [x, y];
-    const width = Math.max(1, plot_width - ordinates.width - kRightPadding);
-    const height = Math.max(1, plot_height - kAbscissaSize - kTopPadding);
-    const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
-    return [stretched(x, unit * width), stretched(y, unit * height)];
-  };
-  // Later: a plot that is being laid out takes no scales.
-  const apply = () =>
-    queueMicrotask(() => {
-      if (!plot) return;
-      const each = plot;
-      const [x, y] = scaled(each.width, each.height);
-      if (each.scales.x?.min === x[0] && each.scales.x?.max === x[1] && each.scales.y?.min === y[0] && each.scales.y?.max === y[1]) return each.redraw(false);
-      each.batch(() => {
-        each.setScale('x', { min: x[0], max: x[1] });
-        each.setScale('y', { min: y[0], max: y[1] });
-      });
+/** A plot on the page. */
+interface Drawing {
+  figure: XYPlot;
+  look: Map<XYSeries, LineLook>;
+  visible: () => XYSeries[];
+  ordinates: OrdinateWidth;
+  full: Full;
+  zoomed: Window | null;
+  plot: uPlot | null;
+}
+
+/** The scales of a plot of this size. One length of a unit for both axes: the range that has more room is made longer. */
+function scales_of({ figure, ordinates, full, zoomed }: Drawing, plot_width: number, plot_height: number): [Range, Range] {
+  const { x, y } = zoomed ?? full;
+  if (!figure.equal_scale) return [x, y];
+  const width = Math.max(1, plot_width - ordinates.width - kRightPadding);
+  const height = Math.max(1, plot_height - kAbscissaSize - kTopPadding);
+  const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
+  return [stretched(x, unit * width), stretched(y, unit * height)];
+}
+
+/** Shows the scales, later: a plot that is being laid out takes none. */
+function apply(drawing: Drawing): void {
+  queueMicrotask(() => {
+    const { plot } = drawing;
+    if (!plot) return;
+    const [x, y] = scales_of(drawing, plot.width, plot.height);
+    if (plot.scales.x?.min === x[0] && plot.scales.x?.max === x[1] && plot.scales.y?.min === y[0] && plot.scales.y?.max === y[1]) return plot.redraw(false);
+    plot.batch(() => {
+      plot.setScale('x', { min: x[0], max: x[1] });
+      plot.setScale('y', { min: y[0], max: y[1] });
     });
-  const names = new Set<string>();
-  const entries = figure.series.flatMap((series) => {
-    // Series of one name are one entry: the stretches of a drive, say.
-    if (names.has(`${series.role}/${series.name}`)) return [];
-    names.add(`${series.role}/${series.name}`);
-    return [{ series, entry: legend_entry(series, look.get(series) as LineLook, series.style === 'line' ? 'line' : 'markers', false, shown) }];
   });
-  const refresh = () => {
-    full = full_ranges(figure, visible(), range.pressed());
-    const gone = [...full.off_scale].map((each) => `${each.role}/${each.name}`);
-    for (const { series, entry } of entries) entry.mark(gone.includes(`${series.role}/${series.name}`));
-    range.offer(gone.length > 0);
-    apply();
-  };
-  const set_zoom = (to: { x: Range; y: Range } | null) => {
-    zoomed = to;
-    apply();
-    zoom_changed();
-  };
-  add_zoomable({
-    get is_zoomed() {
-      return zoomed !== null;
-    },
-    reset: () => set_zoom(null),
-  });
-  shown.on_change(refresh);
+}
 
-  const options = (width: number, height: number): uPlot.Options => ({
+function set_zoom(drawing: Drawing, to: Window | null): void {
+  drawing.zoomed = to;
+  apply(drawing);
+  zoom_changed();
+}
+
+/** Zooms to what was selected. */
+function zoom_selection(drawing: Drawing, plot: uPlot): void {
+  const { left, top, width, height } = plot.select;
+  if (width > 4 && height > 4) {
+    set_zoom(drawing, {
+      x: [plot.posToVal(left, 'x'), plot.posToVal(left + width, 'x')],
+      y: [plot.posToVal(top + height, 'y'), plot.posToVal(top, 'y')],
+    });
+  }
+  plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+}
+
+/** The point under the pointer in words. */
+function reading(drawing: Drawing, plot: uPlot): string {
+  const { left = -1, top = -1 } = plot.cursor;
+  const found = left >= 0 ? find_point(plot, drawing.visible(), left, top) : null;
+  return found ? `${found.series.name}: ${format_number(found.series.x[found.k])}, ${format_number(found.series.y[found.k])}` : '';
+}
+
+function plot_options(drawing: Drawing, readout: HTMLElement, width: number, height: number): uPlot.Options {
+  return {
     width,
     height,
     legend: { show: false },
     padding: [kTopPadding, kRightPadding, 0, 0],
     scales: {
       // The plot does not know its size yet when it asks for the first time.
-      x: { time: false, range: (each) => scaled(each.width || width, each.height || height)[0] },
-      y: { range: (each) => scaled(each.width || width, each.height || height)[1] },
+      x: { time: false, range: (plot) => scales_of(drawing, plot.width || width, plot.height || height)[0] },
+      y: { range: (plot) => scales_of(drawing, plot.width || width, plot.height || height)[1] },
     },
-    axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: ordinates.size })],
+    axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: drawing.ordinates.size })],
     series: [{}, { stroke: 'transparent', points: { show: false } }],
     cursor: {
       drag: { x: true, y: true, uni: kThinSelection, setScale: false },
       points: { show: false },
       bind: {
         dblclick: () => () => {
-          set_zoom(null);
+          set_zoom(drawing, null);
           return null;
         },
       },
     },
     hooks: {
       draw: [
-        (each) => {
-          draw_guides(each, figure);
-          for (const series of visible()) draw_series(each, series, look.get(series) as LineLook);
+        (plot) => {
+          draw_guides(plot, drawing.figure);
+          for (const series of drawing.visible()) draw_series(plot, series, drawing.look.get(series) as LineLook);
         },
       ],
-      setSize: [() => apply()],
-      setSelect: [
-        (each) => {
-          const { left, top, width: wide, height: tall } = each.select;
-          if (wide > 4 && tall > 4) {
-            set_zoom({
-              x: [each.posToVal(left, 'x'), each.posToVal(left + wide, 'x')],
-              y: [each.posToVal(top + tall, 'y'), each.posToVal(top, 'y')],
-            });
-          }
-          each.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-        },
-      ],
-      setCursor: [
-        (each) => {
-          const { left = -1, top = -1 } = each.cursor;
-          const found = left >= 0 ? find_point(each, visible(), left, top) : null;
-          readout.textContent = found ? `${found.series.name}: ${format_number(found.series.x[found.k])}, ${format_number(found.series.y[found.k])}` : '';
-        },
-      ],
+      setSize: [() => apply(drawing)],
+      setSelect: [(plot) => zoom_selection(drawing, plot)],
+      setCursor: [(plot) => (readout.textContent = reading(drawing, plot))],
     },
+  };
+}
+
+function key_of(series: XYSeries): string {
+  return `${series.role}/${series.name}`;
+}
+
+/** The legend; series of one name are one entry: the stretches of a drive, say. */
+function legend_entries({ figure, look }: Drawing, shown: SeriesSwitch) {
+  const firsts = new Map([...figure.series].reverse().map((series) => [key_of(series), series]));
+  return figure.series
+    .filter((series) => firsts.get(key_of(series)) === series)
+    .map((series) => ({ key: key_of(series), entry: legend_entry(series, look.get(series) as LineLook, series.style === 'line' ? 'line' : 'markers', false, shown) }));
+}
+
+/** Markers, lines and stems over a free abscissa. */
+export function draw_xy_plot(figure: XYPlot): DrawnFigure {
+  const looks = new Looks();
+  const shown = new SeriesSwitch();
+  const visible = () => figure.series.filter((each) => shown.shows(each.name, each.role));
+  const readout = h('span', { class: 'clock' });
+  const host = h('div', { class: 'plot' });
+  const element = h('div', { class: 'xy' });
+  const ordinates = new OrdinateWidth((width) => {
+    element.style.setProperty('--ordinate', `${width}px`);
+    apply(drawing);
+  }, true);
+  const drawing: Drawing = {
+    figure,
+    look: new Map(figure.series.map((series) => [series, looks.of(series.name, series.role)])),
+    visible,
+    ordinates,
+    full: full_ranges(figure, visible(), false),
+    zoomed: null,
+    plot: null,
+  };
+  const range = range_button(() => refresh());
+  const entries = legend_entries(drawing, shown);
+  const refresh = () => {
+    drawing.full = full_ranges(figure, visible(), range.pressed());
+    const gone = new Set([...drawing.full.off_scale].map(key_of));
+    for (const { key, entry } of entries) entry.mark(gone.has(key));
+    range.offer(gone.size > 0);
+    apply(drawing);
+  };
+  add_zoomable({
+    get is_zoomed() {
+      return drawing.zoomed !== null;
+    },
+    reset: () => set_zoom(drawing, null),
   });
+  shown.on_change(refresh);
   queueMicrotask(() => {
-    const made = mount(host, () => figure.height, (width, height) => new uPlot(options(width, height), [full.x, full.y], host));
-    plot = made;
+    const { full } = drawing;
+    const made = mount(host, () => figure.height, (width, height) => new uPlot(plot_options(drawing, readout, width, height), [full.x, full.y], host));
+    drawing.plot = made;
     follow_touch(made);
     (host as HTMLElement & { uplot?: uPlot }).uplot = made;
     refresh();
@@ -296,7 +332,8 @@ export function draw_xy_plot(figure: XYPlot): DrawnFigure {
     h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), readout),
   );
   const picture = () => {
-    const [x, y] = plot ? scaled(plot.width, plot.height) : [full.x, full.y];
+    const { plot, full, look } = drawing;
+    const [x, y] = plot ? scales_of(drawing, plot.width, plot.height) : [full.x, full.y];
     const shape = plot ? plot.bbox.height / Math.max(1, plot.bbox.width) : 0.5;
     return xy_picture(figure, visible().map((series) => ({ series, look: look.get(series) as LineLook })), x, y, shape);
   };

@@ -1,0 +1,69 @@
+#include "veridyn/aircraft/aircraft_study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+FlightStudy calm_study(double duration, const std::string& more) {
+  Progress silent;
+  return read_study(Study::parse(fmt::format("seed = 3\n[subject]\nbuiltin = \"unatrap\"\n[flight]\nduration = {}\n"
+                                             "airspeed = 20\nturbulence = \"none\"\n[sensors]\nset = \"reference\"\n"
+                                             "[reconstruct]\nsensors = \"reference\"\nturbulence = \"none\"\n{}",
+                                             duration, more),
+                                 "calm.toml"),
+                    silent);
+}
+
+// The recording of the study stays as it was read; the one with the delays taken off is part of the analysis.
+TEST(AircraftStudy, IsNotChangedByItsAnalysis) {
+  const FlightStudy study = calm_study(20.0, "[delays]\nautomatic = false\ngps = \"50 ms\"\n");
+  Progress silent;
+  const FlightAnalysis analysis = reconstruct(study, silent);
+  ASSERT_EQ(analysis.delays.size(), 1u);
+  EXPECT_EQ(study.mapped.recording.at("vel_north").times().front(), 0.0);
+  EXPECT_DOUBLE_EQ(analysis.aligned.recording.at("vel_north").times().front(), -0.05);
+  EXPECT_FALSE(analysis.interrupted);
+}
+
+TEST(AircraftStudy, RefusesAnAircraftThatNeverFlies) {
+  FlightStudy study = calm_study(5.0, "");
+  study.segments.min_airspeed_mps = 60.0;
+  Progress silent;
+  try {
+    static_cast<void>(identify(study, silent));
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("the aircraft never flies: the airspeed stays below"));
+  }
+}
+
+TEST(AircraftStudy, FindsTheTermsOfTheTrueModelAmongCandidates) {
+  Progress silent;
+  const FlightStudy study =
+      calm_study(150.0,
+                 "[identify]\nstructure = \"orthogonal\"\ncoefficients = [\"Cm\", \"Cl\"]\n"
+                 "[identify.candidates]\n"
+                 "Cm = [\"1\", \"alpha\", \"q_n\", \"de\", \"alpha^2\", \"alpha*de\", \"de^2\"]\n");
+  const FlightAnalysis a = identify(study, silent);
+  ASSERT_EQ(a.coefficients.size(), 2u);
+  for (const CoefficientResult& r : a.coefficients) {
+    ASSERT_TRUE(r.structure.has_value());
+    EXPECT_EQ(r.verdict, estimation::GroupVerdict::kIdentified) << r.reason;
+    // Strong terms must be there; Cl_dr of -0.0037 may be found or not.
+    const std::vector<const char*> strong = r.coefficient == Coefficient::kCm
+                                                ? std::vector<const char*>{"alpha", "q_n", "de"}
+                                                : std::vector<const char*>{"beta", "p_n", "da"};
+    for (const char* term : strong) EXPECT_TRUE(r.model.value_of(term).has_value()) << term;
+    EXPECT_LE(r.model.size(), 8u);
+    EXPECT_EQ(r.model.size(), r.structure->selected.size());
+    // What is exported has the chosen terms.
+    EXPECT_EQ(a.identified.model.at(r.coefficient).size(), r.model.size());
+  }
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

@@ -1,0 +1,78 @@
+#include "veridyn/io/results/estimate_json.hpp"
+
+#include <cmath>
+
+#include "tests/io/support.hpp"
+
+namespace veridyn::io {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::message_of;
+
+estimation::Estimate two_parameters() {
+  estimation::Estimate e;
+  e.subject = "unatrap";
+  e.method = "GTLS";
+  for (const char* name : {"CL_0", "CL_alpha"}) {
+    auto& p = e.parameters.emplace_back();
+    p.name = name;
+    p.value = 0.1 + 0.2;  // no short decimal
+    p.sigma = 1e-17;
+    p.low95 = -1.0 / 3.0;
+    p.high95 = 5.0;
+    p.unit = "1/rad";
+    p.status = estimation::ParameterStatus::kIdentified;
+  }
+  e.covariance = Eigen::Matrix2d{{1.0, 0.1}, {0.1, 2.0}};
+  e.fit = {{"CL", 0.97}};
+  e.validation["alpha"] = {0.1, 0.2, 0.3, 0.4, "deg"};
+  e.verdict = "identified: CL";
+  e.warnings = {"a line"};
+  return e;
+}
+
+TEST(EstimateJson, IsReadAsItWasWrittenToTheLastBit) {
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(two_parameters());
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", text));
+  EXPECT_EQ(to_json(read), text);
+  ASSERT_EQ(read.parameters.size(), 2u);
+  EXPECT_EQ(read.parameters[1].value, 0.1 + 0.2);
+  EXPECT_EQ(read.parameters[1].low95, -1.0 / 3.0);
+  EXPECT_EQ(read.covariance(0, 1), 0.1);
+  EXPECT_EQ(read.validation.at("alpha").unit, "deg");
+  EXPECT_THAT(read.warnings, ElementsAre("a line"));
+}
+
+TEST(EstimateJson, HasNullForWhatIsNotFinite) {
+  estimation::Estimate e = two_parameters();
+  e.parameters[0].value = std::nan("");
+  e.parameters[0].status = estimation::ParameterStatus::kNotExcited;
+  e.covariance(0, 0) = INFINITY;
+  EXPECT_THAT(to_json(e), HasSubstr("\"value\": null"));
+  const testing::TemporaryFolder folder;
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", to_json(e)));
+  EXPECT_TRUE(std::isnan(read.parameters[0].value));
+  EXPECT_FALSE(std::isfinite(read.covariance(0, 0)));
+}
+
+TEST(EstimateJson, RefusesWhatDoesNotFitByPlaceAndKey) {
+  const testing::TemporaryFolder folder;
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string text = to_json(two_parameters());
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    return message_of([&] { static_cast<void>(read_estimate(folder.write("estimate.json", text))); });
+  };
+  EXPECT_THAT(refused("{", "["), HasSubstr("estimate.json: not JSON at byte"));
+  EXPECT_THAT(refused("\"subject\"", "\"subjekt\""), HasSubstr("subject"));
+  EXPECT_THAT(refused("\"sigma\"", "\"sigm\""), HasSubstr("estimate.json: parameters[0]"));
+  EXPECT_THAT(refused("\"status\": \"identified\"", "\"status\": \"good\""), HasSubstr("status 'good' is not one of"));
+  EXPECT_THAT(refused("\"covariance\": [", "\"covariance\": [ [1, 2],"), HasSubstr("'covariance' is not a 2 by 2"));
+}
+
+}  // namespace
+}  // namespace veridyn::io

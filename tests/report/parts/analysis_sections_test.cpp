@@ -1,0 +1,104 @@
+#include "veridyn/report/parts/analysis_sections.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using estimation::Analysis;
+using estimation::GroupVerdict;
+using estimation::Parameter;
+using estimation::ParameterGroup;
+using estimation::ParameterStatus;
+
+Parameter stiffness(double value) {
+  return {
+      .name = "C_f", .value = value, .sigma = 0.01 * value, .unit = "N/rad", .status = ParameterStatus::kIdentified};
+}
+
+Analysis analysis_with(GroupVerdict verdict) {
+  Analysis analysis;
+  analysis.groups = {{.name = "car",
+                      .verdict = verdict,
+                      .reason = "a reason",
+                      .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}},
+                      .method = "output error",
+                      .methods = {{.method = "OLS", .usable = true, .parameters = {stiffness(4e4)}},
+                                  {.method = "TLS", .usable = false, .message = "no solution"},
+                                  {.method = "output error",
+                                   .usable = true,
+                                   .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}}}},
+                      .evidence = {{.name = "delay", .passed = false, .text = "late by 0.1 s"}}}};
+  return analysis;
+}
+
+template <typename Kind>
+std::vector<Kind> blocks(const Section& section) {
+  std::vector<Kind> found;
+  for (const Block& block : section.blocks) {
+    if (const auto* kind = std::get_if<Kind>(&block)) found.push_back(*kind);
+  }
+  return found;
+}
+
+TEST(ParametersSection, ShowsTheChosenMethodInUnitsForReading) {
+  const auto tables = blocks<Table>(parameters_section(analysis_with(GroupVerdict::kIdentified), ""));
+  ASSERT_EQ(tables.size(), 1U);
+  ASSERT_EQ(tables[0].rows.size(), 2U);
+  EXPECT_DOUBLE_EQ(*tables[0].rows[0].cells[1].number, 5e4);
+  EXPECT_NEAR(*tables[0].rows[1].cells[1].number, 0.1 / kDegree, 1e-12);
+  EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
+}
+
+TEST(ParametersSection, ShowsTheTruthOnlyWhereItIsKnown) {
+  Analysis analysis = analysis_with(GroupVerdict::kIdentified);
+  analysis.truth["C_f"] = 5.1e4;
+  const auto tables = blocks<Table>(parameters_section(analysis, ""));
+  ASSERT_EQ(tables.size(), 1U);
+  EXPECT_EQ(tables[0].columns.back().name, "truth");
+  EXPECT_DOUBLE_EQ(*tables[0].rows[0].cells.back().number, 5.1e4);
+  EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
+}
+
+TEST(ParametersSection, KeepsRejectedValuesOutOfTheTable) {
+  const Analysis rejected = analysis_with(GroupVerdict::kRejected);
+  EXPECT_TRUE(blocks<Table>(parameters_section(rejected, "")).empty());
+  EXPECT_TRUE(methods_section(rejected).blocks.empty());
+  EXPECT_EQ(blocks<IntervalPlot>(rejected_section(rejected)).size(), 1U);
+  EXPECT_TRUE(rejected_section(analysis_with(GroupVerdict::kIdentified)).blocks.empty());
+}
+
+TEST(MethodsSection, ComparesWhatSeveralMethodsEstimatedAndSaysWhyOneGaveNothing) {
+  const Section section = methods_section(analysis_with(GroupVerdict::kIdentified));
+  const auto plots = blocks<IntervalPlot>(section);
+  ASSERT_EQ(plots.size(), 1U);
+  EXPECT_THAT(plots[0].methods, testing::ElementsAre("OLS", "output error"));
+  ASSERT_EQ(plots[0].rows.size(), 1U);  // the bias is of one method only
+  EXPECT_EQ(plots[0].rows[0].name, "C_f");
+  const auto texts = blocks<Paragraph>(section);
+  ASSERT_EQ(texts.size(), 1U);
+  EXPECT_EQ(texts[0].text, "car, TLS: no solution");
+}
+
+TEST(EvidenceTable, MarksAFailedCheckOfARejectedEstimateAsTheWorse) {
+  const Table identified = evidence_table(analysis_with(GroupVerdict::kIdentified));
+  const Table rejected = evidence_table(analysis_with(GroupVerdict::kRejected));
+  ASSERT_EQ(identified.rows.size(), 1U);
+  EXPECT_EQ(identified.rows[0].cells[2].status, Status::kCaution);
+  EXPECT_EQ(rejected.rows[0].cells[2].status, Status::kBad);
+}
+
+TEST(PredictionTable, HasARowForEachQuantity) {
+  const std::vector<estimation::PredictedQuantity> quantities{
+      {.name = "yaw_rate", .unit = "rad/s", .fit = {.mae = 0.1}}};
+  const Table table = prediction_table(quantities, "Prediction");
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_NEAR(*table.rows[0].cells[1].number, 0.1 / kDegree, 1e-12);
+  EXPECT_EQ(table.rows[0].cells.size(), table.columns.size());
+}
+
+}  // namespace
+}  // namespace veridyn::report

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::estimation {
+
+/// What may be said of parameters that were estimated together.
+enum class GroupVerdict {
+  kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
+  kNotExcited,  ///< the recording does not move what they depend on
+  kRejected,    ///< an estimate exists and must not be used
+  kSkipped      ///< something that it needs is missing
+};
+/// "identified", "not excited", "rejected", "skipped".
+[[nodiscard]] std::string_view to_string(GroupVerdict verdict);
+
+/// Parameters by one method.
+struct MethodResult {
+  std::string method = {};  ///< "GTLS", "output error"
+  bool usable = false;
+  std::string message = {};  ///< one sentence: what came out, or why nothing did
+  std::vector<Parameter> parameters = {};
+
+  [[nodiscard]] const Parameter* find(std::string_view name) const;
+};
+
+/// Parameters that are estimated and judged together: a coefficient of an aircraft, a whole vehicle.
+struct ParameterGroup {
+  std::string name = {};     ///< "Cm", or the vehicle's
+  std::string meaning = {};  ///< in plain words: "pitching moment"; may be empty
+  GroupVerdict verdict = GroupVerdict::kSkipped;
+  std::string reason = {};  ///< one sentence
+  /// The result: the chosen method's, with what is not known of mass and geometry in the error bars too. Empty where no
+  /// method gave any.
+  std::vector<Parameter> parameters = {};
+  std::string method = {};                 ///< the chosen one; empty: none
+  std::vector<MethodResult> methods = {};  ///< all that were tried, on equal terms: errors of the recording only
+  std::vector<Evidence> evidence = {};
+};
+
+/// A quantity that the identified model predicts, on data that identification did not see.
+struct PredictedQuantity {
+  std::string name = {};  ///< "airspeed", "yaw_rate", "Cm"
+  std::string unit = "1";
+  numerics::FitMeasures fit = {};
+  double lag1 = 0.0;  ///< autocorrelation of the residual at one sample, 0 when it is white; NaN: not computed
+};
+
+/// What identification delivers, whatever the domain: read by estimate.json, tables, console and report. What only one
+/// domain has (its signals, its figures) stays in the domain's type, which holds one of these.
+struct Analysis {
+  Estimate estimate = {};
+  std::vector<ParameterGroup> groups = {};
+  std::vector<PredictedQuantity> predictions = {};
+  std::map<std::string, double, std::less<>> truth = {};  ///< of a simulated recording, by parameter; empty otherwise
+  bool interrupted = false;                               ///< then the rest is as far as it got
+
+  /// NaN where the truth is not known.
+  [[nodiscard]] double true_value(std::string_view parameter) const;
+};
+
+}  // namespace veridyn::estimation

@@ -1,0 +1,186 @@
+#include "veridyn/report/parts/analysis_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/report/document/number_format.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using estimation::Analysis;
+using estimation::GroupVerdict;
+using estimation::MethodResult;
+using estimation::Parameter;
+using estimation::ParameterGroup;
+
+bool has_values(const ParameterGroup& group) {
+  return !group.parameters.empty() &&
+         (group.verdict == GroupVerdict::kIdentified || group.verdict == GroupVerdict::kNotExcited);
+}
+
+/// Parameters that at least two methods estimated; one method alone compares with nothing.
+std::vector<std::string> compared(const ParameterGroup& group) {
+  std::vector<std::string> names;
+  for (const MethodResult& method : group.methods) {
+    for (const Parameter& p : method.parameters) {
+      const auto has = [&](const MethodResult& m) { return m.usable && m.find(p.name) != nullptr; };
+      if (std::ranges::count_if(group.methods, has) < 2 || std::ranges::count(names, p.name) > 0) continue;
+      names.push_back(p.name);
+    }
+  }
+  return names;
+}
+
+IntervalPlot interval_plot(const Analysis& analysis, const ParameterGroup& group) {
+  IntervalPlot plot{
+      .title = fmt::format("{}: estimates of all methods", group.name),
+      .caption = "Bars are 95 % intervals. Methods that disagree by more than their bars contradict each other.",
+      .reference_name = "truth"};
+  for (const MethodResult& method : group.methods)
+    if (method.usable) plot.methods.push_back(method.method);
+  for (const std::string& name : compared(group)) {
+    IntervalRow row{.name = name};
+    double factor = 1.0;
+    for (const MethodResult& method : group.methods) {
+      if (!method.usable) continue;
+      const Parameter* p = method.find(name);
+      if (p == nullptr) {
+        row.estimates.push_back({kNaN, kNaN, kNaN});
+        continue;
+      }
+      const ReadableNumber unit = readable(1.0, p->unit);
+      factor = unit.value;
+      row.unit = unit.unit;
+      row.estimates.push_back({p->value * factor, p->low95 * factor, p->high95 * factor, status_of(p->status)});
+    }
+    const double truth = analysis.true_value(name);
+    if (std::isfinite(truth)) row.reference = truth * factor;
+    plot.rows.push_back(std::move(row));
+  }
+  return plot;
+}
+
+void add_comparison(Section& section, const Analysis& analysis, const ParameterGroup& group) {
+  IntervalPlot plot = interval_plot(analysis, group);
+  if (!plot.rows.empty()) section.blocks.emplace_back(std::move(plot));
+  for (const MethodResult& method : group.methods) {
+    if (!method.usable)
+      section.blocks.emplace_back(
+          Paragraph{fmt::format("{}, {}: {}", group.name, method.method, method.message), Tone::kNote});
+  }
+}
+
+}  // namespace
+
+Status status_of(GroupVerdict verdict) {
+  switch (verdict) {
+    case GroupVerdict::kIdentified:
+      return Status::kIdentified;
+    case GroupVerdict::kNotExcited:
+      return Status::kNotExcited;
+    case GroupVerdict::kRejected:
+      return Status::kRejected;
+    case GroupVerdict::kSkipped:
+      return Status::kNone;
+  }
+  return Status::kNone;
+}
+
+Section parameters_section(const Analysis& analysis, std::string caption) {
+  Section section{.title = "Parameters", .id = "parameters"};
+  Table table{.title = "Parameters",
+              .caption =
+                  "95 % intervals from the covariance that allows for autocorrelated residuals. A parameter "
+                  "whose interval includes zero is marked insignificant, not set to zero. " +
+                  std::move(caption),
+              .columns = parameter_columns(!analysis.truth.empty())};
+  for (const ParameterGroup& group : analysis.groups) {
+    if (!has_values(group)) continue;
+    for (const Parameter& p : group.parameters) {
+      const ReadableNumber unit = readable(1.0, p.unit);
+      Row row = parameter_row(p, unit.value, unit.unit);
+      if (!analysis.truth.empty())
+        row.cells.push_back(measured_cell(analysis.true_value(p.name) * unit.value, p.sigma * unit.value));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  if (table.rows.empty()) {
+    section.blocks.emplace_back(Paragraph{"Nothing was identified, so there is no table of parameters.", Tone::kNote});
+  } else {
+    section.blocks.emplace_back(std::move(table));
+  }
+  return section;
+}
+
+Section methods_section(const Analysis& analysis) {
+  Section section{.title = "Estimates of all methods", .id = "methods", .folded = true};
+  for (const ParameterGroup& group : analysis.groups) {
+    if (group.verdict != GroupVerdict::kRejected) add_comparison(section, analysis, group);
+  }
+  return section;
+}
+
+Section rejected_section(const Analysis& analysis) {
+  Section section{.title = "Rejected estimates (do not use)", .id = "rejected", .folded = true};
+  for (const ParameterGroup& group : analysis.groups) {
+    if (group.verdict != GroupVerdict::kRejected || group.methods.empty()) continue;
+    section.blocks.emplace_back(Paragraph{group.reason});
+    add_comparison(section, analysis, group);
+  }
+  if (!section.blocks.empty()) {
+    section.blocks.insert(section.blocks.begin(),
+                          Paragraph{"To see what went wrong. These numbers must not be used.", Tone::kWarning});
+  }
+  return section;
+}
+
+Table evidence_table(const Analysis& analysis) {
+  Table table{.title = "Checks",
+              .caption = "What would make an estimate look better than it is.",
+              .columns = {{.name = "estimate of", .align = Align::kLeft},
+                          {.name = "check", .align = Align::kLeft},
+                          {.name = ""},
+                          {.name = "what was seen", .align = Align::kLeft}}};
+  for (const ParameterGroup& group : analysis.groups) {
+    const Status failed = group.verdict == GroupVerdict::kIdentified ? Status::kCaution : Status::kBad;
+    for (const estimation::Evidence& evidence : group.evidence) {
+      Row row{.cells = check_cells(evidence, failed)};
+      row.cells.insert(row.cells.begin(), text_cell(group.name));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+Table prediction_table(std::span<const estimation::PredictedQuantity> predictions, std::string title) {
+  Table table{
+      .title = std::move(title),
+      .caption =
+          "MAE: mean absolute error, RMSE: root mean square error, R2: share of the variance explained, Theil: "
+          "inequality coefficient (0 perfect), lag 1: autocorrelation of the residual at one sample (0 when the "
+          "model explains all but white noise).",
+      .columns = {{.name = "quantity", .align = Align::kLeft},
+                  {.name = "MAE", .digits = 3},
+                  {.name = "RMSE", .digits = 3},
+                  {.name = "unit", .align = Align::kLeft},
+                  {.name = "R2", .digits = 3},
+                  {.name = "Theil", .digits = 3},
+                  {.name = "lag 1", .digits = 2},
+                  {.name = "samples"}}};
+  for (const estimation::PredictedQuantity& q : predictions) {
+    const ReadableNumber unit = readable(1.0, q.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(q.name), number_cell(q.fit.mae * unit.value), number_cell(q.fit.rmse * unit.value),
+                   text_cell(unit.unit), number_cell(q.fit.r2), number_cell(q.fit.theil), number_cell(q.lag1),
+                   number_cell(static_cast<double>(q.fit.count), 0)}});
+  }
+  return table;
+}
+
+}  // namespace veridyn::report
