@@ -1,5 +1,5 @@
 # Build settings of this project: where things go, which flags our own code is compiled with, and the two functions that
-# every room uses. Nothing here reaches those who use the installed package.
+# every module uses. Nothing here reaches those who use the installed package.
 include(GNUInstallDirs)
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)

@@ -1,4 +1,4 @@
-# find_package(Veridyn [COMPONENTS room ...]) for those who install the library.
+# find_package(Veridyn [COMPONENTS module ...]) for those who install the library.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Veridyn)
 install(EXPORT VeridynTargets NAMESPACE Veridyn:: DESTINATION ${package_dir})

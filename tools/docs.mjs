@@ -9,9 +9,13 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
 // Modules whose types and free functions all have comments; the others are counted. Add a module when it is done.
-const complete = ['core', 'numerics', 'estimation', 'io', 'recording'];
+const complete = ['core', 'numerics', 'estimation', 'io', 'recording', 'aircraft', 'vehicle', 'muscle', 'report'];
 
 const output = process.argv[2] ?? 'build/docs';
+if (output.startsWith('-')) {
+  console.error('docs: there are no options: node tools/docs.mjs [OUTPUT_FOLDER]');
+  process.exit(2);
+}
 const architecture = 'docs/architecture.md';
 
 const files = execFileSync('git', ['ls-files', '-co', '--exclude-standard', 'veridyn'], { encoding: 'utf8' }).split('\n');
