@@ -120,6 +120,7 @@ Recording validation_recording(const Validation& validation) {
 
 void print_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
                           const CommonOptions& options) {
+  print_judgement(options, analysis.estimate);
   print_line(options, analysis.segments.longitudinal.text);
   print_line(options, analysis.segments.lateral.text);
   for (const CoefficientResult& r : analysis.coefficients)
@@ -139,6 +140,7 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
 Summary summary_of(const FlightAnalysis& analysis, const std::filesystem::path& folder) {
   Summary summary;
   summary["verdict"] = analysis.estimate.verdict;
+  summary["grades"] = grades_summary(analysis.estimate.judgement);
   summary["folder"] = folder.string();
   summary["coefficients"] = Summary::object();
   for (const CoefficientResult& r : analysis.coefficients) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/veridyn/console.hpp"
+
 namespace veridyn::app {
 
 using estimation::Parameter;
@@ -28,6 +30,26 @@ std::string methods_csv(const estimation::Analysis& analysis) {
     }
   }
   return text;
+}
+
+void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate) {
+  print_line(options, estimation::sentence_of(estimate.judgement));
+  for (const estimation::Evidence& row : estimate.evidence) {
+    if (row.outcome == estimation::Outcome::kPassed || row.bears_on.empty()) continue;
+    print_line(options, fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome),
+                                    row.about.empty() ? "" : row.about + ": ", row.text));
+    if (!row.advice.empty()) print_line(options, fmt::format("  {:<12} {}", "", row.advice));
+  }
+}
+
+Summary grades_summary(const estimation::Judgement& judgement) {
+  Summary grades = Summary::object();
+  for (const estimation::Purpose purpose : estimation::kPurposes) {
+    const estimation::PurposeGrade& g = judgement.of(purpose);
+    grades[estimation::to_string(purpose)] =
+        Summary::object({{"grade", estimation::to_string(g.grade)}, {"because", g.decided_by}});
+  }
+  return grades;
 }
 
 }  // namespace veridyn::app

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "apps/veridyn/command.hpp"
+#include "apps/veridyn/summary.hpp"
 #include "veridyn/estimation/analysis.hpp"
 
 namespace veridyn::app {
@@ -13,5 +15,11 @@ namespace veridyn::app {
 
 /// methods.csv: every method's figures for every parameter, group by group in the order in which methods were tried.
 [[nodiscard]] std::string methods_csv(const estimation::Analysis& analysis);
+
+/// The three grades in a line, then every row of the evidence that is less than passed, with what to do.
+void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate);
+
+/// The three grades and their reasons, for `--json`.
+[[nodiscard]] Summary grades_summary(const estimation::Judgement& judgement);
 
 }  // namespace veridyn::app

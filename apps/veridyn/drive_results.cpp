@@ -82,6 +82,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
 void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path& folder,
                     const CommonOptions& options) {
   const VehicleIdentification& id = analysis.identification;
+  print_judgement(options, analysis.estimate);
   if (const VehicleEstimate* best = id.best()) {
     for (const estimation::Parameter& p : best->parameters) {
       print_line(options, fmt::format("  {:<20} {:>12.5g} +- {:<9.2g} {:<12} {}", p.name, p.value, p.sigma, p.unit,
@@ -101,6 +102,7 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
   Summary s;
   s["folder"] = folder.string();
   s["verdict"] = to_string(analysis.identification.verdict);
+  s["grades"] = grades_summary(analysis.estimate.judgement);
   s["reason"] = analysis.identification.reason;
   s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;

@@ -21,5 +21,30 @@ TEST(Analysis, KnowsTheTruthOfSimulatedRecordingsOnly) {
   EXPECT_DOUBLE_EQ(analysis.true_value("C_f"), 5e4);
 }
 
+TEST(VerdictOf, IsEffectiveWhereOnlyThePredictionMayBeUsed) {
+  Judgement judgement;
+  judgement.parameters.grade = Grade::kWithCare;
+  EXPECT_EQ(verdict_of(judgement), GroupVerdict::kIdentified);
+  judgement.parameters.grade = Grade::kNo;
+  judgement.prediction.grade = Grade::kYes;
+  EXPECT_EQ(verdict_of(judgement), GroupVerdict::kEffective);
+  judgement.prediction.grade = Grade::kNotJudged;
+  EXPECT_EQ(verdict_of(judgement), GroupVerdict::kRejected);
+  EXPECT_TRUE(usable(GroupVerdict::kEffective));
+  EXPECT_FALSE(usable(GroupVerdict::kRejected));
+}
+
+TEST(Marked, LeavesWhatIsFixedOrNotExcited) {
+  const std::vector<Parameter> parameters{{.name = "a", .status = ParameterStatus::kIdentified},
+                                          {.name = "b", .status = ParameterStatus::kFixed},
+                                          {.name = "c", .status = ParameterStatus::kNotExcited}};
+  const auto effective = marked(parameters, GroupVerdict::kEffective);
+  EXPECT_EQ(effective[0].status, ParameterStatus::kEffective);
+  EXPECT_EQ(effective[1].status, ParameterStatus::kFixed);
+  EXPECT_EQ(effective[2].status, ParameterStatus::kNotExcited);
+  EXPECT_EQ(marked(parameters, GroupVerdict::kRejected)[0].status, ParameterStatus::kRejected);
+  EXPECT_EQ(marked(parameters, GroupVerdict::kIdentified)[0].status, ParameterStatus::kIdentified);
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

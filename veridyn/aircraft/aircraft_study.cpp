@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
+#include "veridyn/aircraft/identification/recording_evidence.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
 #include "veridyn/aircraft/sensors/air_data_calibration.hpp"
@@ -115,6 +116,9 @@ FlightAnalysis analyse_motion(const FlightStudy& study, Progress& progress) {
   analysis.signals = prepare_signals(analysis.aligned, analysis.reconstruction.smoothed, study.subject, study.signals,
                                      data_sheet ? &analysis.reconstruction.sigma : nullptr);
   analysis.segments = excited_segments(analysis.signals, study.segments);
+  progress.stage("checking the recording");
+  analysis.recording_evidence =
+      recording_evidence(analysis.aligned.recording, analysis.reconstruction, options, analysis.segments);
   return analysis;
 }
 
@@ -130,8 +134,9 @@ std::vector<std::string> names_with(std::span<const CoefficientResult> results, 
 std::string verdict_text(std::span<const CoefficientResult> results) {
   std::vector<std::string> parts;
   for (const estimation::GroupVerdict verdict :
-       {estimation::GroupVerdict::kIdentified, estimation::GroupVerdict::kRejected,
-        estimation::GroupVerdict::kNotExcited, estimation::GroupVerdict::kSkipped}) {
+       {estimation::GroupVerdict::kIdentified, estimation::GroupVerdict::kEffective,
+        estimation::GroupVerdict::kRejected, estimation::GroupVerdict::kNotExcited,
+        estimation::GroupVerdict::kSkipped}) {
     const std::vector<std::string> names = names_with(results, verdict);
     if (!names.empty()) parts.push_back(fmt::format("{}: {}", to_string(verdict), fmt::join(names, ", ")));
   }
@@ -155,6 +160,48 @@ std::vector<std::string> warnings_of(const FlightStudy& study, const FlightAnaly
   return warnings;
 }
 
+/// Flown open loop over held-out data, the model must be nearer than the mean of what was flown.
+std::vector<FlightEvidence> flown_evidence(const Validation& validation) {
+  using namespace estimation;
+  std::vector<FlightEvidence> rows;
+  for (const PredictedQuantity& q : validation.quantities) {
+    const bool better = q.fit.r2 >= 0.0;
+    // Gusts, which the model is not given, can cost a good one its lead over the mean; they do not make it miss by
+    // three times what the motion varies.
+    const Outcome outcome = better ? Outcome::kPassed : q.fit.r2 >= -10.0 ? Outcome::kCare : Outcome::kFailed;
+    rows.push_back(
+        {{.name = "flown over the hold-out",
+          .about = q.name,
+          .outcome = outcome,
+          .value = q.fit.r2,
+          .limit = 0.0,
+          .scale = "R2",
+          .text = fmt::format("flown for {:.0f} s at a time over the hold-out, the model misses {} by {:.2g} {}{}",
+                              validation.period_s, q.name, q.fit.mae, q.unit,
+                              better ? "" : ", which is worse than its mean"),
+          .bears_on = Purpose::kPrediction}});
+  }
+  return rows;
+}
+
+std::vector<estimation::Evidence> rows_of(std::span<const FlightEvidence> evidence) {
+  std::vector<estimation::Evidence> rows;
+  for (const FlightEvidence& e : evidence) rows.push_back(e.row);
+  return rows;
+}
+
+/// The grades of the coefficients together, and of what bears on all of them.
+estimation::Judgement judgement_of(const FlightAnalysis& analysis, std::span<const estimation::Evidence> of_all) {
+  std::vector<estimation::Judgement> parts;
+  for (const CoefficientResult& result : analysis.coefficients) parts.push_back(result.judgement);
+  const estimation::Judgement coefficients = estimation::judge_together(parts);
+  const estimation::Judgement whole = estimation::judge(of_all);
+  estimation::Judgement judgement = coefficients;
+  judgement.data = whole.data;
+  judgement.prediction = estimation::worse(coefficients.prediction, whole.prediction);
+  return judgement;
+}
+
 /// What estimate.json will say of an analysis that is complete but for it.
 estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& analysis) {
   estimation::Estimate estimate = make_estimate(study.subject, analysis.coefficients);
@@ -164,6 +211,14 @@ estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& a
     estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   }
   estimate.warnings = warnings_of(study, analysis);
+  std::vector<estimation::Evidence> of_all = rows_of(analysis.recording_evidence);
+  const std::vector<estimation::Evidence> flown = rows_of(flown_evidence(analysis.validation));
+  of_all.insert(of_all.end(), flown.begin(), flown.end());
+  estimate.judgement = judgement_of(analysis, of_all);
+  estimate.evidence = std::move(of_all);
+  for (const CoefficientResult& result : analysis.coefficients)
+    for (const estimation::Evidence& row : result.evidence)
+      if (row.about == result.name) estimate.evidence.push_back(row);
   return estimate;
 }
 
@@ -243,7 +298,8 @@ FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
   if (analysis.interrupted) return analysis;
   const FlightSignals& signals = analysis.signals;
   const Segments& segments = analysis.segments;
-  analysis.coefficients = identify_coefficients(signals, segments, study.subject, study.identify, progress);
+  analysis.coefficients =
+      identify_coefficients(signals, segments, study.subject, study.identify, progress, analysis.recording_evidence);
   analysis.others =
       compare_other_estimators(signals, segments, study.subject, analysis.coefficients, study.identify, progress);
   progress.stage("uncertainty of the measured coefficients");

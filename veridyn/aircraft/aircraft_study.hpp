@@ -60,6 +60,7 @@ struct FlightAnalysis : estimation::Analysis {
   Reconstruction reconstruction;
   FlightSignals signals;
   Segments segments;
+  std::vector<FlightEvidence> recording_evidence;  ///< does the recording agree with itself and with physics?
   std::vector<CoefficientResult> coefficients;
   OtherEstimators others;         ///< output error, frequency domain, bootstrap, where the study has them
   UncertaintyReport uncertainty;  ///< of the measured coefficients

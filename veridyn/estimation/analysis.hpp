@@ -7,6 +7,7 @@
 
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/parameter.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -14,13 +15,25 @@ namespace veridyn::estimation {
 
 /// What may be said of parameters that were estimated together.
 enum class GroupVerdict {
-  kIdentified,  ///< predicts the hold-out, its checks passed; single parameters may still be insignificant
+  kIdentified,  ///< physical constants within their intervals; single parameters may still be insignificant
+  kEffective,   ///< predicts the hold-out, but the values are no physical constants
   kNotExcited,  ///< the recording does not move what they depend on
   kRejected,    ///< an estimate exists and must not be used
   kSkipped      ///< something that it needs is missing
 };
-/// "identified", "not excited", "rejected", "skipped".
+/// "identified", "effective", "not excited", "rejected", "skipped".
 [[nodiscard]] std::string_view to_string(GroupVerdict verdict);
+/// Whether there are values that a simulation may use.
+[[nodiscard]] constexpr bool usable(GroupVerdict verdict) {
+  return verdict == GroupVerdict::kIdentified || verdict == GroupVerdict::kEffective;
+}
+/// What the grades of a group with an estimate amount to: identified where its parameters may be used, effective where
+/// it only predicts, else rejected.
+[[nodiscard]] GroupVerdict verdict_of(const Judgement& judgement);
+
+/// The parameters of a group as its verdict marks them: what is neither fixed nor unexcited becomes effective or
+/// rejected with the group.
+[[nodiscard]] std::vector<Parameter> marked(std::vector<Parameter> parameters, GroupVerdict verdict);
 
 /// Parameters by one method.
 struct MethodResult {
@@ -43,7 +56,8 @@ struct ParameterGroup {
   std::vector<Parameter> parameters = {};
   std::string method = {};                 ///< the chosen one; empty: none
   std::vector<MethodResult> methods = {};  ///< all that were tried, on equal terms: errors of the recording only
-  std::vector<Evidence> evidence = {};
+  std::vector<Evidence> evidence = {};     ///< that bears on this group, of the recording too
+  Judgement judgement = {};                ///< `judge(evidence)`
 };
 
 /// A quantity that the identified model predicts, on data that identification did not see.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/parameter.hpp"
 
 namespace veridyn::estimation {
@@ -35,6 +36,8 @@ struct Estimate {
   std::map<std::string, double> fit;
   std::map<std::string, ValidationMeasure> validation;
   std::string verdict;
+  Judgement judgement;             ///< of the whole; "not judged" where an estimate was read from an older file
+  std::vector<Evidence> evidence;  ///< every check behind it
   std::vector<std::string> warnings;
 
   [[nodiscard]] const Parameter* find(std::string_view name) const;

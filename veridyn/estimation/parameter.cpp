@@ -14,6 +14,8 @@ std::string_view to_string(ParameterStatus status) {
       return "identified";
     case ParameterStatus::kInsignificant:
       return "insignificant";
+    case ParameterStatus::kEffective:
+      return "effective";
     case ParameterStatus::kNotExcited:
       return "not_excited";
     case ParameterStatus::kRejected:

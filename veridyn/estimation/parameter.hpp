@@ -10,6 +10,7 @@ namespace veridyn::estimation {
 enum class ParameterStatus {
   kIdentified,     ///< differs from zero at the chosen significance
   kInsignificant,  ///< determined, but zero lies inside its interval: marked, not zeroed
+  kEffective,      ///< predicts, but is no physical constant: the model lacks something that it makes up for
   kNotExcited,     ///< the data do not determine it; its error bar is the bound on what is not excited
   kRejected,       ///< the estimate as a whole must not be used
   kFixed           ///< pinned by the user

@@ -30,38 +30,20 @@ std::vector<std::string> meanings(std::span<const CoefficientResult> results, es
   return names;
 }
 
-Verdict verdict_of(const FlightAnalysis& analysis) {
-  Verdict verdict;
-  const auto good = meanings(analysis.coefficients, estimation::GroupVerdict::kIdentified);
-  const auto bad = meanings(analysis.coefficients, estimation::GroupVerdict::kRejected);
-  const auto calm = meanings(analysis.coefficients, estimation::GroupVerdict::kNotExcited);
-  const auto skipped = meanings(analysis.coefficients, estimation::GroupVerdict::kSkipped);
-  if (good.empty()) {
-    verdict.level = Level::kBad;
-    verdict.word = bad.empty() ? "Not excited" : "Rejected";
-    verdict.headline = "No aerodynamic coefficient can be trusted from this flight: do not use a model from it.";
-  } else if (bad.empty() && calm.empty() && skipped.empty()) {
-    verdict.level = Level::kGood;
-    verdict.word = "Identified";
-    verdict.headline = "All aerodynamic coefficients were identified and predict held-out parts of the flight.";
-  } else {
-    verdict.level = Level::kCaution;
-    verdict.word = "Partly identified";
-    verdict.headline = fmt::format("{} of {} aerodynamic coefficients were identified; the others must not be used.",
-                                   good.size(), analysis.coefficients.size());
+/// The grades, then the coefficients by what became of them.
+Verdict top_of(const FlightAnalysis& analysis) {
+  Verdict verdict = verdict_of(analysis.estimate);
+  std::vector<std::string> lines;
+  using estimation::GroupVerdict;
+  for (const auto& [group, word] :
+       {std::pair{GroupVerdict::kIdentified, "Identified"}, std::pair{GroupVerdict::kEffective, "Predicts only"},
+        std::pair{GroupVerdict::kRejected, "Rejected"},
+        std::pair{GroupVerdict::kNotExcited, "Not excited by this flight"},
+        std::pair{GroupVerdict::kSkipped, "Not attempted"}}) {
+    const std::vector<std::string> names = meanings(analysis.coefficients, group);
+    if (!names.empty()) lines.push_back(fmt::format("{}: {}", word, fmt::join(names, ", ")));
   }
-  const auto line = [&](const char* word, const std::vector<std::string>& names) {
-    if (!names.empty()) verdict.lines.push_back(fmt::format("{}: {}", word, fmt::join(names, ", ")));
-  };
-  line("Identified", good);
-  line("Rejected", bad);
-  line("Not excited by this flight", calm);
-  line("Not attempted", skipped);
-  for (const PredictedQuantity& q : analysis.validation.quantities) {
-    verdict.lines.push_back(
-        fmt::format("Flown over held-out data for {:.0f} s at a time, the model misses {} by {:.2g} {} on average",
-                    analysis.validation.period_s, q.name == "airspeed" ? "airspeed" : q.name, q.fit.mae, q.unit));
-  }
+  verdict.lines.insert(verdict.lines.begin(), lines.begin(), lines.end());
   return verdict;
 }
 
@@ -126,13 +108,14 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   Document document =
       started_document(fmt::format("{}: aerodynamic model", study.subject.name),
                        given ? "A given estimate tried on this flight" : "Identified from flight", context.program);
-  document.verdict = verdict_of(analysis);
+  document.verdict = top_of(analysis);
   document.facts = facts_of(study, analysis);
   const auto add = [&](Section section, bool shown = true) {
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
+  add(evidence_section(analysis));
   add(methods_section(analysis), !given);
   add(other_estimators_section(analysis));
   add(structure_section(analysis));

@@ -20,24 +20,8 @@ namespace {
 using namespace veridyn::vehicle;
 
 Verdict verdict(const VehicleAnalysis& a) {
-  Verdict v;
-  const VehicleIdentification& id = a.identification;
-  switch (id.verdict) {
-    case estimation::GroupVerdict::kIdentified:
-      v.level = id.warnings.empty() ? Level::kGood : Level::kCaution;
-      break;
-    case estimation::GroupVerdict::kNotExcited:
-      v.level = Level::kCaution;
-      v.word = "Not excited";
-      break;
-    case estimation::GroupVerdict::kRejected:
-    case estimation::GroupVerdict::kSkipped:
-      v.level = Level::kBad;
-      break;
-  }
-  v.headline = id.reason;
-  if (!id.validation.text.empty()) v.lines.push_back(id.validation.text);
-  if (!id.warnings.empty()) v.lines.push_back(id.warnings.front());
+  Verdict v = verdict_of(a.estimate);
+  v.lines.insert(v.lines.begin(), a.identification.reason);
   return v;
 }
 
@@ -238,13 +222,6 @@ Table origin_table(const VehicleStudy& study) {
   return table;
 }
 
-Section checks_section(const VehicleAnalysis& analysis) {
-  Section section{.title = "Checks", .id = "checks", .folded = true};
-  Table table = evidence_table(analysis);
-  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
-  return section;
-}
-
 Section validation_section(const DriveValidation& validation) {
   Section section{.title = "Validation on held-out data"};
   section.blocks.emplace_back(prediction_table(validation.quantities, "Prediction of the hold-out"));
@@ -310,7 +287,7 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       "bars where [identify.uncertainty] gives it."));
   if (!id.validation.stretches.empty()) add(validation_section(id.validation));
   add(methods_section(analysis));
-  add(checks_section(analysis));
+  add(evidence_section(analysis));
   if (!id.fit.stretches.empty()) document.sections.push_back(fit_section(id.fit));
   const VehicleParameters<double>& p = id.best() != nullptr ? id.identified : study.vehicle;
   document.sections.push_back(cornering_section(analysis, p));

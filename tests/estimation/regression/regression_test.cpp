@@ -7,7 +7,7 @@ using namespace veridyn::estimation;
 using testing_support::coloured_noise;
 using testing_support::simulate_regression;
 
-Eigen::VectorXd true_theta() {
+Eigen::VectorXd regression_theta() {
   Eigen::VectorXd theta(4);
   theta << 0.5, -0.7, 0.3, -1.2;
   return theta;
@@ -21,7 +21,7 @@ Eigen::MatrixXd errors(double regressors, double regressand) {
 }
 
 TEST(Compare, RecommendsGtlsWhenItsAssumptionsHold) {
-  const auto s = simulate_regression(1, true_theta(), errors(0.1, 0.1));
+  const auto s = simulate_regression(1, regression_theta(), errors(0.1, 0.1));
   const RegressionComparison c = compare(s.data);
   ASSERT_EQ(c.estimates.size(), 4U);
   ASSERT_TRUE(c.recommends) << c.reason;
@@ -32,7 +32,7 @@ TEST(Compare, RecommendsGtlsWhenItsAssumptionsHold) {
 }
 
 TEST(Compare, RecommendsOlsWithExactRegressors) {
-  const auto s = simulate_regression(2, true_theta(), errors(0.0, 0.1));
+  const auto s = simulate_regression(2, regression_theta(), errors(0.0, 0.1));
   const RegressionComparison c = compare(s.data);
   ASSERT_TRUE(c.recommends);
   EXPECT_EQ(c.recommended, Method::kOls);
@@ -41,11 +41,11 @@ TEST(Compare, RecommendsOlsWithExactRegressors) {
 // The trap of the specification: with a wrong ratio of errors GTLS is far worse than OLS. Here the regressors are
 // nearly exact, the model lacks a term, and W says that the errors are the regressors'.
 TEST(Compare, RefusesWhenTheErrorRatioIsWrongAndMatters) {
-  auto s = simulate_regression(3, true_theta(), errors(1e-4, 1.0));
+  auto s = simulate_regression(3, regression_theta(), errors(1e-4, 1.0));
   s.data.error_covariance = errors(0.05, 0.01);
   const RegressionComparison c = compare(s.data);
   const Eigen::VectorXd wrong = c.find(Method::kGtls)->theta;
-  ASSERT_GT((wrong - true_theta()).norm(), 4.0 * (c.find(Method::kOls)->theta - true_theta()).norm());
+  ASSERT_GT((wrong - regression_theta()).norm(), 4.0 * (c.find(Method::kOls)->theta - regression_theta()).norm());
   EXPECT_FALSE(c.recommends) << c.reason;
   EXPECT_EQ(c.best(), nullptr);
   EXPECT_THAT(c.reason, testing::HasSubstr("none: the residual variance is"));
@@ -53,7 +53,7 @@ TEST(Compare, RefusesWhenTheErrorRatioIsWrongAndMatters) {
 
 // The same errors of the regressors, but what is left unexplained is declared to be error of the equation.
 TEST(Compare, EstimatesEquationErrorWhenAsked) {
-  auto s = simulate_regression(4, true_theta(), errors(0.05, 1.0), {.rows = 8000});
+  auto s = simulate_regression(4, regression_theta(), errors(0.05, 1.0), {.rows = 8000});
   s.data.error_covariance(4, 4) = 0.01;
   EXPECT_FALSE(compare(s.data).recommends);
   s.data.regressand_error_known = false;
@@ -62,12 +62,12 @@ TEST(Compare, EstimatesEquationErrorWhenAsked) {
   EXPECT_EQ(c.recommended, Method::kGtls);
   for (Eigen::Index i = 0; i < 4; ++i) {
     const Parameter& p = c.best()->parameters[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(p.value, true_theta()(i), 3.5 * p.sigma);
+    EXPECT_NEAR(p.value, regression_theta()(i), 3.5 * p.sigma);
   }
 }
 
 TEST(Compare, TakesPcaWhenADirectionIsNotExcited) {
-  auto s = simulate_regression(5, true_theta(), errors(0.02, 0.02));
+  auto s = simulate_regression(5, regression_theta(), errors(0.02, 0.02));
   std::mt19937_64 generator(77);
   const Eigen::VectorXd noise = coloured_noise(generator, s.data.rows(), 0.0);
   s.data.regressors.col(3) = noise * std::sqrt(0.02);
@@ -80,7 +80,7 @@ TEST(Compare, TakesPcaWhenADirectionIsNotExcited) {
 }
 
 TEST(Compare, MarksInsignificantParametersWithoutZeroingThem) {
-  Eigen::VectorXd theta = true_theta();
+  Eigen::VectorXd theta = regression_theta();
   theta(3) = 0.0;
   const auto s = simulate_regression(6, theta, errors(0.1, 0.1));
   RegressionEstimate e = estimate(s.data, Method::kGtls);

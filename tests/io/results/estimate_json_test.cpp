@@ -46,6 +46,39 @@ TEST(EstimateJson, IsReadAsItWasWrittenToTheLastBit) {
   EXPECT_THAT(read.warnings, ElementsAre("a line"));
 }
 
+TEST(EstimateJson, KeepsGradesAndEvidence) {
+  estimation::Estimate e = two_parameters();
+  e.parameters[0].status = estimation::ParameterStatus::kEffective;
+  e.evidence = {{.name = "hold-out",
+                 .about = "CL",
+                 .outcome = estimation::Outcome::kMissing,
+                 .value = std::nan(""),
+                 .limit = 0.3,
+                 .scale = "R2",
+                 .text = "no hold-out",
+                 .bears_on = estimation::Purpose::kData | estimation::Purpose::kPrediction,
+                 .advice = "fly twice"}};
+  e.judgement = estimation::judge(e.evidence);
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(e);
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", text));
+  EXPECT_EQ(to_json(read), text);
+  EXPECT_EQ(read.judgement.prediction.grade, estimation::Grade::kNotJudged);
+  EXPECT_THAT(read.judgement.prediction.decided_by, ElementsAre("no hold-out"));
+  ASSERT_EQ(read.evidence.size(), 1u);
+  EXPECT_FALSE(read.evidence[0].bears_on.contains(estimation::Purpose::kParameters));
+}
+
+TEST(EstimateJson, RefusesAGradeThatIsNone) {
+  std::string text = to_json(two_parameters());
+  const std::size_t at = text.find("not judged");
+  text.replace(at, 10, "marvellous");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.write("estimate.json", text);
+  EXPECT_THAT(message_of([&] { static_cast<void>(read_estimate(file)); }),
+              HasSubstr("grades.data.grade: 'marvellous' is not one of yes, with care, not judged, no"));
+}
+
 TEST(EstimateJson, HasNullForWhatIsNotFinite) {
   estimation::Estimate e = two_parameters();
   e.parameters[0].value = std::nan("");

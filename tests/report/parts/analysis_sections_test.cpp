@@ -21,17 +21,18 @@ Parameter stiffness(double value) {
 
 Analysis analysis_with(GroupVerdict verdict) {
   Analysis analysis;
-  analysis.groups = {{.name = "car",
-                      .verdict = verdict,
-                      .reason = "a reason",
-                      .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}},
-                      .method = "output error",
-                      .methods = {{.method = "OLS", .usable = true, .parameters = {stiffness(4e4)}},
-                                  {.method = "TLS", .usable = false, .message = "no solution"},
-                                  {.method = "output error",
-                                   .usable = true,
-                                   .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}}}},
-                      .evidence = {{.name = "delay", .passed = false, .text = "late by 0.1 s"}}}};
+  analysis.groups = {
+      {.name = "car",
+       .verdict = verdict,
+       .reason = "a reason",
+       .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}},
+       .method = "output error",
+       .methods = {{.method = "OLS", .usable = true, .parameters = {stiffness(4e4)}},
+                   {.method = "TLS", .usable = false, .message = "no solution"},
+                   {.method = "output error",
+                    .usable = true,
+                    .parameters = {stiffness(5e4), {.name = "bias", .value = 0.1, .unit = "rad"}}}},
+       .evidence = {{.name = "delay", .outcome = estimation::Outcome::kFailed, .text = "late by 0.1 s"}}}};
   return analysis;
 }
 
@@ -83,12 +84,37 @@ TEST(MethodsSection, ComparesWhatSeveralMethodsEstimatedAndSaysWhyOneGaveNothing
   EXPECT_EQ(texts[0].text, "car, TLS: no solution");
 }
 
-TEST(EvidenceTable, MarksAFailedCheckOfARejectedEstimateAsTheWorse) {
-  const Table identified = evidence_table(analysis_with(GroupVerdict::kIdentified));
-  const Table rejected = evidence_table(analysis_with(GroupVerdict::kRejected));
-  ASSERT_EQ(identified.rows.size(), 1U);
-  EXPECT_EQ(identified.rows[0].cells[2].status, Status::kCaution);
-  EXPECT_EQ(rejected.rows[0].cells[2].status, Status::kBad);
+estimation::Estimate judged_estimate(estimation::Outcome outcome) {
+  estimation::Estimate estimate;
+  estimate.evidence = {{.name = "delay",
+                        .about = "gps",
+                        .outcome = outcome,
+                        .text = "late by 0.1 s",
+                        .bears_on = estimation::kAllPurposes,
+                        .advice = "give delays.gps"}};
+  estimate.judgement = estimation::judge(estimate.evidence);
+  return estimate;
+}
+
+TEST(VerdictOf, SaysWhatDecidedAndWhatToDo) {
+  using estimation::Outcome;
+  EXPECT_EQ(verdict_of(judged_estimate(Outcome::kPassed)).level, Level::kGood);
+  EXPECT_THAT(verdict_of(judged_estimate(Outcome::kPassed)).lines, testing::IsEmpty());
+  const Verdict care = verdict_of(judged_estimate(Outcome::kCare));
+  EXPECT_EQ(care.level, Level::kCaution);
+  EXPECT_THAT(care.lines, testing::ElementsAre("gps: late by 0.1 s", "What to do: give delays.gps"));
+  EXPECT_EQ(verdict_of(judged_estimate(Outcome::kFailed)).level, Level::kBad);
+}
+
+TEST(EvidenceSection, HasARowForEachCheck) {
+  Analysis analysis = analysis_with(GroupVerdict::kIdentified);
+  EXPECT_TRUE(evidence_section(analysis).blocks.empty());
+  analysis.estimate = judged_estimate(estimation::Outcome::kFailed);
+  const auto tables = blocks<Table>(evidence_section(analysis));
+  ASSERT_EQ(tables.size(), 1U);
+  ASSERT_EQ(tables[0].rows.size(), 1U);
+  EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
+  EXPECT_EQ(tables[0].rows[0].cells[2].status, Status::kBad);
 }
 
 TEST(PredictionTable, HasARowForEachQuantity) {

@@ -24,9 +24,17 @@ TEST(ParameterColumns, HaveTheTruthOnlyWhereItIsKnown) {
   EXPECT_EQ(parameter_columns(true).back().name, "truth");
 }
 
-TEST(CheckCells, MarkAFailureAsAsked) {
-  EXPECT_EQ(check_cells({.name = "a", .passed = false}, Status::kCaution)[1].status, Status::kCaution);
-  EXPECT_EQ(check_cells({.name = "a", .passed = true}, Status::kCaution)[1].status, Status::kGood);
+TEST(OutcomeCell, ShowsWhatCameOfACheck) {
+  using estimation::Outcome;
+  const auto status = [](Outcome outcome) {
+    return outcome_cell({.outcome = outcome, .bears_on = estimation::Purpose::kData}).status;
+  };
+  EXPECT_EQ(status(Outcome::kPassed), Status::kGood);
+  EXPECT_EQ(status(Outcome::kNotVerified), Status::kNone);
+  EXPECT_EQ(status(Outcome::kCare), Status::kCaution);
+  EXPECT_EQ(status(Outcome::kMissing), Status::kCaution);
+  EXPECT_EQ(status(Outcome::kFailed), Status::kBad);
+  EXPECT_EQ(outcome_cell({.outcome = Outcome::kCare}).text, "note") << "it bears on nothing";
 }
 
 TEST(ChangeRow, TellsAMovedMeanFromGrownNoise) {

@@ -215,7 +215,7 @@ TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
 TEST(VehicleIdentification, NoticesThatTheLinearModelIsWrongForSaturatingTyres) {
   const VehicleIdentification id = identify(magic_drive(family_car(), 0.7, 0.05), reference_drive_sensors(), 1);
   const bool rejected = id.verdict == estimation::GroupVerdict::kRejected;
-  const bool warned = std::any_of(id.checks.begin(), id.checks.end(), [](const auto& c) { return !c.passed; });
+  const bool warned = std::any_of(id.checks.begin(), id.checks.end(), [](const auto& c) { return !c.passed(); });
   EXPECT_TRUE(rejected || warned) << id.reason;
   EXPECT_FALSE(id.warnings.empty());
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/body_error.hpp"
+#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
 #include "veridyn/aircraft/identification/coefficient_rows.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/constants.hpp"
@@ -90,6 +91,7 @@ struct FlightView {
   const Segments& segments;
   const Subject& subject;
   const IdentifyOptions& options;
+  std::span<const FlightEvidence> recording = {};
 
   [[nodiscard]] const AxisSegments& axis_of_model(const CoefficientModel& model) const {
     return segments.of(axis_of(model.coefficient));
@@ -205,18 +207,10 @@ CoefficientModel significant_terms(const CoefficientModel& model, const Regressi
   return kept;
 }
 
-/// Figures by which an estimate is judged; see CoefficientResult.
-struct CoefficientChecks {
-  numerics::FitMeasures identification_fit, holdout_fit;
-  double unmodelled_share = 0.0;
-  double contradiction_p = 1.0;
-  bool has_holdout = false;
-  numerics::Autocorrelation residual_autocorrelation;
-};
-
 CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_s, const FlightView& flight) {
   const RegressionEstimate& chosen = *fit.chosen;
   CoefficientChecks checks;
+  checks.error_ratio = fit.error_ratio;
   checks.identification_fit = fit_on(fit.data, chosen.theta);
   const double beyond_sensors = std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
   checks.unmodelled_share = (1.0 - checks.identification_fit.r2) * beyond_sensors;
@@ -237,28 +231,6 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
   return checks;
 }
 
-/// Why an estimate must not be used; empty where it may be.
-std::string rejection(const std::string& name, const CoefficientFit& fit, const CoefficientChecks& checks,
-                      const IdentifyOptions& options) {
-  if (!options.method && !fit.comparison.recommends)
-    return fmt::format("{} is rejected: {}", name, fit.comparison.reason);
-  if (!(checks.unmodelled_share <= options.max_unmodelled))
-    return fmt::format("{} is rejected: {}", name, unmodelled_text(fit.error_ratio, checks.unmodelled_share));
-  if (!checks.has_holdout) return {};
-  if (!(checks.holdout_fit.r2 >= options.min_holdout_r2)) {
-    return fmt::format(
-        "{} is rejected: it explains {:.0f} % of the coefficient's variance on the hold-out, less than {:.0f} %", name,
-        100.0 * std::max(0.0, checks.holdout_fit.r2), 100.0 * options.min_holdout_r2);
-  }
-  if (!(checks.contradiction_p >= options.contradiction_level)) {
-    return fmt::format(
-        "{} is rejected: estimates from two parts of the flight contradict each other beyond their error bars "
-        "(p = {:.1e})",
-        name, checks.contradiction_p);
-  }
-  return {};
-}
-
 /// See body_sensitivity: each of the aircraft's constants is changed and the parameters estimated again.
 Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView& flight) {
   return body_sensitivity(flight.subject, fit.chosen->theta.size(), [&](const Subject& changed) {
@@ -276,6 +248,16 @@ struct ExplainedVerdict {
   estimation::GroupVerdict verdict;
   std::string reason;
 };
+
+/// Why the parameters of an estimate are no physical constants.
+std::string objection(const CoefficientResult& judged, const CoefficientChecks& checks) {
+  const std::vector<std::string>& why = judged.judgement.parameters.decided_by;
+  const std::string first = why.empty() ? "its parameters could not be judged" : why.front();
+  if (estimation::verdict_of(judged.judgement) != estimation::GroupVerdict::kEffective)
+    return fmt::format("{} is rejected: {}", judged.name, first);
+  return fmt::format("{} predicts {:.0f} % of the hold-out, but its values are no physical constants: {}", judged.name,
+                     100.0 * checks.holdout_fit.r2, first);
+}
 
 /// Of an estimate that may be used. `dominant` is the constant of the aircraft that makes up most of its error bars.
 ExplainedVerdict explain(const CoefficientResult& described, const RegressionEstimate& chosen,
@@ -303,6 +285,8 @@ ExplainedVerdict explain(const CoefficientResult& described, const RegressionEst
   if (!insignificant.empty())
     reason += fmt::format("; not distinguishable from zero: {}", fmt::join(insignificant, ", "));
   if (!unexcited.empty()) reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
+  if (described.judgement.parameters.grade == estimation::Grade::kWithCare)
+    reason += fmt::format("; with care: {}", fmt::join(described.judgement.parameters.decided_by, "; "));
   return {estimation::GroupVerdict::kIdentified, std::move(reason)};
 }
 
@@ -368,14 +352,23 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
   if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight.axis_of_model(given));
   if (fit.chosen) {
     const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
-    verdict.reason = rejection(result.name, fit, checks, options);
-    if (!verdict.reason.empty()) {
-      estimation::reject(*fit.chosen);
-    } else {
+    result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
+    if (!result.per_unit_inertia) {
+      for (estimation::Evidence& row : plausibility(given.coefficient, fit.chosen->parameters, flight.subject))
+        result.evidence.push_back(std::move(row));
+    }
+    for (const FlightEvidence& of_recording : flight.recording)
+      if (of_recording.bears_on(given.coefficient)) result.evidence.push_back(of_recording.row);
+    result.judgement = estimation::judge(result.evidence);
+    const estimation::GroupVerdict reached = estimation::verdict_of(result.judgement);
+    if (reached == estimation::GroupVerdict::kIdentified) {
       result.body_sensitivity = sensitivity_to_body(fit, flight);
       widen(*fit.chosen, result.body_sensitivity, options.significance);
       verdict =
           explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
+    } else {
+      verdict = {reached, objection(result, checks)};
+      fit.chosen->parameters = estimation::marked(std::move(fit.chosen->parameters), reached);
     }
     result.identification_fit = checks.identification_fit;
     result.holdout_fit = checks.holdout_fit;
@@ -437,9 +430,9 @@ std::string unmodelled_text(double error_ratio, double unmodelled_share) {
 
 std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals, const Segments& segments,
                                                      const Subject& subject, const IdentifyOptions& options,
-                                                     Progress& progress) {
+                                                     Progress& progress, std::span<const FlightEvidence> recording) {
   std::vector<CoefficientResult> results;
-  const FlightView flight{signals, segments, subject, options};
+  const FlightView flight{signals, segments, subject, options, recording};
   progress.stage("identifying coefficients");
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const auto c = static_cast<Coefficient>(i);
@@ -456,7 +449,7 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
                                                  const Subject& subject, const IdentifyOptions& options,
                                                  const estimation::Estimate& estimate) {
   std::vector<CoefficientResult> results;
-  const FlightView flight{signals, segments, subject, options};
+  const FlightView flight{signals, segments, subject, options, {}};
   for (std::size_t i = 0; i < kCoefficients; ++i) {
     const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
     if (structure == nullptr) continue;

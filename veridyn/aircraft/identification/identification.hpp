@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "veridyn/aircraft/identification/flight_evidence.hpp"
 #include "veridyn/aircraft/identification/flight_signals.hpp"
 #include "veridyn/aircraft/identification/segments.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
@@ -79,13 +81,17 @@ struct CoefficientResult {
   std::vector<double> time, measured, modelled;
   numerics::Autocorrelation residual_autocorrelation;  ///< on the identification rows
   double row_interval_s = 0.0;                         ///< between the rows of a segment
+  std::vector<estimation::Evidence> evidence;          ///< its own rows, and those of the recording that bear on it
+  estimation::Judgement judgement;                     ///< of these; what was not estimated is not judged
 };
 
 /// Estimates every coefficient of `subject.model` on its axis's segments. Regressor errors are propagated from the
 /// signals' noise by automatic differentiation; the variance of z that they leave unexplained is equation error.
+/// `recording` are the checks of the recording, which bear on the coefficients too.
 [[nodiscard]] std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals,
                                                                    const Segments& segments, const Subject& subject,
-                                                                   const IdentifyOptions& options, Progress& progress);
+                                                                   const IdentifyOptions& options, Progress& progress,
+                                                                   std::span<const FlightEvidence> recording = {});
 
 /// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
 /// arguments are those of CoefficientResult.

@@ -17,8 +17,7 @@ std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResu
   std::vector<Coefficient> found;
   for (const CoefficientResult& result : results) {
     // Per unit inertia nothing can be simulated.
-    if (result.verdict == estimation::GroupVerdict::kIdentified && !result.per_unit_inertia)
-      found.push_back(result.coefficient);
+    if (estimation::usable(result.verdict) && !result.per_unit_inertia) found.push_back(result.coefficient);
   }
   return found;
 }
@@ -29,8 +28,7 @@ Subject identified_subject(const Subject& subject, std::span<const CoefficientRe
     if (coefficient) std::fill(coefficient->values.begin(), coefficient->values.end(), kNaN);
   }
   for (const CoefficientResult& result : results) {
-    if (result.verdict == estimation::GroupVerdict::kIdentified && !result.per_unit_inertia)
-      identified.model.set(result.model);
+    if (estimation::usable(result.verdict) && !result.per_unit_inertia) identified.model.set(result.model);
   }
   return identified;
 }

@@ -25,7 +25,8 @@ ParameterGroup group_of(const CoefficientResult& result, const OtherEstimators& 
                        .meaning = std::string(meaning_of(result.coefficient)),
                        .verdict = result.verdict,
                        .reason = result.reason,
-                       .evidence = result.comparison.checks};
+                       .evidence = result.evidence,
+                       .judgement = result.judgement};
   for (const estimation::RegressionEstimate& e : result.comparison.estimates)
     group.methods.push_back({std::string(to_string(e.method)), e.usable(), e.message, e.parameters});
   if (result.chosen) {

@@ -1,16 +1,74 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace veridyn::estimation {
 
-/// One check of an estimate: a statistic against its limit, with the sentence that a report prints.
-struct Evidence {
-  std::string name = {};
-  bool passed = true;
-  double value = 0.0;
-  double limit = 0.0;
-  std::string text = {};
+/// What a result may be used for; each is graded separately.
+enum class Purpose {
+  kData,        ///< the recording agrees with itself and with physics
+  kParameters,  ///< the numbers are physical constants of this individual, within their intervals
+  kPrediction   ///< the model predicts motion that it has not seen, inside the range that it was excited in
 };
+inline constexpr std::array<Purpose, 3> kPurposes{Purpose::kData, Purpose::kParameters, Purpose::kPrediction};
+/// "data", "parameters", "prediction".
+[[nodiscard]] std::string_view to_string(Purpose purpose);
+
+/// The purposes that a check bears on: `Purpose::kData | Purpose::kParameters`.
+class Purposes {
+ public:
+  constexpr Purposes() = default;
+  constexpr Purposes(Purpose one) : bits_(1U << static_cast<unsigned>(one)) {}  // NOLINT: a purpose is a set of one
+  [[nodiscard]] constexpr bool empty() const { return bits_ == 0; }
+  [[nodiscard]] constexpr bool contains(Purpose purpose) const {
+    return (bits_ >> static_cast<unsigned>(purpose) & 1U) != 0;
+  }
+  friend constexpr Purposes operator|(Purposes a, Purposes b) {
+    a.bits_ |= b.bits_;
+    return a;
+  }
+
+ private:
+  unsigned bits_ = 0;
+};
+constexpr Purposes operator|(Purpose a, Purpose b) { return Purposes(a) | Purposes(b); }
+inline constexpr Purposes kAllPurposes = Purpose::kData | Purpose::kParameters | Purpose::kPrediction;
+
+/// What came of a check.
+enum class Outcome {
+  kPassed,       ///< nothing to object to
+  kNotVerified,  ///< this recording cannot tell; grades are as if nothing were wrong, and the row says what is trusted
+  kCare,         ///< what it bears on is at most "with care"
+  kMissing,      ///< what would decide is not there: what it bears on is not judged
+  kFailed        ///< what it bears on is "no"
+};
+/// "passed", "not verified", "with care", "missing", "failed".
+[[nodiscard]] std::string_view to_string(Outcome outcome);
+
+/// One check of a recording or an estimate: a statistic against its limit, and what follows. No verdict is reached in
+/// another way, and whatever a report calls good or bad is a row of these.
+struct Evidence {
+  std::string name = {};   ///< "hold-out", "accelerometer against velocity and attitude"
+  std::string about = {};  ///< the group of parameters ("CL") or sensor that it is about; empty: all
+  Outcome outcome = Outcome::kPassed;
+  double value = 0.0;  ///< the statistic; NaN where there is none
+  double limit = 0.0;
+  std::string scale = {};  ///< of value and limit: "p", "share of the variance", "sigma", "m/s"
+  std::string text = {};   ///< what was seen and what it means, one sentence without a full stop
+  Purposes bears_on = {};
+  std::string advice = {};  ///< what to do; empty where nothing is to be done
+
+  [[nodiscard]] bool passed() const { return outcome == Outcome::kPassed || outcome == Outcome::kNotVerified; }
+};
+
+/// `Outcome::kPassed` or `otherwise`.
+[[nodiscard]] constexpr Outcome passed_or(bool passed, Outcome otherwise) {
+  return passed ? Outcome::kPassed : otherwise;
+}
 
 }  // namespace veridyn::estimation

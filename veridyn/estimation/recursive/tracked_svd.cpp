@@ -7,6 +7,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -60,7 +61,7 @@ struct Row {
 };
 
 template <int kColumns>
-using Rows = std::array<Row<kColumns>, static_cast<std::size_t>(kColumns)>;
+using Rows = std::array<Row<kColumns>, at(kColumns)>;
 
 // a' b of the rows of two square matrices, the Gram matrix when they are the same.
 template <int kColumns>
@@ -145,7 +146,7 @@ template <int kColumns>
 VERIDYN_INLINE void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<kColumns>& K) {
   for (int i = 0; i < kColumns; ++i) {
     for (int j = i + 1; j < kColumns; ++j) {
-      if (!(std::abs(K[static_cast<std::size_t>(i)](j)) > kLargestAngle)) continue;
+      if (!(std::abs(K[at(i)](j)) > kLargestAngle)) continue;
       double pi = 0.0, pj = 0.0, d = 0.0;  // afresh: other pairs have turned these columns
       for (const auto& b : B) {
         pi += b(i) * b(i);
@@ -179,7 +180,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
                           double weight) {
   double* const vectors = tracked.vectors;
   double* const values = tracked.values;
-  constexpr auto kSize = static_cast<std::size_t>(kColumns);
+  constexpr auto kSize = at(kColumns);
   constexpr std::size_t kPairs = Row<kColumns>::kPairs;
 
   Rows<kColumns> V, B, G, K;
@@ -298,7 +299,7 @@ void track_here(const Tracked& tracked, const double* triangle, int stride, cons
 
 TrackedSvd::TrackedSvd(int columns) : columns_(columns), padded_(columns + columns % 2) {
   VERIDYN_ASSERT(columns >= 1 && columns <= kMaxRecursiveColumns);
-  for (int j = 0; j < columns; ++j) vectors_[static_cast<std::size_t>(j * padded_ + j)] = 1.0;
+  for (int j = 0; j < columns; ++j) vectors_[at(j * padded_ + j)] = 1.0;
 }
 
 SmallMatrix TrackedSvd::vectors() const {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,46 +36,55 @@ Distance distance(const RegressionEstimate& scale, const Eigen::VectorXd& a, con
 }
 
 Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
-  Evidence check{.name = "residual autocorrelation"};
+  Evidence check{.name = "residual autocorrelation", .scale = "Durbin-Watson"};
   check.value = estimate.whiteness.durbin_watson;
   check.limit = 2.0;
-  check.passed = estimate.whiteness.white();
+  check.outcome = passed_or(estimate.whiteness.white(), Outcome::kCare);
   double worst = 0.0;
   for (const Parameter& p : estimate.parameters) {
     if (p.sigma_white > 0.0 && std::isfinite(p.sigma)) worst = std::max(worst, p.sigma / p.sigma_white);
   }
-  check.text = check.passed
+  check.text = check.passed()
                    ? "the residual is white"
                    : fmt::format(
-                         "the residual is autocorrelated (Durbin-Watson {:.2f}): white-noise error bars would be up "
-                         "to {:.1f} times too small",
+                         "the residual is autocorrelated (Durbin-Watson {:.2f}), which the error bars allow for: those "
+                         "of white noise would be up to {:.1f} times too small",
                          check.value, std::max(1.0, worst));
   return check;
 }
 
 Evidence collinearity(const RegressionEstimate& ols) {
-  Evidence check{.name = "collinearity"};
-  check.value = ols.condition_number;
-  check.limit = kConditionLimit;
-  const auto worst = std::max_element(ols.parameters.begin(), ols.parameters.end(), [](const auto& a, const auto& b) {
-    return a.variance_inflation < b.variance_inflation;
-  });
-  check.passed = check.value <= kConditionLimit && worst->variance_inflation <= kInflationLimit;
+  Evidence check{.name = "collinearity",
+                 .value = ols.condition_number,
+                 .limit = kConditionLimit,
+                 .scale = "condition number",
+                 .bears_on = Purpose::kParameters};
+  const auto worst = std::ranges::max_element(ols.parameters, {}, &Parameter::variance_inflation);
+  const bool inflated = worst->variance_inflation > kInflationLimit;
+  check.outcome = passed_or(check.value <= kConditionLimit && !inflated, Outcome::kCare);
   check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g} ({})", check.value,
                            worst->variance_inflation, worst->name);
+  if (inflated) {
+    std::vector<std::string> names;
+    for (const Parameter& p : ols.parameters)
+      if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
+    check.text = fmt::format("the regressors of {} move together (variance inflation up to {:.3g})",
+                             fmt::join(names, ", "), worst->variance_inflation);
+    check.advice = "excite them separately: move one control at a time, in its own manoeuvre";
+  }
   return check;
 }
 
 // Is the residual as large as W says? Chi-square with the effective number of samples.
 Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& residual, const std::vector<int>& segment) {
-  Evidence check{.name = "error scale"};
+  Evidence check{.name = "error scale", .scale = "residual variance over assumed"};
   const double samples =
       numerics::effective_sample_size_variance({residual.data(), static_cast<std::size_t>(residual.size())}, segment);
   const double low = std::min(1.0 / kScaleBand, numerics::chi_square_quantile(0.005, samples) / samples);
   const double high = std::max(kScaleBand, numerics::chi_square_quantile(0.995, samples) / samples);
   check.value = gtls.error_scale;
   check.limit = gtls.error_scale > 1.0 ? high : low;
-  check.passed = gtls.error_scale >= low && gtls.error_scale <= high;
+  check.outcome = passed_or(gtls.error_scale >= low && gtls.error_scale <= high, Outcome::kCare);
   const double p = numerics::chi_square_upper_p(samples * gtls.error_scale, samples);
   check.text = fmt::format(
       "residual variance is {:.3g} of what the assumed errors give (trusted within {:.2g} to {:.3g}; {:.0f} effective "
@@ -87,12 +97,13 @@ Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& 
   const std::string_view name = to_string(candidate.method);
   const Distance apart = distance(candidate, candidate.theta, ols.theta);
   Evidence check{.name = "agreement of OLS",
-                 .passed = apart.sigmas <= kSensitivityLimit,
+                 .outcome = passed_or(apart.sigmas <= kSensitivityLimit, Outcome::kCare),
                  .value = apart.sigmas,
-                 .limit = kSensitivityLimit};
-  check.text = check.passed ? fmt::format("OLS and {} agree to {:.1f} sigma", name, apart.sigmas)
-                            : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
-                                          apart.sigmas, name, apart.parameter);
+                 .limit = kSensitivityLimit,
+                 .scale = "sigma"};
+  check.text = check.passed() ? fmt::format("OLS and {} agree to {:.1f} sigma", name, apart.sigmas)
+                              : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
+                                            apart.sigmas, name, apart.parameter);
   return check;
 }
 
@@ -119,9 +130,10 @@ OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const 
   out.moved = solved ? distance(candidate, candidate.theta, out.estimate.theta) : Distance{kInfinity, ""};
   const Distance& moved = out.moved;
   out.check = {.name = "sensitivity to the error ratio",
-               .passed = moved.sigmas <= kSensitivityLimit,
+               .outcome = passed_or(moved.sigmas <= kSensitivityLimit, Outcome::kCare),
                .value = moved.sigmas,
-               .limit = kSensitivityLimit};
+               .limit = kSensitivityLimit,
+               .scale = "sigma"};
   out.check.text =
       !solved ? std::string("with the other reading of the mismatch there is no estimate")
               : fmt::format("{} moves {:.1f} sigma at most{} if {}", to_string(candidate.method), moved.sigmas,
@@ -192,7 +204,7 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
 
   Evidence scale = error_scale(candidate, analysis.residual(candidate.theta), data.segment);
   if (!data.regressand_error_known && candidate.error_scale > 1.0)
-    scale.passed = true;  // only rounding above 1: the excess is in W already
+    scale.outcome = Outcome::kPassed;  // only rounding above 1: the excess is in W already
   result.checks.push_back(scale);
   const TotalLeastSquares raised = total_least_squares(
       analysis.triangle(), with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows()),
@@ -201,12 +213,12 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   const OtherReading other = read_otherwise(analysis, candidate, raised);
   result.checks.push_back(other.check);
 
-  if (scale.passed) {
+  if (scale.passed()) {
     return recommend(std::move(result), candidate.method,
                      fmt::format("{}: the residual is as large as the assumed errors say (ratio {:.2g})", name,
                                  candidate.error_scale));
   }
-  if (other.check.passed) {
+  if (other.check.passed()) {
     return recommend(std::move(result), candidate.method,
                      fmt::format("{}: the residual variance is {:.2g} of what the assumed errors give, but the "
                                  "estimate moves only {:.1f} sigma by it",

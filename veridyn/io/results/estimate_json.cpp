@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,8 +15,13 @@ namespace veridyn::io {
 namespace {
 
 using estimation::Estimate;
+using estimation::Evidence;
+using estimation::Grade;
+using estimation::Judgement;
+using estimation::Outcome;
 using estimation::Parameter;
 using estimation::ParameterStatus;
+using estimation::Purpose;
 using nlohmann::ordered_json;
 
 ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
@@ -40,21 +46,108 @@ std::string read_text(const ordered_json& object, const char* key, const std::st
 ParameterStatus read_status(const std::string& text, const std::string& place) {
   for (const ParameterStatus status :
        {ParameterStatus::kIdentified, ParameterStatus::kInsignificant, ParameterStatus::kNotExcited,
-        ParameterStatus::kRejected, ParameterStatus::kFixed}) {
+        ParameterStatus::kEffective, ParameterStatus::kRejected, ParameterStatus::kFixed}) {
     if (estimation::to_string(status) == text) return status;
   }
   throw InputError(
-      place, fmt::format("status '{}' is not one of identified, insignificant, not_excited, rejected, fixed", text));
+      place, fmt::format("status '{}' is not one of identified, insignificant, effective, not_excited, rejected, fixed",
+                         text));
 }
 
 /// A usable parameter has a value, and no error bar is negative. What was rejected or not excited may have neither.
 void check_parameter(const Parameter& p, const std::string& file) {
   const bool usable = p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kInsignificant ||
-                      p.status == ParameterStatus::kFixed;
+                      p.status == ParameterStatus::kEffective || p.status == ParameterStatus::kFixed;
   const std::string place = fmt::format("{}: parameter '{}'", file, p.name);
   if (usable && !std::isfinite(p.value))
     throw InputError(place, fmt::format("has no value, but status {}", estimation::to_string(p.status)));
   if (p.sigma < 0.0) throw InputError(place, fmt::format("sigma is {:g}; must be >= 0", p.sigma));
+}
+
+ordered_json grades_of(const Judgement& judgement) {
+  ordered_json grades = ordered_json::object();
+  for (const Purpose purpose : estimation::kPurposes) {
+    const estimation::PurposeGrade& g = judgement.of(purpose);
+    grades[std::string(estimation::to_string(purpose))] = {{"grade", std::string(estimation::to_string(g.grade))},
+                                                           {"because", g.decided_by}};
+  }
+  return grades;
+}
+
+ordered_json evidence_of(const Evidence& row) {
+  ordered_json purposes = ordered_json::array();
+  for (const Purpose purpose : estimation::kPurposes)
+    if (row.bears_on.contains(purpose)) purposes.push_back(std::string(estimation::to_string(purpose)));
+  return {{"name", row.name},
+          {"about", row.about},
+          {"outcome", std::string(estimation::to_string(row.outcome))},
+          {"value", number(row.value)},
+          {"limit", number(row.limit)},
+          {"scale", row.scale},
+          {"text", row.text},
+          {"bears_on", std::move(purposes)},
+          {"advice", row.advice}};
+}
+
+/// The value of an enumeration by its word.
+template <typename Value, std::size_t kCount>
+Value read_word(const std::string& text, const std::array<Value, kCount>& values, const std::string& place) {
+  for (const Value value : values)
+    if (estimation::to_string(value) == text) return value;
+  std::string known;
+  for (const Value value : values)
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", estimation::to_string(value));
+  throw InputError(place, fmt::format("'{}' is not one of {}", text, known));
+}
+
+std::vector<std::string> read_texts(const ordered_json& array, const std::string& place) {
+  if (!array.is_array()) throw InputError(place, "is not an array");
+  std::vector<std::string> texts;
+  for (const ordered_json& text : array) {
+    if (!text.is_string()) throw InputError(place, "holds something that is not a text");
+    texts.push_back(text.get<std::string>());
+  }
+  return texts;
+}
+
+/// Of the whole; files of versions before 0.5 have no grades.
+Judgement read_grades(const ordered_json& root, const std::string& file) {
+  Judgement judgement;
+  if (!root.contains("grades")) return judgement;
+  for (const Purpose purpose : estimation::kPurposes) {
+    const std::string key(estimation::to_string(purpose));
+    const std::string place = fmt::format("{}: grades.{}", file, key);
+    const ordered_json& grade = require(root["grades"], key.c_str(), file + ": grades");
+    judgement.of(purpose) = {
+        .grade = read_word(read_text(grade, "grade", place),
+                           std::array{Grade::kYes, Grade::kWithCare, Grade::kNotJudged, Grade::kNo}, place + ".grade"),
+        .decided_by = read_texts(require(grade, "because", place), place + ".because")};
+  }
+  return judgement;
+}
+
+std::vector<Evidence> read_evidence(const ordered_json& root, const std::string& file) {
+  std::vector<Evidence> rows;
+  if (!root.contains("evidence")) return rows;
+  if (!root["evidence"].is_array()) throw InputError(file, "'evidence' is not an array");
+  for (const ordered_json& row : root["evidence"]) {
+    const std::string place = fmt::format("{}: evidence[{}]", file, rows.size());
+    Evidence e{.name = read_text(row, "name", place),
+               .about = read_text(row, "about", place),
+               .outcome = read_word(read_text(row, "outcome", place),
+                                    std::array{Outcome::kPassed, Outcome::kNotVerified, Outcome::kCare,
+                                               Outcome::kMissing, Outcome::kFailed},
+                                    place + ".outcome"),
+               .value = read_number(require(row, "value", place), place + ".value"),
+               .limit = read_number(require(row, "limit", place), place + ".limit"),
+               .scale = read_text(row, "scale", place),
+               .text = read_text(row, "text", place),
+               .advice = read_text(row, "advice", place)};
+    for (const std::string& purpose : read_texts(require(row, "bears_on", place), place + ".bears_on"))
+      e.bears_on = e.bears_on | read_word(purpose, estimation::kPurposes, place + ".bears_on");
+    rows.push_back(std::move(e));
+  }
+  return rows;
 }
 
 }  // namespace
@@ -103,6 +196,9 @@ std::string to_json(const Estimate& estimate) {
                                 {"unit", v.unit}};
   }
   root["verdict"] = estimate.verdict;
+  root["grades"] = grades_of(estimate.judgement);
+  root["evidence"] = ordered_json::array();
+  for (const Evidence& row : estimate.evidence) root["evidence"].push_back(evidence_of(row));
   root["warnings"] = estimate.warnings;
   return root.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
@@ -161,6 +257,8 @@ Estimate read_estimate(const std::filesystem::path& path) {
     }
   }
   estimate.verdict = read_text(root, "verdict", name);
+  estimate.judgement = read_grades(root, name);
+  estimate.evidence = read_evidence(root, name);
   if (root.contains("warnings") && root["warnings"].is_array()) {
     for (const ordered_json& warning : root["warnings"]) {
       if (warning.is_string()) estimate.warnings.push_back(warning.get<std::string>());

@@ -67,8 +67,6 @@ Section excitation_section(const FlightAnalysis& analysis) {
 
 Section residual_section(const FlightAnalysis& analysis) {
   Section section{.title = "Residuals", .id = "residuals", .folded = true};
-  Table table = evidence_table(analysis);
-  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
   for (const CoefficientResult& r : analysis.coefficients) {
     if (!r.chosen || r.residual_autocorrelation.value.empty()) continue;
     section.blocks.emplace_back(residual_autocorrelation_plot(r));

@@ -20,8 +20,7 @@ using estimation::Parameter;
 using estimation::ParameterGroup;
 
 bool has_values(const ParameterGroup& group) {
-  return !group.parameters.empty() &&
-         (group.verdict == GroupVerdict::kIdentified || group.verdict == GroupVerdict::kNotExcited);
+  return !group.parameters.empty() && (estimation::usable(group.verdict) || group.verdict == GroupVerdict::kNotExcited);
 }
 
 /// Parameters that at least two methods estimated; one method alone compares with nothing.
@@ -82,6 +81,8 @@ Status status_of(GroupVerdict verdict) {
   switch (verdict) {
     case GroupVerdict::kIdentified:
       return Status::kIdentified;
+    case GroupVerdict::kEffective:
+      return Status::kCaution;
     case GroupVerdict::kNotExcited:
       return Status::kNotExcited;
     case GroupVerdict::kRejected:
@@ -140,22 +141,59 @@ Section rejected_section(const Analysis& analysis) {
   return section;
 }
 
-Table evidence_table(const Analysis& analysis) {
-  Table table{.title = "Checks",
-              .caption = "What would make an estimate look better than it is.",
-              .columns = {{.name = "estimate of", .align = Align::kLeft},
+Verdict verdict_of(const estimation::Estimate& estimate) {
+  using estimation::Grade;
+  const estimation::Judgement& j = estimate.judgement;
+  Verdict verdict{.headline = estimation::sentence_of(j)};
+  const auto no = [](const estimation::PurposeGrade& g) {
+    return g.grade == Grade::kNo || g.grade == Grade::kNotJudged;
+  };
+  const bool all =
+      std::ranges::all_of(estimation::kPurposes, [&](estimation::Purpose p) { return j.of(p).grade == Grade::kYes; });
+  verdict.level = all ? Level::kGood : no(j.parameters) && no(j.prediction) ? Level::kBad : Level::kCaution;
+  constexpr std::size_t kMostLines = 4;
+  std::vector<std::string> advice;
+  std::size_t more = 0;
+  for (const estimation::Evidence& row : estimate.evidence) {
+    if (row.passed() || row.bears_on.empty()) continue;
+    if (verdict.lines.size() == kMostLines) {
+      ++more;
+      continue;
+    }
+    verdict.lines.push_back(row.about.empty() ? row.text : fmt::format("{}: {}", row.about, row.text));
+    if (!row.advice.empty() && std::ranges::find(advice, row.advice) == advice.end()) advice.push_back(row.advice);
+  }
+  if (more > 0) verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", more));
+  for (const std::string& text : advice) verdict.lines.push_back("What to do: " + text);
+  return verdict;
+}
+
+Section evidence_section(const Analysis& analysis) {
+  Section section{.title = "What was checked", .id = "evidence", .folded = true};
+  if (analysis.estimate.evidence.empty()) return section;
+  Table table{.title = "Evidence",
+              .caption =
+                  "The grades above follow from these rows alone. A row bears on the data, the parameters or the "
+                  "prediction; one that bears on nothing is for information.",
+              .columns = {{.name = "of", .align = Align::kLeft},
                           {.name = "check", .align = Align::kLeft},
                           {.name = ""},
-                          {.name = "what was seen", .align = Align::kLeft}}};
-  for (const ParameterGroup& group : analysis.groups) {
-    const Status failed = group.verdict == GroupVerdict::kIdentified ? Status::kCaution : Status::kBad;
-    for (const estimation::Evidence& evidence : group.evidence) {
-      Row row{.cells = check_cells(evidence, failed)};
-      row.cells.insert(row.cells.begin(), text_cell(group.name));
-      table.rows.push_back(std::move(row));
-    }
+                          {.name = "value", .digits = 3},
+                          {.name = "limit", .digits = 3},
+                          {.name = "as", .align = Align::kLeft},
+                          {.name = "what was seen", .align = Align::kLeft},
+                          {.name = "bears on", .align = Align::kLeft}}};
+  for (const estimation::Evidence& row : analysis.estimate.evidence) {
+    std::string purposes;
+    for (const estimation::Purpose purpose : estimation::kPurposes)
+      if (row.bears_on.contains(purpose))
+        purposes += fmt::format("{}{}", purposes.empty() ? "" : ", ", estimation::to_string(purpose));
+    table.rows.push_back(
+        {.cells = {text_cell(row.about), text_cell(row.name), outcome_cell(row), number_cell(row.value),
+                   number_cell(row.limit), text_cell(row.scale), text_cell(row.text), text_cell(purposes)}});
   }
-  return table;
+  section.blocks.emplace_back(std::move(table));
+  return section;
 }
 
 Table prediction_table(std::span<const estimation::PredictedQuantity> predictions, std::string title) {

@@ -24,8 +24,11 @@ namespace veridyn::report {
 /// Values of rejected groups, folded away under a warning.
 [[nodiscard]] Section rejected_section(const estimation::Analysis& analysis);
 
-/// The checks of each group.
-[[nodiscard]] Table evidence_table(const estimation::Analysis& analysis);
+/// The top of the report: the grades in a sentence, what decided, what to do.
+[[nodiscard]] Verdict verdict_of(const estimation::Estimate& estimate);
+
+/// Every row of the evidence, folded.
+[[nodiscard]] Section evidence_section(const estimation::Analysis& analysis);
 
 /// How well each quantity was predicted on data that identification did not see.
 [[nodiscard]] Table prediction_table(std::span<const estimation::PredictedQuantity> predictions, std::string title);

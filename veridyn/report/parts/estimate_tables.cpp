@@ -33,8 +33,15 @@ Row parameter_row(const estimation::Parameter& p, double factor, std::string uni
           .status = status_of(p.status)};
 }
 
-std::vector<Cell> check_cells(const estimation::Evidence& check, Status failed) {
-  return {text_cell(check.name), status_cell(check.passed ? Status::kGood : failed), text_cell(check.text)};
+Cell outcome_cell(const estimation::Evidence& row) {
+  using estimation::Outcome;
+  const std::string word(row.bears_on.empty() && !row.passed() ? "note" : estimation::to_string(row.outcome));
+  const Status status = row.bears_on.empty() && !row.passed()  ? Status::kNone
+                        : row.outcome == Outcome::kPassed      ? Status::kGood
+                        : row.outcome == Outcome::kNotVerified ? Status::kNone
+                        : row.outcome == Outcome::kFailed      ? Status::kBad
+                                                               : Status::kCaution;
+  return {.text = word, .status = status};
 }
 
 std::string change_words(const estimation::Change& change) {

@@ -24,8 +24,8 @@ namespace veridyn::report {
 /// A row of these columns without the truth. @param factor from the estimate's unit to `unit`
 [[nodiscard]] Row parameter_row(const estimation::Parameter& parameter, double factor, std::string unit);
 
-/// "0.42" of what passed or failed and why. @param failed  how a failed check is marked
-[[nodiscard]] std::vector<Cell> check_cells(const estimation::Evidence& check, Status failed);
+/// What came of a check as a badge; "note" where it bears on nothing.
+[[nodiscard]] Cell outcome_cell(const estimation::Evidence& row);
 
 /// "innovation moved by 3.1 sigma": what was noticed.
 [[nodiscard]] std::string change_words(const estimation::Change& change);

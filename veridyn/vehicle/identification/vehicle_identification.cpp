@@ -12,7 +12,6 @@ namespace veridyn::vehicle {
 namespace {
 
 using estimation::Parameter;
-using estimation::ParameterStatus;
 
 VehicleIdentification not_excited(const VehicleProblem& problem) {
   VehicleIdentification out;
@@ -32,13 +31,8 @@ std::string why_no_estimate(std::span<const VehicleEstimate> estimates, const Eq
 }
 
 /// What the drive does that the model does not is in all methods.
-std::vector<VehicleEstimate> rejected(std::vector<VehicleEstimate> estimates) {
-  for (VehicleEstimate& e : estimates) {
-    for (Parameter& p : e.parameters) {
-      if (p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kFixed)
-        p.status = ParameterStatus::kRejected;
-    }
-  }
+std::vector<VehicleEstimate> marked(std::vector<VehicleEstimate> estimates, estimation::GroupVerdict verdict) {
+  for (VehicleEstimate& e : estimates) e.parameters = estimation::marked(std::move(e.parameters), verdict);
   return estimates;
 }
 
@@ -94,12 +88,11 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   out.verdict = judgement.verdict;
   out.reason = std::move(judgement.reason);
   out.checks = std::move(judgement.checks);
-  out.warnings = std::move(judgement.warnings);
-  if (out.verdict == estimation::GroupVerdict::kRejected) {
-    out.estimates = rejected(std::move(out.estimates));
-  } else {
-    out.identified = identified_vehicle(problem, *chosen);
-  }
+  out.judgement = std::move(judgement.judgement);
+  for (const estimation::Evidence& row : out.checks)
+    if (!row.passed()) out.warnings.push_back(row.text);
+  if (out.verdict != estimation::GroupVerdict::kRejected) out.identified = identified_vehicle(problem, *chosen);
+  out.estimates = marked(std::move(out.estimates), out.verdict);
   return out;
 }
 
@@ -131,6 +124,8 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   for (const estimation::PredictedQuantity& q : identification.validation.quantities)
     out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   out.verdict = identification.reason;
+  out.judgement = identification.judgement;
+  out.evidence = identification.checks;
   out.warnings = identification.warnings;
   return out;
 }
@@ -139,7 +134,8 @@ estimation::ParameterGroup parameter_group(const VehicleIdentification& identifi
   estimation::ParameterGroup group{.name = subject,
                                    .verdict = identification.verdict,
                                    .reason = identification.reason,
-                                   .evidence = identification.checks};
+                                   .evidence = identification.checks,
+                                   .judgement = identification.judgement};
   for (const VehicleEstimate& e : identification.estimates)
     group.methods.push_back({std::string(to_string(e.method)), e.usable, e.message, e.parameters});
   if (const VehicleEstimate* best = identification.best()) {

@@ -70,6 +70,7 @@ struct VehicleIdentification {
   estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
   std::string reason;                        ///< one sentence
   std::vector<estimation::Evidence> checks;  ///< residuals, agreement of methods, of data parts, hold-out
+  estimation::Judgement judgement;           ///< of them; what was not estimated is not judged
   VehicleParameters<double> identified;      ///< the subject with what was identified
   DriveValidation fit;                       ///< on the identification segments
   DriveValidation validation;                ///< on the hold-out

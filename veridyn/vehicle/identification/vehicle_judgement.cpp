@@ -13,8 +13,11 @@ namespace {
 
 using estimation::Evidence;
 using estimation::Method;
+using estimation::Outcome;
 using estimation::Parameter;
 using estimation::ParameterStatus;
+using estimation::passed_or;
+using estimation::Purpose;
 
 /// Factor within which the noise of the sensors is known.
 constexpr double kNoiseDoubt = 2.0;
@@ -29,69 +32,103 @@ double percent_explained(const estimation::PredictedQuantity& q) { return 100.0 
 
 /// A residual's autocorrelation, and the share of the output's power that is neither modelled nor noise.
 struct ResidualFinding {
-  Evidence check;
+  Evidence row;
   double unmodelled = 0.0;
 };
 
+/// Normalised chi-square of a residual: what it is over what sensors and noisy steering leave. Noise is known to a
+/// factor of two; what exceeds it and is autocorrelated is motion that the bicycle does not have.
 ResidualFinding check_residual(const estimation::PredictedQuantity& q, double sensor_sigma,
                                const estimation::PredictedQuantity* by_noise) {
   const double sigma = std::hypot(sensor_sigma, by_noise != nullptr ? by_noise->fit.rmse : 0.0);
-  const double beyond = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt * sigma * sigma / (q.fit.rmse * q.fit.rmse));
-  const bool white = !(q.lag1 > kAutocorrelated) || !(q.fit.rmse > kBeyondNoise * sigma);
-  std::string text =
-      white ? fmt::format("the residual of {} is {} (autocorrelation at one sample {:.2f})", q.name,
-                          q.lag1 > kAutocorrelated ? "no larger than sensors and noisy steering leave" : "white enough",
-                          q.lag1)
-            : fmt::format(
-                  "the residual of {} is autocorrelated (autocorrelation at one sample {:.2f}, rms {:.3g} {} against "
-                  "{:.3g} of the sensor): something that moves this vehicle is not in the bicycle model",
-                  q.name, q.lag1, q.fit.rmse, q.unit, sigma);
-  return {{fmt::format("residual autocorrelation of {}", q.name), white, q.lag1, kAutocorrelated, std::move(text)},
-          std::max(0.0, 1.0 - q.fit.r2) * beyond};
+  const double times = q.fit.rmse / sigma;
+  const double beyond = std::max(0.0, 1.0 - kNoiseDoubt * kNoiseDoubt / (times * times));
+  const bool autocorrelated = q.lag1 > kAutocorrelated;
+  Evidence row{.name = "residual beyond the sensors",
+               .about = q.name,
+               .value = times * times,
+               .limit = kBeyondNoise * kBeyondNoise,
+               .scale = "normalised chi-square",
+               .bears_on = Purpose::kParameters};
+  if (autocorrelated && times > kBeyondNoise) row.outcome = times > kNoiseDoubt ? Outcome::kFailed : Outcome::kCare;
+  if (row.passed()) {
+    row.text = fmt::format(
+        "the residual of {} is {:.2g} times what sensors and noisy steering leave "
+        "(autocorrelation at one sample {:.2f})",
+        q.name, times, q.lag1);
+  } else {
+    row.text = fmt::format(
+        "the residual of {} is {:.2g} times what sensors and noisy steering leave (rms {:.3g} {} against {:.3g}, "
+        "autocorrelation at one sample {:.2f}): something that moves this vehicle is not in the bicycle model",
+        q.name, times, q.fit.rmse, q.unit, sigma, q.lag1);
+    row.advice =
+        "if the body rolls: record roll or give signals.roll_gradient, and a lower signals.pass_band; the values still "
+        "predict what the hold-out says";
+  }
+  return {std::move(row), std::max(0.0, 1.0 - q.fit.r2) * beyond};
 }
 
-/// The checks as they are made.
-struct Checks {
-  std::vector<Evidence> all;
-  std::vector<std::string> warnings;
-  void add(Evidence check) {
-    if (!check.passed) warnings.push_back(check.text);
-    all.push_back(std::move(check));
-  }
-  void add(const std::optional<Evidence>& check) {
-    if (check) add(*check);
-  }
-};
-
-/// All residuals; the last check is that of the unmodelled share.
-Checks check_residuals(const VehicleProblem& problem, const VehicleFindings& findings) {
-  Checks checks;
+/// All residuals, and the share of the outputs' power that nothing explains.
+std::vector<Evidence> check_residuals(const VehicleProblem& problem, const VehicleFindings& findings) {
+  std::vector<Evidence> rows;
   double unmodelled = 0.0;
   std::string worst;
   for (const estimation::PredictedQuantity& q : findings.fit.quantities) {
     const auto signal = std::find(kDriveSignalNames.begin(), kDriveSignalNames.end(), q.name);
     if (signal == kDriveSignalNames.end() || q.name == "yaw") continue;
     const double sigma = problem.signals.signals[static_cast<std::size_t>(signal - kDriveSignalNames.begin())].sigma;
-    const ResidualFinding found = check_residual(q, sigma, findings.by_noise.find(q.name));
+    ResidualFinding found = check_residual(q, sigma, findings.by_noise.find(q.name));
     if (found.unmodelled > unmodelled) {
       unmodelled = found.unmodelled;
       worst = q.name;
     }
-    checks.add(found.check);
+    rows.push_back(std::move(found.row));
   }
   const double limit = problem.options.max_unmodelled;
-  checks.add(
-      Evidence{"unmodelled share", unmodelled <= limit, unmodelled, limit,
-               unmodelled <= limit
+  const bool passed = unmodelled <= limit;
+  rows.push_back(
+      {.name = "unmodelled share",
+       .outcome = passed_or(passed, Outcome::kFailed),
+       .value = unmodelled,
+       .limit = limit,
+       .scale = "share of the variance",
+       .text = passed
                    ? fmt::format("{:.1f} % of the outputs' variance is neither modelled nor noise", 100.0 * unmodelled)
                    : fmt::format("{:.0f} % of the variance of {} is neither modelled nor noise of the sensors",
-                                 100.0 * unmodelled, worst)});
-  return checks;
+                                 100.0 * unmodelled, worst),
+       .bears_on = Purpose::kParameters});
+  return rows;
 }
 
-Evidence check_prediction(const estimation::PredictedQuantity& yaw_rate, double least_r2) {
-  return {"hold-out", yaw_rate.fit.r2 >= least_r2, yaw_rate.fit.r2, least_r2,
-          fmt::format("it explains {:.1f} % of the yaw rate's variance on the hold-out", percent_explained(yaw_rate))};
+Evidence check_simulation(bool simulated) {
+  return {.name = "simulation",
+          .outcome = passed_or(simulated, Outcome::kFailed),
+          .value = simulated ? 1.0 : 0.0,
+          .limit = 1.0,
+          .text = simulated ? "the identified model was simulated over the drive"
+                            : "the identified model cannot be simulated over the drive",
+          .bears_on = Purpose::kParameters | Purpose::kPrediction};
+}
+
+/// `yaw_rate` is null where nothing was held out.
+Evidence check_prediction(const estimation::PredictedQuantity* yaw_rate, double least_r2) {
+  Evidence row{.name = "hold-out", .value = std::nan(""), .limit = least_r2, .scale = "R2"};
+  if (yaw_rate == nullptr) {
+    row.outcome = Outcome::kMissing;
+    row.text = "there was no hold-out to validate on, so prediction is not judged";
+    row.bears_on = Purpose::kPrediction;
+    row.advice = "drive the manoeuvres at least twice, so that some of them can be held out";
+    return row;
+  }
+  const bool passed = yaw_rate->fit.r2 >= least_r2;
+  row.value = yaw_rate->fit.r2;
+  row.outcome = passed_or(passed, Outcome::kFailed);
+  row.text = passed ? fmt::format("it explains {:.1f} % of the yaw rate's variance on the hold-out",
+                                  percent_explained(*yaw_rate))
+                    : fmt::format("it explains {:.0f} % of the yaw rate's variance on the hold-out, less than {:.0f} %",
+                                  percent_explained(*yaw_rate), 100.0 * least_r2);
+  row.bears_on = Purpose::kParameters | Purpose::kPrediction;
+  return row;
 }
 
 Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
@@ -99,16 +136,31 @@ Evidence check_residual_on_holdout(const estimation::PredictedQuantity& there,
   const bool systematic = there.lag1 > kAutocorrelated && there.fit.rmse > kBeyondNoise * here.fit.rmse;
   const bool autocorrelated_there = there.lag1 > kAutocorrelated && !(here.lag1 > kAutocorrelated);
   const bool holds = !systematic && !autocorrelated_there;
-  return {"residual on the hold-out", holds, there.fit.rmse, kBeyondNoise * here.fit.rmse,
-          fmt::format("the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), "
-                      "autocorrelation at one sample {:.2f} ({:.2f}){}",
-                      there.fit.rmse, here.fit.rmse, there.lag1, here.lag1,
-                      holds ? "" : ": the model is systematically off where it was not identified")};
+  return {.name = "residual on the hold-out",
+          .outcome = passed_or(holds, Outcome::kCare),
+          .value = there.fit.rmse,
+          .limit = kBeyondNoise * here.fit.rmse,
+          .scale = "rad/s",
+          .text = fmt::format("the yaw rate's residual on the hold-out is {:.3g} rad/s rms (identification {:.3g}), "
+                              "autocorrelation at one sample {:.2f} ({:.2f}){}",
+                              there.fit.rmse, here.fit.rmse, there.lag1, here.lag1,
+                              holds ? "" : ": the model is systematically off where it was not identified"),
+          .bears_on = Purpose::kPrediction};
 }
 
-/// A check by the p value of "they agree".
-Evidence by_p(const char* name, double p, double level, std::string agree, std::string contradict) {
-  return {name, p >= level, p, level, p >= level ? std::move(agree) : std::move(contradict)};
+/// A check by the p value of "they agree". Equation error has linear tyres only: with the Magic Formula its
+/// contradictions say no more than that.
+Evidence by_p(const char* name, double p, const VehicleIdentifyOptions& options, std::string agree,
+              std::string contradict) {
+  const bool agrees = p >= options.contradiction_level;
+  const Outcome otherwise = options.model.tyre == DriveTyre::kLinear ? Outcome::kFailed : Outcome::kCare;
+  return {.name = name,
+          .outcome = passed_or(agrees, otherwise),
+          .value = p,
+          .limit = options.contradiction_level,
+          .scale = "p",
+          .text = agrees ? std::move(agree) : std::move(contradict),
+          .bears_on = Purpose::kParameters};
 }
 
 /// Equation error against output error, where that has all three parameters.
@@ -130,7 +182,7 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   // Small angles, which only equation error takes.
   covariance.diagonal() += (kSmallAngles * axle.value).cwiseAbs2();
   const double p = estimation::agreement_p(difference, covariance);
-  return by_p("agreement of methods", p, problem.options.contradiction_level,
+  return by_p("agreement of methods", p, problem.options,
               fmt::format("equation error and output error agree (p = {:.2g})", p),
               fmt::format("equation error and output error contradict each other beyond their error bars (p = "
                           "{:.1e}): the model is incomplete for this drive",
@@ -144,36 +196,11 @@ std::optional<Evidence> check_data_parts(const VehicleProblem& problem, const Ax
   const AxleEstimate* other = of_holdout.find(axle.method);
   if (other == nullptr || !other->usable) return std::nullopt;
   const double p = estimation::agreement_p(other->value - axle.value, other->covariance + axle.covariance);
-  return by_p("agreement of data parts", p, problem.options.contradiction_level,
+  return by_p("agreement of data parts", p, problem.options,
               fmt::format("identification and hold-out data, estimated separately, agree (p = {:.2g})", p),
               fmt::format("estimates from two parts of the drive contradict each other beyond their error bars (p = "
                           "{:.1e}): the vehicle, the road or the range of motion is not the same in both",
                           p));
-}
-
-/// Why the estimate must not be used; nothing where it may.
-std::optional<std::string> objection(const VehicleProblem& problem, const Evidence& unmodelled,
-                                     const AgreementChecks& agreement, bool simulated,
-                                     const estimation::PredictedQuantity* holdout) {
-  const VehicleIdentifyOptions& o = problem.options;
-  if (!simulated) return "rejected: the identified model cannot be simulated over the drive";
-  if (!unmodelled.passed) return fmt::format("rejected: {}", unmodelled.text);
-  if (holdout != nullptr && !(holdout->fit.r2 >= o.min_holdout_r2)) {
-    return fmt::format("rejected: it explains {:.0f} % of the yaw rate's variance on the hold-out, less than {:.0f} %",
-                       percent_explained(*holdout), 100.0 * o.min_holdout_r2);
-  }
-  // No bicycle moves like this: error bars then mean nothing, however well the yaw rate is predicted.
-  // (Equation error has linear tyres only: with the Magic Formula its contradictions say no more than that.)
-  if (o.model.tyre != DriveTyre::kLinear) return std::nullopt;
-  for (const auto& check : {agreement.consistency, agreement.methods, agreement.data_parts}) {
-    if (check && !check->passed) {
-      return fmt::format(
-          "rejected: {}. Rolling is not in the model: record roll or give signals.roll_gradient, and a lower "
-          "signals.pass_band",
-          check->text);
-    }
-  }
-  return std::nullopt;
 }
 
 bool of_the_vehicle(const Parameter& p) {
@@ -191,7 +218,7 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
   if (axle == nullptr || !axle->usable) return checks;
   const double p = axle->consistency_p;
   checks.consistency =
-      by_p("consistency equation", p, problem.options.contradiction_level,
+      by_p("consistency equation", p, problem.options,
            fmt::format("the four coefficients of the regressions belong to one bicycle (p = {:.2g})", p),
            fmt::format("the four coefficients of the regressions belong to no bicycle (p = {:.1e}): the model is "
                        "incomplete for this vehicle, or a, b or a sensor's place is wrong",
@@ -202,22 +229,28 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
 }
 
 VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings) {
-  Checks checks = check_residuals(problem, findings);
-  const Evidence unmodelled = checks.all.back();
-  const AgreementChecks agreement = check_agreement(problem, findings);
-  for (const auto& check : {agreement.consistency, agreement.methods, agreement.data_parts}) checks.add(check);
   const estimation::PredictedQuantity* there = findings.validation.find("yaw_rate");
   const estimation::PredictedQuantity* here = findings.fit.find("yaw_rate");
-  if (there != nullptr) {
-    checks.add(check_prediction(*there, problem.options.min_holdout_r2));
-  } else {
-    checks.warnings.emplace_back("there was no hold-out to validate on");
-  }
-  if (there != nullptr && here != nullptr) checks.add(check_residual_on_holdout(*there, *here));
+  VehicleJudgement out;
+  out.checks = check_residuals(problem, findings);
+  out.checks.push_back(check_simulation(here != nullptr));
+  const AgreementChecks agreement = check_agreement(problem, findings);
+  for (const auto& check : {agreement.consistency, agreement.methods, agreement.data_parts})
+    if (check) out.checks.push_back(*check);
+  out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));
+  if (there != nullptr && here != nullptr) out.checks.push_back(check_residual_on_holdout(*there, *here));
+  out.judgement = estimation::judge(out.checks);
+  out.verdict = estimation::verdict_of(out.judgement);
 
-  VehicleJudgement out{estimation::GroupVerdict::kRejected, "", std::move(checks.all), std::move(checks.warnings)};
-  if (const auto why = objection(problem, unmodelled, agreement, here != nullptr, there)) {
-    out.reason = *why;
+  const std::string holdout =
+      there != nullptr ? fmt::format(": {:.1f} % of the yaw rate's variance on the hold-out", percent_explained(*there))
+                       : ", without a hold-out to validate on";
+  if (out.verdict != estimation::GroupVerdict::kIdentified) {
+    const std::vector<std::string>& why = out.judgement.parameters.decided_by;
+    const std::string first = why.empty() ? "it could not be judged" : why.front();
+    out.reason = out.verdict == estimation::GroupVerdict::kEffective
+                     ? fmt::format("predicts{}, but its values are no physical constants: {}", holdout.substr(1), first)
+                     : fmt::format("rejected: {}", first);
     return out;
   }
   std::vector<std::string> identified, unexcited;
@@ -229,13 +262,10 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
     out.reason = fmt::format("not excited: the drive does not determine {}", fmt::join(unexcited, ", "));
     return out;
   }
-  out.verdict = estimation::GroupVerdict::kIdentified;
-  out.reason = fmt::format(
-      "{} identified by {}{}", fmt::join(identified, ", "), to_string(findings.chosen.method),
-      there != nullptr ? fmt::format(": {:.1f} % of the yaw rate's variance on the hold-out", percent_explained(*there))
-                       : ", without a hold-out to validate on");
+  out.reason =
+      fmt::format("{} identified by {}{}", fmt::join(identified, ", "), to_string(findings.chosen.method), holdout);
   if (!unexcited.empty()) out.reason += fmt::format("; not excited: {}", fmt::join(unexcited, ", "));
-  const auto failed = std::count_if(out.checks.begin(), out.checks.end(), [](const auto& c) { return !c.passed; });
+  const auto failed = std::ranges::count_if(out.checks, [](const Evidence& row) { return !row.passed(); });
   if (failed > 0) out.reason += fmt::format("; {} of {} checks failed, see the warnings", failed, out.checks.size());
   return out;
 }

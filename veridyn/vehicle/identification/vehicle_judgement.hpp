@@ -23,7 +23,7 @@ struct VehicleJudgement {
   estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
   std::string reason;                        ///< one sentence
   std::vector<estimation::Evidence> checks;  ///< in the order of the report
-  std::vector<std::string> warnings;         ///< texts of the checks that failed, and what could not be checked
+  estimation::Judgement judgement;           ///< of them
 };
 
 /// Equation error against output error and hold-out, and the regressions' consistency equation; each is missing where
@@ -34,9 +34,8 @@ struct AgreementChecks {
 /// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);
 
-/// Rejected: when the identified model cannot be simulated, leaves more than `max_unmodelled` of an output's power
-/// unexplained, predicts less than `min_holdout_r2` of the hold-out's yaw rate, or (linear tyres) an agreement check
-/// contradicts it beyond `contradiction_level`. Not excited: when no parameter of the vehicle is determined.
+/// The rows of a drive, the grades that follow and the verdict: effective where the parameters are no physical
+/// constants but predict the hold-out, not excited where no parameter of the vehicle is determined.
 [[nodiscard]] VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindings& findings);
 
 }  // namespace veridyn::vehicle

@@ -1,0 +1,120 @@
+#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using estimation::Evidence;
+using estimation::Grade;
+using estimation::Outcome;
+using ::testing::HasSubstr;
+
+CoefficientChecks sound() {
+  CoefficientChecks checks;
+  checks.error_ratio = 1.0;
+  checks.has_holdout = true;
+  checks.holdout_fit.r2 = 0.95;
+  checks.contradiction_p = 0.4;
+  return checks;
+}
+
+estimation::RegressionComparison recommended() {
+  estimation::RegressionComparison comparison;
+  comparison.recommends = true;
+  comparison.reason = "GTLS: fine";
+  return comparison;
+}
+
+estimation::Judgement judged(const CoefficientChecks& checks,
+                             const estimation::RegressionComparison& comparison = recommended(),
+                             const IdentifyOptions& options = {}) {
+  return estimation::judge(coefficient_evidence("CL", checks, comparison, options));
+}
+
+TEST(CoefficientEvidence, OfASoundEstimateIsYes) {
+  EXPECT_EQ(judged(sound()).parameters.grade, Grade::kYes);
+  EXPECT_EQ(judged(sound()).prediction.grade, Grade::kYes);
+}
+
+TEST(CoefficientEvidence, KeepsPredictionWhereOnlyTheParametersAreBiased) {
+  CoefficientChecks checks = sound();
+  checks.unmodelled_share = 0.2;
+  checks.error_ratio = 30.0;
+  const estimation::Judgement judgement = judged(checks);
+  EXPECT_EQ(judgement.parameters.grade, Grade::kNo);
+  EXPECT_EQ(judgement.prediction.grade, Grade::kYes);
+  EXPECT_EQ(estimation::verdict_of(judgement), estimation::GroupVerdict::kEffective);
+}
+
+TEST(CoefficientEvidence, WithoutAHoldOutPredictionIsNotJudged) {
+  CoefficientChecks checks = sound();
+  checks.has_holdout = false;
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kNotJudged);
+  EXPECT_EQ(judged(checks).parameters.grade, Grade::kYes);
+}
+
+TEST(CoefficientEvidence, OfWhatDoesNotPredictIsNo) {
+  CoefficientChecks checks = sound();
+  checks.holdout_fit.r2 = -74.0;
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kNo);
+  EXPECT_EQ(estimation::verdict_of(judged(checks)), estimation::GroupVerdict::kRejected);
+}
+
+TEST(CoefficientEvidence, TakesAMethodThatTheUserFixesWithCare) {
+  estimation::RegressionComparison none = recommended();
+  none.recommends = false;
+  EXPECT_EQ(judged(sound(), none).parameters.grade, Grade::kNo);
+  IdentifyOptions fixed;
+  fixed.method = estimation::Method::kOls;
+  EXPECT_EQ(judged(sound(), none, fixed).parameters.grade, Grade::kWithCare);
+}
+
+TEST(CoefficientEvidence, CollinearityMattersWhereTheResidualIsMoreThanNoise) {
+  estimation::RegressionComparison comparison = recommended();
+  comparison.checks = {
+      {.name = "collinearity", .outcome = Outcome::kCare, .bears_on = estimation::Purpose::kParameters}};
+  CoefficientChecks checks = sound();
+  EXPECT_EQ(judged(checks, comparison).parameters.grade, Grade::kYes);
+  checks.error_ratio = 9.0;
+  EXPECT_EQ(judged(checks, comparison).parameters.grade, Grade::kWithCare);
+}
+
+estimation::Parameter parameter(std::string name, double value, double sigma) {
+  return {.name = std::move(name), .value = value, .sigma = sigma};
+}
+
+TEST(Plausibility, PassesTheValuesOfEveryBuiltInAircraft) {
+  for (const std::string& name : builtin_subject_names()) {
+    const Subject subject = builtin_subject(name);
+    for (const auto& model : subject.model.coefficients) {
+      if (!model) continue;
+      std::vector<estimation::Parameter> parameters;
+      for (std::size_t i = 0; i < model->size(); ++i)
+        parameters.push_back(parameter(model->parameter_names()[i], model->values[i], 1e-3));
+      for (const Evidence& row : plausibility(model->coefficient, parameters, subject))
+        EXPECT_TRUE(row.passed()) << name << ": " << row.text;
+    }
+  }
+}
+
+TEST(Plausibility, TakesAWrongSignOrAnImpossibleLiftSlopeWithCare) {
+  const Subject subject = builtin_subject("unatrap");
+  const auto row = [&](Coefficient c, const char* name, double value, double sigma) {
+    const std::vector<estimation::Parameter> parameters{parameter(name, value, sigma)};
+    return plausibility(c, parameters, subject).back();
+  };
+  EXPECT_EQ(row(Coefficient::kCY, "CY_beta", 0.67, 0.01).outcome, Outcome::kCare);
+  EXPECT_THAT(row(Coefficient::kCY, "CY_beta", 0.67, 0.01).advice, HasSubstr("sign of beta"));
+  EXPECT_EQ(row(Coefficient::kCY, "CY_beta", 0.67, 0.5).outcome, Outcome::kPassed) << "no more than noise";
+  // Aspect ratio 8: Helmbold's formula gives 4.9 per rad.
+  EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 3.6, 0.05).outcome, Outcome::kPassed);
+  EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 1.8, 0.05).outcome, Outcome::kCare);
+  EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 12.0, 0.05).outcome, Outcome::kCare);
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

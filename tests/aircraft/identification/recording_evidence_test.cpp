@@ -1,0 +1,100 @@
+#include "veridyn/aircraft/identification/recording_evidence.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/aircraft/simulated_flight.hpp"
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using aircraft::testing::Flown;
+using aircraft::testing::fly;
+using aircraft::testing::reconstructed;
+using aircraft::testing::reference_options;
+using estimation::Grade;
+using estimation::Outcome;
+
+const Flown& flown() {
+  static const Flown flight = fly({.duration = 120.0, .seed = 4});
+  return flight;
+}
+
+std::vector<FlightEvidence> evidence_of(const Recording& recording) {
+  Flown flight = flown();
+  flight.measured = recording;
+  const ReconstructOptions options = reference_options();
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  return recording_evidence(recording, reconstructed(flight, options), options, segments);
+}
+
+Recording changed(std::initializer_list<const char*> channels, double factor, double offset = 0.0) {
+  Recording recording = flown().measured;
+  for (const char* name : channels) {
+    Channel channel = recording.at(name);
+    for (double& v : channel.value) v = factor * v + offset;
+    recording.set(std::move(channel));
+  }
+  return recording;
+}
+
+Grade data_grade(const std::vector<FlightEvidence>& rows) {
+  std::vector<estimation::Evidence> plain;
+  for (const FlightEvidence& row : rows) plain.push_back(row.row);
+  return estimation::judge(plain).data.grade;
+}
+
+std::string texts(const std::vector<FlightEvidence>& rows) {
+  std::string all;
+  for (const FlightEvidence& row : rows) all += std::string(to_string(row.row.outcome)) + ": " + row.row.text + "\n";
+  return all;
+}
+
+const FlightEvidence* find(const std::vector<FlightEvidence>& rows, std::string_view about, Outcome outcome) {
+  const auto found = std::ranges::find_if(
+      rows, [&](const FlightEvidence& e) { return e.row.about == about && e.row.outcome == outcome; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+TEST(RecordingEvidence, OfACleanFlightInModerateTurbulenceIsYes) {
+  const auto rows = evidence_of(flown().measured);
+  EXPECT_EQ(data_grade(rows), Grade::kYes) << texts(rows);
+  // What no flight can tell is said.
+  EXPECT_NE(find(rows, "controls", Outcome::kNotVerified), nullptr);
+}
+
+TEST(RecordingEvidence, NamesTheAccelerometerThatIsInGOrFreeOfGravity) {
+  const auto in_g = evidence_of(changed({"accel_x", "accel_y", "accel_z"}, 1.0 / kGravity));
+  EXPECT_EQ(data_grade(in_g), Grade::kNo);
+  EXPECT_NE(find(in_g, "accelerometer", Outcome::kFailed), nullptr) << texts(in_g);
+  const auto without_gravity = evidence_of(changed({"accel_z"}, 1.0, kGravity));
+  EXPECT_NE(find(without_gravity, "accelerometer", Outcome::kFailed), nullptr) << texts(without_gravity);
+}
+
+TEST(RecordingEvidence, NamesTheVaneThatIsInDegreesOrOffZero) {
+  const auto degrees = evidence_of(changed({"alpha"}, 1.0 / kDegree));
+  const FlightEvidence* row = find(degrees, "alpha", Outcome::kFailed);
+  ASSERT_NE(row, nullptr) << texts(degrees);
+  EXPECT_TRUE(row->bears_on(Coefficient::kCL));
+  EXPECT_FALSE(row->bears_on(Coefficient::kCn)) << "the lateral coefficients do not rest on alpha";
+  const auto off = evidence_of(changed({"alpha"}, 1.0, 8.0 * kDegree));
+  EXPECT_NE(find(off, "alpha", Outcome::kFailed), nullptr) << texts(off);
+}
+
+TEST(RecordingEvidence, NamesThePitotTubeThatReadsTwice) {
+  const auto rows = evidence_of(changed({"dynamic_pressure"}, 4.0));
+  EXPECT_EQ(data_grade(rows), Grade::kNo);
+  EXPECT_NE(find(rows, "airspeed", Outcome::kFailed), nullptr) << texts(rows);
+}
+
+TEST(FlightEvidence, BearsOnAllCoefficientsUnlessItSaysWhich) {
+  const FlightEvidence all, some{.row = {}, .affects = {Coefficient::kCY}};
+  EXPECT_TRUE(all.bears_on(Coefficient::kCm));
+  EXPECT_TRUE(some.bears_on(Coefficient::kCY));
+  EXPECT_FALSE(some.bears_on(Coefficient::kCL));
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

@@ -1,0 +1,170 @@
+#include "veridyn/recording/inertial_consistency.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/random.hpp"
+#include "veridyn/numerics/rotation.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+using estimation::Outcome;
+using ::testing::HasSubstr;
+
+constexpr double kDuration_s = 120.0;
+const std::vector<TimeSpan> kWhole{{1.0, kDuration_s - 1.0}};
+
+struct Noise {
+  double force = 0.0, rate = 0.0, angle = 0.0, velocity = 0.0;
+};
+constexpr Noise kReference{.force = 0.05, .rate = 0.35 * kDegree, .angle = 0.75 * kDegree, .velocity = 0.05};
+
+/// A body that sways about all axes, by closed forms: attitude and velocity are sums of sines, rates and specific force
+/// their derivatives. No model of a vehicle and no integration is behind it.
+Recording swaying_body(std::uint64_t seed, const Noise& noise) {
+  numerics::RandomStream random(seed, "swaying body");
+  constexpr double kStep = 0.01;
+  constexpr std::array<double, 3> kAngle{0.5, 0.25, 1.2}, kAngleRate{0.9, 0.7, 0.23};
+  constexpr std::array<double, 3> kSpeed{6.0, 5.0, 3.0}, kSpeedRate{0.41, 0.53, 0.6};
+  std::vector<double> fast, slow;
+  std::array<std::vector<double>, 12> v;
+  for (double t = 0.0; t < kDuration_s; t += kStep) {
+    fast.push_back(t);
+    numerics::Vector3<double> angle, angle_rate, acceleration;
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      angle(i) = kAngle[k] * std::sin(kAngleRate[k] * t + i);
+      angle_rate(i) = kAngle[k] * kAngleRate[k] * std::cos(kAngleRate[k] * t + i);
+      acceleration(i) = kSpeed[k] * kSpeedRate[k] * std::cos(kSpeedRate[k] * t + 2 * i);
+    }
+    const auto rates = numerics::body_rates(angle(0), angle(1), angle_rate);
+    const auto force = (numerics::R_body_from_ned(angle(0), angle(1), angle(2)) *
+                        (acceleration - numerics::Vector3<double>(0.0, 0.0, kGravity)))
+                           .eval();
+    for (int i = 0; i < 3; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      v[k].push_back(force(i) + noise.force * random.normal());
+      v[3 + k].push_back(rates(i) + noise.rate * random.normal());
+      v[6 + k].push_back(angle(i) + noise.angle * random.normal());
+    }
+  }
+  for (double t = 0.0; t < kDuration_s; t += 0.1) {
+    slow.push_back(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      v[9 + k].push_back(kSpeed[k] * std::sin(kSpeedRate[k] * t + 2.0 * static_cast<double>(k)) +
+                         noise.velocity * random.normal());
+  }
+  Recording recording;
+  recording.frame = Frame::kFrd;
+  const TimeBase at_100_Hz = make_time_base(fast), at_10_Hz = make_time_base(slow);
+  constexpr std::array<const char*, 12> kNames{"accel_x", "accel_y", "accel_z", "gyro_x",    "gyro_y",   "gyro_z",
+                                               "roll",    "pitch",   "yaw",     "vel_north", "vel_east", "vel_down"};
+  for (std::size_t k = 0; k < kNames.size(); ++k) {
+    const char* unit = k < 3 ? "m/s^2" : k < 6 ? "rad/s" : k < 9 ? "rad" : "m/s";
+    recording.add(make_channel(kNames[k], unit, k < 9 ? at_100_Hz : at_10_Hz, v[k]));
+  }
+  return recording;
+}
+
+void change(Recording& recording, const char* channel, double factor, double offset = 0.0) {
+  Channel changed = recording.at(channel);
+  for (double& x : changed.value) x = factor * x + offset;
+  recording.set(std::move(changed));
+}
+
+Recording without(const Recording& recording, std::string_view name) {
+  Recording rest;
+  rest.frame = recording.frame;
+  for (const Channel& channel : recording.channels())
+    if (channel.name != name) rest.add(channel);
+  return rest;
+}
+
+TEST(InertialConsistency, FindsUnitGainsAndNoBiasWithoutNoise) {
+  const InertialConsistency c = inertial_consistency(swaying_body(1, {}), kWhole);
+  ASSERT_TRUE(c.accelerometer && c.gyro && c.velocity);
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  // What is left is interpolation between the samples: errors of the order of the step squared.
+  EXPECT_LT((c.accelerometer->gain - I).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((c.gyro->gain - I).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT(c.accelerometer->bias.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(c.gyro->bias.cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(InertialConsistency, RecoversGainAndBiasThatWerePutIn) {
+  Recording recording = swaying_body(2, kReference);
+  change(recording, "accel_y", 1.08, 0.2);
+  change(recording, "gyro_z", 0.9, 0.02);
+  const InertialConsistency c = inertial_consistency(recording, kWhole);
+  ASSERT_TRUE(c.accelerometer && c.gyro);
+  EXPECT_NEAR(c.accelerometer->gain(1, 1), 1.08, 4.0 * c.accelerometer->gain_sigma(1, 1));
+  EXPECT_NEAR(c.accelerometer->bias(1), 0.2, 4.0 * c.accelerometer->bias_sigma(1));
+  EXPECT_LT(c.accelerometer->gain_sigma(1, 1), 0.02);
+  EXPECT_NEAR(c.gyro->gain(2, 2), 0.9, 4.0 * c.gyro->gain_sigma(2, 2));
+  EXPECT_NEAR(c.gyro->bias(2), 0.02, 4.0 * c.gyro->bias_sigma(2));
+}
+
+TEST(InertialEvidence, RaisesNoAlarmOverTwoHundredCleanRecordings) {
+  int alarms = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto rows = inertial_evidence(inertial_consistency(swaying_body(1000 + seed, kReference), kWhole));
+    EXPECT_EQ(rows.size(), 4U);
+    for (const estimation::Evidence& row : rows) alarms += row.passed() ? 0 : 1;
+  }
+  // Four rows of nine or three numbers that must exceed three standard errors and the tolerance as well.
+  EXPECT_LE(alarms, 2);
+}
+
+/// One fault, and what must be said of it.
+struct Fault {
+  const char* name;
+  std::vector<std::pair<const char*, double>> factors;
+  const char* about;
+  const char* text;
+};
+
+TEST(InertialEvidence, NamesTheSensorAndTheFault) {
+  const std::vector<Fault> faults{
+      {"g",
+       {{"accel_x", 1 / kGravity}, {"accel_y", 1 / kGravity}, {"accel_z", 1 / kGravity}},
+       "accelerometer",
+       "g taken"},
+      {"sign of z", {{"accel_z", -1.0}}, "accelerometer", "sign of z is reversed"},
+      {"scale", {{"accel_x", 1.2}}, "accelerometer", "axis x reads 1.2"},
+      {"deg", {{"gyro_x", 1 / kDegree}, {"gyro_y", 1 / kDegree}, {"gyro_z", 1 / kDegree}}, "gyro", "degrees taken"},
+      {"sign of q", {{"gyro_y", -1.0}}, "gyro", "sign of y is reversed"},
+      {"down", {{"vel_down", -1.0}}, "ground velocity", "sign of down is reversed"},
+      {"knots", {{"vel_north", 1.9438}, {"vel_east", 1.9438}, {"vel_down", 1.9438}}, "ground velocity", "knots"},
+      {"roll", {{"roll", -1.0}}, "attitude", "both contradict the attitude"}};
+  for (const Fault& fault : faults) {
+    Recording recording = swaying_body(7, kReference);
+    for (const auto& [channel, factor] : fault.factors) change(recording, channel, factor);
+    const auto rows = inertial_evidence(inertial_consistency(recording, kWhole));
+    const bool named = std::ranges::any_of(rows, [&](const estimation::Evidence& row) {
+      return row.about == fault.about && row.outcome == Outcome::kFailed &&
+             row.text.find(fault.text) != std::string::npos;
+    });
+    std::string texts;
+    for (const estimation::Evidence& row : rows) texts += row.text + "\n";
+    EXPECT_TRUE(named) << fault.name << ":\n" << texts;
+  }
+}
+
+TEST(InertialConsistency, LeavesOutWhatTheRecordingLacks) {
+  const Recording recording = without(swaying_body(3, {}), "vel_down");
+  const InertialConsistency c = inertial_consistency(recording, kWhole);
+  EXPECT_TRUE(c.gyro.has_value());
+  EXPECT_FALSE(c.accelerometer.has_value());
+  EXPECT_FALSE(inertial_consistency(without(recording, "roll"), kWhole).gyro.has_value());
+  EXPECT_TRUE(inertial_evidence({}).empty());
+  const std::vector<TimeSpan> few{{1.0, 5.0}};
+  EXPECT_FALSE(inertial_consistency(swaying_body(3, {}), few).accelerometer.has_value());
+}
+
+}  // namespace
+}  // namespace veridyn::recording

@@ -1,0 +1,164 @@
+#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using estimation::Evidence;
+using estimation::Outcome;
+using estimation::passed_or;
+using estimation::Purpose;
+
+/// Residual variance over what the sensors explain, up to which their noise, known to a factor of two, explains all.
+/// Beyond it something else is in the residual, and collinear regressors magnify what it does to their parameters.
+constexpr double kSensorNoiseAlone = 4.0;
+
+/// Without a recommended method the answer depends on an assumption that the data refute. A method that the user fixes
+/// is taken all the same.
+Evidence choice_of_method(const estimation::RegressionComparison& comparison, const IdentifyOptions& options) {
+  return {.name = "choice of the method",
+          .outcome = passed_or(comparison.recommends, options.method ? Outcome::kCare : Outcome::kFailed),
+          .value = comparison.recommends ? 1.0 : 0.0,
+          .limit = 1.0,
+          .scale = "methods that may be recommended",
+          .text = comparison.reason,
+          .bears_on = Purpose::kParameters};
+}
+
+Evidence residual_beyond_sensors(const CoefficientChecks& checks, double limit) {
+  const bool passed = checks.unmodelled_share <= limit;
+  return {.name = "residual beyond the sensors",
+          .outcome = passed_or(passed, Outcome::kFailed),
+          .value = checks.unmodelled_share,
+          .limit = limit,
+          .scale = "share of the variance",
+          .text = passed ? fmt::format("{:.1f} % of its variance is neither modelled nor sensor noise",
+                                       100.0 * checks.unmodelled_share)
+                         : unmodelled_text(checks.error_ratio, checks.unmodelled_share),
+          .bears_on = Purpose::kParameters};
+}
+
+Evidence holdout(const CoefficientChecks& checks, double least_r2) {
+  if (!checks.has_holdout) {
+    return {.name = "hold-out",
+            .outcome = Outcome::kMissing,
+            .value = std::nan(""),
+            .limit = least_r2,
+            .scale = "R2",
+            .text = "there was no hold-out to validate it on, so prediction is not judged",
+            .bears_on = Purpose::kPrediction,
+            .advice = "fly the manoeuvres at least twice, so that some of them can be held out"};
+  }
+  const bool passed = checks.holdout_fit.r2 >= least_r2;
+  const double explained = 100.0 * std::max(0.0, checks.holdout_fit.r2);
+  return {.name = "hold-out",
+          .outcome = passed_or(passed, Outcome::kFailed),
+          .value = checks.holdout_fit.r2,
+          .limit = least_r2,
+          .scale = "R2",
+          .text = passed ? fmt::format("it explains {:.0f} % of the hold-out", explained)
+                         : fmt::format("it explains {:.0f} % of the coefficient's variance on the hold-out, less than "
+                                       "{:.0f} %",
+                                       explained, 100.0 * least_r2),
+          .bears_on = Purpose::kParameters | Purpose::kPrediction};
+}
+
+Evidence parts_of_the_flight(const CoefficientChecks& checks, double level) {
+  const bool passed = checks.contradiction_p >= level;
+  return {.name = "agreement of the flight's parts",
+          .outcome = passed_or(passed, Outcome::kFailed),
+          .value = checks.contradiction_p,
+          .limit = level,
+          .scale = "p",
+          .text = passed
+                      ? fmt::format("estimates from two parts of the flight agree (p = {:.2g})", checks.contradiction_p)
+                      : fmt::format("estimates from two parts of the flight contradict each other beyond their "
+                                    "error bars (p = {:.1e})",
+                                    checks.contradiction_p),
+          .bears_on = Purpose::kParameters};
+}
+
+}  // namespace
+
+std::vector<Evidence> coefficient_evidence(const std::string& name, const CoefficientChecks& checks,
+                                           const estimation::RegressionComparison& comparison,
+                                           const IdentifyOptions& options) {
+  std::vector<Evidence> rows{choice_of_method(comparison, options),
+                             residual_beyond_sensors(checks, options.max_unmodelled),
+                             holdout(checks, options.min_holdout_r2)};
+  if (checks.has_holdout) rows.push_back(parts_of_the_flight(checks, options.contradiction_level));
+  rows.insert(rows.end(), comparison.checks.begin(), comparison.checks.end());
+  for (Evidence& row : rows) {
+    row.about = name;
+    if (row.name == "collinearity" && !row.passed() && checks.error_ratio < kSensorNoiseAlone) {
+      row.outcome = Outcome::kPassed;
+      row.text += "; the residual is no larger than sensor noise, so the intervals hold all the same";
+      row.advice.clear();
+    }
+  }
+  return rows;
+}
+
+std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const estimation::Parameter> parameters,
+                                   const Subject& subject) {
+  /// Sign that every aircraft that flies has, and what a wrong one suggests.
+  struct Expected {
+    const char* parameter;
+    double sign;
+    const char* suspect;
+  };
+  static constexpr std::array<Expected, 6> kExpected{{{"CL_alpha", 1.0, "the sign of alpha or of accel_z"},
+                                                      {"CD_0", 1.0, "the thrust, or the zero of accel_x"},
+                                                      {"CY_beta", -1.0, "the sign of beta or of accel_y"},
+                                                      {"Cl_p", -1.0, "the sign of gyro_x, or a delay"},
+                                                      {"Cm_q", -1.0, "the sign of gyro_y, or a delay"},
+                                                      {"Cn_r", -1.0, "the sign of gyro_z, or a delay"}}};
+  constexpr double kStandardErrors = 3.0;
+  constexpr double kLiftSlopeFactor = 1.6;
+  std::vector<Evidence> rows;
+  const auto row = [&](const estimation::Parameter& p, bool plausible, double limit, std::string text,
+                       std::string advice) {
+    rows.push_back({.name = fmt::format("plausibility of {}", p.name),
+                    .about = std::string(name_of(coefficient)),
+                    .outcome = passed_or(plausible, Outcome::kCare),
+                    .value = p.value,
+                    .limit = limit,
+                    .scale = "value",
+                    .text = std::move(text),
+                    .bears_on = Purpose::kParameters,
+                    .advice = plausible ? std::string() : std::move(advice)});
+  };
+  for (const Expected& e : kExpected) {
+    const estimation::Parameter* p = estimation::find_parameter(parameters, e.parameter);
+    if (p == nullptr || !std::isfinite(p->sigma) || !std::isfinite(p->value)) continue;
+    const bool plausible = !(-e.sign * p->value > kStandardErrors * p->sigma);
+    row(*p, plausible, 0.0,
+        plausible ? fmt::format("{} has the sign that an aircraft has", p->name)
+                  : fmt::format("{} is {:.3g} +- {:.2g}, but every aircraft has it {}", p->name, p->value, p->sigma,
+                                e.sign > 0.0 ? "positive" : "negative"),
+        fmt::format("check {}", e.suspect));
+  }
+  const estimation::Parameter* slope = estimation::find_parameter(parameters, "CL_alpha");
+  if (slope != nullptr && std::isfinite(slope->sigma) && slope->value > 0.0) {
+    const double aspect_ratio = subject.span * subject.span / subject.wing_area;
+    const double theory = 2.0 * kPi * aspect_ratio / (2.0 + std::sqrt(4.0 + aspect_ratio * aspect_ratio));
+    const double low = theory / kLiftSlopeFactor - kStandardErrors * slope->sigma;
+    const double high = theory * kLiftSlopeFactor + kStandardErrors * slope->sigma;
+    const bool plausible = slope->value >= low && slope->value <= high;
+    row(*slope, plausible, theory,
+        fmt::format("the lift slope is {:.3g} per rad, lifting-line theory of a wing of aspect ratio {:.3g} gives "
+                    "{:.3g}{}",
+                    slope->value, aspect_ratio, theory, plausible ? "" : ": too far off for a wing like this"),
+        "check unit and scale of alpha, of accel_z and of the airspeed, the mass and the wing area");
+  }
+  return rows;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/aircraft/identification/identification.hpp"
+
+namespace veridyn::aircraft {
+
+/// Figures by which the estimate of a coefficient is judged; see CoefficientResult.
+struct CoefficientChecks {
+  numerics::FitMeasures identification_fit, holdout_fit;
+  double error_ratio = 0.0;
+  double unmodelled_share = 0.0;
+  double contradiction_p = 1.0;
+  bool has_holdout = false;
+  numerics::Autocorrelation residual_autocorrelation;
+};
+
+/// The rows of one estimated coefficient: choice of the method, residual beyond the sensors, hold-out, agreement of the
+/// flight's parts, and the checks of the comparison of methods.
+[[nodiscard]] std::vector<estimation::Evidence> coefficient_evidence(const std::string& name,
+                                                                     const CoefficientChecks& checks,
+                                                                     const estimation::RegressionComparison& comparison,
+                                                                     const IdentifyOptions& options);
+
+/// Are the values those of an aircraft? Lift slope against lifting-line theory of the subject's wing (Helmbold's
+/// formula, within a factor of 1.6), signs of damping, side force and drag: with care where a value contradicts them by
+/// more than three standard errors, since a wrong sign, unit or scale of a sensor is then more likely than such an
+/// aircraft.
+[[nodiscard]] std::vector<estimation::Evidence> plausibility(Coefficient coefficient,
+                                                             std::span<const estimation::Parameter> parameters,
+                                                             const Subject& subject);
+
+}  // namespace veridyn::aircraft
