@@ -275,13 +275,15 @@ std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
         rows, [&](const Evidence& row) { return row.about == sensor && row.outcome == estimation::Outcome::kFailed; });
   };
   if (c.accelerometer) {
-    // The same contradiction read the other way: a wrong velocity leaves less unexplained than a wrong accelerometer.
+    // The same contradiction read the other way: a wrong velocity leaves less unexplained than a wrong accelerometer,
+    // and without a bias: the derivative of a velocity has none, while a wrong specific force shows gravity as one.
     constexpr double kClearlyBetter = 0.7;
     // Where the gyro contradicts the attitude too, the attitude is the suspect.
     const bool attitude_holds = !c.gyro || !gain_fault(*c.gyro, rate, kRate.gain_failed);
     const bool rather_velocity = attitude_holds && gain_fault(*c.accelerometer, force, kForce.gain_failed) &&
                                  c.velocity && gain_fault(*c.velocity, velocity, kVelocity.gain_failed) &&
-                                 c.velocity->residual_rms < kClearlyBetter * c.accelerometer->residual_rms;
+                                 c.velocity->bias.cwiseAbs().maxCoeff() < kVelocity.bias_failed &&
+                                 c.velocity->unexplained() < kClearlyBetter * c.accelerometer->unexplained();
     if (rather_velocity)
       add(*c.velocity, velocity, kVelocity);
     else

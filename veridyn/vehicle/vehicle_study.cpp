@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
@@ -205,11 +206,24 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
                            drive_covariance(estimate)};
     id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, progress);
     const estimation::PredictedQuantity* r = id.validation.find("yaw_rate");
-    const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2;
+    const bool rejected = std::ranges::all_of(std::array{"C_f", "C_r", "I_z"}, [&](const char* name) {
+      const estimation::Parameter* p = estimate.find(name);
+      return p != nullptr && p->status == estimation::ParameterStatus::kRejected;
+    });
+    const bool holds = r != nullptr && r->fit.r2 >= study.identify.min_holdout_r2 && !rejected;
+    id.checks = {{.name = "another drive",
+                  .outcome = estimation::passed_or(holds, estimation::Outcome::kFailed),
+                  .value = r == nullptr ? std::nan("") : r->fit.r2,
+                  .limit = study.identify.min_holdout_r2,
+                  .scale = "R2",
+                  .text = rejected       ? std::string("the estimate was rejected where it was identified")
+                          : r == nullptr ? id.validation.text
+                                         : fmt::format("it explains {:.1f} % of the yaw rate's variance of this drive",
+                                                       100.0 * std::max(0.0, r->fit.r2)),
+                  .bears_on = estimation::Purpose::kPrediction}};
+    id.judgement = estimation::judge(id.checks);
     id.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-    id.reason = r == nullptr ? fmt::format("does not hold: {}", id.validation.text)
-                             : fmt::format("{}: it explains {:.1f} % of the yaw rate's variance of this drive",
-                                           holds ? "holds" : "does not hold", 100.0 * std::max(0.0, r->fit.r2));
+    id.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", id.checks.front().text);
   }
   id.warnings = warnings_of(study, out.signals);
   id.warnings.emplace_back("constant biases of steering, yaw rate and accel_y were fitted to this drive");

@@ -20,6 +20,9 @@ using estimation::Purpose;
 /// Beyond it something else is in the residual, and collinear regressors magnify what it does to their parameters.
 constexpr double kSensorNoiseAlone = 4.0;
 
+/// Share of the variance that is neither modelled nor sensor noise, beyond which a prediction needs care.
+constexpr double kWeakModel = 0.2;
+
 /// Without a recommended method the answer depends on an assumption that the data refute. A method that the user fixes
 /// is taken all the same.
 Evidence choice_of_method(const estimation::RegressionComparison& comparison, const IdentifyOptions& options) {
@@ -57,9 +60,10 @@ Evidence holdout(const CoefficientChecks& checks, double least_r2) {
             .advice = "fly the manoeuvres at least twice, so that some of them can be held out"};
   }
   const bool passed = checks.holdout_fit.r2 >= least_r2;
+  const bool weak = checks.unmodelled_share > kWeakModel;
   const double explained = 100.0 * std::max(0.0, checks.holdout_fit.r2);
   return {.name = "hold-out",
-          .outcome = passed_or(passed, Outcome::kFailed),
+          .outcome = !passed ? Outcome::kFailed : passed_or(!weak, Outcome::kCare),
           .value = checks.holdout_fit.r2,
           .limit = least_r2,
           .scale = "R2",
@@ -121,7 +125,7 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
                                                       {"Cm_q", -1.0, "the sign of gyro_y, or a delay"},
                                                       {"Cn_r", -1.0, "the sign of gyro_z, or a delay"}}};
   constexpr double kStandardErrors = 3.0;
-  constexpr double kLiftSlopeFactor = 1.6;
+  constexpr double kLiftSlopeFactor = 2.0;
   std::vector<Evidence> rows;
   const auto row = [&](const estimation::Parameter& p, bool plausible, double limit, std::string text,
                        std::string advice) {
@@ -135,7 +139,13 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
                     .bears_on = Purpose::kParameters,
                     .advice = plausible ? std::string() : std::move(advice)});
   };
+  // With other terms in alpha its slope is not the parameter's.
+  const bool linear_in_alpha =
+      std::ranges::count_if(parameters, [](const estimation::Parameter& p) {
+        return p.name.find("alpha") != std::string::npos || p.name.find('(') != std::string::npos;
+      }) <= 1;
   for (const Expected& e : kExpected) {
+    if (coefficient == Coefficient::kCL && !linear_in_alpha) continue;
     const estimation::Parameter* p = estimation::find_parameter(parameters, e.parameter);
     if (p == nullptr || !std::isfinite(p->sigma) || !std::isfinite(p->value)) continue;
     const bool plausible = !(-e.sign * p->value > kStandardErrors * p->sigma);
@@ -146,7 +156,7 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
         fmt::format("check {}", e.suspect));
   }
   const estimation::Parameter* slope = estimation::find_parameter(parameters, "CL_alpha");
-  if (slope != nullptr && std::isfinite(slope->sigma) && slope->value > 0.0) {
+  if (slope != nullptr && linear_in_alpha && std::isfinite(slope->sigma) && slope->value > 0.0) {
     const double aspect_ratio = subject.span * subject.span / subject.wing_area;
     const double theory = 2.0 * kPi * aspect_ratio / (2.0 + std::sqrt(4.0 + aspect_ratio * aspect_ratio));
     const double low = theory / kLiftSlopeFactor - kStandardErrors * slope->sigma;

@@ -26,7 +26,7 @@ struct CoefficientChecks {
                                                                      const IdentifyOptions& options);
 
 /// Are the values those of an aircraft? Lift slope against lifting-line theory of the subject's wing (Helmbold's
-/// formula, within a factor of 1.6), signs of damping, side force and drag: with care where a value contradicts them by
+/// formula, within a factor of 2), signs of damping, side force and drag: with care where a value contradicts them by
 /// more than three standard errors, since a wrong sign, unit or scale of a sensor is then more likely than such an
 /// aircraft.
 [[nodiscard]] std::vector<estimation::Evidence> plausibility(Coefficient coefficient,

@@ -405,6 +405,16 @@ CoefficientResult evaluate_coefficient(const CoefficientModel& model, const Flig
   const double least = flight.options.min_holdout_r2;
   const bool holds = result.holdout_fit.r2 >= least;
   result.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
+  result.evidence = {
+      {.name = "another flight",
+       .about = name,
+       .outcome = estimation::passed_or(holds, estimation::Outcome::kFailed),
+       .value = result.holdout_fit.r2,
+       .limit = least,
+       .scale = "R2",
+       .text = fmt::format("it explains {:.0f} % of the coefficient's variance in this flight", explained),
+       .bears_on = estimation::Purpose::kPrediction}};
+  result.judgement = estimation::judge(result.evidence);
   result.reason =
       holds ? fmt::format("{} holds: it explains {:.0f} % of this flight", name, explained)
             : fmt::format(
@@ -457,9 +467,16 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
     for (const Term& term : structure->terms)
       names.push_back(regressed_parameter_name(structure->coefficient, term, subject));
     const CoefficientModel model = estimated_coefficient(*structure, names, estimate);
-    if (model.size() > 0) results.push_back(evaluate_coefficient(model, flight));
+    if (model.size() > 0) {
+      results.push_back(evaluate_coefficient(model, flight));
+    } else if (std::ranges::any_of(names, [&](const std::string& n) { return estimate.find(n) != nullptr; })) {
+      CoefficientResult result = describe_coefficient(*structure, flight);
+      result.reason = fmt::format("{} is not validated: it was rejected where it was identified", result.name);
+      results.push_back(std::move(result));
+    }
   }
-  if (results.empty()) {
+  if (std::ranges::all_of(results,
+                          [](const CoefficientResult& r) { return r.model.values.empty() || !r.model.known(); })) {
     throw InputError(estimate.subject, "the estimate holds no usable parameter of the study's model");
   }
   return results;

@@ -40,6 +40,7 @@ FlightEvidence airspeed_row(const Determined& scale) {
   constexpr Limits kLimits{0.02, 0.15};
   /// A scale that is off by so much changes coefficients by twice as much.
   constexpr double kWellDetermined = 0.01;
+  constexpr double kUndetermined = 0.1;
   Evidence row{.name = "airspeed against ground velocity",
                .about = "airspeed",
                .value = scale.value,
@@ -49,10 +50,14 @@ FlightEvidence airspeed_row(const Determined& scale) {
   row.outcome = beyond(scale.value - 1.0, scale.sigma, kLimits);
   if (row.outcome == Outcome::kPassed && scale.sigma > kWellDetermined) {
     row.outcome = Outcome::kNotVerified;
-    row.text = fmt::format(
-        "the scale of the airspeed is verified to no better than {:.0f} % by the headings flown ({:.3f} +- {:.3f}); an "
-        "error of 1 % changes coefficients by 2 %",
-        100.0 * kStandardErrors * scale.sigma, scale.value, scale.sigma);
+    row.text =
+        scale.sigma > kUndetermined
+            ? std::string(
+                  "the scale of the airspeed is not verified: the headings flown do not separate it from the wind")
+            : fmt::format(
+                  "the scale of the airspeed is verified to no better than {:.0f} % by the headings flown "
+                  "({:.3f} +- {:.3f}); an error of 1 % changes coefficients by 2 %",
+                  100.0 * kStandardErrors * scale.sigma, scale.value, scale.sigma);
     row.advice = "fly several full circles, or calibrate the pitot tube";
     return {std::move(row)};
   }
@@ -78,6 +83,7 @@ FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
                .limit = kBias.care / kDegree,
                .scale = "deg",
                .bears_on = kAllPurposes};
+  if (row.outcome == Outcome::kPassed) row.outcome = Outcome::kNotVerified;
   row.text = impossible ? fmt::format("the {} vane reads up to {:.0f} deg: over 90 deg is no flow angle in flight",
                                       name, fit.largest_reading / kDegree)
                         : fmt::format(

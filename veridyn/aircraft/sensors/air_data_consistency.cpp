@@ -9,6 +9,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/instrumental_variables.hpp"
 #include "veridyn/numerics/rotation.hpp"
+#include "veridyn/numerics/statistics.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 
 namespace veridyn::aircraft {
@@ -23,7 +24,7 @@ constexpr std::size_t kFewestRows = 60;
 constexpr double kLocalWind_s = 30.0;
 /// Standard error of the scale from which the headings do not tell it from the wind.
 constexpr double kDeterminedScale = 0.05;
-/// Gusts are correlated over seconds: lags of half a minute.
+/// Gusts are correlated over seconds: lags of half a minute [moments].
 constexpr Eigen::Index kLongestLag = 60;
 
 /// Means over half a second; NaN where a channel has a hole.
@@ -92,17 +93,26 @@ FlightRows rows_of(const Recording& recording, const Channel& air_density, bool 
 }
 
 /// Regressors and instruments side by side, so that rows with a hole leave both.
-estimation::InstrumentalEstimate solve(RegressionData data, Eigen::Index regressors) {
+estimation::InstrumentalEstimate solve(RegressionData data, Eigen::Index regressors, Eigen::Index rows_a_moment = 1) {
   data.parameter_names.clear();
   estimation::drop_rows_that_are_not_finite(data);
   if (data.rows() < signed_index(kFewestRows)) return {};
   const estimation::RowMatrix both = data.regressors;
   data.regressors = both.leftCols(regressors);
-  return estimation::instrumental_variables(data, both.rightCols(both.cols() - regressors), kLongestLag);
+  return estimation::instrumental_variables(data, both.rightCols(both.cols() - regressors),
+                                            rows_a_moment * kLongestLag);
 }
 
 Determined of(const estimation::InstrumentalEstimate& estimate, Eigen::Index i) {
-  return {estimate.theta(i), std::sqrt(estimate.covariance(i, i))};
+  // Three of these standard errors are as rare as three of a normal distribution, however few gusts there were.
+  constexpr double kThreeSigma = 0.99865;
+  const double few = numerics::student_t_quantile(kThreeSigma, std::max(3.0, estimate.degrees_of_freedom)) / 3.0;
+  return {estimate.theta(i), few * std::sqrt(estimate.covariance(i, i))};
+}
+
+/// Horizontal part of the airspeed at a sink rate; NaN without airspeed.
+double level_airspeed(double airspeed, double down) {
+  return std::isfinite(airspeed) ? std::sqrt(std::max(0.0, airspeed * airspeed - down * down)) : kNaN;
 }
 
 /// Scale of the airspeed and mean wind together. The ground velocity drifts with slow gusts, the heading does not: it
@@ -112,23 +122,23 @@ void find_scale(const FlightRows& rows, AirDataConsistency& out) {
   RegressionData data;
   data.regressors = estimation::RowMatrix::Zero(2 * n, 6);
   data.regressand.resize(2 * n);
-  const int segments = rows.segment.empty() ? 0 : rows.segment.back() + 1;
-  for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Vector3& v = rows.velocity[at(k)];
-      const double yaw = rows.attitude[at(k)](2), Va = rows.airspeed[at(k)];
-      const double level = std::sqrt(std::max(0.0, Va * Va - v(2) * v(2)));
+  // North and east of a moment side by side: a gust is in both.
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector3& v = rows.velocity[at(k)];
+    const double yaw = rows.attitude[at(k)](2);
+    const double level = level_airspeed(rows.airspeed[at(k)], v(2));
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
       const double heading = axis == 0 ? std::cos(yaw) : std::sin(yaw);
-      const Eigen::Index row = axis * n + k;
+      const Eigen::Index row = 2 * k + axis;
       data.regressand(row) = level * heading;
       data.regressors(row, 0) = v(axis);
       data.regressors(row, 1 + axis) = 1.0;
       data.regressors(row, 3) = heading;
       data.regressors(row, 4 + axis) = 1.0;
-      data.segment.push_back(rows.segment[at(k)] + static_cast<int>(axis) * segments);
+      data.segment.push_back(rows.segment[at(k)]);
     }
   }
-  const estimation::InstrumentalEstimate estimate = solve(std::move(data), 3);
+  const estimation::InstrumentalEstimate estimate = solve(std::move(data), 3, 2);
   if (!estimate.usable) return;
   out.airspeed_scale = of(estimate, 0);
   // Where the headings do not tell scale from wind, the scale is taken as right.
@@ -147,7 +157,7 @@ std::vector<Vector3> local_wind(const FlightRows& rows, double scale) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Vector3& v = rows.velocity[k];
     const double Va = rows.airspeed[k] / scale, yaw = rows.attitude[k](2);
-    const double level = std::sqrt(std::max(0.0, Va * Va - v(2) * v(2)));
+    const double level = level_airspeed(Va, v(2));
     difference[k] = v - Vector3(level * std::cos(yaw), level * std::sin(yaw), v(2));
   }
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -15,6 +15,7 @@ enum class Purpose {
   kParameters,  ///< the numbers are physical constants of this individual, within their intervals
   kPrediction   ///< the model predicts motion that it has not seen, inside the range that it was excited in
 };
+/// In the order of reports.
 inline constexpr std::array<Purpose, 3> kPurposes{Purpose::kData, Purpose::kParameters, Purpose::kPrediction};
 /// "data", "parameters", "prediction".
 [[nodiscard]] std::string_view to_string(Purpose purpose);
@@ -36,7 +37,9 @@ class Purposes {
  private:
   unsigned bits_ = 0;
 };
+/// Both.
 constexpr Purposes operator|(Purpose a, Purpose b) { return Purposes(a) | Purposes(b); }
+/// What contradicts itself supports nothing.
 inline constexpr Purposes kAllPurposes = Purpose::kData | Purpose::kParameters | Purpose::kPrediction;
 
 /// What came of a check.

@@ -16,7 +16,10 @@ InstrumentalEstimate instrumental_variables(const RegressionData& data, const Ro
   InstrumentalEstimate out;
   const Eigen::Index n = data.parameters();
   if (data.rows() < 10 * instruments.cols()) return out;
-  const Eigen::MatrixXd Q = numerics::HouseholderQr(Eigen::MatrixXd(instruments)).Q().leftCols(instruments.cols());
+  const numerics::HouseholderQr qr{Eigen::MatrixXd(instruments)};
+  const Eigen::VectorXd pivots = qr.R().diagonal().cwiseAbs();
+  if (!(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) return out;
+  const Eigen::MatrixXd Q = qr.Q().leftCols(instruments.cols());
   const RowMatrix projected = Q * (Q.transpose() * data.regressors);
   const Eigen::MatrixXd normal = projected.transpose() * data.regressors;
   const numerics::PivotedCholesky factor(normal);
@@ -26,8 +29,11 @@ InstrumentalEstimate instrumental_variables(const RegressionData& data, const Ro
   const Eigen::VectorXd residual = data.regressand - data.regressors * out.theta;
   const RowMatrix scores = residual.asDiagonal() * projected;
   const SegmentRanges segments = segment_ranges(data.rows(), data.segment);
-  const Eigen::Index window = correlation_length(residual, segments, std::min(max_lag, data.rows() / 4));
+  const Eigen::Index longest = std::min(max_lag, data.rows() / 4);
+  // Regressors that turn over (headings) hide the residual's own correlation length: all lags that may matter count.
+  const Eigen::Index window = std::max(correlation_length(residual, segments, longest), longest / 2);
   const LongRunCovariance filling = long_run_covariance(scores, segments, window);
+  out.degrees_of_freedom = filling.degrees_of_freedom;
   const Eigen::MatrixXd half = factor.solve(filling.matrix);
   out.covariance = factor.solve(Eigen::MatrixXd(half.transpose()));
   out.usable = out.theta.allFinite() && out.covariance.allFinite() && out.covariance.diagonal().minCoeff() >= 0.0 &&

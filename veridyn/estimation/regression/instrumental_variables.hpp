@@ -10,7 +10,8 @@ namespace veridyn::estimation {
 struct InstrumentalEstimate {
   bool usable = false;
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;  ///< allows for autocorrelated errors
+  Eigen::MatrixXd covariance;       ///< allows for autocorrelated errors
+  double degrees_of_freedom = 0.0;  ///< of the covariance as an estimate: few where the correlation is long
 };
 
 /// z = X theta + e where the regressors are correlated with e (a feedback that answers the noise), but `instruments`
