@@ -172,10 +172,10 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
   if (analysis.uncertainty.available()) folder.write("coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
-  folder.write("subject.toml", write_subject_toml(analysis.identified));
+  folder.write("subject.toml", graded_toml(write_subject_toml(analysis.identified), analysis.estimate.judgement));
   // JSBSim flies a complete model only; `veridyn export` says what is missing.
   if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
-    folder.write("jsbsim.xml", write_jsbsim(analysis.identified));
+    folder.write("jsbsim.xml", graded_xml(write_jsbsim(analysis.identified), analysis.estimate.judgement));
   folder.write("estimate.json", io::to_json(analysis.estimate));
 }
 

@@ -36,10 +36,21 @@ void print_judgement(const CommonOptions& options, const estimation::Estimate& e
   print_line(options, estimation::sentence_of(estimate.judgement));
   for (const estimation::Evidence& row : estimate.evidence) {
     if (row.outcome == estimation::Outcome::kPassed || row.bears_on.empty()) continue;
-    print_line(options, fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome),
-                                    row.about.empty() ? "" : row.about + ": ", row.text));
+    const bool named = row.about.empty() || row.text.find(row.about) != std::string::npos;
+    print_line(options, fmt::format("  {:<12} {}{}", estimation::to_string(row.outcome), named ? "" : row.about + ": ",
+                                    row.text));
     if (!row.advice.empty()) print_line(options, fmt::format("  {:<12} {}", "", row.advice));
   }
+}
+
+std::string graded_toml(const std::string& toml, const estimation::Judgement& judgement) {
+  return fmt::format("# {}\n{}", estimation::sentence_of(judgement), toml);
+}
+
+std::string graded_xml(const std::string& xml, const estimation::Judgement& judgement) {
+  const std::size_t after_declaration = xml.find('\n') + 1;
+  return fmt::format("{}<!-- {} -->\n{}", xml.substr(0, after_declaration), estimation::sentence_of(judgement),
+                     xml.substr(after_declaration));
 }
 
 Summary grades_summary(const estimation::Judgement& judgement) {

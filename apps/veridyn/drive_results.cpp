@@ -72,7 +72,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
     Vehicle identified;
     identified.name = drive.study.subject_name;
     identified.parameters = id.identified;
-    folder.write("subject.toml", write_vehicle_toml(identified));
+    folder.write("subject.toml", graded_toml(write_vehicle_toml(identified), analysis.estimate.judgement));
   }
   report::DriveReportContext context{.program = program_name()};
   context.validation_only = validation_only;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
@@ -47,15 +48,22 @@ int export_aircraft(const StudyRun& run) {
   const std::string& format = run.arguments.text("--format");
   const auto desired = [&](const char* name) { return format == "all" || format == name; };
   if (desired("json")) folder.write("model.json", aircraft::to_json(subject, estimate ? &*estimate : nullptr));
-  if (desired("toml")) folder.write("subject.toml", aircraft::write_subject_toml(subject));
+  // What was graded says for which purposes its numbers may be used.
+  const bool graded = estimate && !estimate->evidence.empty();
+  const std::string toml = aircraft::write_subject_toml(subject);
+  if (desired("toml")) folder.write("subject.toml", graded ? graded_toml(toml, estimate->judgement) : toml);
   if (desired("csv")) folder.write("model.csv", model_csv(subject));
-  if (desired("jsbsim")) folder.write("jsbsim.xml", aircraft::write_jsbsim(subject));
+  if (desired("jsbsim")) {
+    const std::string xml = aircraft::write_jsbsim(subject);
+    folder.write("jsbsim.xml", graded ? graded_xml(xml, estimate->judgement) : xml);
+  }
   const std::vector<std::string> files = folder.files();
   RunRecord record = run.record(0);
   if (estimate) record.inputs.emplace_back(file);
   folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
   for (const std::string& name : files)
     print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
+  if (graded) print_line(run.options(), estimation::sentence_of(estimate->judgement));
   return kDone;
 }
 

@@ -14,8 +14,8 @@ seed = 1
 
 [swing_test]
 name = "my aircraft"
-mass = "2.470 kg"                # of the aircraft alone
-cradle_mass = "1.042 kg"         # 0: it hung without one, then leave out the cradle's keys
+mass = "? kg"                    # of the aircraft alone
+cradle_mass = "? kg"             # 0: it hung without one, then leave out the cradle's keys
 # channel = "roll"               # the recorded angle; without: quaternion qx, qy, qz, qw, or a channel `angle`
 # settle = "0 s"                 # leave out this long after the largest excursion
 # fade = 0.1                     # and what comes after the swing has faded to this share
@@ -29,25 +29,25 @@ length = "5 mm"
 
 [swing_test.x]                   # the body axis that it turned about; likewise y, z; each is optional
 suspension = "bifilar"
-filar_distance = "0.49 m"        # between the lines
-length = "1.145 m"               # of the lines, with the aircraft
-cradle_length = "1.44 m"         # of the lines, cradle alone
+filar_distance = "? m"           # between the lines
+length = "? m"                   # of the lines, with the aircraft
+cradle_length = "? m"            # of the lines, cradle alone
 files = ["aircraft_x_1.csv", "aircraft_x_2.csv", "aircraft_x_3.csv"]
 cradle_files = ["cradle_x_1.csv", "cradle_x_2.csv"]
 
 [swing_test.y]
 suspension = "pendulum"
-length = "1.86 m"                # pivot to the centre of gravity of aircraft and cradle
-cradle_length = "1.79 m"         # pivot to the centre of gravity of the cradle
-offset = "0.0275 m"              # how much further from the pivot the aircraft's centre of gravity is
+length = "? m"                   # pivot to the centre of gravity of aircraft and cradle
+cradle_length = "? m"            # pivot to the centre of gravity of the cradle
+offset = "? m"                   # how much further from the pivot the aircraft's centre of gravity is
 files = ["aircraft_y_1.csv", "aircraft_y_2.csv"]
 cradle_files = ["cradle_y_1.csv", "cradle_y_2.csv"]
 
 [swing_test.z]
 suspension = "bifilar"
-filar_distance = "0.49 m"
-length = "1.91 m"
-cradle_length = "1.44 m"
+filar_distance = "? m"
+length = "? m"
+cradle_length = "? m"
 files = ["aircraft_z_1.csv", "aircraft_z_2.csv"]
 cradle_files = ["cradle_z_1.csv", "cradle_z_2.csv"]
 )toml";

@@ -18,20 +18,20 @@ constexpr const char* kAircraftStudy =
 #   veridyn inspect flight.bin          what the log holds and how it would be mapped
 #   veridyn identify study.toml         from log to model, with a report
 # Numbers are SI and radians; a text may carry any unit of the same kind: "27 lb", "12 deg". Keys with a leading # show
-# their defaults. Misspelt keys are refused, with the nearest known one.
+# their defaults. Misspelt keys are refused, with the nearest known one. What is "?" is yours to fill in.
 
 seed = 1
 
 [subject]
 name = "my aircraft"
 # builtin = "thor"               # start from a built-in aircraft instead; every key below then overrides it
-mass = "2.0 kg"                  # as flown
-wing_area = "0.31 m^2"
-span = "1.27 m"
-chord = "0.25 m"                 # mean aerodynamic chord
+mass = "? kg"                    # as flown
+wing_area = "? m^2"
+span = "? m"
+chord = "? m"                    # mean aerodynamic chord
 sign_convention = "positive elevator: trailing edge down"
 # Without the inertia the moments are identified per unit inertia only.
-inertia = { Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }    # kg m^2; `veridyn init swing-test` measures it
+# inertia = { Jx = 0.07, Jy = 0.09, Jz = 0.15, Jxz = 0.01 }  # kg m^2; `veridyn init swing-test` measures it
 # sigma = { mass = 0.01, Jy = 0.005 }   # how well these are known: goes into every derivative's error bar
 # imu_position = [0, 0, 0]       # m from the centre of gravity: forward, right, down
 
@@ -51,11 +51,11 @@ kind = "none"
 
 # Full throws, to turn servo positions into deflections.
 [subject.actuators.elevator]
-upper = "20 deg"                 # symmetric unless `lower` says otherwise
+upper = "? deg"                  # symmetric unless `lower` says otherwise
 [subject.actuators.aileron]
-upper = "20 deg"
+upper = "? deg"
 [subject.actuators.rudder]
-upper = "20 deg"
+upper = "? deg"
 
 [data]
 file = @LOG@
@@ -167,8 +167,12 @@ int init_aircraft(const Arguments& arguments) {
 int init_vehicle(const Arguments& arguments) {
   const bool log = !arguments.text("--log").empty();
   const std::string data = log ? filled(kDriveLog, "@LOG@", quoted_argument(arguments, "--log")) : kNoDriveLog;
-  return write_study(arguments, filled(kVehicleStudy, "@DATA@", data), "fill in the vehicle",
-                     log ? "identify" : "simulate");
+  // A car to drive is given; that of a log is the user's to weigh and measure.
+  std::string study = filled(kVehicleStudy, "@DATA@", data);
+  study = filled(study, "@MASS@", log ? "\"? kg\"   " : "\"1480 kg\"");
+  study = filled(study, "@A@", log ? "\"? m\"   " : "\"1.14 m\"");
+  study = filled(study, "@B@", log ? "\"? m\"   " : "\"1.50 m\"");
+  return write_study(arguments, study, "fill in the vehicle", log ? "identify" : "simulate");
 }
 
 int init_muscle(const Arguments& arguments) {

@@ -53,7 +53,14 @@ TEST_F(Program, HelpsEveryCommandWithAnExample) {
 TEST_F(Program, WritesAStudyThatItUnderstandsAndKeepsAnExistingOne) {
   const std::string in = " --quiet --out " + folder_.string();
   EXPECT_EQ(run("init aircraft --log missing.bin" + in).exit_code, 0);
-  expect_refusal("identify " + (folder_ / "study.toml").string() + out(), "missing.bin: no such file");
+  const std::string study = (folder_ / "study.toml").string();
+  // A mass that nobody weighed would make every coefficient wrong.
+  expect_refusal("identify " + study + out(), "subject.mass: is still the template's placeholder");
+  std::string filled = study;
+  for (const char* set : {"mass=2", "wing_area=0.31", "span=1.27", "chord=0.25", "actuators.elevator.upper=0.35",
+                          "actuators.aileron.upper=0.35", "actuators.rudder.upper=0.35"})
+    filled += std::string(" --set subject.") + set;
+  expect_refusal("identify " + filled + out(), "missing.bin: no such file");
   const Outcome again = run("init aircraft" + in);
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_THAT(again.text, HasSubstr("is there already"));
@@ -67,6 +74,9 @@ TEST_F(Program, GoesFromASimulatedFlightToAValidatedModel) {
                            "subject.toml", "report.html", "run.json"}) {
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
   }
+  // The model says for which purposes it may be used.
+  EXPECT_THAT(read_file(folder_ / "out" / "subject.toml"), ::testing::StartsWith("# The recording agrees with itself"));
+  EXPECT_THAT(done.text, HasSubstr("The recording agrees with itself"));
   const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
   const estimation::Parameter* Cm_alpha = estimate.find("Cm_alpha");
   ASSERT_NE(Cm_alpha, nullptr);
@@ -311,8 +321,13 @@ TEST_F(Program, WritesStudiesOfGroundTestsThatItUnderstands) {
   for (const std::string kind : {"swing-test", "calibration"}) {
     const fs::path folder = folder_ / kind;
     ASSERT_EQ(run("init " + kind + " --quiet --out " + folder.string()).exit_code, 0);
+    std::string text = read_file(folder / "study.toml");
+    if (kind == "swing-test") {
+      expect_refusal("identify " + (folder / "study.toml").string() + out(), "is still the template's placeholder");
+      for (std::size_t at = 0; (at = text.find("\"? ", at)) != std::string::npos;) text.replace(at, 2, "\"1");
+    }
     // All its keys are known: what is missing are the recordings.
-    expect_refusal("identify " + (folder / "study.toml").string() + out(), ".csv: ");
+    expect_refusal("identify " + file("filled.toml", text) + out(), ".csv: ");
   }
 }
 

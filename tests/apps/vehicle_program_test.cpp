@@ -57,6 +57,12 @@ TEST_F(VehicleProgram, DrivesScalesAndIdentifiesItsOwnTemplate) {
   EXPECT_TRUE(std::filesystem::exists(in_out("estimate.json")));
 }
 
+TEST_F(VehicleProgram, WantsTheMassOfTheCarWhoseLogItReads) {
+  ASSERT_EQ(run("init vehicle --log drive.csv --quiet --out " + folder_.string()).exit_code, 0);
+  expect_refusal("identify " + (folder_ / "study.toml").string() + out(),
+                 "subject.mass: is still the template's placeholder: put in your own number [kg]");
+}
+
 TEST_F(VehicleProgram, WritesAVehicleThatItReadsAgain) {
   ASSERT_EQ(run("simulate " + study("step_steer") + out()).exit_code, 0);
   const std::string written = read_file(in_out("subject.toml"));

@@ -44,6 +44,12 @@ TEST(Study, NamesFileLineAndKeyOfAWrongValue) {
   EXPECT_EQ(why([&] { static_cast<void>(subject.number("area", "m^2")); }), "study.toml:3: subject.area: is missing");
 }
 
+TEST(Study, RefusesThePlaceholderOfATemplate) {
+  const StudyTable root = study("mass = \"? kg\"\n").root();
+  EXPECT_EQ(why([&] { static_cast<void>(root.positive("mass", "kg")); }),
+            "study.toml:1: mass: is still the template's placeholder: put in your own number [kg]");
+}
+
 TEST(Study, RefusesUnknownKeysAndSuggestsTheNearest) {
   const Study misspelt = study("[subject]\nmass = 2\nspann = 3\n");
   const StudyTable subject = misspelt.root().table("subject");

@@ -86,6 +86,8 @@ std::string place_of(const StudyNode& node, const toml::node* at, std::string_vi
 }
 
 double number_with_unit(const std::string& text, std::string_view unit, const std::string& place) {
+  if (text.starts_with('?'))
+    throw InputError(place, fmt::format("is still the template's placeholder: put in your own number [{}]", unit));
   double number = 0.0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{}) {

@@ -15,7 +15,6 @@ estimation::PredictedQuantity yaw_rate(double r2, double rmse, double lag1 = 0.0
   return q;
 }
 
-/// A drive whose gyro has noise of 0.01 rad/s, and an estimate that says which of its parameters are excited.
 std::vector<std::string> not_passed(const VehicleJudgement& judgement) {
   std::vector<std::string> texts;
   for (const estimation::Evidence& row : judgement.checks)
@@ -23,6 +22,7 @@ std::vector<std::string> not_passed(const VehicleJudgement& judgement) {
   return texts;
 }
 
+/// A drive whose gyro has noise of 0.01 rad/s, and an estimate that says which of its parameters are excited.
 struct Case {
   DriveSignals signals;
   DriveSegments segments;
@@ -35,9 +35,14 @@ struct Case {
   Case() {
     signals[DriveSignal::kYawRate].sigma = 0.01;
     estimate.method = VehicleMethod::kOutputError;
+    start.mass = 1100.0;
+    start.a = 1.2;
+    start.b = 1.4;
     for (const char* name : {"C_f", "C_r", "steer_bias"}) {
       estimation::Parameter p;
       p.name = name;
+      p.value = p.name == "steer_bias" ? 0.01 : 6e4;
+      p.sigma = 0.01 * p.value;
       p.status = estimation::ParameterStatus::kIdentified;
       estimate.parameters.push_back(p);
     }
@@ -80,6 +85,14 @@ TEST(VehicleJudgement, MotionThatTheBicycleDoesNotHaveLeavesThePredictionOnly) {
               ::testing::Contains(HasSubstr("30 % of the variance of yaw_rate is neither modelled nor noise")));
   EXPECT_EQ(found.judgement.parameters.grade, estimation::Grade::kNo);
   EXPECT_EQ(found.judgement.prediction.grade, estimation::Grade::kYes);
+}
+
+TEST(VehicleJudgement, StiffnessThatNoTyreHasIsNoPhysicalConstant) {
+  Case c;
+  c.estimate.parameters[0].value = 6e6;
+  const VehicleJudgement found = c.judge();
+  EXPECT_EQ(found.verdict, estimation::GroupVerdict::kEffective);
+  EXPECT_THAT(found.reason, HasSubstr("times the static wheel load per rad, where vehicles have 4 to 40"));
 }
 
 TEST(VehicleJudgement, TheSameResidualIsAllowedWhereNoisyInputsExplainIt) {

@@ -82,6 +82,11 @@ std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
                      {"form", forms[static_cast<std::size_t>(s.model.stall->form)]},
                      {"drag", s.model.stall->drag}};
   }
+  if (estimate != nullptr && !estimate->evidence.empty()) {
+    for (const estimation::Purpose purpose : estimation::kPurposes)
+      json["grades"][std::string(estimation::to_string(purpose))] =
+          estimation::to_string(estimate->judgement.of(purpose).grade);
+  }
   json["coefficients"] = Json::object();
   for (const auto& model : s.model.coefficients) {
     if (!model) continue;

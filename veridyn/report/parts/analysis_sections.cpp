@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <ranges>
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
@@ -151,19 +153,20 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
   const bool all =
       std::ranges::all_of(estimation::kPurposes, [&](estimation::Purpose p) { return j.of(p).grade == Grade::kYes; });
   verdict.level = all ? Level::kGood : no(j.parameters) && no(j.prediction) ? Level::kBad : Level::kCaution;
+  // The worst first, as many as a reader takes in.
   constexpr std::size_t kMostLines = 4;
+  std::vector<const estimation::Evidence*> reasons;
+  for (const estimation::Evidence& row : estimate.evidence)
+    if (!row.passed() && !row.bears_on.empty()) reasons.push_back(&row);
+  std::ranges::stable_sort(reasons, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
   std::vector<std::string> advice;
-  std::size_t more = 0;
-  for (const estimation::Evidence& row : estimate.evidence) {
-    if (row.passed() || row.bears_on.empty()) continue;
-    if (verdict.lines.size() == kMostLines) {
-      ++more;
-      continue;
-    }
-    verdict.lines.push_back(row.about.empty() ? row.text : fmt::format("{}: {}", row.about, row.text));
-    if (!row.advice.empty() && std::ranges::find(advice, row.advice) == advice.end()) advice.push_back(row.advice);
+  for (const estimation::Evidence* row : reasons | std::views::take(kMostLines)) {
+    const bool named = row->about.empty() || row->text.find(row->about) != std::string::npos;
+    verdict.lines.push_back(named ? row->text : fmt::format("{}: {}", row->about, row->text));
+    if (!row->advice.empty() && std::ranges::find(advice, row->advice) == advice.end()) advice.push_back(row->advice);
   }
-  if (more > 0) verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", more));
+  if (reasons.size() > kMostLines)
+    verdict.lines.push_back(fmt::format("and {} more, in \"What was checked\"", reasons.size() - kMostLines));
   for (const std::string& text : advice) verdict.lines.push_back("What to do: " + text);
   return verdict;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -237,6 +238,7 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   const AgreementChecks agreement = check_agreement(problem, findings);
   for (const auto& check : {agreement.consistency, agreement.methods, agreement.data_parts})
     if (check) out.checks.push_back(*check);
+  for (Evidence& row : plausibility(findings.chosen.parameters, problem.start)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));
   if (there != nullptr && here != nullptr) out.checks.push_back(check_residual_on_holdout(*there, *here));
   out.judgement = estimation::judge(out.checks);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/parameter.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// Are the values those of a vehicle? Yaw inertia against m a b (about 1 for cars, Dixon 1996, sec. 1.8), cornering
+/// stiffness of an axle over its static load (about 10 to 20 per rad), friction: with care outside what vehicles have,
+/// failed far outside, both beyond three standard errors. A standard error that is zero to rounding is failed too: a
+/// search that ended at a bound has none.
+/// @param known  mass, a and b of it are used
+[[nodiscard]] std::vector<estimation::Evidence> plausibility(std::span<const estimation::Parameter> parameters,
+                                                             const VehicleParameters<double>& known);
+
+}  // namespace veridyn::vehicle
