@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <ranges>
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
@@ -160,7 +159,8 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
     if (!row.passed() && !row.bears_on.empty()) reasons.push_back(&row);
   std::ranges::stable_sort(reasons, std::greater(), [](const estimation::Evidence* row) { return row->outcome; });
   std::vector<std::string> advice;
-  for (const estimation::Evidence* row : reasons | std::views::take(kMostLines)) {
+  for (std::size_t i = 0; i < std::min(reasons.size(), kMostLines); ++i) {
+    const estimation::Evidence* row = reasons[i];
     const bool named = row->about.empty() || row->text.find(row->about) != std::string::npos;
     verdict.lines.push_back(named ? row->text : fmt::format("{}: {}", row->about, row->text));
     if (!row->advice.empty() && std::ranges::find(advice, row->advice) == advice.end()) advice.push_back(row->advice);
