@@ -161,25 +161,24 @@ std::vector<std::string> warnings_of(const FlightStudy& study, const FlightAnaly
 }
 
 /// Flown open loop over held-out data, the model must be nearer than the mean of what was flown.
-std::vector<FlightEvidence> flown_evidence(const Validation& validation) {
+std::vector<estimation::Evidence> flown_evidence(const Validation& validation) {
   using namespace estimation;
-  std::vector<FlightEvidence> rows;
+  std::vector<Evidence> rows;
   for (const PredictedQuantity& q : validation.quantities) {
     const bool better = q.fit.r2 >= 0.0;
     // Gusts, which the model is not given, can cost a good one its lead over the mean; they do not make it miss by
     // three times what the motion varies.
     const Outcome outcome = better ? Outcome::kPassed : q.fit.r2 >= -10.0 ? Outcome::kCare : Outcome::kFailed;
-    rows.push_back(
-        {{.name = "flown over the hold-out",
-          .about = q.name,
-          .outcome = outcome,
-          .value = q.fit.r2,
-          .limit = 0.0,
-          .scale = "R2",
-          .text = fmt::format("flown for {:.0f} s at a time over the hold-out, the model misses {} by {:.2g} {}{}",
-                              validation.period_s, q.name, q.fit.mae, q.unit,
-                              better ? "" : ", which is worse than its mean"),
-          .bears_on = Purpose::kPrediction}});
+    rows.push_back({.name = "flown over the hold-out",
+                    .about = q.name,
+                    .outcome = outcome,
+                    .value = q.fit.r2,
+                    .limit = 0.0,
+                    .scale = "R2",
+                    .text = fmt::format(
+                        "flown for {:.0f} s at a time over the hold-out, the model misses {} by {:.2g} {}{}",
+                        validation.period_s, q.name, q.fit.mae, q.unit, better ? "" : ", which is worse than its mean"),
+                    .bears_on = Purpose::kPrediction});
   }
   return rows;
 }
@@ -212,7 +211,7 @@ estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& a
   }
   estimate.warnings = warnings_of(study, analysis);
   std::vector<estimation::Evidence> of_all = rows_of(analysis.recording_evidence);
-  const std::vector<estimation::Evidence> flown = rows_of(flown_evidence(analysis.validation));
+  const std::vector<estimation::Evidence> flown = flown_evidence(analysis.validation);
   of_all.insert(of_all.end(), flown.begin(), flown.end());
   estimate.judgement = judgement_of(analysis, of_all);
   estimate.evidence = std::move(of_all);

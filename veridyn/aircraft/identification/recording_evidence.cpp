@@ -107,9 +107,7 @@ FlightEvidence innovation_row(const SensorReport& sensor) {
                .limit = kRefused.care,
                .scale = "share of the samples",
                .bears_on = kAllPurposes};
-  row.outcome = refused > kRefused.failed ? Outcome::kFailed
-                : refused > kRefused.care ? Outcome::kCare
-                                          : Outcome::kPassed;
+  row.outcome = beyond(refused, 0.0, kRefused);
   row.text = fmt::format(
       "{:.1f} % of the samples of {} contradict the reconstructed motion{}", 100.0 * refused, sensor.channel,
       row.outcome == Outcome::kFailed ? ": either the sensor is wrong or what it is compared with" : "");

@@ -7,6 +7,20 @@
 namespace veridyn::estimation {
 namespace {
 
+/// Of a judgement that is const or not.
+template <typename AnyJudgement>
+auto& grade_in(AnyJudgement& judgement, Purpose purpose) {
+  switch (purpose) {
+    case Purpose::kData:
+      return judgement.data;
+    case Purpose::kParameters:
+      return judgement.parameters;
+    case Purpose::kPrediction:
+      break;
+  }
+  return judgement.prediction;
+}
+
 Grade grade_of(Outcome outcome) {
   switch (outcome) {
     case Outcome::kPassed:
@@ -104,29 +118,9 @@ std::string_view to_string(Grade grade) {
   return "";
 }
 
-const PurposeGrade& Judgement::of(Purpose purpose) const {
-  switch (purpose) {
-    case Purpose::kData:
-      return data;
-    case Purpose::kParameters:
-      return parameters;
-    case Purpose::kPrediction:
-      break;
-  }
-  return prediction;
-}
+const PurposeGrade& Judgement::of(Purpose purpose) const { return grade_in(*this, purpose); }
 
-PurposeGrade& Judgement::of(Purpose purpose) {
-  switch (purpose) {
-    case Purpose::kData:
-      return data;
-    case Purpose::kParameters:
-      return parameters;
-    case Purpose::kPrediction:
-      break;
-  }
-  return prediction;
-}
+PurposeGrade& Judgement::of(Purpose purpose) { return grade_in(*this, purpose); }
 
 Judgement judge(std::span<const Evidence> rows) {
   Judgement judgement;
