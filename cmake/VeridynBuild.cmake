@@ -113,7 +113,7 @@ function(veridyn_module name)
   if(NOT name STREQUAL "core")
     target_precompile_headers(${target} REUSE_FROM veridyn_library_headers)
   endif()
-  veridyn_compile_together(${target} 8)
+  veridyn_compile_together(${target} 24)
   install(
     TARGETS ${target}
     EXPORT VeridynTargets
@@ -150,7 +150,7 @@ function(veridyn_module_tests name)
   endif()
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
-  veridyn_compile_together(${target} 8)
+  veridyn_compile_together(${target} 24)
   gtest_discover_tests(${target} TEST_FILTER -*Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 endfunction()

@@ -42,7 +42,7 @@ coefficients = ["Cm", "CL"]
 detection_learning = "30 s"
 )toml";
 
-FlightStudy flown(const std::string& more = "") {
+FlightStudy flown_study(const std::string& more = "") {
   Progress silent;
   return read_study(Study::parse(std::string(kStudy) + more, "test.toml"), silent);
 }
@@ -60,7 +60,7 @@ double value_of(const TrackedFlight& flight, const std::string& name) {
 
 TEST(TrackFlight, FollowsAnAircraftThatChangesAndSaysWhen) {
   Progress silent;
-  FlightStudy study = flown();
+  FlightStudy study = flown_study();
   const TrackingAnalysis analysis = track_flight(study, silent);
   EXPECT_EQ(analysis.flight.air_data(), AirDataSource::kFilter);
   // Within four standard errors, and these are small.
@@ -83,7 +83,7 @@ TEST(TrackFlight, FollowsAnAircraftThatChangesAndSaysWhen) {
 
 TEST(TrackFlight, ALogThatGrowsGivesWhatTheWholeLogGives) {
   Progress silent;
-  FlightStudy study = flown();
+  FlightStudy study = flown_study();
   const TrackingAnalysis whole = track_flight(study, silent);
   TrackedFlight live(study);
   MappedRecording part = study.mapped;
@@ -102,9 +102,9 @@ TEST(TrackFlight, ALogThatGrowsGivesWhatTheWholeLogGives) {
 
 TEST(TrackFlight, SurvivesAGapOfTenSeconds) {
   Progress silent;
-  FlightStudy study = flown();
+  FlightStudy study = flown_study();
   const TrackingAnalysis whole = track_flight(study, silent);
-  FlightStudy gapped = flown();
+  FlightStudy gapped = flown_study();
   Recording with_gap;
   with_gap.source = study.mapped.recording.source;
   with_gap.frame = study.mapped.recording.frame;
@@ -131,12 +131,12 @@ TEST(TrackFlight, SurvivesAGapOfTenSeconds) {
 
 TEST(TrackFlight, StartsFromAnEstimate) {
   Progress silent;
-  FlightStudy study = flown();
+  FlightStudy study = flown_study();
   const TrackingAnalysis first = track_flight(study, silent);
   EXPECT_EQ(of(first.flight, Coefficient::kCm).start, "no estimate");
   const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_track_start.json";
   write_file(path, io::to_json(first.flight.tracker().estimate()));
-  FlightStudy again = flown();
+  FlightStudy again = flown_study();
   again.track.estimate_file = path.string();
   const TrackingAnalysis second = track_flight(again, silent);
   std::filesystem::remove(path);

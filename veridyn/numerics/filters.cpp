@@ -13,7 +13,6 @@
 namespace veridyn::numerics {
 namespace {
 
-constexpr double kNan = kNaN;
 
 // Modified Bessel function I0 by its series; the terms fall below rounding after about 50 for x <= 20.
 double bessel_i0(double x) {
@@ -171,7 +170,7 @@ void filter(std::span<const double> x, const FirKernel& kernel, std::span<double
   VERIDYN_ASSERT(x.size() == out.size());
   VERIDYN_ASSERT(kernel.taps.size() % 2 == 1);
   const std::size_t m = kernel.half_width();
-  std::fill(out.begin(), out.end(), kNan);
+  std::fill(out.begin(), out.end(), kNaN);
   std::vector<double> padded;
   for (const auto& [begin, end] : finite_stretches(x)) {
     const std::size_t n = end - begin;
@@ -234,7 +233,7 @@ SavitzkyGolay::SavitzkyGolay(int order, int half_width, int derivative, double r
 
 void SavitzkyGolay::apply(std::span<const double> x, std::span<double> out) const {
   VERIDYN_ASSERT(x.size() == out.size());
-  std::fill(out.begin(), out.end(), kNan);
+  std::fill(out.begin(), out.end(), kNaN);
   const auto count = static_cast<std::size_t>(taps_.rows());
   const std::size_t m = count / 2;
   const FirKernel centre = kernel();

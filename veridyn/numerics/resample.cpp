@@ -13,7 +13,6 @@
 namespace veridyn::numerics {
 namespace {
 
-constexpr double kNan = kNaN;
 
 struct Samples {
   std::vector<double> time;
@@ -83,7 +82,7 @@ std::vector<double> pchip_slopes(const Samples& s, const std::vector<char>& gap_
 }
 
 std::vector<double> interpolate(const Samples& s, const UniformGrid& grid, Interpolation method, double gap_limit) {
-  std::vector<double> out(grid.count, kNan);
+  std::vector<double> out(grid.count, kNaN);
   const std::size_t n = s.time.size();
   if (n == 0) return out;
   std::vector<char> gap_after(n, 1);
@@ -165,7 +164,7 @@ std::vector<double> resample(std::span<const double> time, std::span<const doubl
   const double nyquist = 0.5 / grid.step;
   const std::vector<double> smooth =
       filter(even, low_pass({.rate_Hz = fine_rate, .pass_Hz = 0.8 * nyquist, .stop_Hz = nyquist}));
-  std::vector<double> out(grid.count, kNan);
+  std::vector<double> out(grid.count, kNaN);
   const auto offset = static_cast<std::ptrdiff_t>(std::llround((grid.begin - fine.begin) * fine_rate));
   const auto stride = static_cast<std::ptrdiff_t>(fine_per_step);
   for (std::size_t k = 0; k < grid.count; ++k) {
@@ -190,7 +189,7 @@ std::vector<double> decimate(std::span<const double> x, std::size_t factor) {
 
 void unwrap_angles(std::span<double> angle) {
   constexpr double kTurn = 2.0 * kPi;
-  double previous = kNan;
+  double previous = kNaN;
   for (double& a : angle) {
     if (!std::isfinite(a)) continue;
     if (std::isfinite(previous)) a -= kTurn * std::round((a - previous) / kTurn);

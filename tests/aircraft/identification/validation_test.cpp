@@ -11,6 +11,8 @@
 namespace veridyn::aircraft {
 namespace {
 
+using F = FlightSignal;
+
 /// Steady level flight at the trim for 20 s.
 FlightSignals trimmed_flight(const Subject& subject, double airspeed) {
   const double rho = 1.2;
@@ -20,7 +22,6 @@ FlightSignals trimmed_flight(const Subject& subject, double airspeed) {
   FlightSignals s;
   s.grid = {0.0, 0.02, 1001};
   for (GridSignal& signal : s.signals) signal.value.assign(s.size(), 0.0);
-  using F = FlightSignal;
   const auto hold = [&](F signal, double value) { s[signal].value.assign(s.size(), value); };
   hold(F::kAirspeed, airspeed);
   hold(F::kAlpha, trim.alpha);

@@ -64,17 +64,17 @@ TEST(AirDataModel, TransitionEqualsFiniteDifferences) {
 TEST(AirDataModel, MeasurementRowsEqualFiniteDifferences) {
   const FullModel model = some_model();
   const Eigen::Vector3d arm(0.2, -0.1, 0.4);
-  using State = FullModel::State<double>;
-  const std::vector<std::function<Prediction(const State&)>> sensors{
-      [&](const State& x) { return predict_ground_velocity(x, 1); },
-      [&](const State& x) { return predict_euler_angle(x, 0).value(); },
-      [&](const State& x) { return predict_euler_angle(x, 1).value(); },
-      [&](const State& x) { return predict_euler_angle(x, 2).value(); },
-      [&](const State& x) { return predict_dynamic_pressure(model, x, 1.1); },
-      [&](const State& x) { return predict_airspeed(model, x); },
-      [&](const State& x) { return predict_alpha(model, x, arm); },
-      [&](const State& x) { return predict_beta(model, x, arm, false); },
-      [&](const State& x) { return predict_beta(model, x, arm, true); }};
+  using FullState = FullModel::State<double>;
+  const std::vector<std::function<Prediction(const FullState&)>> sensors{
+      [&](const FullState& x) { return predict_ground_velocity(x, 1); },
+      [&](const FullState& x) { return predict_euler_angle(x, 0).value(); },
+      [&](const FullState& x) { return predict_euler_angle(x, 1).value(); },
+      [&](const FullState& x) { return predict_euler_angle(x, 2).value(); },
+      [&](const FullState& x) { return predict_dynamic_pressure(model, x, 1.1); },
+      [&](const FullState& x) { return predict_airspeed(model, x); },
+      [&](const FullState& x) { return predict_alpha(model, x, arm); },
+      [&](const FullState& x) { return predict_beta(model, x, arm, false); },
+      [&](const FullState& x) { return predict_beta(model, x, arm, true); }};
   constexpr double h = 1e-5;
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     const FullModel::Vector H = FullModel::row(sensors[s](full_state()));

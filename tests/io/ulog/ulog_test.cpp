@@ -19,10 +19,10 @@ using testing::pack;
 using testing::shared_flight;
 using testing::ULogWriter;
 
-Log read_small() { return read_ulog(testing::small_ulog(), "small.ulg"); }
+Log read_small_log() { return read_ulog(testing::small_ulog(), "small.ulg"); }
 
 TEST(ULog, ReadsArraysNestedMessagesTextsAndLeavesPaddingOut) {
-  const Log log = read_small();
+  const Log log = read_small_log();
   const LogTopic& escs = *log.find("esc_status");
   ASSERT_EQ(escs.size(), 6U);
   EXPECT_DOUBLE_EQ(escs.find("esc[0].esc_rpm")->value(5), 5005.0);
@@ -38,13 +38,13 @@ TEST(ULog, ReadsArraysNestedMessagesTextsAndLeavesPaddingOut) {
 }
 
 TEST(ULog, ReadsFormatsThatStandAfterTheirDataAndNumbersInstances) {
-  const Recording recording = to_recording(read_small());
+  const Recording recording = to_recording(read_small_log());
   // -1000 degC, a sentinel of a sensor that is not there, is left to those who know: 1000 below is no temperature.
   EXPECT_NEAR(recording.at("differential_pressure[1].temperature").value[0], -1000.0 + 273.15, 1e-3);
 }
 
 TEST(ULog, ReadsInformationParametersTextsAndDropouts) {
-  const Log log = read_small();
+  const Log log = read_small_log();
   EXPECT_EQ(log.information.at("sys_name"), "PX4");
   EXPECT_EQ(log.information.at("ver_sw_release"), "17498624");
   EXPECT_EQ(log.information.at("notes"), "one\ntwo!!");

@@ -16,7 +16,7 @@
 namespace veridyn::muscle {
 namespace {
 
-using Jet = ceres::Jet<double, 12>;
+using Dual = ceres::Jet<double, 12>;
 
 using test::parameters_of;
 using test::Variant;
@@ -49,8 +49,8 @@ TEST(Musculotendon, DerivativesOfTheRatesAreThoseOfCentralDifferences) {
                       : 0.143 * (1.0 + strain) + std::sqrt(x[9] * x[9] - std::pow(0.134 * std::sin(0.2), 2));
       x[11] = 0.3 * uniform(generator);
       if (v.no_activation_dynamics) x[7] = std::clamp(x[7], 0.05, 0.95);
-      std::array<Jet, 12> jets;
-      for (int i = 0; i < 12; ++i) jets[static_cast<std::size_t>(i)] = Jet(x[static_cast<std::size_t>(i)], i);
+      std::array<Dual, 12> jets;
+      for (int i = 0; i < 12; ++i) jets[static_cast<std::size_t>(i)] = Dual(x[static_cast<std::size_t>(i)], i);
       const auto exact = rates_of(v, jets);
       const auto plain = rates_of(v, x);
       const std::array<double, 3> unit{100.0, 1.34, 800.0};

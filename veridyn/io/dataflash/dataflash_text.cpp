@@ -20,7 +20,7 @@
 namespace veridyn::io {
 namespace {
 
-void split(std::string_view line, std::vector<std::string_view>& cells) {
+void split_cells(std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
   while (true) {
     const std::size_t comma = line.find(',');
@@ -40,7 +40,7 @@ std::optional<double> number_of(std::string_view cell) {
 bool is_text_type(char type) { return type == 'n' || type == 'N' || type == 'Z'; }
 
 /// A message type while its lines are read.
-struct Table {
+struct TextTable {
   DataFlashFormat format;
   std::vector<DataFlashColumn> columns;
   std::optional<DataFlashTime> time;
@@ -62,7 +62,7 @@ class TextReader {
       const bool last = stop == std::string_view::npos;
       rest.remove_prefix(last ? rest.size() : stop + 1);
       if (line.empty()) continue;
-      split(line, cells);
+      split_cells(line, cells);
       if (cells[0] == "FMT") {
         if (!define(cells)) count_lost(line, last);
         continue;
@@ -73,7 +73,7 @@ class TextReader {
     }
   }
 
-  std::vector<Table>& tables() { return tables_; }
+  std::vector<TextTable>& tables() { return tables_; }
 
  private:
   void count_lost(std::string_view line, bool last) {
@@ -89,7 +89,7 @@ class TextReader {
     const auto length = number_of(cells[2]);
     if (!type) return cells[1] == "Type";  // a header line of a converted log
     if (!(*type >= 0.0 && *type < 256.0) || !length || cells[3].empty()) return false;
-    Table table;
+    TextTable table;
     table.format.type = static_cast<std::uint8_t>(*type);
     table.format.length = *length >= 0.0 && *length < 65536.0 ? static_cast<std::uint32_t>(*length) : 0;
     table.format.name = internal::printable(cells[3]);
@@ -111,7 +111,7 @@ class TextReader {
     return true;
   }
 
-  bool take(Table& table, std::vector<std::string_view>& cells) {
+  bool take(TextTable& table, std::vector<std::string_view>& cells) {
     const std::size_t count = table.columns.size();
     if (cells.size() - 1 < count) return false;
     if (cells.size() - 1 > count && !join_text(table, cells)) return false;
@@ -140,7 +140,7 @@ class TextReader {
   }
 
   /// More commas than columns belong to a text; the last text column takes them.
-  bool join_text(const Table& table, std::vector<std::string_view>& cells) const {
+  bool join_text(const TextTable& table, std::vector<std::string_view>& cells) const {
     const std::size_t extra = cells.size() - 1 - table.columns.size();
     for (std::size_t i = table.columns.size(); i-- > 0;) {
       if (!is_text_type(table.columns[i].type)) continue;
@@ -156,14 +156,14 @@ class TextReader {
 
   std::string_view data_;
   Log& log_;
-  std::vector<Table> tables_;
+  std::vector<TextTable> tables_;
   std::map<std::string, std::size_t, std::less<>> index_;
   std::vector<double> values_;
   double clock_ = 0.0;
 };
 
 // Unit ids are letters, or their codes.
-char id_of(const Table& table, std::size_t column, std::size_t row) {
+char id_of(const TextTable& table, std::size_t column, std::size_t row) {
   const double code = table.numbers[column][row];
   const std::string_view cell = table.texts[column].size() > row ? table.texts[column][row] : std::string_view();
   // A single digit is ambiguous: '0' to '9' are multiplier ids themselves, codes below 10 are not letters.
@@ -171,8 +171,8 @@ char id_of(const Table& table, std::size_t column, std::size_t row) {
   return std::isfinite(code) && code >= 0.0 && code < 127.0 ? static_cast<char>(code) : '\0';
 }
 
-void read_units(const std::vector<Table>& tables, DataFlashUnits& units) {
-  for (const Table& table : tables) {
+void read_units(const std::vector<TextTable>& tables, DataFlashUnits& units) {
+  for (const TextTable& table : tables) {
     const auto column = [&](std::string_view name) -> std::optional<std::size_t> {
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (table.columns[i].name == name) return i;
@@ -201,7 +201,7 @@ void read_units(const std::vector<Table>& tables, DataFlashUnits& units) {
   }
 }
 
-LogTopic build(const Table& table, const std::vector<std::uint64_t>& rows, std::optional<std::size_t> instance_column) {
+LogTopic build(const TextTable& table, const std::vector<std::uint64_t>& rows, std::optional<std::size_t> instance_column) {
   LogTopic topic;
   topic.name = table.format.name;
   std::vector<double> stamps;
@@ -261,7 +261,7 @@ Log read_dataflash_text(std::string_view bytes, std::string source) {
   if (reader.tables().empty()) throw InputError(log.source, "not an ArduPilot text log: no line starts with 'FMT,'");
   DataFlashUnits units;
   read_units(reader.tables(), units);
-  for (Table& table : reader.tables()) {
+  for (TextTable& table : reader.tables()) {
     if (table.stamps.empty()) continue;
     units.apply(table.format, table.columns, false);
     const auto instance_column = units.instance_column(table.format, table.columns);
@@ -275,7 +275,7 @@ Log read_dataflash_text(std::string_view bytes, std::string source) {
       log.topics.push_back(build(table, rows, instance_column));
       log.topics.back().instance = instance;
     }
-    table = Table{};
+    table = TextTable{};
   }
   tell_dataflash_story(log);
   internal::finish(log);

@@ -44,7 +44,7 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-void split(std::string_view line, std::vector<std::string_view>& words) {
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   // With tabulators a label may hold blanks.
   const std::string_view separators = line.find('\t') != std::string_view::npos ? "\t" : kBlank;
@@ -107,7 +107,7 @@ Storage parse_storage(std::string_view text, std::string source) {
   }
   if (!ended) throw InputError(storage.source, "has no line 'endheader', so it is not an OpenSim storage file");
   std::vector<std::string_view> words;
-  while (!lines.done() && words.empty()) split(lines.next(), words);
+  while (!lines.done() && words.empty()) split_words(lines.next(), words);
   const auto place = [&] { return fmt::format("{}:{}", storage.source, lines.number()); };
   if (words.empty() || lower(words.front()) != "time") throw InputError(place(), "the first column must be 'time'");
   std::set<std::string_view> known;
@@ -117,7 +117,7 @@ Storage parse_storage(std::string_view text, std::string source) {
   }
   if (storage.labels.empty()) throw InputError(place(), "has no column but the time");
   while (!lines.done()) {
-    split(lines.next(), words);
+    split_words(lines.next(), words);
     if (words.empty()) continue;
     if (words.size() != storage.labels.size() + 1) {
       throw InputError(place(), fmt::format("{} numbers under {} labels", words.size(), storage.labels.size() + 1));

@@ -27,8 +27,6 @@ using estimation::RegressionEstimate;
 constexpr double kRowsPerCutoff = 4.0;
 /// Rows on which the error covariance is averaged.
 constexpr std::size_t kCovarianceRows = 100;
-/// Relative error of the coefficients that small angles may make.
-constexpr double kSmallAngles = 0.01;
 /// Relative variation of the speed from which a gyro bias is distinguishable from a constant.
 constexpr double kSpeedVaries = 0.05;
 
@@ -384,7 +382,7 @@ NearestBicycle nearest_bicycle(const Eigen::Vector4d& theta, const Eigen::Matrix
   const Eigen::Vector4d e = scale.asDiagonal() * (theta - coefficients(x, p, direct).value);
   // The error of the small angles is no contradiction.
   const Eigen::Vector4d small_angles =
-      kSmallAngles * Eigen::Vector4d(direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
+      kSmallAngleError * Eigen::Vector4d(direct ? theta(0) : theta(2), theta(1), theta(2), theta(3));
   Eigen::Matrix4d widened = P;
   widened.diagonal() += small_angles.cwiseAbs2();
   const numerics::PivotedCholesky allowed(scale.asDiagonal() * widened * scale.asDiagonal());

@@ -11,6 +11,9 @@
 
 namespace veridyn::vehicle {
 
+/// Relative error of the coefficients that the small angles may make.
+inline constexpr double kSmallAngleError = 0.01;
+
 /// Equation error of the bicycle: two linear regressions whose coefficients are functions of C_f, C_r and I_z.
 ///
 /// With k = I_z/m, the forces of the axles follow from the accelerations alone,

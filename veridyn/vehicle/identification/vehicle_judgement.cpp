@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/vehicle/identification/drive_regression.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
 namespace veridyn::vehicle {
@@ -26,8 +27,6 @@ constexpr double kNoiseDoubt = 2.0;
 constexpr double kAutocorrelated = 0.3;
 /// Residual over what noise leaves, from which its autocorrelation is more than that of the inputs' noise.
 constexpr double kBeyondNoise = 1.5;
-/// Relative difference between the methods that small angles may make.
-constexpr double kSmallAngles = 0.01;
 
 double percent_explained(const estimation::PredictedQuantity& q) { return 100.0 * std::max(0.0, q.fit.r2); }
 
@@ -181,7 +180,7 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
   Eigen::Matrix3d covariance = axle.covariance;
   covariance += output_error->raw.covariance.topLeftCorner(3, 3);
   // Small angles, which only equation error takes.
-  covariance.diagonal() += (kSmallAngles * axle.value).cwiseAbs2();
+  covariance.diagonal() += (kSmallAngleError * axle.value).cwiseAbs2();
   const double p = estimation::agreement_p(difference, covariance);
   return by_p("agreement of methods", p, problem.options,
               fmt::format("equation error and output error agree (p = {:.2g})", p),
