@@ -59,6 +59,13 @@ void check_flight(const FlightStudy& study) {
   const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x",    "gyro_y",   "gyro_z",
                                         "roll",    "pitch",   "yaw",     "vel_north", "vel_east", "vel_down"};
   require_channels(study.mapped, needed, "the reconstruction of the motion through the air");
+  constexpr double kSlowest_Hz = 2.0;
+  if (const Channel& gyro = study.mapped.recording.at("gyro_x"); !(gyro.rate_Hz() > kSlowest_Hz)) {
+    throw InputError(study.mapped.recording.source,
+                     fmt::format("its gyro has a sample every {:.3g} s, too few to follow a flight: check the unit of "
+                                 "time (data.time.unit)",
+                                 1.0 / gyro.rate_Hz()));
+  }
   const double least = study.segments.min_airspeed_mps;
   const auto [highest, what] = highest_speed(study.mapped.recording);
   if (!(highest > least)) {
@@ -117,8 +124,8 @@ FlightAnalysis analyse_motion(const FlightStudy& study, Progress& progress) {
                                      data_sheet ? &analysis.reconstruction.sigma : nullptr);
   analysis.segments = excited_segments(analysis.signals, study.segments);
   progress.stage("checking the recording");
-  analysis.recording_evidence =
-      recording_evidence(analysis.aligned.recording, analysis.reconstruction, options, analysis.segments);
+  analysis.recording_evidence = recording_evidence(analysis.aligned.recording, analysis.reconstruction, options,
+                                                   analysis.segments, analysis.delays);
   return analysis;
 }
 

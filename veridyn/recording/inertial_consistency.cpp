@@ -33,6 +33,8 @@ constexpr double kSteepest = 60.0 * kDegree;
 
 /// Unknowns: nine elements of the inverse gain, row by row, then three offsets.
 constexpr Eigen::Index kUnknowns = 12;
+/// Delays that may be unknown too: of the sensor and of what it is compared with.
+constexpr Eigen::Index kDelays = 2;
 
 /// Accelerometer, gyro and attitude on one grid.
 struct InertialSeries {
@@ -116,16 +118,26 @@ Eigen::Matrix<double, 3, kUnknowns> regressors(const Matrix3& T, const Vector3& 
 /// Rows of three axes as they come.
 class Equations {
  public:
-  void add(const Eigen::Matrix<double, 3, kUnknowns>& X, const Vector3& z) {
-    if (X.allFinite() && z.allFinite()) rows_.push_back({X, z});
+  using Delays = Eigen::Matrix<double, 3, kDelays>;
+
+  void add(const Eigen::Matrix<double, 3, kUnknowns>& X, const Vector3& z, const Delays& delays = Delays::Zero()) {
+    if (!X.allFinite() || !z.allFinite() || !delays.allFinite()) return;
+    Row row{{}, z};
+    row.X << X, delays;
+    rows_.push_back(row);
   }
   [[nodiscard]] std::optional<SensorMatrix> solve() const;
+  /// The first delay with its standard error, all unknowns estimated together.
+  [[nodiscard]] std::optional<std::pair<double, double>> delay() const;
 
  private:
   struct Row {
-    Eigen::Matrix<double, 3, kUnknowns> X;
+    Eigen::Matrix<double, 3, kUnknowns + kDelays> X;
     Vector3 z;
   };
+  [[nodiscard]] RegressionData data(Eigen::Index unknowns) const;
+  [[nodiscard]] static std::optional<estimation::RegressionEstimate> least_squares(const RegressionData& data);
+
   std::vector<Row> rows_;
 };
 
@@ -156,25 +168,45 @@ SensorMatrix inverted(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covar
   return m;
 }
 
-std::optional<SensorMatrix> Equations::solve() const {
+RegressionData Equations::data(Eigen::Index unknowns) const {
   const auto n = signed_index(rows_.size());
-  if (rows_.size() < kFewestWindows) return std::nullopt;
   RegressionData data;
-  data.regressors.resize(3 * n, kUnknowns);
+  data.regressors.resize(3 * n, unknowns);
   data.regressand.resize(3 * n);
   data.segment.resize(3 * rows_.size());
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (Eigen::Index k = 0; k < n; ++k) {
-      data.regressors.row(axis * n + k) = rows_[at(k)].X.row(axis);
+      data.regressors.row(axis * n + k) = rows_[at(k)].X.row(axis).head(unknowns);
       data.regressand(axis * n + k) = rows_[at(k)].z(axis);
       data.segment[at(axis * n + k)] = static_cast<int>(axis);
     }
   }
-  for (Eigen::Index j = 0; j < kUnknowns; ++j) data.parameter_names.push_back(fmt::format("n{}", j));
+  for (Eigen::Index j = 0; j < unknowns; ++j) data.parameter_names.push_back(fmt::format("n{}", j));
+  return data;
+}
+
+std::optional<estimation::RegressionEstimate> Equations::least_squares(const RegressionData& data) {
   estimation::RegressionOptions options;
   options.max_lag = 20;
-  const estimation::RegressionEstimate estimate = estimation::estimate(data, estimation::Method::kOls, options);
+  estimation::RegressionEstimate estimate = estimation::estimate(data, estimation::Method::kOls, options);
   if (!estimate.usable() || !estimate.covariance.allFinite()) return std::nullopt;
+  return estimate;
+}
+
+std::optional<std::pair<double, double>> Equations::delay() const {
+  if (rows_.size() < kFewestWindows) return std::nullopt;
+  const auto estimate = least_squares(data(kUnknowns + kDelays));
+  if (!estimate) return std::nullopt;
+  return std::pair{estimate->theta(kUnknowns), std::sqrt(estimate->covariance(kUnknowns, kUnknowns))};
+}
+
+std::optional<SensorMatrix> Equations::solve() const {
+  const auto n = signed_index(rows_.size());
+  if (rows_.size() < kFewestWindows) return std::nullopt;
+  const RegressionData data = this->data(kUnknowns);
+  const auto estimated = least_squares(data);
+  if (!estimated) return std::nullopt;
+  const estimation::RegressionEstimate& estimate = *estimated;
   SensorMatrix m = inverted(estimate.theta, estimate.covariance);
   if (!m.gain.allFinite()) return std::nullopt;
   const Eigen::VectorXd residual = data.regressand - data.regressors * estimate.theta;
@@ -200,6 +232,34 @@ Matrix3 euler_rate_matrix(double phi, double theta) {
   return E;
 }
 
+/// What delays tau_f of the specific force and tau_v of the velocity make of the mean acceleration over a window:
+/// tau_f (1/T) integral of R f' - tau_v (1/T) [R f], with integral of R f' = [R f] - integral of R (w x f).
+Equations::Delays delays_over(const InertialSeries& s, const Window& window) {
+  const double h = s.grid.step;
+  const auto index = [&](double t) {
+    return static_cast<std::size_t>(
+        std::clamp(std::round((t - s.grid.begin) / h), 0.0, static_cast<double>(s.grid.count - 1)));
+  };
+  const std::size_t first = index(window.begin), last = index(window.end);
+  // The mean of some samples at either end: their noise is what limits a difference.
+  constexpr std::size_t kHalf = 3;
+  const auto force_at = [&](std::size_t k) {
+    Vector3 sum = Vector3::Zero();
+    double count = 0.0;
+    for (std::size_t i = k > kHalf ? k - kHalf : 0; i <= std::min(s.grid.count - 1, k + kHalf); ++i, count += 1.0)
+      sum += ned_from_body(s, i) * s.f(i);
+    return Vector3(sum / count);
+  };
+  Vector3 turning = Vector3::Zero();
+  for (std::size_t k = first; k < last; ++k) turning += h * (ned_from_body(s, k) * s.w(k).cross(s.f(k)));
+  const Vector3 change = force_at(last) - force_at(first);
+  const double T = window.end - window.begin;
+  Equations::Delays delays;
+  delays.col(0) = (change - turning) / T;
+  delays.col(1) = -change / T;
+  return delays;
+}
+
 void compare_velocity(const Recording& recording, const InertialSeries& s, std::span<const TimeSpan> spans,
                       InertialConsistency& out) {
   const Channel& north = recording.at("vel_north");
@@ -212,12 +272,16 @@ void compare_velocity(const Recording& recording, const InertialSeries& s, std::
     const auto v = [&](std::size_t i) { return Vector3(north.value[i], east.value[i], down.value[i]); };
     const Vector3 acceleration = (v(window.last) - v(window.first)) / (window.end - window.begin);
     const auto X = mean_over(window, s.grid, [&](std::size_t k) { return regressors(ned_from_body(s, k), s.f(k)); });
-    by_force.add(X, acceleration - gravity);
+    by_force.add(X, acceleration - gravity, delays_over(s, window));
     // Columns of the unit gain: what the accelerometer says as it is.
     const Vector3 said = X.col(0) + X.col(4) + X.col(8) + gravity;
     by_velocity.add(regressors(Matrix3::Identity(), acceleration), said);
   }
   out.accelerometer = by_force.solve();
+  if (const auto delay = by_force.delay()) {
+    out.accelerometer_delay = delay->first;
+    out.accelerometer_delay_sigma = delay->second;
+  }
   out.velocity = by_velocity.solve();
 }
 
@@ -243,6 +307,26 @@ std::optional<SensorMatrix> compare_rates(const Recording& recording, const Iner
     equations.add(X, change / (on_grid.end - on_grid.begin));
   }
   return equations.solve();
+}
+
+Evidence delay_row(double delay_s, double sigma_s) {
+  constexpr double kStandardErrors = 3.0;
+  constexpr double kCare_s = 0.02;
+  constexpr double kFailed_s = 0.2;
+  const double excess = std::abs(delay_s) - kStandardErrors * sigma_s;
+  Evidence row{.name = "delay of the accelerometer",
+               .about = "accelerometer and gyro",
+               .outcome = excess > kFailed_s ? estimation::Outcome::kFailed
+                          : excess > kCare_s ? estimation::Outcome::kCare
+                                             : estimation::Outcome::kPassed,
+               .value = delay_s,
+               .limit = kCare_s,
+               .scale = "s",
+               .text = fmt::format("the accelerometer is {:.3f} +- {:.3f} s {} gyro and attitude", std::abs(delay_s),
+                                   sigma_s, delay_s < 0.0 ? "before" : "behind"),
+               .bears_on = estimation::kAllPurposes};
+  if (!row.passed()) row.advice = "check the stamps of accelerometer and gyro, and the filters that they went through";
+  return row;
 }
 
 }  // namespace
@@ -290,6 +374,7 @@ std::vector<Evidence> inertial_evidence(const InertialConsistency& c) {
       add(*c.accelerometer, force, kForce);
   }
   if (c.gyro) add(*c.gyro, rate, kRate);
+  if (c.accelerometer_delay) rows.push_back(delay_row(*c.accelerometer_delay, c.accelerometer_delay_sigma));
   if (failed("gyro") && failed("accelerometer")) {
     rows.push_back(
         {.name = "attitude against gyro and accelerometer",

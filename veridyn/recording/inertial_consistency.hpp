@@ -19,6 +19,9 @@ struct InertialConsistency {
   std::optional<SensorMatrix> velocity;
   /// Angular rates against the change of the Euler angles over windows.
   std::optional<SensorMatrix> gyro;
+  /// How late the accelerometer is against gyro and attitude [s], found with how late the velocity is against both.
+  std::optional<double> accelerometer_delay;
+  double accelerometer_delay_sigma = 0.0;
 };
 
 /// Compares the channels `accel_x|y|z`, `gyro_x|y|z`, `roll`, `pitch`, `yaw`, `vel_north|east|down` of a recording in

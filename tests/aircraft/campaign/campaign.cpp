@@ -15,7 +15,7 @@ namespace {
 using estimation::Grade;
 using estimation::Outcome;
 
-constexpr std::array kFindings{Finding::kNamed, Finding::kMisnamed, Finding::kHarmless, Finding::kNotDetectable,
+constexpr std::array kFindings{Finding::kNamed, Finding::kMisnamed, Finding::kHarmless, Finding::kNotVerified,
                                Finding::kMissed};
 
 class OneThread : public Progress {
@@ -43,12 +43,20 @@ bool is_found(const Identified& flight, const Identified& clean) {
 std::vector<estimation::Evidence> deciding_rows(const Identified& flight, const Identified& clean) {
   std::vector<estimation::Evidence> rows;
   Outcome worst = Outcome::kCare;
+  bool of_recording = false;
   for (const estimation::Evidence& row : flight.analysis.estimate.evidence) {
     if (row.outcome < Outcome::kCare || row.outcome == Outcome::kMissing) continue;
+    const bool on_data = row.bears_on.contains(estimation::Purpose::kData);
+    if (of_recording && !on_data) continue;
     const bool same = std::ranges::any_of(clean.analysis.estimate.evidence, [&](const estimation::Evidence& e) {
       return e.name == row.name && e.about == row.about && e.outcome >= row.outcome;
     });
     if (same) continue;
+    if (on_data && !of_recording) {
+      rows.clear();
+      worst = Outcome::kCare;
+      of_recording = true;
+    }
     if (row.outcome > worst) rows.clear();
     worst = std::max(worst, row.outcome);
     if (row.outcome == worst) rows.push_back(row);
@@ -61,6 +69,12 @@ bool names(const Fault& fault, std::string_view text) {
                              [&](const std::string& row) { return text.find(row) != std::string_view::npos; });
 }
 
+bool is_not_verified(const Identified& flight, const Fault& fault) {
+  return std::ranges::any_of(flight.analysis.estimate.evidence, [&](const estimation::Evidence& row) {
+    return row.outcome == Outcome::kNotVerified && names(fault, row.about);
+  });
+}
+
 }  // namespace
 
 std::string_view to_string(Finding finding) {
@@ -71,8 +85,8 @@ std::string_view to_string(Finding finding) {
       return "named";
     case Finding::kMisnamed:
       return "misnamed";
-    case Finding::kNotDetectable:
-      return "not detectable";
+    case Finding::kNotVerified:
+      return "not verified";
     case Finding::kMissed:
       return "missed";
   }
@@ -80,12 +94,15 @@ std::string_view to_string(Finding finding) {
 }
 
 FlightStudy campaign_flight(const std::string& aircraft, std::uint64_t seed, double duration_s,
-                            const std::string& turbulence) {
+                            const std::string& turbulence, Assumed assumed) {
   OneThread silent;
   const std::string text = fmt::format(
       "seed = {}\n[subject]\nbuiltin = \"{}\"\n[flight]\nduration = {}\naltitude = 300\nwind = [4, -3, 0]\n"
-      "turbulence = \"{}\"\n[reconstruct]\nsensors = \"reference\"\nturbulence = \"{}\"\n",
-      seed, aircraft, duration_s, turbulence, turbulence);
+      "turbulence = \"{}\"\n{}",
+      seed, aircraft, duration_s, turbulence,
+      assumed == Assumed::kNothing
+          ? std::string()
+          : fmt::format("[reconstruct]\nsensors = \"reference\"\nturbulence = \"{}\"\n", turbulence));
   return read_study(Study::parse(text, aircraft + ".toml"), silent);
 }
 
@@ -106,6 +123,7 @@ Identified identified(const FlightStudy& study) {
       if (p.status != estimation::ParameterStatus::kIdentified || truth == flight.analysis.truth.end()) continue;
       ++flight.confident;
       const double error = std::abs(p.value - truth->second);
+      if (truth->second >= p.low95 && truth->second <= p.high95) ++flight.covered;
       if (error > 3.0 * p.sigma && error > kWrongBy * std::abs(truth->second))
         flight.wrong[p.name] = fmt::format("{} {:.3g} +- {:.2g} ({:.3g})", p.name, p.value, p.sigma, truth->second);
     }
@@ -132,7 +150,7 @@ Trial try_fault(const FlightStudy& study, const Identified& clean, const Fault& 
     if (!clean.wrong.contains(name)) wrong.push_back(text);
   const std::vector<estimation::Evidence> rows = deciding_rows(flight, clean);
   if (!wrong.empty()) {
-    trial.finding = fault.why_undetectable.empty() ? Finding::kMissed : Finding::kNotDetectable;
+    trial.finding = is_not_verified(flight, fault) ? Finding::kNotVerified : Finding::kMissed;
     trial.reason = fmt::format("{}", fmt::join(wrong, ", "));
   } else if (!is_found(flight, clean)) {
     trial.finding = Finding::kHarmless;
@@ -146,7 +164,7 @@ Trial try_fault(const FlightStudy& study, const Identified& clean, const Fault& 
 }
 
 std::string confusion_table(const std::vector<Trial>& trials) {
-  std::string table = "| fault | named | misnamed | harmless | not detectable | missed |\n|---|---|---|---|---|---|\n";
+  std::string table = "| fault | named | misnamed | harmless | not verified | missed |\n|---|---|---|---|---|---|\n";
   for (const Fault& fault : faults()) {
     std::array<std::size_t, kFindings.size()> count{};
     for (const Trial& trial : trials) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
+#include <array>
 #include <fstream>
 #include <mutex>
 
@@ -59,6 +59,80 @@ TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
   const double found = count(Finding::kNamed) + count(Finding::kMisnamed);
   EXPECT_GE(count(Finding::kNamed), 0.8 * found);
   EXPECT_EQ(count(Finding::kMissed), 0.0);
+}
+
+/// Of all flights of an aircraft.
+struct Coverage {
+  std::size_t flights = 0, data_yes = 0, both_yes = 0, confident = 0, covered = 0;
+
+  void add(const Identified& flight) {
+    const estimation::Judgement& judgement = flight.analysis.estimate.judgement;
+    const bool data = judgement.data.grade == estimation::Grade::kYes;
+    ++flights;
+    data_yes += data ? 1 : 0;
+    both_yes += data && judgement.parameters.grade == estimation::Grade::kYes ? 1 : 0;
+    confident += flight.confident;
+    covered += flight.covered;
+  }
+  [[nodiscard]] double share() const { return static_cast<double>(covered) / static_cast<double>(confident); }
+};
+
+// Clean flights of all built-in aircraft, from calm to moderate turbulence. Writes coverage.md.
+TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
+  const std::vector<std::string> aircraft = builtin_subject_names();
+  const std::vector<std::string> turbulence{"none", "low_light", "low_moderate"};
+  constexpr std::size_t kSeeds = 25;
+  std::vector<std::array<Identified, 2>> flights(aircraft.size() * kSeeds);
+  numerics::parallel_for(flights.size(), 0, [&](std::size_t k) {
+    const std::size_t seed = k / aircraft.size();
+    for (const auto assumed : {testing::Assumed::kTruth, testing::Assumed::kNothing}) {
+      Identified flight = testing::identified(campaign_flight(aircraft[k % aircraft.size()], seed + 1, 300.0,
+                                                              turbulence[seed % turbulence.size()], assumed));
+      // What is counted; a hundred flights' signals take gigabytes.
+      Identified kept;
+      kept.confident = flight.confident;
+      kept.covered = flight.covered;
+      kept.analysis.estimate.judgement = flight.analysis.estimate.judgement;
+      flights[k][assumed == testing::Assumed::kTruth ? 0 : 1] = std::move(kept);
+    }
+  });
+  std::ofstream table("coverage.md");
+  table
+      << "| aircraft | flights | data yes | data and parameters yes | coverage, noise given | coverage, noise measured "
+         "|\n|---|---|---|---|---|---|\n";
+  Coverage all;
+  for (std::size_t i = 0; i < aircraft.size(); ++i) {
+    Coverage given, measured;
+    for (std::size_t k = i; k < flights.size(); k += aircraft.size()) {
+      given.add(flights[k][0]);
+      measured.add(flights[k][1]);
+      all.add(flights[k][0]);
+    }
+    table << fmt::format("| {} | {} | {} | {} | {:.1f} % of {} | {:.1f} % of {} |\n", aircraft[i], given.flights,
+                         given.data_yes, given.both_yes, 100.0 * given.share(), given.confident,
+                         100.0 * measured.share(), measured.confident);
+    EXPECT_GE(given.share(), 0.9) << aircraft[i];
+  }
+  EXPECT_GE(static_cast<double>(all.data_yes), 0.95 * static_cast<double>(all.flights));
+}
+
+// The short form of the campaign: one fault of each sensor in one flight.
+TEST(Campaign, NamesWhatIsWrong) {
+  const FlightStudy study = campaign_flight("unatrap", 1, 150.0);
+  const Identified clean = testing::identified(study);
+  ASSERT_FALSE(clean.refused) << clean.message;
+  EXPECT_EQ(clean.analysis.estimate.judgement.data.grade, estimation::Grade::kYes);
+  EXPECT_TRUE(clean.wrong.empty());
+  EXPECT_GT(clean.confident, 10u);
+  for (const char* name :
+       {"accelerometer in g", "gyro x reversed", "gyro frozen for 10 %", "roll reversed", "velocity in knots",
+        "alpha reversed", "deflections in degrees", "clock in ms taken for s"}) {
+    const Trial trial = testing::try_fault(study, clean, testing::fault(name));
+    EXPECT_EQ(trial.finding, Finding::kNamed) << name << ": " << to_string(trial.finding) << ", " << trial.reason;
+  }
+  // What no flight shows is said by a row.
+  for (const char* name : {"elevator reversed", "mass 1.3 times"})
+    EXPECT_EQ(testing::try_fault(study, clean, testing::fault(name)).finding, Finding::kNotVerified) << name;
 }
 
 }  // namespace

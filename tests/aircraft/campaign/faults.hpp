@@ -12,7 +12,6 @@ namespace veridyn::aircraft::testing {
 struct Fault {
   std::string name;               ///< "accelerometer in g"
   std::vector<std::string> rows;  ///< rows about one of these name it
-  std::string why_undetectable;   ///< why no flight can show it; empty where one can
   std::function<void(FlightStudy&)> apply;
 };
 

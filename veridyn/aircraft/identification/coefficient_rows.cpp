@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::aircraft {
 namespace internal {
@@ -41,6 +42,38 @@ using internal::needed_signals;
 
 /// Rows on which the error covariance is averaged: the Jacobian varies slowly.
 constexpr std::size_t kCovarianceRows = 2000;
+
+/// Deflections that jump between two samples are known to half a sample only, and aerodynamic moments and rates answer
+/// the moment at which they did. The effect of that on the filtered rows is an impulse through the filter: what such
+/// impulses, one a jump, explain is taken out of every column (Frisch & Waugh 1933; their sizes are nuisance
+/// parameters). Without it, damping in roll comes out up to 8 % off where the roll mode is as fast as 20 rad/s and
+/// deflections are sampled at 100 Hz.
+void take_out_jumps(const CoefficientModel& model, const FlightSignals& signals, const std::vector<std::size_t>& rows,
+                    RegressionData& data) {
+  const std::vector<FlightSignal> needed = needed_signals(model);
+  const std::size_t half = signals.jump_response.size() / 2;
+  std::vector<Eigen::VectorXd> impulses;
+  for (const DeflectionJump& jump : signals.jumps) {
+    if (std::ranges::find(needed, jump.control) == needed.end()) continue;
+    Eigen::VectorXd impulse = Eigen::VectorXd::Zero(data.rows());
+    const std::size_t first = jump.after > half ? jump.after - half : 0;
+    for (auto row = std::ranges::lower_bound(rows, first); row != rows.end() && *row + half < jump.after + 2 * half;
+         ++row)
+      impulse(row - rows.begin()) = signals.jump_response[*row + half - jump.after];
+    if (impulse.squaredNorm() > 0.0) impulses.push_back(std::move(impulse));
+  }
+  const auto count = static_cast<Eigen::Index>(impulses.size());
+  // As many unknowns as that would take the parameters' information with them.
+  constexpr Eigen::Index kRowsAJump = 10;
+  if (count == 0 || kRowsAJump * count > data.rows()) return;
+  Eigen::MatrixXd nuisance(data.rows(), count);
+  for (Eigen::Index j = 0; j < count; ++j) nuisance.col(j) = impulses[static_cast<std::size_t>(j)];
+  Eigen::MatrixXd columns(data.rows(), data.parameters() + 1);
+  columns << data.regressors, data.regressand;
+  columns -= nuisance * numerics::shortest_least_squares(nuisance, columns);
+  data.regressors = columns.leftCols(data.parameters());
+  data.regressand = columns.rightCols(1);
+}
 
 }  // namespace
 
@@ -132,6 +165,7 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     data.regressand(i) = select(regressed_coefficients(sample, subject, rho, torque), model.coefficient);
   }
   if (count == 0) return data;
+  take_out_jumps(model, signals, rows, data);
 
   // The Jacobian varies slowly: a mean over some of the rows.
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n + 1, n + 1);

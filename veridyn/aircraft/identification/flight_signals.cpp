@@ -189,7 +189,35 @@ class Preparation {
       const Channel* channel = mapped_.recording.find(name);
       if (channel == nullptr) continue;
       // Positions of servos are what was commanded or read back: known, but for the delay that was taken off before.
-      put(which, numerics::filter(linear_on_grid(*channel), smooth_), 0.0, ErrorKind::kExact, "filtered position");
+      const std::vector<double> position = linear_on_grid(*channel);
+      if (channel->rate_Hz() > 0.8 * out_.filter.rate_Hz) find_jumps(position, which);
+      put(which, numerics::filter(position, smooth_), 0.0, ErrorKind::kExact, "filtered position");
+    }
+    const std::vector<double>& taps = smooth_.taps;
+    out_.jump_response.assign(taps.size() + 1, 0.0);
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      out_.jump_response[i] += 0.5 * taps[i];
+      out_.jump_response[i + 1] += 0.5 * taps[i];
+    }
+  }
+
+  /// Changes within one sample by a good part of the throw, with little change before and after. A servo with a lag of
+  /// two samples or more shows none.
+  void find_jumps(const std::vector<double>& position, FlightSignal control) {
+    constexpr double kOfThrow = 0.05;
+    constexpr double kNeighbours = 0.3;
+    double low = kInfinity, high = -kInfinity;
+    for (const double v : position) {
+      if (!std::isfinite(v)) continue;
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+    for (std::size_t k = 2; k + 1 < position.size(); ++k) {
+      const double change = std::abs(position[k] - position[k - 1]);
+      if (!(change > kOfThrow * (high - low))) continue;
+      const double beside =
+          std::max(std::abs(position[k - 1] - position[k - 2]), std::abs(position[k + 1] - position[k]));
+      if (beside < kNeighbours * change) out_.jumps.push_back({control, k});
     }
   }
 

@@ -37,11 +37,20 @@ struct SignalOptions {
 using recording::ErrorKind;
 using recording::GridSignal;
 
+/// A deflection that jumps from one sample to the next, as of a servo without lag: when between the two is not known.
+struct DeflectionJump {
+  FlightSignal control = FlightSignal::kElevator;
+  std::size_t after = 0;  ///< the first grid point with the new value
+};
+
 /// All signals of a flight on one uniform grid, through one zero-phase filter, so that a relation that is linear in the
 /// unfiltered signals holds for the filtered ones too.
 struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   numerics::LowPassDesign filter;
   std::size_t stride = 1;  ///< every stride-th sample is as good as all: the pass band's Nyquist rate
+  std::vector<DeflectionJump> jumps;
+  /// What an impulse midway between two samples becomes, from `-jump_response.size() / 2` samples before the second on.
+  std::vector<double> jump_response;
   std::vector<double> air_density;
   std::vector<double> torque;                            ///< reaction torque of the engine about x [N m]; empty without
   std::vector<double> roll, pitch, yaw;                  ///< smoothed attitude

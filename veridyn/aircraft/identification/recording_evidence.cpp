@@ -11,6 +11,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
+#include "veridyn/recording/sample_evidence.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -88,11 +89,163 @@ FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
                                       name, fit.largest_reading / kDegree)
                         : fmt::format(
                               "in the mean the {} vane reads {:.2f} +- {:.2f} deg more than attitude, ground velocity "
-                              "and the mean wind imply; its scale is not verified by this recording",
+                              "and the mean wind imply",
                               name, fit.bias.value / kDegree, fit.bias.sigma / kDegree);
   if (!row.passed())
     row.advice = fmt::format("check unit and zero of the vane, or leave it out: reconstruct.without = [\"{}\"]", name);
   return {std::move(row), name == "alpha" ? kByAlpha : kByBeta};
+}
+
+FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name) {
+  constexpr Limits kSlope{0.1, 0.4};
+  /// An error of the scale is one of the derivatives by the angle.
+  constexpr double kVerified = 0.15;
+  Evidence row{.name = fmt::format("scale of the {} vane", name),
+               .about = name,
+               .outcome = Outcome::kNotVerified,
+               .value = fit ? fit->slope.value : kNaN,
+               .limit = kSlope.care,
+               .scale = "reading over angle",
+               .text = fmt::format("the scale of the {} vane is not verified by this recording: the controls do not "
+                                   "move the angle enough",
+                                   name),
+               .bears_on = kAllPurposes,
+               .advice = fmt::format("fly sharp {} doublets, or calibrate the vane in a wind tunnel",
+                                     name == "alpha" ? "elevator" : "rudder")};
+  if (fit) {
+    const double doubt = std::abs(fit->slope.value - 1.0) + kStandardErrors * fit->slope.sigma;
+    row.outcome = beyond(fit->slope.value - 1.0, fit->slope.sigma, kSlope);
+    const bool passed = row.outcome == Outcome::kPassed;
+    row.text = fmt::format("in manoeuvres the {} vane reads {:.2f} +- {:.2f} times what gyro and accelerometer say{}",
+                           name, fit->slope.value, fit->slope.sigma,
+                           !passed && fit->slope.value < 0.0 ? ": its sign is reversed" : "");
+    if (passed && doubt > kVerified) {
+      row.outcome = Outcome::kNotVerified;
+      row.text += fmt::format(", which verifies its scale to no better than {:.0f} %", 100.0 * doubt);
+    } else if (passed) {
+      row.advice.clear();
+    } else {
+      row.advice = fmt::format(
+          "check sign, unit, scale (upwash) and delay of the vane, or leave it out: reconstruct.without = [\"{}\"]",
+          name);
+    }
+  }
+  return {std::move(row), name == "alpha" ? kByAlpha : kByBeta};
+}
+
+/// What the alignment of the clocks found that no sensor can be: early, or of opposite sign.
+std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
+  constexpr double kEarly_s = 0.03;
+  std::vector<FlightEvidence> rows;
+  const auto early = [&](const DelayReport& report) {
+    return report.delay_s < -std::max(kEarly_s, kStandardErrors * report.sigma_s) && report.correlation > 0.0;
+  };
+  const auto row = [&](const char* name, std::string about, double value, std::string text, std::string advice) {
+    rows.push_back({{.name = name,
+                     .about = std::move(about),
+                     .outcome = Outcome::kCare,
+                     .value = value,
+                     .limit = kEarly_s,
+                     .scale = "s",
+                     .text = std::move(text),
+                     .bears_on = kAllPurposes,
+                     .advice = std::move(advice)}});
+  };
+  const auto attitude = std::ranges::find(delays, "attitude", &DelayReport::group);
+  const bool gyro_is_late = attitude != delays.end() && early(*attitude);
+  if (gyro_is_late) {
+    row("delay of the gyro", "gyro", -attitude->delay_s,
+        fmt::format("the gyro is {:.2f} s late: the attitude, which follows from it, shows the motion before",
+                    -attitude->delay_s),
+        "check the gyro's stamps and the filter that its values went through");
+  }
+  for (const DelayReport& report : delays) {
+    if (report.correlation < 0.0 && report.text.starts_with("opposite sign")) {
+      row("sign against the other sensors", report.group, report.correlation,
+          fmt::format("{} moves against what {} implies (correlation {:.2f})", report.group, report.reference,
+                      report.correlation),
+          fmt::format("check the sign of {}", report.group));
+    } else if (early(report) && !gyro_is_late) {
+      const bool surface = report.group == "elevator" || report.group == "aileron" || report.group == "rudder";
+      row("order in time", report.group, report.delay_s,
+          surface
+              ? fmt::format("{} is recorded {:.2f} s after its effect", report.group, -report.delay_s)
+              : fmt::format("{} shows the motion {:.2f} s before {}", report.group, -report.delay_s, report.reference),
+          fmt::format("check the stamps of {}, or give its delay: delays.{} = \"{:.0f} ms\"", report.group,
+                      report.group, 1000.0 * (surface ? -report.delay_s : report.delay_s)));
+    }
+  }
+  return rows;
+}
+
+/// No surface moves so far.
+std::vector<FlightEvidence> range_rows(const Recording& recording, const Segments& segments) {
+  constexpr double kLargestDeflection = 60.0 * kDegree;
+  std::vector<FlightEvidence> rows;
+  for (const char* name : {"elevator", "aileron", "rudder"}) {
+    const Channel* channel = recording.find(name);
+    if (channel == nullptr) continue;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < channel->size(); ++i) {
+      const double t = channel->times()[i];
+      if (std::ranges::any_of(segments.airborne, [&](const TimeSpan& span) { return span.contains(t); }))
+        largest = std::fmax(largest, std::abs(channel->value[i]));
+    }
+    if (!(largest > kLargestDeflection)) continue;
+    rows.push_back({{.name = fmt::format("range of {}", name),
+                     .about = name,
+                     .outcome = Outcome::kFailed,
+                     .value = largest / kDegree,
+                     .limit = kLargestDeflection / kDegree,
+                     .scale = "deg",
+                     .text = fmt::format("{} reads up to {:.0f} deg: no surface moves so far", name, largest / kDegree),
+                     .bears_on = kAllPurposes,
+                     .advice = fmt::format("check the unit of {} in [data.map]", name)}});
+  }
+  return rows;
+}
+
+std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segments& segments) {
+  static const std::vector<recording::SampledChannel> kChannels{{"accel_x", "accelerometer"},
+                                                                {"accel_y", "accelerometer"},
+                                                                {"accel_z", "accelerometer"},
+                                                                {"gyro_x", "gyro"},
+                                                                {"gyro_y", "gyro"},
+                                                                {"gyro_z", "gyro"},
+                                                                {"roll", "attitude"},
+                                                                {"pitch", "attitude"},
+                                                                {"yaw", "attitude"},
+                                                                {"vel_north", "ground velocity"},
+                                                                {"vel_east", "ground velocity"},
+                                                                {"vel_down", "ground velocity"},
+                                                                {"dynamic_pressure", "airspeed"},
+                                                                {"airspeed", "airspeed"},
+                                                                {"alpha", "alpha"},
+                                                                {"beta", "beta"},
+                                                                {"elevator", "elevator", true},
+                                                                {"aileron", "aileron", true},
+                                                                {"rudder", "rudder", true}};
+  std::vector<FlightEvidence> rows;
+  for (Evidence& row : recording::sample_evidence(recording, kChannels, segments.airborne)) {
+    const bool alpha = row.about == "alpha", beta = row.about == "beta";
+    rows.push_back({std::move(row), alpha ? kByAlpha : beta ? kByBeta : std::vector<Coefficient>{}});
+  }
+  return rows;
+}
+
+/// What the reconstruction had to refuse shows that a contradiction found before matters: the row that names the sensor
+/// counts as much as what follows from it.
+void raise_causes(std::vector<FlightEvidence>& causes, std::span<const FlightEvidence> symptoms) {
+  const bool refused = std::ranges::any_of(
+      symptoms, [](const FlightEvidence& symptom) { return symptom.row.outcome == Outcome::kFailed; });
+  const bool named =
+      std::ranges::any_of(causes, [](const FlightEvidence& cause) { return cause.row.outcome == Outcome::kFailed; });
+  if (!refused || named) return;
+  for (FlightEvidence& cause : causes)
+    if (cause.row.outcome == Outcome::kCare) {
+      cause.row.outcome = Outcome::kFailed;
+      cause.row.text += ", more than the reconstruction can take";
+    }
 }
 
 /// A sensor whose samples the reconstruction had to refuse, or that is noisier than assumed.
@@ -192,24 +345,57 @@ FlightEvidence deflection_row(const Recording& recording) {
        .advice = "measure deflections against servo outputs on the ground"}};
 }
 
+/// A flight shows force over mass and moment over inertia, and coefficients are referred to areas and lengths.
+FlightEvidence body_row() {
+  return {
+      {.name = "mass, inertia, geometry, thrust",
+       .about = "body",
+       .outcome = Outcome::kNotVerified,
+       .value = kNaN,
+       .limit = kNaN,
+       .text = "mass, inertia, wing area, span, chord and the thrust model are taken as given: coefficients are as "
+               "right as they are",
+       .bears_on = Purpose::kData | Purpose::kParameters,
+       .advice =
+           "weigh and swing the aircraft (veridyn init swing-test), and give what is uncertain in [subject.sigma]"}};
+}
+
 }  // namespace
 
 std::vector<FlightEvidence> recording_evidence(const Recording& recording, const Reconstruction& reconstruction,
-                                               const ReconstructOptions& options, const Segments& segments) {
-  std::vector<FlightEvidence> rows;
+                                               const ReconstructOptions& options, const Segments& segments,
+                                               std::span<const DelayReport> delays) {
+  std::vector<FlightEvidence> rows = sample_rows(recording, segments);
+  const auto add = [&](std::vector<FlightEvidence> more) {
+    for (FlightEvidence& row : more) rows.push_back(std::move(row));
+  };
   for (Evidence& row : recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)))
     rows.push_back({std::move(row)});
+  add(delay_rows(delays));
   if (const Channel* density = reconstruction.smoothed.find("air_density")) {
     const AirDataConsistency air =
         air_data_consistency(recording, *density, options.airspeed_is_true, segments.airborne);
     if (air.airspeed_scale) rows.push_back(airspeed_row(*air.airspeed_scale));
-    if (air.alpha) rows.push_back(vane_row(*air.alpha, "alpha"));
-    if (air.beta) rows.push_back(vane_row(*air.beta, "beta"));
+    if (air.alpha) {
+      rows.push_back(vane_row(*air.alpha, "alpha"));
+      rows.push_back(slope_row(
+          alpha_slope(recording, *density, options.airspeed_is_true, segments.longitudinal.excited), "alpha"));
+    }
+    if (air.beta) {
+      rows.push_back(vane_row(*air.beta, "beta"));
+      rows.push_back(
+          slope_row(beta_slope(recording, *density, options.airspeed_is_true, segments.lateral.excited), "beta"));
+    }
   }
+  add(range_rows(recording, segments));
   rows.push_back(deflection_row(recording));
+  rows.push_back(body_row());
+  std::vector<FlightEvidence> symptoms;
   for (const SensorReport& sensor : reconstruction.sensors)
-    if (sensor.innovations.count > 0) rows.push_back(innovation_row(sensor));
-  if (std::optional<FlightEvidence> gust = gust_row(reconstruction, segments)) rows.push_back(std::move(*gust));
+    if (sensor.innovations.count > 0) symptoms.push_back(innovation_row(sensor));
+  if (std::optional<FlightEvidence> gust = gust_row(reconstruction, segments)) symptoms.push_back(std::move(*gust));
+  raise_causes(rows, symptoms);
+  add(std::move(symptoms));
   return rows;
 }
 

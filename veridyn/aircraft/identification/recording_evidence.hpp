@@ -1,18 +1,23 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "veridyn/aircraft/identification/flight_evidence.hpp"
 #include "veridyn/aircraft/identification/segments.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
+#include "veridyn/aircraft/sensors/delays.hpp"
 
 namespace veridyn::aircraft {
 
-/// Does the recording of a flight agree with itself and with physics? Inertial sensors against velocity and attitude,
-/// air data against ground velocity, sensors against the reconstruction, gusts against their model.
+/// Does the recording of a flight agree with itself and with physics? Samples, inertial sensors against velocity and
+/// attitude, clocks, air data against ground velocity and against gyro and accelerometer, ranges of deflections,
+/// sensors against the reconstruction, gusts against their model.
+/// @param delays  what the alignment of the clocks found
 [[nodiscard]] std::vector<FlightEvidence> recording_evidence(const Recording& recording,
                                                              const Reconstruction& reconstruction,
                                                              const ReconstructOptions& options,
-                                                             const Segments& segments);
+                                                             const Segments& segments,
+                                                             std::span<const DelayReport> delays = {});
 
 }  // namespace veridyn::aircraft

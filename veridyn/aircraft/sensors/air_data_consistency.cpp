@@ -191,9 +191,7 @@ Determined mean_of(const std::vector<double>& values, const std::vector<int>& se
   return estimate.usable ? of(estimate, 0) : Determined{kNaN, kNaN};
 }
 
-/// The vane against the inertial angle in the mean. (Not its slope: the aircraft answers gusts, so that inertial angle
-/// and gust move against each other, and controls and bank are no good instruments either: what they say of the slope
-/// was 0 to 0.8 in simulated flights where 1 is right.)
+/// The vane against the inertial angle in the mean.
 std::optional<VaneFit> fit_vane(const FlightRows& rows, const std::vector<double>& reading,
                                 const std::vector<double>& inertial) {
   std::vector<double> sizes, difference(rows.size());
@@ -205,7 +203,130 @@ std::optional<VaneFit> fit_vane(const FlightRows& rows, const std::vector<double
   return VaneFit{.bias = mean_of(difference, rows.segment), .largest_reading = largest_of(std::move(sizes))};
 }
 
+/// Length of a change, and from one to the next [s].
+constexpr double kChange_s = 0.25;
+constexpr double kChangeHop_s = 0.05;
+/// Least share of the angle's changes that the controls must make.
+constexpr double kLeastRelevance = 0.02;
+
+/// A control that moves less is none, as the rudder of a flying wing [rad].
+constexpr double kLeastThrow = 0.2 * kDegree;
+
+/// Angle of the flow by gyro, accelerometer and attitude, but for a constant: integrals of alpha' and beta'.
+struct InertialAngles {
+  numerics::UniformGrid grid;
+  std::vector<double> alpha, beta;
+};
+
+/// Mean over half a second, for what only enters through small products.
+std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz) {
+  const auto half = static_cast<std::size_t>(std::max(1.0, 0.25 * rate_Hz));
+  std::vector<double> sum(x.size() + 1, 0.0);
+  for (std::size_t k = 0; k < x.size(); ++k) sum[k + 1] = sum[k] + (std::isfinite(x[k]) ? x[k] : 0.0);
+  std::vector<double> mean(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const std::size_t first = k > half ? k - half : 0, last = std::min(x.size(), k + half + 1);
+    mean[k] = (sum[last] - sum[first]) / static_cast<double>(last - first);
+  }
+  return mean;
+}
+
+InertialAngles inertial_angles(const Recording& recording, const Channel& air_density, bool airspeed_is_true) {
+  const Channel& clock = recording.at("gyro_x");
+  const double rate = recording::grid_rate(clock);
+  InertialAngles out{.grid = recording::grid_over(clock, rate, recording.source), .alpha = {}, .beta = {}};
+  const auto on_grid = [&](const char* name) { return channel_on(recording, name, out.grid); };
+  const auto flow = [&](const char* name) {
+    return recording.has(name) ? smoothed(on_grid(name), rate) : std::vector<double>(out.grid.count, 0.0);
+  };
+  const std::vector<double> p = on_grid("gyro_x"), q = on_grid("gyro_y"), r = on_grid("gyro_z"),
+                            ax = on_grid("accel_x"), ay = on_grid("accel_y"), az = on_grid("accel_z"),
+                            V = smoothed(airspeed_on(recording, air_density, airspeed_is_true, out.grid), rate),
+                            a = flow("alpha"), b = flow("beta"),
+                            roll = recording::angle_on_grid(recording.at("roll"), out.grid),
+                            pitch = recording::angle_on_grid(recording.at("pitch"), out.grid);
+  out.alpha.assign(out.grid.count, 0.0);
+  out.beta.assign(out.grid.count, 0.0);
+  for (std::size_t k = 1; k < out.grid.count; ++k) {
+    const double ca = std::cos(a[k]), sa = std::sin(a[k]), ct = std::cos(pitch[k]), st = std::sin(pitch[k]);
+    const double normal = az[k] * ca - ax[k] * sa + kGravity * (ct * std::cos(roll[k]) * ca + st * sa);
+    const double side = ay[k] + kGravity * ct * std::sin(roll[k]);
+    const double h = out.grid.step;
+    // Integrals begin anew after a hole, which is longer than any change that is looked at.
+    const auto from = [](double last) { return std::isfinite(last) ? last : 0.0; };
+    out.alpha[k] = from(out.alpha[k - 1]) + h * (q[k] - p[k] * std::tan(b[k]) + normal / V[k]);
+    out.beta[k] = from(out.beta[k - 1]) + h * (p[k] * sa - r[k] * ca + side / V[k]);
+  }
+  return out;
+}
+
+std::optional<VaneSlope> slope_of(const Recording& recording, const char* vane,
+                                  std::initializer_list<const char*> controls, const numerics::UniformGrid& grid,
+                                  const std::vector<double>& angle, std::span<const TimeSpan> manoeuvres) {
+  const std::vector<double> reading = channel_on(recording, vane, grid);
+  std::vector<std::vector<double>> moved;
+  for (const char* name : controls) {
+    if (!recording.has(name)) continue;
+    std::vector<double> control = channel_on(recording, name, grid);
+    const auto [low, high] = std::ranges::minmax(recording.at(name).value);
+    if (high - low > kLeastThrow) moved.push_back(std::move(control));
+  }
+  const auto n = static_cast<std::size_t>(std::max(2.0, std::round(kChange_s / grid.step)));
+  const auto hop = static_cast<std::size_t>(std::max(1.0, std::round(kChangeHop_s / grid.step)));
+  constexpr std::size_t kLags = 3;
+  std::vector<std::size_t> rows;
+  RegressionData data;
+  int segment = 0;
+  for (const TimeSpan& span : manoeuvres) {
+    const auto [begin, end] = recording::grid_indices(grid, span);
+    for (std::size_t k = std::max(begin, 2 * n); k < end; k += hop) {
+      rows.push_back(k);
+      data.segment.push_back(segment);
+    }
+    ++segment;
+  }
+  const auto count = signed_index(rows.size());
+  const auto instruments = signed_index(kLags * moved.size()) + 1;
+  if (moved.empty() || count < 10 * instruments) return std::nullopt;
+  data.regressors = estimation::RowMatrix::Ones(count, 2 + instruments);
+  data.regressand.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t k = rows[at(i)];
+    data.regressand(i) = reading[k] - reading[k - n];
+    data.regressors(i, 0) = angle[k] - angle[k - n];
+    Eigen::Index column = 2;
+    for (const std::vector<double>& control : moved)
+      for (std::size_t lag = 0; lag < kLags; ++lag) {
+        const std::size_t then = k - lag * n / (kLags - 1);
+        data.regressors(i, column++) = control[then] - control[then - n];
+      }
+  }
+  const estimation::InstrumentalEstimate estimate = solve(std::move(data), 2);
+  if (!estimate.usable || !(estimate.relevance(0) > kLeastRelevance)) return std::nullopt;
+  return VaneSlope{.slope = of(estimate, 0), .relevance = estimate.relevance(0)};
+}
+
+bool has_inertial(const Recording& recording) {
+  for (const char* name : {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "roll", "pitch"})
+    if (!recording.has(name) || recording.at(name).size() < 2) return false;
+  return recording.has("dynamic_pressure") || recording.has("airspeed");
+}
+
 }  // namespace
+
+std::optional<VaneSlope> alpha_slope(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
+                                     std::span<const TimeSpan> manoeuvres) {
+  if (!has_inertial(recording) || !recording.has("alpha")) return std::nullopt;
+  const InertialAngles angles = inertial_angles(recording, air_density, airspeed_is_true);
+  return slope_of(recording, "alpha", {"elevator"}, angles.grid, angles.alpha, manoeuvres);
+}
+
+std::optional<VaneSlope> beta_slope(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
+                                    std::span<const TimeSpan> manoeuvres) {
+  if (!has_inertial(recording) || !recording.has("beta")) return std::nullopt;
+  const InertialAngles angles = inertial_angles(recording, air_density, airspeed_is_true);
+  return slope_of(recording, "beta", {"rudder", "aileron"}, angles.grid, angles.beta, manoeuvres);
+}
 
 AirDataConsistency air_data_consistency(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
                                         std::span<const TimeSpan> airborne) {

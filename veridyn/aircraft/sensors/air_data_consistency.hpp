@@ -20,6 +20,26 @@ struct VaneFit {
   double largest_reading = 0.0;  ///< 99.9th percentile of the magnitude [rad]
 };
 
+/// How a vane answers fast changes of the flow angle that gyro and accelerometer see.
+struct VaneSlope {
+  Determined slope;        ///< reading over angle
+  double relevance = 0.0;  ///< share of the angle's fast changes that the controls make
+};
+
+/// Change of `alpha` over a quarter of a second against its integral from gyro, accelerometer and attitude,
+///     alpha' = q - p tan(beta) + (a_z cos(alpha) - a_x sin(alpha) + g (cos(theta) cos(phi) cos(alpha)
+///              + sin(theta) sin(alpha))) / V_a,
+/// which sees the aircraft move and not the gust, while the vane sees both. The aircraft answers gusts, so that the two
+/// are correlated: the change of the elevator is the instrument, and `manoeuvres` are stretches in which the pilot, not
+/// the gust, moves it. Nothing where a channel is missing or the controls move the angle by less than 2 % of its
+/// changes.
+[[nodiscard]] std::optional<VaneSlope> alpha_slope(const Recording& recording, const Channel& air_density,
+                                                   bool airspeed_is_true, std::span<const TimeSpan> manoeuvres);
+/// The same of `beta`, beta' = p sin(alpha) - r cos(alpha) + (a_y + g cos(theta) sin(phi)) / V_a, moved by rudder and
+/// aileron.
+[[nodiscard]] std::optional<VaneSlope> beta_slope(const Recording& recording, const Channel& air_density,
+                                                  bool airspeed_is_true, std::span<const TimeSpan> manoeuvres);
+
 /// What ground velocity, heading and attitude say of the air data, in still or steadily moving air.
 struct AirDataConsistency {
   std::optional<Determined> airspeed_scale;  ///< reading over true airspeed, found with the wind over the headings

@@ -21,6 +21,12 @@ InstrumentalEstimate instrumental_variables(const RegressionData& data, const Ro
   if (!(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) return out;
   const Eigen::MatrixXd Q = qr.Q().leftCols(instruments.cols());
   const RowMatrix projected = Q * (Q.transpose() * data.regressors);
+  const auto rows = static_cast<double>(data.rows());
+  const Eigen::RowVectorXd mean = data.regressors.colwise().mean();
+  const Eigen::VectorXd constant = rows * mean.transpose().cwiseAbs2();
+  const Eigen::VectorXd explained = projected.colwise().squaredNorm().transpose() - constant;
+  const Eigen::VectorXd total = data.regressors.colwise().squaredNorm().transpose() - constant;
+  out.relevance = (total.array() > 1e-12 * constant.array()).select(explained.array() / total.array(), 0.0);
   const Eigen::MatrixXd normal = projected.transpose() * data.regressors;
   const numerics::PivotedCholesky factor(normal);
   const double scale = normal.diagonal().maxCoeff();

@@ -12,6 +12,9 @@ struct InstrumentalEstimate {
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;       ///< allows for autocorrelated errors
   double degrees_of_freedom = 0.0;  ///< of the covariance as an estimate: few where the correlation is long
+  /// Share of each regressor's variance that the instruments explain (0 of a constant): below a few percent the
+  /// estimate leans towards least squares (weak instruments; Stock & Yogo 2005).
+  Eigen::VectorXd relevance;
 };
 
 /// z = X theta + e where the regressors are correlated with e (a feedback that answers the noise), but `instruments`

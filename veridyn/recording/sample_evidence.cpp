@@ -1,0 +1,237 @@
+#include "veridyn/recording/sample_evidence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+using estimation::Evidence;
+using estimation::Outcome;
+
+constexpr std::size_t kFewestSamples = 100;
+/// A sensor that is moved does not show the same value for so long [s]; a control may.
+constexpr double kRestsFor_s = 2.0;
+constexpr double kControlRestsFor_s = 30.0;
+/// Samples that a held value has at least, and the share of all samples that are held equally long.
+constexpr std::size_t kHeld = 3;
+constexpr double kMostly = 0.8;
+/// Share of the samples at the end of the range from which a sensor is clipped.
+constexpr double kClippedShare = 0.003;
+/// Steps in a standard deviation below which a signal is lost in its resolution.
+constexpr double kFewestSteps = 2.0;
+
+/// Samples in a row with one value.
+struct Run {
+  double value, begin, end;
+  std::size_t samples;
+};
+
+std::vector<Run> runs_of(const Channel& channel, std::span<const TimeSpan> spans) {
+  std::vector<Run> runs;
+  const std::span<const double> times = channel.times();
+  for (const TimeSpan& span : spans) {
+    bool fresh = true;
+    for (auto i = static_cast<std::size_t>(std::ranges::lower_bound(times, span.begin) - times.begin());
+         i < channel.size() && times[i] <= span.end; ++i) {
+      const double v = channel.value[i];
+      if (!std::isfinite(v)) continue;
+      if (fresh || v != runs.back().value)
+        runs.push_back({v, times[i], times[i], 1});
+      else
+        runs.back().end = times[i], ++runs.back().samples;
+      fresh = false;
+    }
+  }
+  return runs;
+}
+
+/// Length in samples of the runs that a sample typically lies in.
+std::size_t typical_length(const std::vector<Run>& runs, std::size_t samples) {
+  std::vector<std::size_t> lengths;
+  for (const Run& run : runs) lengths.push_back(run.samples);
+  std::ranges::sort(lengths);
+  std::size_t below = 0;
+  for (const std::size_t length : lengths) {
+    below += length;
+    if (2 * below >= samples) return length;
+  }
+  return 1;
+}
+
+/// What is wrong with the samples of one channel, and how much.
+struct Flaw {
+  const char* name;
+  double value, limit;
+  const char* scale;
+  Outcome outcome;
+  std::string text, advice;
+};
+
+/// The runs of a channel with what is known of them.
+struct Sampled {
+  const SampledChannel* which = nullptr;
+  double rate_Hz = 0.0;
+  std::vector<Run> runs;
+  std::size_t samples = 0;
+  std::size_t typical = 1;  ///< length of a run, in samples
+};
+
+/// Whether most other sensors change in a stretch: an aircraft in smooth air may really stand still.
+bool others_move(const std::vector<Sampled>& all, const Sampled& still, double begin, double end) {
+  constexpr double kOfItsRange = 0.1;
+  std::size_t moving = 0, resting = 0;
+  for (const Sampled& other : all) {
+    if (&other == &still || other.which->may_rest) continue;
+    const auto first = std::ranges::lower_bound(other.runs, begin, {}, &Run::begin);
+    const auto last = std::ranges::lower_bound(other.runs, end, {}, &Run::begin);
+    const auto [low, high] = std::ranges::minmax(other.runs, {}, &Run::value);
+    bool moves = false;
+    if (last - first > 1) {
+      const auto [least, most] = std::ranges::minmax(std::span(first, last), {}, &Run::value);
+      moves = most.value - least.value > kOfItsRange * (high.value - low.value);
+    }
+    (moves ? moving : resting) += 1;
+  }
+  return moving > resting;
+}
+
+std::optional<Flaw> stands_still(const Sampled& channel, const std::vector<Sampled>& all) {
+  const SampledChannel& which = *channel.which;
+  const Run& longest = *std::ranges::max_element(channel.runs, {}, &Run::samples);
+  const double limit = which.may_rest ? kControlRestsFor_s : kRestsFor_s;
+  if (!(longest.end - longest.begin > limit) || longest.samples < 10 * channel.typical) return std::nullopt;
+  if (which.may_rest && channel.typical >= kHeld) return std::nullopt;
+  // Exactly zero is what a simulated or decoupled motion may be.
+  if (longest.value == 0.0) return std::nullopt;
+  if (!others_move(all, channel, longest.begin, longest.end)) return std::nullopt;
+  return Flaw{"frozen samples",
+              longest.end - longest.begin,
+              limit,
+              "s",
+              Outcome::kFailed,
+              fmt::format("{} stands still from {:.1f} s to {:.1f} s while others move", which.channel, longest.begin,
+                          longest.end),
+              "leave that stretch out (data.from, data.to), or the channel"};
+}
+
+std::optional<Flaw> is_held(const Sampled& channel) {
+  constexpr std::size_t kFewestRuns = 10;
+  const auto& [which, rate_Hz, runs, samples, typical] = channel;
+  if (typical < kHeld || runs.size() < kFewestRuns) return std::nullopt;
+  std::size_t alike = 0;
+  for (const Run& run : runs)
+    if (run.samples + 1 >= typical && run.samples <= typical + 1) alike += run.samples;
+  if (!(static_cast<double>(alike) > kMostly * static_cast<double>(samples))) return std::nullopt;
+  const double measured_Hz = rate_Hz / static_cast<double>(typical);
+  return Flaw{"held samples",
+              static_cast<double>(typical),
+              static_cast<double>(kHeld),
+              "samples a value",
+              Outcome::kCare,
+              fmt::format("{} is measured at {:.3g} Hz and held: {} samples in a row are one measurement",
+                          channel.which->channel, measured_Hz, typical),
+              "give the recording with the sensor's own stamps, one a measurement"};
+}
+
+std::optional<Flaw> is_clipped(const Sampled& channel) {
+  const auto& [which, rate_Hz, runs, samples, typical] = channel;
+  if (which->may_rest || typical >= kHeld) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(runs, {}, &Run::value);
+  double share = 0.0, end = kNaN;
+  for (const double value : {low.value, high.value}) {
+    std::size_t there = 0;
+    for (const Run& run : runs)
+      if (run.value == value && run.samples >= kHeld) there += run.samples;
+    const double of_all = static_cast<double>(there) / static_cast<double>(samples);
+    if (of_all > share) {
+      share = of_all;
+      end = value;
+    }
+  }
+  if (!(share > kClippedShare)) return std::nullopt;
+  return Flaw{"clipped samples",
+              share,
+              kClippedShare,
+              "share of the samples",
+              share > 0.05 ? Outcome::kFailed : Outcome::kCare,
+              fmt::format("{} stays at its extreme value {:.4g} for {:.1f} % of the samples: it is clipped there",
+                          channel.which->channel, end, 100.0 * share),
+              "use a sensor with a larger range, or gentler manoeuvres"};
+}
+
+std::optional<Flaw> is_coarse(const Sampled& channel) {
+  const std::vector<Run>& runs = channel.runs;
+  if (channel.which->may_rest) return std::nullopt;
+  std::vector<double> values;
+  double sum = 0.0, squares = 0.0;
+  for (const Run& run : runs) {
+    values.push_back(run.value);
+    sum += run.value;
+    squares += run.value * run.value;
+  }
+  const auto n = static_cast<double>(values.size());
+  const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
+  std::ranges::sort(values);
+  double step = kInfinity;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] > values[i - 1]) step = std::min(step, values[i] - values[i - 1]);
+  if (!std::isfinite(step) || !(deviation < kFewestSteps * step)) return std::nullopt;
+  return Flaw{
+      "coarse samples",
+      deviation / step,
+      kFewestSteps,
+      "steps in a standard deviation",
+      Outcome::kCare,
+      fmt::format("{} comes in steps of {:.3g}, which is coarse for a signal of {:.3g} (one standard deviation)",
+                  channel.which->channel, step, deviation),
+      "log the channel with its full resolution"};
+}
+
+}  // namespace
+
+std::vector<Evidence> sample_evidence(const Recording& recording, std::span<const SampledChannel> channels,
+                                      std::span<const TimeSpan> spans) {
+  std::vector<Sampled> all;
+  for (const SampledChannel& which : channels) {
+    const Channel* channel = recording.find(which.channel);
+    if (channel == nullptr) continue;
+    Sampled sampled{.which = &which, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
+    for (const Run& run : sampled.runs) sampled.samples += run.samples;
+    if (sampled.samples < kFewestSamples) continue;
+    sampled.typical = typical_length(sampled.runs, sampled.samples);
+    all.push_back(std::move(sampled));
+  }
+  std::vector<Evidence> rows;
+  for (const Sampled& sampled : all) {
+    for (const std::optional<Flaw>& flaw :
+         {stands_still(sampled, all), is_held(sampled), is_clipped(sampled), is_coarse(sampled)}) {
+      if (!flaw) continue;
+      rows.push_back({.name = flaw->name,
+                      .about = sampled.which->about,
+                      .outcome = flaw->outcome,
+                      .value = flaw->value,
+                      .limit = flaw->limit,
+                      .scale = flaw->scale,
+                      .text = flaw->text,
+                      .bears_on = estimation::kAllPurposes,
+                      .advice = flaw->advice});
+    }
+  }
+  if (rows.empty() && !all.empty())
+    rows.push_back({.name = "samples",
+                    .about = "recording",
+                    .value = 0.0,
+                    .limit = 0.0,
+                    .scale = "channels",
+                    .text = fmt::format("none of {} channels stands still, is held, clipped or coarse", all.size()),
+                    .bears_on = estimation::kAllPurposes});
+  return rows;
+}
+
+}  // namespace veridyn::recording
