@@ -124,6 +124,8 @@ std::optional<Flaw> is_held(const Sampled& channel) {
   constexpr std::size_t kFewestRuns = 10;
   const auto& [which, rate_Hz, runs, samples, typical] = channel;
   if (typical < kHeld || runs.size() < kFewestRuns) return std::nullopt;
+  // Longer ones are rests.
+  if (static_cast<double>(typical) > kRestsFor_s * rate_Hz) return std::nullopt;
   std::size_t alike = 0;
   for (const Run& run : runs)
     if (run.samples + 1 >= typical && run.samples <= typical + 1) alike += run.samples;

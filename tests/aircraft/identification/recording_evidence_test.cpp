@@ -1,10 +1,13 @@
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/aircraft/campaign/campaign.hpp"
 #include "tests/aircraft/simulated_flight.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/judgement.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -63,6 +66,50 @@ TEST(RecordingEvidence, OfACleanFlightInModerateTurbulenceIsYes) {
   EXPECT_EQ(data_grade(rows), Grade::kYes) << texts(rows);
   // What no flight can tell is said.
   EXPECT_NE(find(rows, "controls", Outcome::kNotVerified), nullptr);
+}
+
+// The scale of a vane against gyro and accelerometer in manoeuvres, with the control as instrument: by least squares
+// the slope would be 0.2, since the aircraft answers gusts.
+TEST(RecordingEvidence, FindsTheScaleOfTheVanes) {
+  const FlightStudy study = aircraft::testing::campaign_flight("unatrap", 1, 300.0);
+  const auto scale_of = [](const FlightStudy& flight, const char* vane) {
+    const estimation::Estimate estimate = aircraft::testing::identified(flight).analysis.estimate;
+    return *std::ranges::find(estimate.evidence, fmt::format("scale of the {} vane", vane),
+                              &estimation::Evidence::name);
+  };
+  for (const char* vane : {"alpha", "beta"}) {
+    const estimation::Evidence clean = scale_of(study, vane);
+    EXPECT_NEAR(clean.value, 1.0, 0.15);
+    EXPECT_TRUE(clean.passed()) << clean.text;
+    FlightStudy doubled = study;
+    Channel channel = doubled.mapped.recording.at(vane);
+    for (double& v : channel.value) v *= 2.0;
+    doubled.mapped.recording.set(std::move(channel));
+    const estimation::Evidence row = scale_of(doubled, vane);
+    EXPECT_NEAR(row.value, 2.0 * clean.value, 0.1);
+    EXPECT_FALSE(row.passed()) << row.text;
+  }
+}
+
+TEST(RecordingEvidence, NamesWhatTheClocksShow) {
+  const Flown& flight = flown();
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  const auto rows_with = [&](const DelayReport& report) {
+    return recording_evidence(flight.measured, reconstructed(flight, reference_options()), reference_options(),
+                              segments, std::vector<DelayReport>{report});
+  };
+  const auto gyro = rows_with({"attitude", "gyro", -0.1, 0.005, 0.9, true, "applied"});
+  EXPECT_NE(find(gyro, "gyro", Outcome::kCare), nullptr) << texts(gyro);
+  const auto elevator = rows_with({"elevator", "angular acceleration", -0.15, 0.0, 0.9, false, "negative"});
+  EXPECT_NE(find(elevator, "elevator", Outcome::kCare), nullptr) << texts(elevator);
+  const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, true, "applied"});
+  EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
+}
+
+TEST(RecordingEvidence, NamesDeflectionsInDegrees) {
+  const auto rows = evidence_of(changed({"elevator"}, 1.0 / kDegree));
+  EXPECT_NE(find(rows, "elevator", Outcome::kFailed), nullptr) << texts(rows);
 }
 
 TEST(RecordingEvidence, NamesTheAccelerometerThatIsInGOrFreeOfGravity) {

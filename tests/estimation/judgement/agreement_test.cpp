@@ -16,6 +16,7 @@ TEST(Agreement, OfTwoParametersIsTheClosedForm) {
   const Eigen::Vector2d difference(3.0, -2.0);
   const double chi_square = difference.dot(covariance.inverse() * difference);
   EXPECT_NEAR(agreement_p(difference, covariance), std::exp(-0.5 * chi_square), 1e-12);
+  EXPECT_NEAR(agreement(difference, covariance).ratio, 0.5 * chi_square, 1e-12);
 }
 
 TEST(Agreement, DoesNotDependOnUnits) {

@@ -87,8 +87,23 @@ TEST(Compare, MarksInsignificantParametersWithoutZeroingThem) {
   EXPECT_EQ(e.parameters[3].status, ParameterStatus::kInsignificant);
   EXPECT_NE(e.theta(3), 0.0);
   EXPECT_EQ(e.parameters[1].status, ParameterStatus::kIdentified);
-  reject(e);
-  EXPECT_EQ(e.parameters[1].status, ParameterStatus::kRejected);
+}
+
+TEST(Widen, StretchesIntervalsAndJudgesSignificanceAnew) {
+  const auto s = simulate_regression(6, regression_theta(), errors(0.1, 0.1));
+  const RegressionEstimate before = estimate(s.data, Method::kGtls);
+  RegressionEstimate e = before;
+  widen(e, 0.5, 0.05);
+  EXPECT_EQ(e.parameters[1].sigma, before.parameters[1].sigma);
+  widen(e, 4.0, 0.05);
+  EXPECT_DOUBLE_EQ(e.covariance(1, 2), 4.0 * before.covariance(1, 2));
+  EXPECT_DOUBLE_EQ(e.parameters[1].sigma, 2.0 * before.parameters[1].sigma);
+  EXPECT_NEAR(e.parameters[1].high95 - e.parameters[1].value,
+              2.0 * (before.parameters[1].high95 - before.parameters[1].value), 1e-12);
+  EXPECT_EQ(e.parameters[1].value, before.parameters[1].value);
+  ASSERT_EQ(e.parameters[1].status, ParameterStatus::kIdentified);
+  widen(e, 1e8, 0.05);
+  EXPECT_EQ(e.parameters[1].status, ParameterStatus::kInsignificant);
 }
 
 // Lateral regressors as flown: sideslip, two rates, two deflections, with a constant; theta as in the source's tables.

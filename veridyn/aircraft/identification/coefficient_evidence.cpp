@@ -81,11 +81,15 @@ Evidence parts_of_the_flight(const CoefficientChecks& checks, double level) {
           .value = checks.contradiction_p,
           .limit = level,
           .scale = "p",
-          .text = passed
-                      ? fmt::format("estimates from two parts of the flight agree (p = {:.2g})", checks.contradiction_p)
-                      : fmt::format("estimates from two parts of the flight contradict each other beyond their "
-                                    "error bars (p = {:.1e})",
-                                    checks.contradiction_p),
+          .text = passed ? fmt::format("estimates from two parts of the flight agree (p = {:.2g}){}",
+                                       checks.contradiction_p,
+                                       checks.scatter > 1.0 ? fmt::format("; intervals are widened by {:.2f}, as they "
+                                                                          "scatter by more than their error bars",
+                                                                          std::sqrt(checks.scatter))
+                                                            : "")
+                         : fmt::format("estimates from two parts of the flight contradict each other beyond their "
+                                       "error bars (p = {:.1e})",
+                                       checks.contradiction_p),
           .bears_on = Purpose::kParameters};
 }
 

@@ -14,6 +14,7 @@ struct CoefficientChecks {
   double error_ratio = 0.0;
   double unmodelled_share = 0.0;
   double contradiction_p = 1.0;
+  double scatter = 1.0;  ///< chi-square of the flight's parts over its degrees of freedom
   bool has_holdout = false;
   numerics::Autocorrelation residual_autocorrelation;
 };

@@ -80,9 +80,9 @@ const RegressionEstimate* choose(const RegressionComparison& comparison, std::op
   return nullptr;
 }
 
-/// p of the hypothesis that two independent estimates are of the same parameters.
-double contradiction_p(const RegressionEstimate& a, const RegressionEstimate& b) {
-  return estimation::agreement_p(a.theta - b.theta, a.covariance + b.covariance);
+/// Of two independent estimates of the same parameters.
+estimation::Agreement agreement_of(const RegressionEstimate& a, const RegressionEstimate& b) {
+  return estimation::agreement(a.theta - b.theta, a.covariance + b.covariance);
 }
 
 /// View of what coefficients are identified from, and how.
@@ -227,7 +227,11 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
   const auto n = unseen.parameters();
   unseen.error_covariance(n, n) = fit.data.error_covariance(n, n);
   const RegressionEstimate again = estimation::estimate(unseen, chosen.method, flight.regression_options());
-  if (again.usable()) checks.contradiction_p = contradiction_p(chosen, again);
+  if (again.usable()) {
+    const estimation::Agreement agreement = agreement_of(chosen, again);
+    checks.contradiction_p = agreement.p;
+    checks.scatter = agreement.ratio;
+  }
   return checks;
 }
 
@@ -352,6 +356,7 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
   if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight.axis_of_model(given));
   if (fit.chosen) {
     const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
+    estimation::widen(*fit.chosen, checks.scatter, options.significance);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
     if (!result.per_unit_inertia) {
       for (estimation::Evidence& row : plausibility(given.coefficient, fit.chosen->parameters, flight.subject))

@@ -9,16 +9,21 @@
 
 namespace veridyn::estimation {
 
-double agreement_p(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
+Agreement agreement(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0.0) || !covariance.allFinite()) return 1.0;
+  if (!(scale.minCoeff() > 0.0) || !covariance.allFinite()) return {};
   // Scaled to unit variances: stiffnesses and inertias differ by orders of magnitude.
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   const Eigen::VectorXd d = inverse.asDiagonal() * difference;
   const double chi_square = numerics::inverse_quadratic_form(numerics::scaled(inverse, covariance, inverse), d);
-  return std::isfinite(chi_square)
-             ? numerics::chi_square_upper_p(std::max(0.0, chi_square), static_cast<double>(d.size()))
-             : 1.0;
+  if (!std::isfinite(chi_square)) return {};
+  const auto freedom = static_cast<double>(d.size());
+  const double positive = std::max(0.0, chi_square);
+  return {.p = numerics::chi_square_upper_p(positive, freedom), .ratio = positive / freedom};
+}
+
+double agreement_p(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
+  return agreement(difference, covariance).p;
 }
 
 }  // namespace veridyn::estimation

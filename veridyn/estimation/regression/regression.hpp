@@ -129,12 +129,14 @@ struct RegressionComparison {
 /// Runs every method and judges: autocorrelation of the residual; scale of the GTLS residual against W (chi-square with
 /// the effective number of samples); how far the answer moves if excess residual is equation error; agreement of the
 /// methods in units of sigma; collinearity. Statuses of a refused comparison stay as estimated: callers turn them into
-/// `rejected` with `reject`.
+/// `rejected` with `marked`.
 /// @throws InputError when data or options are wrong.
 [[nodiscard]] RegressionComparison compare(const RegressionData& data, const RegressionOptions& options = {});
 
-/// Marks every parameter that is not fixed or not excited as rejected.
-void reject(RegressionEstimate& estimate);
+/// Widens covariance and intervals by a factor on the variance, as of estimates from several parts that scatter more
+/// than their error bars say (Birge 1932); what is then no longer distinguishable from zero at the level `significance`
+/// becomes insignificant. A factor of 1 or less changes nothing.
+void widen(RegressionEstimate& estimate, double variance_factor, double significance);
 
 /// A combination in words: terms of at least 5 % of the largest, e.g. "0.71 CY_p - 0.70 CY_r".
 [[nodiscard]] std::string describe_combination(const Eigen::VectorXd& combination,
