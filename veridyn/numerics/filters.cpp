@@ -13,7 +13,6 @@
 namespace veridyn::numerics {
 namespace {
 
-
 // Modified Bessel function I0 by its series; the terms fall below rounding after about 50 for x <= 20.
 double bessel_i0(double x) {
   double term = 1.0, sum = 1.0;

@@ -13,7 +13,6 @@
 namespace veridyn::numerics {
 namespace {
 
-
 struct Samples {
   std::vector<double> time;
   std::vector<double> value;

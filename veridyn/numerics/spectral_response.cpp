@@ -47,8 +47,8 @@ std::vector<std::vector<std::complex<double>>> segment_transforms(std::span<cons
 void require(std::span<const double> x, double rate_Hz, std::size_t segment) {
   if (!(rate_Hz > 0.0)) throw InputError(kInResponse, fmt::format("rate is {:g} Hz; must be > 0", rate_Hz));
   if (segment < 16 || segment > x.size()) {
-    throw InputError(
-        kInResponse, fmt::format("segments of {} samples; must be 16 to the length of the record, {}", segment, x.size()));
+    throw InputError(kInResponse, fmt::format("segments of {} samples; must be 16 to the length of the record, {}",
+                                              segment, x.size()));
   }
   const auto bad = std::ranges::find_if_not(x, [](double value) { return std::isfinite(value); });
   if (bad != x.end()) throw InputError(kInResponse, fmt::format("sample {} is not finite", bad - x.begin() + 1));
@@ -64,7 +64,8 @@ std::vector<ResponseEstimate> spectral_response(std::span<const double> input, s
   require(input, rate_Hz, segment);
   require(output, rate_Hz, segment);
   if (!(low_Hz > 0.0 && high_Hz > low_Hz && high_Hz <= 0.5 * rate_Hz)) {
-    throw InputError(kInResponse, fmt::format("band {:g} to {:g} Hz; must be 0 < low < high <= rate/2", low_Hz, high_Hz));
+    throw InputError(kInResponse,
+                     fmt::format("band {:g} to {:g} Hz; must be 0 < low < high <= rate/2", low_Hz, high_Hz));
   }
   const auto X = segment_transforms(input, rate_Hz, segment);
   const auto Y = segment_transforms(output, rate_Hz, segment);

@@ -51,10 +51,15 @@ std::vector<Run> runs_of(const Channel& channel, std::span<const TimeSpan> spans
   return runs;
 }
 
-/// Length in samples of the runs that a sample typically lies in.
-std::size_t typical_length(const std::vector<Run>& runs, std::size_t samples) {
+/// Length in samples of the runs that a sample typically lies in, rests left out.
+std::size_t typical_length(const std::vector<Run>& runs) {
   std::vector<std::size_t> lengths;
-  for (const Run& run : runs) lengths.push_back(run.samples);
+  std::size_t samples = 0;
+  for (const Run& run : runs) {
+    if (run.end - run.begin > kRestsFor_s) continue;
+    lengths.push_back(run.samples);
+    samples += run.samples;
+  }
   std::ranges::sort(lengths);
   std::size_t below = 0;
   for (const std::size_t length : lengths) {
@@ -124,8 +129,6 @@ std::optional<Flaw> is_held(const Sampled& channel) {
   constexpr std::size_t kFewestRuns = 10;
   const auto& [which, rate_Hz, runs, samples, typical] = channel;
   if (typical < kHeld || runs.size() < kFewestRuns) return std::nullopt;
-  // Longer ones are rests.
-  if (static_cast<double>(typical) > kRestsFor_s * rate_Hz) return std::nullopt;
   std::size_t alike = 0;
   for (const Run& run : runs)
     if (run.samples + 1 >= typical && run.samples <= typical + 1) alike += run.samples;
@@ -206,7 +209,7 @@ std::vector<Evidence> sample_evidence(const Recording& recording, std::span<cons
     Sampled sampled{.which = &which, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
     for (const Run& run : sampled.runs) sampled.samples += run.samples;
     if (sampled.samples < kFewestSamples) continue;
-    sampled.typical = typical_length(sampled.runs, sampled.samples);
+    sampled.typical = typical_length(sampled.runs);
     all.push_back(std::move(sampled));
   }
   std::vector<Evidence> rows;

@@ -201,7 +201,8 @@ void read_units(const std::vector<TextTable>& tables, DataFlashUnits& units) {
   }
 }
 
-LogTopic build(const TextTable& table, const std::vector<std::uint64_t>& rows, std::optional<std::size_t> instance_column) {
+LogTopic build(const TextTable& table, const std::vector<std::uint64_t>& rows,
+               std::optional<std::size_t> instance_column) {
   LogTopic topic;
   topic.name = table.format.name;
   std::vector<double> stamps;
