@@ -155,6 +155,11 @@ DelayReport effect_delay(std::string cause_name, std::string effect_name, const 
   const double top = explained[at];
   report.correlation = std::sqrt(std::max(0.0, top));
   const bool by_cause = top - share_explained(effect, {}, others, 0) > kLeastByCause;
+  if (best == 0 && top > kLeastExplained && by_cause) {
+    report.delay_s = static_cast<double>(first) * step_s;
+    report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
+    return report;
+  }
   if (best == 0 || at + 1 == explained.size() || !(top > kLeastExplained) || !by_cause) {
     report.text =
         by_cause ? "not determined: no clear optimum" : fmt::format("not determined: the {} explains too little", kind);

@@ -344,9 +344,10 @@ FlightEvidence deflection_row(const Recording& recording) {
        .outcome = Outcome::kNotVerified,
        .value = kNaN,
        .limit = kNaN,
-       .text = fmt::format("sign, scale and zero of {} are taken as recorded: control derivatives and constant terms "
-                           "are as right as they are",
-                           surfaces.empty() ? "deflections" : fmt::format("{}", fmt::join(surfaces, ", "))),
+       .text = fmt::format(
+           "sign, scale, zero and undetected delay of {} are taken as recorded: control derivatives and constant terms "
+           "are as right as they are",
+           surfaces.empty() ? "deflections" : fmt::format("{}", fmt::join(surfaces, ", "))),
        .bears_on = Purpose::kData | Purpose::kParameters,
        .advice = "measure deflections against servo outputs on the ground"}};
 }
