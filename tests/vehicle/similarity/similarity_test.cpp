@@ -24,22 +24,22 @@ SimilaritySubject subject_of(std::string_view name) {
   return {.parameters = vehicle.parameters, .speed = vehicle.speed};
 }
 
-using State = Eigen::Matrix<double, 5, 1>;  // v, r, yaw, x, y
+using MotionState = Eigen::Matrix<double, 5, 1>;  // v, r, yaw, x, y
 
 /// The reference manoeuvre of the linear bicycle with `step` [s] of its time, until 20 of them in units of `time`.
-State reference_run(const VehicleParameters<double>& p, double u, double time, double until) {
+MotionState reference_run(const VehicleParameters<double>& p, double u, double time, double until) {
   const BicycleModel<double, LinearTyre<double>> model{
       p, {.stiffness = p.C_f}, {.stiffness = p.C_r}, 9.80665, BicycleGeometry::kSmallAngles};
-  const auto derivative = [&](double t, const State& s) {
+  const auto derivative = [&](double t, const MotionState& s) {
     const double steer =
         5.0 * kDegree * std::min(std::clamp(t / time - 2.0, 0.0, 1.0), std::clamp(16.0 - t / time, 0.0, 1.0));
     const BicycleRates<double> rates = model.rates(s(0), s(1), steer, u);
-    State d;
+    MotionState d;
     d << rates.dv, rates.dr, s(1), u * std::cos(s(2)) - s(0) * std::sin(s(2)),
         u * std::sin(s(2)) + s(0) * std::cos(s(2));
     return d;
   };
-  State s = State::Zero();
+  MotionState s = MotionState::Zero();
   const int steps = static_cast<int>(std::lround(until * 1000.0));
   for (int k = 0; k < steps; ++k) s = numerics::runge_kutta_4_step(derivative, k * 1e-3 * time, s, 1e-3 * time);
   return s;
@@ -152,11 +152,11 @@ TEST(Similarity, TheTwinDrivesTheReferenceManoeuvreAtOneFifthTheSize) {
   const SimilaritySubject prototype = subject_of("reference");
   const ScaledVehicle twin = scale(prototype, {.length_ratio = 0.2});
   EXPECT_DOUBLE_EQ(twin.factors.time(), 1.0);
-  const State full = reference_run(prototype.parameters, prototype.speed, 1.0, 20.0);
-  const State small = reference_run(twin.model.parameters, twin.model.speed, 1.0, 20.0);
+  const MotionState full = reference_run(prototype.parameters, prototype.speed, 1.0, 20.0);
+  const MotionState small = reference_run(twin.model.parameters, twin.model.speed, 1.0, 20.0);
   EXPECT_NEAR(small(2) / kDegree, 454.369, 5e-4);
   EXPECT_NEAR(small(3), 15.455, 5e-4);
-  const State ten = reference_run(twin.model.parameters, twin.model.speed, 1.0, 10.0);
+  const MotionState ten = reference_run(twin.model.parameters, twin.model.speed, 1.0, 10.0);
   EXPECT_NEAR(std::hypot(4.0, ten(0)) / ten(1), 6.557, 5e-4);
   EXPECT_NEAR(small(0) * 5.0, full(0), 1e-11);
   EXPECT_NEAR(small(1), full(1), 1e-12);
@@ -170,7 +170,7 @@ TEST(Similarity, TwinsOfAnyLengthMassAndSpeedMoveSimilarly) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> exponent(-1.0, 1.0);
   const SimilaritySubject prototype = subject_of("reference");
-  const State full = reference_run(prototype.parameters, prototype.speed, 1.0, 8.0);
+  const MotionState full = reference_run(prototype.parameters, prototype.speed, 1.0, 8.0);
   for (int round = 0; round < 5; ++round) {
     const double length = std::pow(10.0, exponent(random));
     const ScaledVehicle twin = scale(prototype, {.length_ratio = length,
@@ -178,7 +178,7 @@ TEST(Similarity, TwinsOfAnyLengthMassAndSpeedMoveSimilarly) {
                                                  .speed = 20.0 * std::pow(10.0, exponent(random))});
     EXPECT_TRUE(compare(prototype, twin.model).similar_without_gravity());
     const double time = twin.factors.time();
-    const State s = reference_run(twin.model.parameters, twin.model.speed, time, 8.0);
+    const MotionState s = reference_run(twin.model.parameters, twin.model.speed, time, 8.0);
     EXPECT_NEAR(s(2), full(2), 1e-10);
     EXPECT_NEAR(s(3) / length, full(3), 1e-9);
     EXPECT_NEAR(s(1) * time, full(1), 1e-11);
