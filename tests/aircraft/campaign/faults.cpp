@@ -47,18 +47,16 @@ Change swapped(const char* first, const char* second) {
   };
 }
 
-Change with_stamps(Names names, std::function<double(double)> stamp) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      std::vector<double> times(c.times().begin(), c.times().end());
-      for (double& t : times) t = stamp(t);
-      c.time = make_time_base(std::move(times));
-    });
-  };
+void restamp(Channel& c, const std::function<double(double)>& stamp) {
+  std::vector<double> times(c.times().begin(), c.times().end());
+  for (double& t : times) t = stamp(t);
+  c.time = make_time_base(std::move(times));
 }
 
 Change delayed(Names names, double delay_s) {
-  return with_stamps(std::move(names), [=](double t) { return t + delay_s; });
+  return [=](FlightStudy& study) {
+    each(study, names, [=](Channel& c) { restamp(c, [=](double t) { return t + delay_s; }); });
+  };
 }
 
 /// The value of the last of every so many seconds, repeated.
@@ -164,11 +162,7 @@ Change of_all_channels(const std::function<void(Channel&)>& change) {
 }
 
 Change with_clock(std::function<double(double)> stamp) {
-  return of_all_channels([=](Channel& c) {
-    std::vector<double> times(c.times().begin(), c.times().end());
-    for (double& t : times) t = stamp(t);
-    c.time = make_time_base(std::move(times));
-  });
+  return of_all_channels([=](Channel& c) { restamp(c, stamp); });
 }
 
 /// What was recorded in a stretch of every so many seconds is lost.

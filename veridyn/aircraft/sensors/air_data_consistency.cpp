@@ -252,7 +252,7 @@ InertialAngles inertial_angles(const Recording& recording, const Channel& air_de
     const double normal = az[k] * ca - ax[k] * sa + kGravity * (ct * std::cos(roll[k]) * ca + st * sa);
     const double side = ay[k] + kGravity * ct * std::sin(roll[k]);
     const double h = out.grid.step;
-    // Integrals begin anew after a hole, which is longer than any change that is looked at.
+    // After a hole the integrals restart from zero: holes are longer than kChange_s, so no change spans one.
     const auto from = [](double last) { return std::isfinite(last) ? last : 0.0; };
     out.alpha[k] = from(out.alpha[k - 1]) + h * (q[k] - p[k] * std::tan(b[k]) + normal / V[k]);
     out.beta[k] = from(out.beta[k - 1]) + h * (p[k] * sa - r[k] * ca + side / V[k]);
