@@ -74,23 +74,44 @@ TEST(Delays, EffectOfACauseIsAsLateAsTheLagThatExplainsItBest) {
   for (std::size_t k = 0; k < effect.size(); ++k) effect[k] = 2.0 * effect[k] - 0.5 * other[k] + 0.1;
   const Progress silent;
   const DelayReport late =
-      effect_delay("elevator", "angular acceleration", effect, cause, {other}, 1.0 / kRate_Hz, {}, silent);
+      effect_delay("elevator", "angular acceleration", effect, {cause}, {{other}}, 1.0 / kRate_Hz, {}, silent);
   EXPECT_TRUE(late.applied);
   EXPECT_NEAR(late.delay_s, 0.06, 0.001);
   EXPECT_NEAR(late.correlation, 1.0, 1e-6);
   // An effect before its cause is none.
   const DelayReport early =
-      effect_delay("elevator", "angular acceleration", cause, later(cause, 6), {other}, 1.0 / kRate_Hz, {}, silent);
+      effect_delay("elevator", "angular acceleration", cause, {later(cause, 6)}, {{other}}, 1.0 / kRate_Hz, {}, silent);
   EXPECT_FALSE(early.applied);
   EXPECT_EQ(early.text, "negative: a cause cannot follow its effect, left alone");
-  const DelayReport none = effect_delay("rudder", "angular acceleration", effect, lively(6000, "x"), {other},
+  const DelayReport none = effect_delay("rudder", "angular acceleration", effect, {lively(6000, "x")}, {{other}},
                                         1.0 / kRate_Hz, {}, silent, "surface");
   EXPECT_EQ(none.text, "not determined: the surface explains too little");
 }
 
+// A pilot who reacts to what is recorded with noise: without the correction the cause makes up for it, too late.
+TEST(Delays, NoiseOfWhatTheCauseReactsToDoesNotBiasItsDelay) {
+  const std::vector<double> motion = lively(6000, "motion"), pilot = lively(6000, "pilot");
+  numerics::RandomStream random(7, "noise");
+  constexpr double kNoise = 0.3;
+  const std::vector<double> before = later(motion, 4);
+  std::vector<double> cause(motion.size()), effect(motion.size()), recorded(motion.size());
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    cause[k] = before[k] + 0.3 * pilot[k];
+    effect[k] = cause[k] - 3.0 * motion[k];
+    recorded[k] = motion[k] + kNoise * random.normal();
+  }
+  const Progress silent;
+  const auto delay = [&](double noise_variance) {
+    return effect_delay("aileron", "roll", effect, {cause}, {{recorded, noise_variance}}, 1.0 / kRate_Hz, {}, silent)
+        .delay_s;
+  };
+  EXPECT_LT(std::abs(delay(kNoise * kNoise)), 0.25 * std::abs(delay(0.0)));
+  EXPECT_GT(std::abs(delay(0.0)), 0.002);
+}
+
 TEST(Delays, SearchStopsWhenItIsInterrupted) {
   const std::vector<double> x = lively(6000, "x");
-  const DelayReport report = effect_delay("elevator", "q", x, later(x, 6), {}, 1.0 / kRate_Hz, {}, Stopped());
+  const DelayReport report = effect_delay("elevator", "q", x, {later(x, 6)}, {}, 1.0 / kRate_Hz, {}, Stopped());
   EXPECT_FALSE(report.applied);
   EXPECT_EQ(report.text, "not determined: interrupted");
 }

@@ -69,6 +69,9 @@ class BandLimited {
   [[nodiscard]] Series smooth_angle(const Channel& channel) const;
   [[nodiscard]] Series angle_derivative(const Channel& channel) const;
 
+  /// Variance of the white noise of a channel that is left in `smooth`, as its content above the band shows it.
+  [[nodiscard]] double noise_variance(const Channel& channel) const;
+
   /// The low-pass and the differentiator for another band [Hz], for signals slower than the others.
   [[nodiscard]] std::pair<numerics::FirKernel, numerics::FirKernel> kernels(double band_Hz) const;
 
@@ -95,13 +98,22 @@ struct DelayPair {
 [[nodiscard]] DelayReport shared_delay(std::string group, std::string reference, const std::vector<DelayPair>& pairs,
                                        double rate_Hz, const DelayOptions& options);
 
+/// What an effect is explained by: a series, and the variance of the noise in it, which would weaken its coefficient
+/// and so bias the delay of a cause that moves with it.
+struct Explanatory {
+  std::vector<double> value;
+  double noise_variance = 0.0;
+};
+
 /// How much later `effect` answers `cause` when it is a linear function of the cause and of `others`: the lag at which
-/// least squares explains most of it, from -max/3 to max. `delay_s` is positive when the effect is late; `correlation`
-/// is the multiple correlation. `applied` as above; never for a negative delay, an effect before its cause.
-/// Stops early, undetermined, when `progress` is interrupted. `kind` is what messages call the cause.
+/// least squares, corrected for the noise of both (Fuller 1987, sec. 2.2), leaves least, from -max/3 to max.
+/// `delay_s` is positive when the effect is late; `sigma_s` comes from how sharp the least is, with a residual as
+/// correlated as the band allows; `correlation` is the multiple correlation. `applied` as above; never for a negative
+/// delay, an effect before its cause. Stops early, undetermined, when `progress` is interrupted. `kind` is what
+/// messages call the cause.
 [[nodiscard]] DelayReport effect_delay(std::string cause_name, std::string effect_name,
-                                       const std::vector<double>& effect, const std::vector<double>& cause,
-                                       const std::vector<std::vector<double>>& others, double step_s,
+                                       const std::vector<double>& effect, const Explanatory& cause,
+                                       const std::vector<Explanatory>& others, double step_s,
                                        const DelayOptions& options, const Progress& progress,
                                        std::string_view kind = "cause");
 

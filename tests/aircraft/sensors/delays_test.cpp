@@ -63,6 +63,35 @@ TEST(AlignDelays, TakesTheLatenessOfTheGpsOffItsStamps) {
   EXPECT_NEAR(aligned.mapped.recording.at("vel_north").times().front(), -kLate_s, 0.01);
 }
 
+// A gust moves the vane before the aircraft, and the pilot of this one reacts to it: what does not know that finds
+// delays of 20 to 80 ms where there are none.
+TEST(AlignDelays, FindsNoDelayInTurbulenceWhereThereIsNone) {
+  for (const char* aircraft : {"tut_airplane", "aerosonde", "x8"}) {
+    const FlightStudy study = aircraft::testing::campaign_flight(aircraft, 3, 150.0);
+    for (const DelayReport& report : align_delays(study.mapped, {}).delays) {
+      EXPECT_FALSE(report.applied) << aircraft << " " << report.group << " " << report.delay_s;
+      EXPECT_LT(std::abs(report.text.starts_with("not determined") ? 0.0 : report.delay_s), 0.01)
+          << aircraft << " " << report.group;
+    }
+  }
+}
+
+TEST(AlignDelays, FindsThoseOfVanesAndSurfacesInTurbulence) {
+  FlightStudy study = aircraft::testing::campaign_flight("unatrap", 3, 150.0);
+  recording::take_off_delay(study.mapped.recording, {"alpha"}, -0.08);
+  recording::take_off_delay(study.mapped.recording, {"beta"}, -0.05);
+  // A command whose surface follows late is stamped before its effect.
+  recording::take_off_delay(study.mapped.recording, {"aileron"}, 0.06);
+  const std::vector<DelayReport> reports = align_delays(study.mapped, {}).delays;
+  for (const auto& [group, late_s] : {std::pair{"alpha", 0.08}, {"beta", 0.05}, {"aileron", 0.06}}) {
+    const DelayReport* report = find(reports, group);
+    ASSERT_NE(report, nullptr);
+    EXPECT_TRUE(report->applied) << group << ": " << report->text;
+    EXPECT_NEAR(report->delay_s, late_s, 3.0 * report->sigma_s) << group;
+    EXPECT_LT(report->sigma_s, 0.01) << group;
+  }
+}
+
 TEST(AlignDelays, StampsInMillisecondsCalledSecondsCostNoTime) {
   // Five fixes a second become one in 200 s: the filter that they would need has millions of taps.
   const MappedRecording mapped = flight(1000.0);

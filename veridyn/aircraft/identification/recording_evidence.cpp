@@ -136,15 +136,12 @@ FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string&
 /// What the alignment of the clocks found that no sensor can be: early, or of opposite sign.
 std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
   constexpr double kEarly_s = 0.03;
-  /// The delay of a deflection has no standard error; in simulated flights it scatters by 0.02 s.
-  constexpr double kEarlySurface_s = 0.08;
   std::vector<FlightEvidence> rows;
   const auto is_surface = [](const DelayReport& report) {
     return report.group == "elevator" || report.group == "aileron" || report.group == "rudder";
   };
   const auto early = [&](const DelayReport& report) {
-    const double limit = is_surface(report) ? kEarlySurface_s : std::max(kEarly_s, kStandardErrors * report.sigma_s);
-    return report.delay_s < -limit && report.correlation > 0.0;
+    return report.delay_s < -std::max(kEarly_s, kStandardErrors * report.sigma_s) && report.correlation > 0.0;
   };
   const auto row = [&](const char* name, std::string about, double value, std::string text, std::string advice) {
     rows.push_back({{.name = name,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -43,10 +44,11 @@ class Alignment {
   std::optional<DelayReport> align(const DelayGroup& group) {
     if (group.name == "attitude") return attitude(group);
     if (group.name == "gps") return gps(group);
-    if (group.name == "elevator") return deflection(group, "gyro_y", {"alpha", "gyro_y", "airspeed"});
-    if (group.name == "aileron") return deflection(group, "gyro_x", {"beta", "gyro_x", "gyro_z"});
-    if (group.name == "rudder") return deflection(group, "gyro_z", {"beta", "gyro_x", "gyro_z"});
-    return flow(group);
+    if (group.name == "elevator") return deflection(group, "gyro_y");
+    if (group.name == "aileron") return deflection(group, "gyro_x");
+    if (group.name == "rudder") return deflection(group, "gyro_z");
+    if (group.name == "airspeed") return airspeed(group);
+    return vane(group);
   }
 
  private:
@@ -56,6 +58,21 @@ class Alignment {
   const Channel& at(std::string_view name) const { return recording_.at(name); }
   Series smooth(const char* name) const { return band_.smooth(at(name)); }
   Series smooth_angle(const char* name) const { return band_.smooth_angle(at(name)); }
+
+  /// [m/s]; of the dynamic pressure in air of sea level where there is no airspeed, constant without either, NaN where
+  /// the aircraft does not fly.
+  Series airspeed() const {
+    Series Va(band_.size(), kSlowest_mps + 1.0);
+    if (recording_.has("airspeed")) {
+      Va = smooth("airspeed");
+    } else if (recording_.has("dynamic_pressure")) {
+      Va = smooth("dynamic_pressure");
+      for (double& v : Va) v = std::sqrt(2.0 * std::max(v, 0.0) / kSeaLevelDensity);
+    }
+    for (double& v : Va)
+      if (!(v > kSlowest_mps)) v = kNaN;
+    return Va;
+  }
 
   DelayReport compare(const DelayGroup& group, const char* reference, const std::vector<recording::DelayPair>& pairs) {
     DelayReport report = recording::shared_delay(group.name, reference, pairs, band_.rate_Hz(), options_);
@@ -108,50 +125,130 @@ class Alignment {
                     {numerics::filter(east, low), numerics::filter(band_.raw(at("vel_east")), slope)}});
   }
 
-  /// Derivatives of airspeed, alpha and beta that rates, specific force and attitude imply in still air.
-  std::array<Series, 3> flow_derivatives() const {
-    const Series Va = smooth("airspeed");
+  /// Derivative of the airspeed that specific force and attitude imply in still air.
+  Series implied_airspeed_derivative() const {
     const Series phi = smooth_angle("roll"), theta = smooth_angle("pitch");
-    const Series p = smooth("gyro_x"), q = smooth("gyro_y"), r = smooth("gyro_z");
     const Series ax = smooth("accel_x"), ay = smooth("accel_y"), az = smooth("accel_z");
     const Series alpha = has({"alpha"}) ? smooth("alpha") : Series(band_.size(), 0.0);
     const Series beta = has({"beta"}) ? smooth("beta") : Series(band_.size(), 0.0);
-    Series dVa(band_.size()), dalpha(band_.size()), dbeta(band_.size());
+    Series derivative(band_.size());
     for (std::size_t k = 0; k < band_.size(); ++k) {
       const double ca = std::cos(alpha[k]), sa = std::sin(alpha[k]), cb = std::cos(beta[k]), sb = std::sin(beta[k]);
       // Acceleration relative to still air in body axes, rotated into wind axes.
       const double x = ax[k] - kGravity * std::sin(theta[k]);
       const double y = ay[k] + kGravity * std::cos(theta[k]) * std::sin(phi[k]);
       const double z = az[k] + kGravity * std::cos(theta[k]) * std::cos(phi[k]);
-      const double V = Va[k] > kSlowest_mps ? Va[k] : kNaN;
-      dVa[k] = x * ca * cb + y * sb + z * sa * cb;
-      dalpha[k] = q[k] - std::tan(beta[k]) * (p[k] * ca + r[k] * sa) + (z * ca - x * sa) / (V * cb);
-      dbeta[k] = p[k] * sa - r[k] * ca + (y * cb - x * ca * sb - z * sa * sb) / V;
+      derivative[k] = x * ca * cb + y * sb + z * sa * cb;
     }
-    return {std::move(dVa), std::move(dalpha), std::move(dbeta)};
+    return derivative;
   }
 
-  std::optional<DelayReport> flow(const DelayGroup& group) {
-    if (!has({"airspeed", "roll", "pitch", "accel_x", "accel_y", "accel_z"}) || !recording_.has(group.name))
-      return std::nullopt;
-    // As the airspeed was before it was shifted: all three are compared with the same.
-    if (!expected_) expected_ = flow_derivatives();
-    const std::size_t which = group.name == "airspeed" ? 0 : group.name == "alpha" ? 1 : 2;
-    return compare(group, which == 0 ? "accelerometer and attitude" : "gyro and accelerometer",
-                   {{(*expected_)[which], band_.derivative(at(group.name))}});
+  /// The same as recorded, be it as dynamic pressure.
+  Series airspeed_derivative() const {
+    if (recording_.has("airspeed")) return band_.derivative(at("airspeed"));
+    Series derivative = band_.derivative(at("dynamic_pressure"));
+    const Series Va = airspeed();
+    for (std::size_t k = 0; k < derivative.size(); ++k) derivative[k] /= kSeaLevelDensity * Va[k];
+    return derivative;
   }
 
-  /// The delay of a deflection at which the angular acceleration is explained best.
-  std::optional<DelayReport> deflection(const DelayGroup& group, const char* rate,
-                                        std::initializer_list<const char*> motion) {
+  std::optional<DelayReport> airspeed(const DelayGroup& group) {
+    const bool speed = recording_.has("airspeed") || recording_.has("dynamic_pressure");
+    if (!speed || !has({"roll", "pitch", "accel_x", "accel_y", "accel_z"})) return std::nullopt;
+    return compare(group, "accelerometer and attitude", {{implied_airspeed_derivative(), airspeed_derivative()}});
+  }
+
+  /// Others of an effect's equation, all functions of the same moment.
+  class Equation {
+   public:
+    Equation(const Alignment& alignment, Series airspeed) : from_(alignment), Va_(std::move(airspeed)) {
+      double flown = 0.0;
+      for (const double V : Va_) {
+        if (!std::isfinite(V)) continue;
+        mean_[0] += 1.0;
+        mean_[1] += 1.0 / V / V;
+        mean_[2] += 1.0 / V / V / V / V;
+        flown += 1.0;
+      }
+      for (double& mean : mean_) mean /= std::max(1.0, flown);
+    }
+    /// x over a power 0 to 2 of the airspeed.
+    [[nodiscard]] Series over_speed(Series x, std::size_t power) const {
+      for (std::size_t k = 0; k < x.size(); ++k)
+        for (std::size_t i = 0; i < power; ++i) x[k] /= Va_[k];
+      return x;
+    }
+    /// The channel in the same way, with its noise.
+    [[nodiscard]] recording::Explanatory measured(const char* channel, std::size_t power) const {
+      return {over_speed(from_.smooth(channel), power), mean_[power] * from_.band_.noise_variance(from_.at(channel))};
+    }
+    void add(const char* channel, std::size_t power) {
+      if (from_.recording_.has(channel)) others_.push_back(measured(channel, power));
+    }
+    void add_exact(Series x, std::size_t power) { others_.push_back({over_speed(std::move(x), power), 0.0}); }
+    void add_position(const char* channel) {
+      if (from_.recording_.has(channel)) add_exact(from_.smooth(channel), 0);
+    }
+    [[nodiscard]] const std::vector<recording::Explanatory>& others() const { return others_; }
+
+   private:
+    const Alignment& from_;
+    Series Va_;
+    std::array<double, 3> mean_{};  ///< of 1/Va^2 to the power
+    std::vector<recording::Explanatory> others_;
+  };
+
+  /// The delay of a vane at which the lift, or the side force, explains it best: air that moves shows in the vane and
+  /// in the force at once, while the motion of the aircraft follows a gust by its response.
+  std::optional<DelayReport> vane(const DelayGroup& group) {
+    const bool lift = group.name == "alpha";
+    const char* const force = lift ? "accel_z" : "accel_y";
+    if (!recording_.has(group.name) || !recording_.has(force)) return std::nullopt;
+    Equation equation(*this, airspeed());
+    equation.add_exact(Series(band_.size(), 1.0), 2);  // bias of the accelerometer
+    if (lift) {
+      equation.add("gyro_y", 1);
+      equation.add_position("elevator");
+    } else {
+      for (const char* rate : {"gyro_x", "gyro_z"}) equation.add(rate, 1);
+      for (const char* surface : {"aileron", "rudder"}) equation.add_position(surface);
+    }
+    DelayReport report = recording::effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
+                                                 smooth(group.name.c_str()), equation.measured(force, 2),
+                                                 equation.others(), band_.step(), options_, progress_, "force");
+    if (report.applied) recording::take_off_delay(recording_, group.channels, report.delay_s);
+    return report;
+  }
+
+  /// The delay of a deflection at which the moment about its axis is explained best: angular acceleration over the
+  /// square of the airspeed, by flow angles, normalised rates, the other deflections and the products of the rates that
+  /// couple through the inertia. What is left out moves with the aircraft, and so with the pilot who holds it, and
+  /// biases the delay.
+  std::optional<DelayReport> deflection(const DelayGroup& group, const char* rate) {
     if (!recording_.has(group.name)) return std::nullopt;
-    std::vector<Series> regressors;
-    for (const char* channel : motion) {
-      if (recording_.has(channel)) regressors.push_back(smooth(channel));
+    const Series p = smooth("gyro_x"), q = smooth("gyro_y"), r = smooth("gyro_z");
+    const auto products = [&](auto value) {
+      Series series(band_.size());
+      for (std::size_t k = 0; k < series.size(); ++k) series[k] = value(k);
+      return series;
+    };
+    Equation equation(*this, airspeed());
+    if (group.name == "elevator") {
+      equation.add("alpha", 0);
+      equation.add("gyro_y", 1);
+      equation.add_exact(products([&](std::size_t k) { return p[k] * r[k]; }), 2);
+      equation.add_exact(products([&](std::size_t k) { return p[k] * p[k] - r[k] * r[k]; }), 2);
+    } else {
+      equation.add("beta", 0);
+      equation.add("gyro_x", 1);
+      equation.add("gyro_z", 1);
+      equation.add_exact(products([&](std::size_t k) { return q[k] * r[k]; }), 2);
+      equation.add_exact(products([&](std::size_t k) { return p[k] * q[k]; }), 2);
+      equation.add_position(group.name == "aileron" ? "rudder" : "aileron");
     }
-    DelayReport report =
-        recording::effect_delay(group.name, fmt::format("angular acceleration ({})", rate), band_.derivative(at(rate)),
-                                band_.smooth(at(group.name)), regressors, band_.step(), options_, progress_, "surface");
+    DelayReport report = recording::effect_delay(
+        group.name, fmt::format("angular acceleration ({})", rate), equation.over_speed(band_.derivative(at(rate)), 2),
+        {smooth(group.name.c_str())}, equation.others(), band_.step(), options_, progress_, "surface");
     // What is late here is the effect: the position is moved later, onto the clock of the motion.
     if (report.applied) recording::take_off_delay(recording_, group.channels, -report.delay_s);
     return report;
@@ -161,7 +258,6 @@ class Alignment {
   const DelayAlignment& options_;
   const BandLimited& band_;
   Progress& progress_;
-  std::optional<std::array<Series, 3>> expected_;
 };
 
 }  // namespace
