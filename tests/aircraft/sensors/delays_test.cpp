@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "tests/aircraft/campaign/campaign.hpp"
+
 namespace veridyn::aircraft {
 namespace {
 

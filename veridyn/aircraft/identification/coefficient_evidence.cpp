@@ -62,6 +62,20 @@ Evidence holdout(const CoefficientChecks& checks, double least_r2) {
   const bool passed = checks.holdout_fit.r2 >= least_r2;
   const bool weak = checks.unmodelled_share > kWeakModel;
   const double explained = 100.0 * std::max(0.0, checks.holdout_fit.r2);
+  if (!passed && checks.holdout_ratio < kSensorNoiseAlone) {
+    // A coefficient that hardly varies, such as drag in cruise: its parameters have their intervals all the same.
+    return {
+        .name = "hold-out",
+        .outcome = Outcome::kCare,
+        .value = checks.holdout_fit.r2,
+        .limit = least_r2,
+        .scale = "R2",
+        .text = fmt::format("it explains {:.0f} % of the coefficient's variance on the hold-out, and the rest is no "
+                            "more than noise of the sensors: the coefficient hardly varies there",
+                            explained),
+        .bears_on = Purpose::kPrediction,
+        .advice = "hold out manoeuvres in which the coefficient varies more"};
+  }
   return {.name = "hold-out",
           .outcome = !passed ? Outcome::kFailed : passed_or(!weak, Outcome::kCare),
           .value = checks.holdout_fit.r2,

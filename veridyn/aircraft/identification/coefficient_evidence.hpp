@@ -12,6 +12,7 @@ namespace veridyn::aircraft {
 struct CoefficientChecks {
   numerics::FitMeasures identification_fit, holdout_fit;
   double error_ratio = 0.0;
+  double holdout_ratio = 0.0;  ///< residual variance on the hold-out over what the sensors' errors leave there
   double unmodelled_share = 0.0;
   double contradiction_p = 1.0;
   double scatter = 1.0;  ///< chi-square of the flight's parts over its degrees of freedom

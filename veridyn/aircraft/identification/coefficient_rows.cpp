@@ -109,7 +109,12 @@ Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const Flight
     if (signal.error == ErrorKind::kClassical) classical(static_cast<Eigen::Index>(i)) = variance;
     if (signal.error == ErrorKind::kBerkson) berkson(static_cast<Eigen::Index>(i)) = variance;
   }
-  const CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
+  CoefficientRow row = coefficient_row(model, signals.sample(k), subject, signals.air_density[k]);
+  // A thrust that was computed from the airspeed has its error.
+  if (!signals.thrust_per_airspeed.empty()) {
+    row.jacobian.col(static_cast<Eigen::Index>(FlightSignal::kAirspeed)) +=
+        signals.thrust_per_airspeed[k] * row.jacobian.col(static_cast<Eigen::Index>(FlightSignal::kThrust));
+  }
   Eigen::MatrixXd W = row.jacobian * classical.asDiagonal() * row.jacobian.transpose();
   W(n, n) += row.jacobian.row(n).cwiseAbs2().dot(berkson);
   return W;

@@ -244,6 +244,8 @@ class Preparation {
     const std::vector<double>& airspeed = out_[FlightSignal::kAirspeed].value;
     std::vector<double> force(out_.size(), kNaN);
     out_.torque.assign(out_.size(), 0.0);
+    out_.thrust_per_airspeed.assign(out_.size(), 0.0);
+    constexpr double kStep_mps = 0.01;
     double rotor = kNaN;
     for (std::size_t k = 0; k < out_.size(); ++k) {
       if (!std::isfinite(command[k]) || !std::isfinite(airspeed[k])) continue;
@@ -251,10 +253,15 @@ class Preparation {
       const bool lags = subject_.propulsion.kind == PropulsionKind::kPropeller && std::isfinite(rotor);
       rotor = lags ? steady + (rotor - steady) * std::exp(-out_.grid.step / subject_.propulsion.time_constant) : steady;
       // The propeller sees the airspeed along its axis.
-      const double axial = airspeed[k] * std::cos(out_.alpha_smoothed[k]) * std::cos(out_.beta_smoothed[k]);
-      const auto load = subject_.propulsion.load(command[k], axial, out_.air_density[k], rotor);
+      const double along = std::cos(out_.alpha_smoothed[k]) * std::cos(out_.beta_smoothed[k]);
+      const auto load_at = [&](double Va) {
+        return subject_.propulsion.load(command[k], Va * along, out_.air_density[k], rotor);
+      };
+      const auto load = load_at(airspeed[k]);
       force[k] = load.thrust;
       out_.torque[k] = load.torque;
+      out_.thrust_per_airspeed[k] =
+          (load_at(airspeed[k] + kStep_mps).thrust - load_at(airspeed[k] - kStep_mps).thrust) / (2.0 * kStep_mps);
     }
     put(FlightSignal::kThrust, std::move(force), 0.0, ErrorKind::kExact, "propulsion model");
   }

@@ -52,6 +52,8 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   /// What an impulse midway between two samples becomes, from `-jump_response.size() / 2` samples before the second on.
   std::vector<double> jump_response;
   std::vector<double> air_density;
+  /// Change of a computed thrust with the airspeed that it is computed from [N s/m]; empty where it is recorded.
+  std::vector<double> thrust_per_airspeed;
   std::vector<double> torque;                            ///< reaction torque of the engine about x [N m]; empty without
   std::vector<double> roll, pitch, yaw;                  ///< smoothed attitude
   std::vector<double> vel_north, vel_east, vel_down;     ///< smoothed ground velocity

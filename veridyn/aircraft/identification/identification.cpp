@@ -9,12 +9,11 @@
 #include "veridyn/aircraft/identification/body_error.hpp"
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
 #include "veridyn/aircraft/identification/coefficient_rows.hpp"
+#include "veridyn/aircraft/identification/error_variance.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
-#include "veridyn/numerics/linear_algebra/cholesky.hpp"
-#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -32,31 +31,6 @@ using internal::needed_signals;
 
 /// Factor on the standard deviation within which the noise of the sensors is known.
 constexpr double kNoiseTolerance = 2.0;
-
-/// Variance of z that neither the model nor the errors of the regressors explain: z'z/N - W_.. of the moment equations
-/// (Fuller 1987, sec. 2.2), or NaN where the regressors' errors leave no signal.
-double unexplained_variance(const RegressionData& data) {
-  const auto n = data.parameters();
-  const auto rows = static_cast<double>(data.rows());
-  const Eigen::MatrixXd W = data.error_covariance;
-  const Eigen::MatrixXd A = data.regressors.transpose() * data.regressors / rows - W.topLeftCorner(n, n);
-  const Eigen::VectorXd b = data.regressors.transpose() * data.regressand / rows - W.topRightCorner(n, 1);
-  // Columns of unlike size: scaled before the factorisation says whether A is positive definite.
-  const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose() / std::sqrt(rows);
-  if (!(scale.minCoeff() > 0.0)) return kNaN;
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  const numerics::PivotedCholesky factor(inverse.asDiagonal() * A * inverse.asDiagonal());
-  if (!(factor.smallest_pivot() > 1e-12)) return kNaN;
-  const Eigen::VectorXd y = factor.solve(Eigen::VectorXd(inverse.asDiagonal() * b));
-  return data.regressand.squaredNorm() / rows - b.dot(inverse.asDiagonal() * y);
-}
-
-/// The smallest W_zz with which W is still a covariance: what the errors that z shares with the regressors amount to.
-double least_response_variance(const Eigen::MatrixXd& W) {
-  const auto n = W.rows() - 1;
-  const Eigen::VectorXd shared = W.topRightCorner(n, 1);
-  return 1.001 * shared.dot(numerics::shortest_least_squares(W.topLeftCorner(n, n), shared));
-}
 
 /// Predicted and measured coefficient over rows.
 numerics::FitMeasures fit_on(const RegressionData& data, const Eigen::VectorXd& theta) {
@@ -148,23 +122,6 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
   return {std::move(chosen), std::move(search)};
 }
 
-/// Error variance of z, and the unexplained variance over what the sensors explain.
-struct EquationError {
-  double variance;
-  double ratio;
-};
-
-/// The regressors' errors are known from their sensors; the error of z is whatever the data show, be it less than the
-/// sensors were assumed to leave (then a larger W_zz would hold back the correction of the regressors) or more
-/// (equation error).
-EquationError equation_error(const RegressionData& data) {
-  const double unexplained = unexplained_variance(data);
-  const auto n = data.parameters();
-  const double by_sensors = data.error_covariance(n, n);
-  const bool possible = unexplained > least_response_variance(data.error_covariance);
-  return {possible ? unexplained : by_sensors, unexplained / by_sensors};
-}
-
 /// The parameters of a model by all methods on the identification rows.
 struct CoefficientFit {
   CoefficientModel model;  ///< values are the chosen estimate's, where there is one
@@ -183,12 +140,15 @@ CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& flight)
   fit.enough_rows = fit.data.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
   if (!fit.enough_rows) return fit;
   const auto n = fit.data.parameters();
+  const RegressionData by_sensors = fit.data;
   const EquationError error = equation_error(fit.data);
   fit.data.error_covariance(n, n) = error.variance;
   fit.error_ratio = error.ratio;
   fit.comparison = estimation::compare(fit.data, flight.regression_options());
   if (const RegressionEstimate* chosen = choose(fit.comparison, flight.options.method)) {
     fit.chosen = *chosen;
+    // The errors of the regressors explain all: then the residual is compared with theirs and the sensors' of z.
+    if (!(fit.error_ratio > 0.0)) fit.error_ratio = residual_ratio(by_sensors, chosen->theta);
     for (std::size_t i = 0; i < fit.model.size(); ++i)
       fit.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
   }
@@ -225,6 +185,7 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
   if (!checks.has_holdout) return checks;
   checks.holdout_fit = fit_on(unseen, chosen.theta);
   const auto n = unseen.parameters();
+  checks.holdout_ratio = residual_ratio(unseen, chosen.theta);
   unseen.error_covariance(n, n) = fit.data.error_covariance(n, n);
   const RegressionEstimate again = estimation::estimate(unseen, chosen.method, flight.regression_options());
   if (again.usable()) {
