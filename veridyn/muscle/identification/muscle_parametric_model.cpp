@@ -1,133 +1,135 @@
-#include "veridyn/muscle/simulation/muscle_parametric_model.hpp"
+#include "veridyn/muscle/identification/muscle_parametric_model.hpp"
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
-#include "veridyn/muscle/model/simulation_jet.hpp"
-#include "veridyn/muscle/simulation/driven_integration.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/muscle_simulation.hpp"
 
 namespace veridyn::muscle {
+namespace {
 
-MuscleParameterName parse_parameter_name(const Model& model, std::string_view text, std::string_view place) {
-  const std::size_t dot = text.rfind('.');
-  const std::string_view muscle = text.substr(0, dot);
-  const std::string_view field = dot == std::string_view::npos ? std::string_view() : text.substr(dot + 1);
-  MuscleParameterName result{model.muscle(muscle), kMusculotendonFields.size()};
-  if (result.muscle < 0) throw InputError(place, fmt::format("'{}': {}", text, model.no_muscle(muscle)));
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < kMusculotendonFields.size(); ++i) {
-    names.emplace_back(kMusculotendonFields[i].name);
-    if (kMusculotendonFields[i].name == field) result.field = i;
-  }
-  if (result.field == kMusculotendonFields.size()) {
-    throw InputError(place,
-                     fmt::format("'{}': a muscle has no parameter '{}'{}", text, field, suggestion(field, names)));
-  }
-  return result;
+std::vector<MuscleUnknown> unknowns_of(const Model& model, const std::vector<MuscleParameterName>& names) {
+  std::vector<MuscleUnknown> unknowns;
+  for (const MuscleParameterName& name : names) unknowns.push_back(unknown_of(model, name));
+  return unknowns;
 }
 
+}  // namespace
+
 MuscleParametricModel::MuscleParametricModel(const MusculoskeletalSystem& system,
-                                             std::vector<MuscleParameterName> names,
+                                             const std::vector<MuscleParameterName>& names,
                                              std::vector<MotionSegment> segments, double accuracy, bool estimate_start)
-    : system_(&system), names_(std::move(names)), segments_(std::move(segments)), accuracy_(accuracy) {
-  for (const MuscleParameterName& name : names_) {
-    const MuscleParameters& muscle = system.muscles().settings(static_cast<std::size_t>(name.muscle));
-    const double value = field_of(muscle.musculotendon, name.field);
-    const MusculotendonField& field = kMusculotendonFields[name.field];
-    parameters_.push_back({.name = fmt::format("{}.{}", muscle.name, field.name),
-                           .unit = std::string(field.unit),
-                           .start = value,
-                           .low = 0.5 * value,
-                           .high = 1.5 * value});
+    : MuscleParametricModel(system, unknowns_of(system.model(), names), std::move(segments),
+                            {.accuracy = accuracy, .estimate_start = estimate_start}) {}
+
+MuscleParametricModel::MuscleParametricModel(const MusculoskeletalSystem& system, std::vector<MuscleUnknown> unknowns,
+                                             std::vector<MotionSegment> segments, const MuscleModelOptions& options)
+    : system_(&system), unknowns_(std::move(unknowns)), segments_(std::move(segments)), accuracy_(options.accuracy) {
+  check_unknowns(system.model(), unknowns_, system.model().name);
+  check_systems();
+  for (const MuscleUnknown& u : unknowns_) {
+    parameters_.push_back({.name = u.name,
+                           .unit = u.unit,
+                           .start = u.start,
+                           .low = u.low,
+                           .high = u.high,
+                           .prior_sigma = u.prior_sigma,
+                           .fixed = u.fixed});
   }
-  const std::span<const int> free = system.reduction().free();
-  for (const int c : free) {
-    const Coordinate& coordinate = system.model().coordinates[static_cast<std::size_t>(c)];
-    outputs_.push_back({coordinate.name, coordinate.unit()});
+  list_outputs(options.outputs);
+  list_initial_conditions(options.estimate_start);
+}
+
+std::string MuscleParametricModel::segment_name(std::size_t segment) const {
+  const std::string& name = segments_[segment].name;
+  return name.empty() ? ParametricModel::segment_name(segment) : name;
+}
+
+void MuscleParametricModel::check_systems() const {
+  const Model& own = system_->model();
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    const Model& other = system_of(s).model();
+    const std::string place = fmt::format("system of {}", segment_name(s));
+    if (other.muscles.size() != own.muscles.size())
+      throw InputError(place, fmt::format("has {} muscles, the model '{}' has {}", other.muscles.size(), own.name,
+                                          own.muscles.size()));
+    for (std::size_t m = 0; m < own.muscles.size(); ++m) {
+      if (other.muscles[m].name() != own.muscles[m].name())
+        throw InputError(place, fmt::format("muscle {} is '{}' where the model '{}' has '{}'", m + 1,
+                                            other.muscles[m].name(), own.name, own.muscles[m].name()));
+    }
+    if (other.coordinates.size() != own.coordinates.size())
+      throw InputError(place, fmt::format("has {} coordinates, the model '{}' has {}", other.coordinates.size(),
+                                          own.name, own.coordinates.size()));
+    for (std::size_t c = 0; c < own.coordinates.size(); ++c) {
+      if (other.coordinates[c].name != own.coordinates[c].name)
+        throw InputError(place, fmt::format("coordinate {} is '{}' where the model '{}' has '{}'", c + 1,
+                                            other.coordinates[c].name, own.name, own.coordinates[c].name));
+    }
+    if (system_of(s).path_source() == PathSource::kAsOpenSim)
+      throw InputError(place, "has paths as OpenSim's, which have no derivatives; take exact or fitted ones");
   }
-  for (const MotionSegment& segment : segments_) {
+}
+
+void MuscleParametricModel::list_outputs(const std::vector<MuscleOutput>& chosen) {
+  const Model& model = system_->model();
+  chosen_ = chosen;
+  for (std::size_t c = 0; c < model.coordinates.size() && chosen.empty(); ++c) {
+    bool free = segments_.empty() && system_->reduction().role(static_cast<int>(c)) == CoordinateRole::kFree;
+    for (std::size_t s = 0; s < segments_.size(); ++s)
+      free = free || system_of(s).reduction().role(static_cast<int>(c)) == CoordinateRole::kFree;
+    if (free) chosen_.push_back({MuscleOutputKind::kValue, static_cast<int>(c), 0.0});
+  }
+  for (const MuscleOutput& output : chosen_) {
+    const bool motion = output.kind == MuscleOutputKind::kValue || output.kind == MuscleOutputKind::kSpeed;
+    for (std::size_t s = 0; s < segments_.size() && motion; ++s) {
+      if (system_of(s).reduction().role(output.index) == CoordinateRole::kCoupled)
+        throw InputError(model.name, fmt::format("output '{}' follows another coordinate; take that one",
+                                                 output_name(model, output)));
+    }
+  }
+  for (const MuscleOutput& output : chosen_)
+    outputs_.push_back({output_name(model, output), output_unit(model, output)});
+}
+
+void MuscleParametricModel::list_initial_conditions(bool estimate) {
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
     std::vector<estimation::ModelParameter> initial;
     for (const bool speed : {false, true}) {
-      for (const int c : free) {
-        const Coordinate& coordinate = system.model().coordinates[static_cast<std::size_t>(c)];
+      for (const int c : system_of(s).reduction().free()) {
+        const Coordinate& coordinate = system_->model().coordinates[at(c)];
         initial.push_back({.name = coordinate.name + (speed ? ".start_speed" : ".start"),
                            .unit = coordinate.unit() + (speed ? "/s" : ""),
-                           .start = speed ? segment.start.qdot(c) : segment.start.q(c),
-                           .fixed = !estimate_start});
+                           .start = speed ? segments_[s].start.qdot(c) : segments_[s].start.q(c),
+                           .fixed = !estimate});
       }
     }
     initial_.push_back(std::move(initial));
   }
 }
 
-template <typename Scalar>
-bool MuscleParametricModel::simulate(
-    std::size_t index, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
-    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
-  const MotionSegment& segment = segments_[index];
-  const StateLayout& layout = system_->layout();
-  const std::size_t muscles = system_->muscles().size();
-  std::vector<MusculotendonParameters<Scalar>> parameters;
-  for (std::size_t m = 0; m < muscles; ++m) {
-    parameters.push_back(system_->muscles().settings(m).musculotendon.template cast<Scalar>());
+Eigen::VectorXd MuscleParametricModel::output_noise() const {
+  Eigen::VectorXd noise(signed_index(chosen_.size()));
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    if (!(chosen_[i].noise_sd > 0.0)) return {};
+    noise(signed_index(i)) = chosen_[i].noise_sd;
   }
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    field_of(parameters[static_cast<std::size_t>(names_[i].muscle)], names_[i].field) =
-        theta(static_cast<Eigen::Index>(i));
-  }
-  SystemEvaluator<Scalar> evaluator(*system_, system_->muscles().template with<Scalar>(parameters));
-  std::vector<Scalar> held(system_->coordinates());
-  for (std::size_t c = 0; c < held.size(); ++c) held[c] = Scalar(segment.start.q(static_cast<Eigen::Index>(c)));
-  evaluator.hold(held.data());
-
-  DriveState signals(segment.drive, muscles, system_->coordinates());
-  std::vector<Scalar> x(layout.size);
-  for (std::size_t i = 0; i < 2 * layout.free; ++i) x[i] = theta(static_cast<Eigen::Index>(names_.size() + i));
-  signals.begin_piece(segment.time.front());
-  evaluator.set_motion(x.data(), x.data() + layout.free);
-  const std::span<const double> u = signals.at(segment.time.front()).excitation;
-  std::vector<Scalar> activation(muscles);
-  for (std::size_t m = 0; m < muscles; ++m) {
-    activation[m] =
-        Scalar(segment.start.activation.size() > 0 ? segment.start.activation(static_cast<Eigen::Index>(m)) : u[m]);
-  }
-  evaluator.start_muscles(activation.data(), x.data());
-
-  numerics::DormandPrince<Scalar> stepper(layout.size);
-  // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
-  constexpr double kLeast = 1e-6;
-  const numerics::StepControl control{.tolerance = accuracy_,
-                                      .derivative_tolerance = std::max(10.0 * accuracy_, kLeast),
-                                      .smallest_step = 1e-12,
-                                      .max_steps = 200000};
-  double t = segment.time.front();
-  Eigen::Index row = 0;
-  const auto write = [&](const Scalar* state) {
-    for (std::size_t i = 0; i < layout.free; ++i) output(row, static_cast<Eigen::Index>(i)) = state[i];
-    ++row;
-  };
-  write(x.data());
-  std::vector<Scalar> between(layout.size);
-  const numerics::IntegrationEnd end =
-      integrate_driven(evaluator, system_->scales(), signals, stepper, t, x.data(), segment.time.back(), control,
-                       [&](double, double to) {
-                         while (row < output.rows() && segment.time[static_cast<std::size_t>(row)] <= to) {
-                           stepper.interpolate(segment.time[static_cast<std::size_t>(row)], between.data());
-                           write(between.data());
-                         }
-                         return true;
-                       });
-  return end == numerics::IntegrationEnd::kReached && row == output.rows();
+  return noise;
 }
 
-template bool MuscleParametricModel::simulate<double>(std::size_t, const Eigen::VectorXd&,
-                                                      estimation::RowMatrix&) const;
-template bool MuscleParametricModel::simulate<SimulationJet>(
-    std::size_t, const Eigen::Matrix<SimulationJet, Eigen::Dynamic, 1>&,
-    Eigen::Matrix<SimulationJet, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>&) const;
+bool MuscleParametricModel::respond(std::size_t segment, const Eigen::VectorXd& theta,
+                                    std::span<const Eigen::Index> active, estimation::ModelResponse& response) const {
+  const auto outputs = signed_index(chosen_.size());
+  response.output.resize(samples(segment), outputs);
+  response.sensitivity.resize(samples(segment) * outputs, signed_index(active.size()));
+  const internal::MuscleTask task{&system_of(segment), &segments_[segment], unknowns_, chosen_, accuracy_};
+  const bool usable = active.empty() ? internal::simulate_values(task, theta, response)
+                                     : internal::simulate_tangents(task, theta, active, response);
+  return usable && response.output.allFinite() && response.sensitivity.allFinite();
+}
 
 }  // namespace veridyn::muscle
