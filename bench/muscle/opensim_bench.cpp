@@ -14,7 +14,6 @@
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
-#include "veridyn/muscle/simulation/muscle_parametric_model.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 namespace veridyn::muscle {
@@ -154,27 +153,6 @@ BENCHMARK_CAPTURE(derivative, thelen_fitted, kThelen, PathSource::kFitted);
 BENCHMARK_CAPTURE(derivative, thelen_exact, kThelen, PathSource::kExact);
 BENCHMARK_CAPTURE(derivative, millard_fitted, kMillard, PathSource::kFitted);
 BENCHMARK_CAPTURE(derivative, millard_exact, kMillard, PathSource::kExact);
-
-/// A second of the arm with derivatives with respect to `n` parameters.
-void sensitivities(benchmark::State& state) {
-  const auto system = arm(state, kThelen, PathSource::kFitted);
-  if (!system) return;
-  std::vector<MuscleParameterName> names;
-  for (int m = 0; m < static_cast<int>(kMuscles); ++m) {
-    for (std::size_t f = 0; f < 3; ++f) names.push_back({m, f});
-  }
-  MotionSegment segment{start_of(system->model(), 2), test::arm26_scenario(2, 0.001), frame_times(0.0, 1.0, 100.0)};
-  const MuscleParametricModel model(*system, names, {segment}, 1e-5);
-  Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
-  for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
-  for (std::size_t i = 0; i < 4; ++i)
-    theta(static_cast<Eigen::Index>(names.size() + i)) = model.initial_conditions(0)[i].start;
-  std::vector<Eigen::Index> active(static_cast<std::size_t>(state.range(0)));
-  for (std::size_t i = 0; i < active.size(); ++i) active[i] = static_cast<Eigen::Index>(i);
-  estimation::ModelResponse response;
-  for (auto _ : state) benchmark::DoNotOptimize(model.respond(0, theta, active, response));
-}
-BENCHMARK(sensitivities)->Arg(0)->Arg(6)->Arg(18)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace veridyn::muscle

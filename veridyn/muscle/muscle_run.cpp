@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/simulation/motion_analysis.hpp"
+#include "veridyn/muscle/simulation/wrap_bands.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -141,6 +142,8 @@ MuscleResult run_study(const MuscleStudy& study, Progress& progress) {
   if (study.method == MuscleMethod::kForward || study.method == MuscleMethod::kComputedMuscleControl) {
     for (std::string& warning : range_warnings(study, result.trajectory)) result.warnings.push_back(std::move(warning));
   }
+  for (const WrapBandVisit& visit : wrap_band_visits(*study.system, result.trajectory.time, result.trajectory.q))
+    result.warnings.push_back(wrap_band_text(*study.system, visit));
   result.warnings.insert(result.warnings.begin(), study.warnings.begin(), study.warnings.end());
   return result;
 }

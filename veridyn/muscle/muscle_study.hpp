@@ -28,13 +28,6 @@ enum class MuscleMethod {
 /// The word of the study: "forward", "inverse dynamics", "static optimization", "computed muscle control".
 [[nodiscard]] std::string_view method_name(MuscleMethod method);
 
-/// A mass held by a body.
-struct HeldLoad {
-  std::string body;
-  double mass = 0.0;                                   ///< [kg]
-  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body's frame [m]
-};
-
 /// A parameter that the study sets otherwise than the model file.
 struct ParameterChange {
   std::string muscle;

@@ -16,8 +16,9 @@ namespace veridyn::numerics {
 /// How an error-controlled integration chooses its steps.
 struct StepControl {
   double tolerance = 1e-6;  ///< largest error of a step in any component, as a part of the component's scale
-  /// With Jets: the same of their derivatives, as a part of the largest of each (scaled). They need it: where a stiff
-  /// solution rests, steps grow until its errors show, and those of a derivative would have grown unseen meanwhile.
+  /// With Jets or tangents: the same of their derivatives, as a part of the largest of each (scaled). They need it:
+  /// where a stiff solution rests, steps grow until its errors show, and those of a derivative would have grown unseen
+  /// meanwhile.
   double derivative_tolerance = 1e-4;
   double first_step = 0.0;     ///< 0: chosen from the first derivative
   double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
@@ -39,11 +40,13 @@ auto value_of(const Jet& x) -> decltype(x.a) {
 /// steps. The last stage of a step is the first of the next, over calls of `advance` too.
 ///
 /// `Scalar` is double or a Jet. With Jets the derivatives are those of the numerical solution at the steps taken, and
-/// their errors are controlled like those of the values.
+/// their errors are controlled like those of the values. Tangents are the same for a derivative that computes them
+/// itself (variational equations): `tangents` numbers for each value follow the values, those of the first value first.
 template <typename Scalar>
 class DormandPrince {
  public:
-  explicit DormandPrince(std::size_t size) : n_(size), work_(kArrays * size) {}
+  explicit DormandPrince(std::size_t size, std::size_t tangents = 0)
+      : values_(size), tangents_(tangents), n_(size * (1 + tangents)), work_(kArrays * n_), column_(2 * tangents) {}
 
   /// The derivative jumps here (an input steps, the state was set): forget the last stage. `keep_step` keeps the size
   /// of the next step.
@@ -63,7 +66,7 @@ class DormandPrince {
   template <typename F, typename OnStep>
   IntegrationEnd advance(F&& f, double& t, Scalar* x, double end, std::span<const double> scale,
                          const StepControl& control, OnStep&& on_step) {
-    VERIDYN_ASSERT(scale.size() == n_ && end >= t);
+    VERIDYN_ASSERT(scale.size() == values_ && end >= t);
     const double interval = end - t;
     if (interval == 0.0) return IntegrationEnd::kReached;
     const double smallest = control.smallest_step > 0.0 ? control.smallest_step : 1e-13 * interval;
@@ -146,7 +149,7 @@ class DormandPrince {
 
   double guess(const Scalar* x, std::span<const double> scale, double tolerance, double interval) const {
     double size = 0.0, rate = 0.0;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < values_; ++i) {
       size = std::max(size, std::abs(internal::value_of(x[i])) / scale[i]);
       rate = std::max(rate, std::abs(internal::value_of(stage(0)[i])) / scale[i]);
     }
@@ -188,14 +191,14 @@ class DormandPrince {
   }
 
   /// Largest estimated error of the step in units of what is allowed.
-  double error_of(std::span<const double> scale, const StepControl& control) const {
+  double error_of(std::span<const double> scale, const StepControl& control) {
     constexpr double e1 = 71.0 / 57600.0, e3 = -71.0 / 16695.0, e4 = 71.0 / 1920.0, e5 = -17253.0 / 339200.0,
                      e6 = 22.0 / 525.0, e7 = -1.0 / 40.0;
     const auto combined = [&](const auto& part) {
       return h_ * (e1 * part(0) + e3 * part(2) + e4 * part(3) + e5 * part(4) + e6 * part(5) + e7 * part(6));
     };
     double largest = 0.0;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < values_; ++i) {
       const double error = combined([&](std::size_t s) { return internal::value_of(stage(s)[i]); });
       largest = std::max(largest, std::abs(error) / scale[i]);
     }
@@ -203,7 +206,7 @@ class DormandPrince {
     if constexpr (!std::is_same_v<Scalar, double>) {
       for (int j = 0; j < Scalar::DIMENSION; ++j) {
         double size = 0.0, error = 0.0;
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < values_; ++i) {
           const auto part = [&](std::size_t s) { return stage(s)[i].v(j); };
           size = std::max({size, std::abs(stage(kEnd)[i].v(j)) / scale[i], h_ * std::abs(part(0)) / scale[i],
                            h_ * std::abs(part(6)) / scale[i]});
@@ -211,12 +214,45 @@ class DormandPrince {
         }
         if (size > 0.0) largest = std::max(largest, error / (control.derivative_tolerance * size));
       }
+    } else if (tangents_ > 0) {
+      largest = std::max(largest, tangent_error(scale) / control.derivative_tolerance);
     }
     return largest;
   }
 
-  std::size_t n_;
-  std::vector<Scalar> work_;  ///< stages k1 to k7, the end of the step, a scratch state
+  /// Largest error of a tangent over the largest part of its column, both in units of the scales.
+  double tangent_error(std::span<const double> scale) requires std::is_same_v<Scalar, double> {
+    constexpr double e1 = 71.0 / 57600.0, e3 = -71.0 / 16695.0, e4 = 71.0 / 1920.0, e5 = -17253.0 / 339200.0,
+                     e6 = 22.0 / 525.0, e7 = -1.0 / 40.0;
+    double* const size = column_.data();
+    double* const error = size + tangents_;
+    std::fill(column_.begin(), column_.end(), 0.0);
+    for (std::size_t i = 0; i < values_; ++i) {
+      const std::size_t row = values_ + i * tangents_;
+      const double *k1 = stage(0) + row, *k3 = stage(2) + row, *k4 = stage(3) + row, *k5 = stage(4) + row,
+                   *k6 = stage(5) + row, *k7 = stage(6) + row, *end = stage(kEnd) + row;
+      const double unit = 1.0 / scale[i], step = h_ * unit;
+      for (std::size_t j = 0; j < tangents_; ++j) {
+        const double e = std::abs(step * (e1 * k1[j] + e3 * k3[j] + e4 * k4[j] + e5 * k5[j] + e6 * k6[j] + e7 * k7[j]));
+        double s = unit * std::abs(end[j]);
+        const double s1 = step * std::abs(k1[j]), s7 = step * std::abs(k7[j]);
+        s = s > s1 ? s : s1;
+        s = s > s7 ? s : s7;
+        size[j] = size[j] > s ? size[j] : s;
+        error[j] = error[j] > e ? error[j] : e;
+      }
+    }
+    double largest = 0.0;
+    for (std::size_t j = 0; j < tangents_; ++j) {
+      if (size[j] > 0.0) largest = std::max(largest, error[j] / size[j]);
+    }
+    return largest;
+  }
+
+  std::size_t values_, tangents_;
+  std::size_t n_;               ///< values and their tangents
+  std::vector<Scalar> work_;    ///< stages k1 to k7, the end of the step, a scratch state
+  std::vector<double> column_;  ///< by tangent: size, then error
   const Scalar* start_ = nullptr;
   double begin_ = 0.0;
   double h_ = 0.0;

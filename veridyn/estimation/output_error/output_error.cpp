@@ -13,6 +13,7 @@
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
+#include "veridyn/estimation/output_error/undetermined_directions.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
 namespace veridyn::estimation {
@@ -135,6 +136,7 @@ class Estimation {
                  fmt::format("the simulation of {} diverges at the starting values", problem_.diverged_segment()));
     }
     problem_.start_noise();
+    if (options_.hold_undetermined) problem_.evaluate(true);
     for (int relaxation = 0; relaxation < options_.max_relaxations; ++relaxation) {
       ++result_.relaxations;
       const Eigen::VectorXd before = problem_.shared();
@@ -188,6 +190,8 @@ class Estimation {
     if (problem_.shared_count() > 0) {
       ordering->AddElementToGroup(shared, 1);
       bound(shared, problem_.shared_unknowns());
+      if (options_.hold_undetermined)
+        internal::hold_undetermined(ceres_problem, shared, problem_.shared_unknowns(), information_root());
     }
     ceres::Solver::Options o;
     o.linear_solver_ordering.reset(ordering);
@@ -263,6 +267,7 @@ class Estimation {
       result_.message += "; not identifiable:";
       for (const Direction& d : result_.unidentifiable) result_.message += " " + d.text + ";";
       result_.message.pop_back();
+      if (!result_.held.empty()) result_.message += "; along these the parameters stay where the search began";
     }
   }
 
@@ -295,8 +300,11 @@ class Estimation {
     InverseInformation out;
     out.length = root.colwise().norm().transpose();
     for (double& l : out.length) l = l > 0.0 ? l : 1.0;
-    const numerics::SingularValues svd = numerics::singular_values(root * out.length.cwiseInverse().asDiagonal(),
-                                                                   numerics::SingularVectors::kThinUAndFullV);
+    // Where the search holds directions, they are those of the same units here.
+    const Eigen::VectorXd unit = options_.hold_undetermined ? internal::bound_sigmas(problem_.shared_unknowns())
+                                                            : Eigen::VectorXd(out.length.cwiseInverse());
+    const numerics::SingularValues svd =
+        numerics::singular_values(root * unit.asDiagonal(), numerics::SingularVectors::kThinUAndFullV);
     const Eigen::VectorXd& s = svd.values;
     const double largest = s.size() > 0 ? s(0) : 0.0;
     if (!(largest > 0.0)) return std::nullopt;
@@ -306,18 +314,20 @@ class Estimation {
     std::vector<std::string> names;
     for (const ModelParameter* p : problem_.shared_unknowns()) names.push_back(p->name);
     for (Index j = 0; j < n; ++j) {
-      if (j < s.size() && s(j) > options_.identifiable * largest) {
+      const bool held = options_.hold_undetermined && !(j < s.size() && s(j) > 1.0);
+      if (!held && j < s.size() && s(j) > options_.identifiable * largest) {
         inverse(j) = 1.0 / s(j);
         continue;
       }
       out.share += svd.V.col(j).cwiseAbs2();
-      Eigen::VectorXd combination = svd.V.col(j).cwiseQuotient(out.length);
+      Eigen::VectorXd combination = svd.V.col(j).cwiseProduct(unit);
       combination /= combination.norm();
       Eigen::VectorXd all = Eigen::VectorXd::Zero(result_.theta.size());
       for (Index i = 0; i < n; ++i) all(free[static_cast<std::size_t>(i)]) = combination(i);
       result_.unidentifiable.push_back({all, kInfinity, describe_combination(combination, names)});
+      if (held) result_.held.push_back(result_.unidentifiable.back());
     }
-    const Eigen::MatrixXd back = out.length.cwiseInverse().asDiagonal() * svd.V * inverse.asDiagonal();
+    const Eigen::MatrixXd back = unit.asDiagonal() * svd.V * inverse.asDiagonal();
     out.matrix = back * back.transpose();
     return out;
   }
@@ -427,6 +437,12 @@ void OutputErrorOptions::validate(const ParametricModel& model) const {
   require(identifiable > 0.0 && identifiable < 1.0, "identifiable", identifiable, "in (0, 1)");
   require(max_lag >= 0, "max_lag", static_cast<double>(max_lag), ">= 0");
   require(threads >= 0, "threads", threads, ">= 0 (0: those of the progress)");
+  for (const ModelParameter& parameter : model.parameters()) {
+    if (hold_undetermined && !parameter.fixed && !(std::isfinite(parameter.high - parameter.low)))
+      throw InputError(
+          "output_error.hold_undetermined",
+          fmt::format("needs bounds of '{}', which has none: they say what the data have to beat", parameter.name));
+  }
   const auto p = static_cast<Index>(model.outputs().size());
   if (noise_start.size() > 0 && (noise_start.size() != p || !(noise_start.array() > 0.0).all())) {
     throw InputError("output_error.noise_start",

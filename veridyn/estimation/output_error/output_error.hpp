@@ -49,6 +49,11 @@ struct OutputErrorOptions {
   /// A combination of parameters whose sensitivity is below this share of the largest one's (columns of the information
   /// matrix's root scaled to unit length) is reported as not identifiable.
   double identifiable = 1e-6;
+  /// Hold what the data do not determine: along combinations of parameters whose standard deviation is larger than that
+  /// of a value known only to lie within the bounds (their width over sqrt(12)) the parameters stay where they start,
+  /// in each relaxation again; they are reported as `held` and not identifiable. Without it such a search ends wherever
+  /// noise drives it along its valley. Needs finite bounds of every free parameter.
+  bool hold_undetermined = false;
   Eigen::Index max_lag = 500;  ///< longest lag of residual correlation that is looked for [samples]
   int threads = 0;             ///< 0: those of the progress; any number gives identical bits
 
@@ -88,6 +93,7 @@ struct OutputErrorEstimate {
   std::vector<OutputFit> outputs;
   std::vector<RowMatrix> predicted;       ///< per segment, samples x outputs, bias included
   std::vector<Direction> unidentifiable;  ///< combinations that the data (and priors) do not determine
+  std::vector<Direction> held;    ///< of these, along which `hold_undetermined` kept the parameters at their start
   double condition_number = 0.0;  ///< of the information's root over the shared parameters, columns of unit length
   /// Share of each parameter's variance before the data that the data removed: 1 - (sigma/prior_sigma)^2; 1 without a
   /// prior.

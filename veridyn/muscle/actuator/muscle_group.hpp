@@ -278,7 +278,7 @@ void MuscleGroup<Scalar>::damped_rates(const std::vector<M>& list, const MuscleI
       const std::size_t i = m.muscle;
       const double held = std::max(in.fiber_length[i], k.minimum_length), l = held * k.inverse_L0;
       const internal::Pennation<double> p(k, held);
-      const double fT = m.curves.tendon_force((in.path_length[i] - p.along) * k.inverse_LS);
+      const double fT = m.curves.tendon_force(k.tendon_stretch(in.path_length[i] - p.along));
       out.tendon_force[i] = k.F0 * fT;
       lane[j] =
           m.curves.damped_balance(acting_activation(k, in.excitation[i], in.activation[i]) * m.curves.active_length(l),

@@ -33,7 +33,8 @@ void check(const MuscleParameters& parameters);
 template <typename Scalar>
 struct MusculotendonConstants {
   Scalar F0, L0, LS, Vmax, activation_time, deactivation_time;
-  Scalar inverse_L0, inverse_LS, height, height_squared, minimum_length;
+  Scalar inverse_L0, height, height_squared, minimum_length;
+  Scalar tendon_strain_factor, tendon_slope, tendon_offset;
   double damping = 0.0;  ///< of F0 per Vmax L0; below 0.001 it counts as none
   double minimum_activation = 0.01;
   bool rigid_tendon = false;
@@ -49,10 +50,12 @@ struct MusculotendonConstants {
         activation_time(p.activation_time_constant),
         deactivation_time(p.deactivation_time_constant),
         inverse_L0(Scalar(1.0) / L0),
-        inverse_LS(Scalar(1.0) / LS),
         height(sine(p.pennation_angle_at_optimal) * L0),
         height_squared(height * height),
         minimum_length(Scalar(curve_minimum) * L0),
+        tendon_strain_factor(p.tendon_strain_factor),
+        tendon_slope(Scalar(1.0) / (LS * tendon_strain_factor)),
+        tendon_offset(Scalar(1.0) - Scalar(1.0) / tendon_strain_factor),
         damping(settings.fiber_damping < Millard2012::kDampingThreshold ? 0.0 : settings.fiber_damping),
         minimum_activation(settings.minimum_activation),
         rigid_tendon(settings.rigid_tendon),
@@ -60,6 +63,9 @@ struct MusculotendonConstants {
     const Scalar pennate = height * Scalar(1.0 / std::sin(settings.maximum_pennation_angle));
     if (pennate > minimum_length) minimum_length = pennate;
   }
+
+  /// Where a tendon of this length [m] is on the curves: 1 + (length/LS - 1)/tendon_strain_factor.
+  [[nodiscard]] Scalar tendon_stretch(const Scalar& length) const { return length * tendon_slope + tendon_offset; }
 
  private:
   static Scalar sine(const Scalar& angle) {
@@ -180,7 +186,7 @@ template <typename Curves, typename Scalar>
   if (!k.rigid_tendon) {
     const Scalar held = lM > k.minimum_length ? lM : k.minimum_length;
     const internal::Pennation<Scalar> p(k, held);
-    return k.F0 * curves.tendon_force((lMT - p.along) * k.inverse_LS);
+    return k.F0 * curves.tendon_force(k.tendon_stretch(lMT - p.along));
   }
   const Scalar along = lMT - k.LS;
   if (!(along > Scalar(0.0))) return along * Scalar(0.0);
@@ -212,7 +218,7 @@ template <typename Curves, typename Scalar>
   const Scalar held = shortest ? k.minimum_length : lM;
   const internal::Pennation<Scalar> p(k, held);
   const Scalar l = held * k.inverse_L0;
-  const Scalar fT = curves.tendon_force((lMT - p.along) * k.inverse_LS);
+  const Scalar fT = curves.tendon_force(k.tendon_stretch(lMT - p.along));
   const Scalar F = fT * p.inverse_cosine - curves.passive_force(l);
   const Scalar v = curves.velocity(a_acting, curves.active_length(l), F, k.damping);
   rates.tendon_force = k.F0 * fT;
@@ -226,11 +232,11 @@ template <typename Curves>
                                  double lMT) {
   const internal::Pennation<double> p(k, lM);
   const double l = lM * k.inverse_L0, cosine = 1.0 / p.inverse_cosine;
-  const CurveValue fL = curves.active(l), fP = curves.passive(l), fT = curves.tendon((lMT - p.along) * k.inverse_LS);
+  const CurveValue fL = curves.active(l), fP = curves.passive(l), fT = curves.tendon(k.tendon_stretch(lMT - p.along));
   const double fiber = a * fL.value + fP.value;
   return {fiber * cosine - fT.value, (a * fL.slope + fP.slope) * k.inverse_L0 * cosine +
                                          fiber * (p.inverse_cosine - cosine) / lM +
-                                         fT.slope * k.inverse_LS * p.inverse_cosine};
+                                         fT.slope * k.tendon_slope * p.inverse_cosine};
 }
 
 /// Fibre length at which the fibre at rest (fV = 1) balances its tendon, for activation a and path length lMT.
@@ -341,7 +347,9 @@ template <typename Scalar>
     d.activation_time = value_of(k.activation_time);
     d.deactivation_time = value_of(k.deactivation_time);
     d.inverse_L0 = value_of(k.inverse_L0);
-    d.inverse_LS = value_of(k.inverse_LS);
+    d.tendon_strain_factor = value_of(k.tendon_strain_factor);
+    d.tendon_slope = value_of(k.tendon_slope);
+    d.tendon_offset = value_of(k.tendon_offset);
     d.height = value_of(k.height);
     d.height_squared = value_of(k.height_squared);
     d.minimum_length = value_of(k.minimum_length);
@@ -426,12 +434,12 @@ MuscleEquilibrium<Scalar> musculotendon_equilibrium(const Curves& curves, const 
       const internal::Pennation<Scalar> p(k, result.fiber_length);
       const Scalar l = result.fiber_length * k.inverse_L0;
       const Scalar residual = (a * curves.active_length(l) + curves.passive_force(l)) / p.inverse_cosine -
-                              curves.tendon_force((lMT - p.along) * k.inverse_LS);
+                              curves.tendon_force(k.tendon_stretch(lMT - p.along));
       result.fiber_length.v -= residual.v / root.slope;
     }
   }
   const internal::Pennation<Scalar> p(k, result.fiber_length);
-  result.tendon_force = k.F0 * curves.tendon_force((lMT - p.along) * k.inverse_LS);
+  result.tendon_force = k.F0 * curves.tendon_force(k.tendon_stretch(lMT - p.along));
   return result;
 }
 
@@ -462,9 +470,9 @@ MuscleDetails musculotendon_details(const Curves& curves, const MusculotendonCon
     d.fiber_velocity = rates.fiber_velocity;
     d.tendon_length = lMT - p.along;
     d.tendon_velocity = vMT - d.fiber_velocity / cosine;
-    const double strain = d.tendon_length * k.inverse_LS;
-    d.tendon_stiffness = k.F0 * k.inverse_LS * curves.tendon(strain).slope;
-    d.tendon_energy = k.F0 * k.LS * curves.tendon_energy(strain);
+    const double stretch = k.tendon_stretch(d.tendon_length);
+    d.tendon_stiffness = k.F0 * k.tendon_slope * curves.tendon(stretch).slope;
+    d.tendon_energy = k.F0 * k.LS * k.tendon_strain_factor * curves.tendon_energy(stretch);
     if (d.tendon_length <= k.LS) d.limit = MuscleLimit::kSlackTendon;
     if (lM <= k.minimum_length && d.fiber_velocity == 0.0) d.limit = MuscleLimit::kShortestFiber;
   }

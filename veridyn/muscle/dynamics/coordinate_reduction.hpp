@@ -44,6 +44,13 @@ class CoordinateReduction {
   [[nodiscard]] int free_root(int coordinate) const { return free_root_[static_cast<std::size_t>(coordinate)]; }
   /// The same in `driven()`.
   [[nodiscard]] int driven_root(int coordinate) const { return driven_root_[static_cast<std::size_t>(coordinate)]; }
+  /// What a generalised force on coordinate c adds to that on `coordinate`: 1 for itself, the slope (by coordinate, of
+  /// `ExpandedState`) of those that follow it when it is free, else 0.
+  [[nodiscard]] double share_in(int c, int coordinate, const double* slope) const {
+    if (c == coordinate) return 1.0;
+    const bool follows = role(coordinate) == CoordinateRole::kFree && free_root(c) == free_root(coordinate);
+    return follows ? slope[c] : 0.0;
+  }
   [[nodiscard]] bool all_free() const { return free_.size() == roles_.size(); }
   /// No coordinate is coupled to a free one: the equations are those of the tree without the rest.
   [[nodiscard]] bool free_are_uncoupled() const { return free_are_uncoupled_; }

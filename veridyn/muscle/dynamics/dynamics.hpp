@@ -54,6 +54,15 @@ class Dynamics {
   [[nodiscard]] Scalar mass_scale(int coordinate) const {
     return pivot_scale(kinematics_.columns[at(coordinate)], composite_[at(mechanism_->link_of_coordinate(coordinate))]);
   }
+  /// After `inverse_dynamics`: acceleration of a link (of the ground: minus gravity), and the force that its joint
+  /// passes on, that of the links beyond it included.
+  [[nodiscard]] const SpatialVector<Scalar>& acceleration(int link) const { return acceleration_[at(link)]; }
+  [[nodiscard]] const SpatialVector<Scalar>& joint_force(int link) const { return force_[at(link)]; }
+  /// After `set_state`: a link's inertia in ground.
+  [[nodiscard]] RigidInertia<Scalar> link_inertia(int link) const {
+    return RigidInertia<Scalar>::of(mechanism_->link(link).mass, center_[at(link)], inertia_[at(link)]);
+  }
+
   /// The whole symmetric matrix. Calls `update_mass_rows`.
   void mass_matrix(Matrix& M);
 

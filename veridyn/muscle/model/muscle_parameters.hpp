@@ -86,12 +86,15 @@ struct MusculotendonParameters {
   Scalar max_contraction_velocity{10.0};     ///< Vmax [L0/s]
   Scalar activation_time_constant{0.015};    ///< [s]
   Scalar deactivation_time_constant{0.050};  ///< [s]
+  /// Strains of the tendon's curve in units of the model's: 1.1 means 10 % more strain at F0. All curves here depend on
+  /// the strain over that at F0 only, so that this is the class's own strain at F0, relative to the model's.
+  Scalar tendon_strain_factor{1.0};
 
   template <typename Other>
   [[nodiscard]] MusculotendonParameters<Other> cast() const {
     return {Other(max_isometric_force),        Other(optimal_fiber_length),     Other(tendon_slack_length),
             Other(pennation_angle_at_optimal), Other(max_contraction_velocity), Other(activation_time_constant),
-            Other(deactivation_time_constant)};
+            Other(deactivation_time_constant), Other(tendon_strain_factor)};
   }
 };
 
@@ -109,12 +112,20 @@ inline constexpr std::array<MusculotendonField, 7> kMusculotendonFields{{{"max_i
                                                                          {"activation_time_constant", "s"},
                                                                          {"deactivation_time_constant", "s"}}};
 
-/// The number that `kMusculotendonFields[field]` names.
+/// Numbers that can be estimated: those, and the tendon's strain factor, which files give as a curve's strain.
+inline constexpr std::size_t kEstimableFields = kMusculotendonFields.size() + 1;
+/// One of them. Throws nothing; `field` must be below `kEstimableFields`.
+[[nodiscard]] constexpr MusculotendonField estimable_field(std::size_t field) {
+  return field < kMusculotendonFields.size() ? kMusculotendonFields[field]
+                                             : MusculotendonField{"tendon_strain_factor", "1"};
+}
+
+/// The number that `estimable_field(field)` names.
 template <typename Scalar>
 [[nodiscard]] Scalar& field_of(MusculotendonParameters<Scalar>& p, std::size_t field) {
   Scalar* const fields[] = {&p.max_isometric_force,        &p.optimal_fiber_length,     &p.tendon_slack_length,
                             &p.pennation_angle_at_optimal, &p.max_contraction_velocity, &p.activation_time_constant,
-                            &p.deactivation_time_constant};
+                            &p.deactivation_time_constant, &p.tendon_strain_factor};
   return *fields[field];
 }
 /// A parameter by its place in the list of fields.

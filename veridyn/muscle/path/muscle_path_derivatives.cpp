@@ -13,4 +13,9 @@ template void MusclePaths::evaluate(const Kinematics<SimulationJet>&, const Simu
                                     PathWorkspace<SimulationJet>&, std::span<const std::uint8_t>) const;
 template void MusclePaths::speeds(const PathWorkspace<SimulationJet>&, const SimulationJet*, SimulationJet*) const;
 
+template struct PathWorkspace<PathJet>;
+template void MusclePaths::evaluate(const Kinematics<PathJet>&, const PathJet*, PathWorkspace<PathJet>&) const;
+template void MusclePaths::evaluate(const Kinematics<PathJet>&, const PathJet*, PathWorkspace<PathJet>&,
+                                    std::span<const std::uint8_t>) const;
+
 }  // namespace veridyn::muscle

@@ -59,6 +59,8 @@ class FittedPaths {
   /// All (muscle, coordinate) pairs of `gradient`, muscle after muscle.
   [[nodiscard]] std::span<const MusclePaths::Pair> pairs() const { return pairs_; }
   [[nodiscard]] const std::vector<PathFitError>& errors() const { return errors_; }
+  /// No path is left exact: `evaluate` needs no kinematics.
+  [[nodiscard]] bool all_fitted() const { return exact_.empty(); }
 
   /// Lengths [m] by muscle and dL/dq by pair; zero for those that are left exact. False if a coordinate that matters
   /// lies outside its range: polynomials are then extrapolated, pieces continue straight. Does not allocate or throw.

@@ -128,5 +128,8 @@ template bool FittedPaths::evaluate(const MusclePaths&, const Kinematics<double>
 template bool FittedPaths::evaluate(const SimulationJet*, SimulationJet*, SimulationJet*) const;
 template bool FittedPaths::evaluate(const MusclePaths&, const Kinematics<SimulationJet>&, const SimulationJet*,
                                     PathWorkspace<SimulationJet>&, SimulationJet*, SimulationJet*) const;
+template bool FittedPaths::evaluate(const PathJet*, PathJet*, PathJet*) const;
+template bool FittedPaths::evaluate(const MusclePaths&, const Kinematics<PathJet>&, const PathJet*,
+                                    PathWorkspace<PathJet>&, PathJet*, PathJet*) const;
 
 }  // namespace veridyn::muscle

@@ -68,6 +68,11 @@ std::string fit_note(const Model& model, const FittedPaths& fit) {
   return note;
 }
 
+Model with_loads(Model model, std::span<const HeldLoad> loads) {
+  for (const HeldLoad& load : loads) add_load(model, load.body, load.mass, load.location);
+  return model;
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& options)
@@ -81,7 +86,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
   if (source_ == PathSource::kFitted) {
     PathFitOptions fit_options;
     fit_options.mixed = true;
-    fit_.emplace(model_, mechanism_, paths_, fit_options);
+    fit_ = std::make_shared<const FittedPaths>(model_, mechanism_, paths_, fit_options);
     notes_.push_back(fit_note(model_, *fit_));
   }
   layout_.free = reduction_.free().size();
@@ -98,6 +103,18 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
   }
 }
+
+MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other, std::span<const HeldLoad> loads)
+    : notes_(other.notes_),
+      model_(with_loads(other.model_, loads)),
+      mechanism_(model_),
+      reduction_(other.reduction_),
+      paths_(other.paths_),
+      fit_(other.fit_),
+      source_(other.source_),
+      muscles_(other.muscles_),
+      layout_(other.layout_),
+      scales_(other.scales_) {}
 
 std::string MusculoskeletalSystem::state_name(std::size_t index) const {
   if (index < 2 * layout_.free) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +19,13 @@ enum class PathSource {
   kExact,      ///< wrapping, computed at every pose
   kFitted,     ///< wrapping paths as polynomials fitted to it once, with a stated error; exact where no fit is good
   kAsOpenSim,  ///< OpenSim's own wrapping, jumps included, for comparisons; no derivatives
+};
+
+/// A mass held by a body.
+struct HeldLoad {
+  std::string body;
+  double mass = 0.0;                                   ///< [kg]
+  Eigen::Vector3d location = Eigen::Vector3d::Zero();  ///< in the body's frame [m]
 };
 
 /// How a model is prepared for simulation.
@@ -48,6 +55,9 @@ class MusculoskeletalSystem {
   /// @throws InputError naming element and reason: forces that are not understood, unknown coordinates, a path point
   /// inside a wrap object at the default pose.
   explicit MusculoskeletalSystem(Model model, const SystemOptions& options = {});
+  /// `other` with masses added to bodies: the same paths, fitted ones shared. @throws InputError naming a body that
+  /// the model does not have.
+  MusculoskeletalSystem(const MusculoskeletalSystem& other, std::span<const HeldLoad> loads);
   MusculoskeletalSystem(const MusculoskeletalSystem&) = delete;
   MusculoskeletalSystem& operator=(const MusculoskeletalSystem&) = delete;
 
@@ -56,7 +66,7 @@ class MusculoskeletalSystem {
   [[nodiscard]] const CoordinateReduction& reduction() const { return reduction_; }
   [[nodiscard]] const MusclePaths& paths() const { return paths_; }
   /// Null unless paths are fitted.
-  [[nodiscard]] const FittedPaths* fit() const { return fit_ ? &*fit_ : nullptr; }
+  [[nodiscard]] const FittedPaths* fit() const { return fit_.get(); }
   [[nodiscard]] PathSource path_source() const { return source_; }
   /// Muscles and coordinates of `SystemEvaluator::path_gradient`.
   [[nodiscard]] std::span<const MusclePaths::Pair> pairs() const { return fit_ ? fit_->pairs() : paths_.pairs(); }
@@ -77,7 +87,7 @@ class MusculoskeletalSystem {
   Mechanism mechanism_;
   CoordinateReduction reduction_;
   MusclePaths paths_;
-  std::optional<FittedPaths> fit_;
+  std::shared_ptr<const FittedPaths> fit_;
   PathSource source_;
   MuscleGroup<double> muscles_;
   StateLayout layout_;

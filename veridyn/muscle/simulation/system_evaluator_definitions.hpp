@@ -3,10 +3,14 @@
 #include <algorithm>
 
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
+#include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 
 /// Definitions of `SystemEvaluator`, for the two sources that compile it.
 namespace veridyn::muscle {
+
+/// In actuator/muscle_group_derivatives.cpp.
+extern template class MuscleGroup<SimulationJet>;
 
 template <typename Scalar>
 MuscleGroup<Scalar> SystemEvaluator<Scalar>::same_muscles(const MusculoskeletalSystem& system) {

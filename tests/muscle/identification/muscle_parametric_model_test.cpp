@@ -1,0 +1,363 @@
+#include "veridyn/muscle/identification/muscle_parametric_model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+#include "veridyn/numerics/random.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+std::vector<double> samples(double end) {
+  std::vector<double> time;
+  for (double t = 0.0; t < end + 1e-9; t += 0.01) time.push_back(t);
+  return time;
+}
+
+MotionSegment segment_of(const MusculoskeletalSystem& system, double elbow, const std::vector<double>& excitation,
+                         double end) {
+  MotionSegment segment;
+  segment.start = default_start(system.model());
+  segment.start.q(1) = elbow;
+  segment.drive = {ControlSignals(excitation), {}};
+  segment.time = samples(end);
+  return segment;
+}
+
+class MuscleSensitivities : public ::testing::TestWithParam<PathSource> {};
+
+TEST_P(MuscleSensitivities, AreThoseOfCentralDifferences) {
+  const MusculoskeletalSystem system(load_model("arm").model(), {.paths = GetParam()});
+  std::vector<MuscleParameterName> names;
+  for (const char* name : {"biceps_long.max_isometric_force", "biceps_long.optimal_fiber_length",
+                           "biceps_long.tendon_slack_length", "triceps_long.optimal_fiber_length",
+                           "triceps_long.pennation_angle_at_optimal", "brachialis.max_contraction_velocity",
+                           "brachialis.activation_time_constant", "brachialis.tendon_slack_length"}) {
+    names.push_back(parse_parameter_name(system.model(), name, "test"));
+  }
+  // A step of the excitations, so that the activation's time constant shows.
+  MotionSegment segment = segment_of(system, 0.6, std::vector<double>(6, 0.05), 0.12);
+  std::vector<double> step(6, 0.05);
+  for (const double u : {0.05, 0.05, 0.05, 0.3, 0.2, 0.3}) step.push_back(u);
+  segment.drive.excitation = ControlSignals({0.0, 0.035}, step, 6, Interpolation::kHold);
+  const MuscleParametricModel model(system, names, {segment}, 1e-9);
+  // Differences divide what the integrator leaves by their step: theirs has to leave less.
+  const MuscleParametricModel finer(system, names, {segment}, 1e-12);
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(names.size() + 4));
+  for (std::size_t i = 0; i < names.size(); ++i) theta(static_cast<Eigen::Index>(i)) = model.parameters()[i].start;
+  for (std::size_t i = 0; i < 4; ++i)
+    theta(static_cast<Eigen::Index>(names.size() + i)) = model.initial_conditions(0)[i].start;
+  std::vector<Eigen::Index> active(static_cast<std::size_t>(theta.size()));
+  for (std::size_t i = 0; i < active.size(); ++i) active[i] = static_cast<Eigen::Index>(i);
+  estimation::ModelResponse exact, plus, minus;
+  ASSERT_TRUE(model.respond(0, theta, active, exact));
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    const double h = 2e-4 * std::max(std::abs(theta(j)), 0.1);
+    Eigen::VectorXd moved = theta;
+    moved(j) = theta(j) + h;
+    ASSERT_TRUE(finer.respond(0, moved, {}, plus));
+    moved(j) = theta(j) - h;
+    ASSERT_TRUE(finer.respond(0, moved, {}, minus));
+    const Eigen::Index rows = exact.output.rows(), columns = exact.output.cols();
+    double largest = 0.0, difference = 0.0;
+    for (Eigen::Index k = 0; k < rows; ++k) {
+      for (Eigen::Index c = 0; c < columns; ++c) {
+        const double central = (plus.output(k, c) - minus.output(k, c)) / (2.0 * h);
+        largest = std::max(largest, std::abs(central));
+        difference = std::max(difference, std::abs(central - exact.sensitivity(k * columns + c, j)));
+      }
+    }
+    EXPECT_GT(largest, 0.0);
+    EXPECT_LT(difference, 1e-4 * largest)
+        << (j < static_cast<Eigen::Index>(names.size()) ? model.parameters()[static_cast<std::size_t>(j)].name
+                                                        : "start");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, MuscleSensitivities, ::testing::Values(PathSource::kExact, PathSource::kFitted));
+
+TEST(MuscleParametricModel, IsTheForwardSimulation) {
+  const MusculoskeletalSystem system(load_model("arm").model());
+  const std::vector<double> u{0.05, 0.05, 0.05, 0.3, 0.2, 0.3};
+  const MuscleParametricModel model(system, {}, {segment_of(system, 0.6, u, 0.3)}, 1e-6);
+  Eigen::VectorXd theta(4);
+  theta << 0.0, 0.6, 0.0, 0.0;
+  estimation::ModelResponse response;
+  ASSERT_TRUE(model.respond(0, theta, {}, response));
+  StartState start = default_start(system.model());
+  start.q(1) = 0.6;
+  Progress progress;
+  const MuscleTrajectory t = simulate_forward(system, start, {ControlSignals(u), {}},
+                                              {.end = 0.3, .rate_Hz = 100.0, .accuracy = 1e-6}, progress);
+  EXPECT_LT((t.q - response.output).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(MuscleParametricModel, TheSharedOutputErrorEstimatorRecoversHiddenParameters) {
+  // The subject: the built-in arm with a longer biceps tendon and a stronger brachialis, which two motions distinguish.
+  Model subject = load_model("arm").model();
+  auto& biceps = subject.muscles[static_cast<std::size_t>(subject.muscle("biceps_long"))].parameters.musculotendon;
+  auto& brachialis = subject.muscles[static_cast<std::size_t>(subject.muscle("brachialis"))].parameters.musculotendon;
+  biceps.tendon_slack_length *= 1.03;
+  brachialis.max_isometric_force *= 1.15;
+  const MusculoskeletalSystem subject_system(subject, {.paths = PathSource::kFitted});
+  const MusculoskeletalSystem generic(load_model("arm").model(), {.paths = PathSource::kFitted});
+  const std::vector<double> lift{0.05, 0.05, 0.05, 0.4, 0.2, 0.1}, other{0.1, 0.05, 0.05, 0.05, 0.05, 0.4};
+  const auto segments = [&](const MusculoskeletalSystem& system) {
+    return std::vector<MotionSegment>{segment_of(system, 0.5, lift, 0.3), segment_of(system, 1.0, other, 0.3)};
+  };
+  const MuscleParametricModel recorded(subject_system, {}, segments(subject_system));
+  constexpr double kNoise = 1e-3;
+  numerics::RandomStream random(7, "noise of the angles");
+  std::vector<estimation::RowMatrix> measured;
+  for (std::size_t s = 0; s < 2; ++s) {
+    Eigen::VectorXd theta(4);
+    theta << 0.0, s == 0 ? 0.5 : 1.0, 0.0, 0.0;
+    estimation::ModelResponse response;
+    ASSERT_TRUE(recorded.respond(s, theta, {}, response));
+    for (double& angle : response.output.reshaped()) angle += kNoise * random.normal();
+    measured.push_back(response.output);
+  }
+  const MuscleParametricModel model(generic,
+                                    {parse_parameter_name(generic.model(), "biceps_long.tendon_slack_length", "test"),
+                                     parse_parameter_name(generic.model(), "brachialis.max_isometric_force", "test")},
+                                    segments(generic));
+  const estimation::OutputErrorEstimate estimate =
+      estimation::output_error(model, measured,
+                               {.noise = estimation::OutputNoise::kGiven,
+                                .noise_start = Eigen::Vector2d::Constant(kNoise),
+                                .covariance = estimation::CovarianceKind::kWhite,
+                                .free_initial_conditions = false});
+  ASSERT_TRUE(estimate.usable()) << estimate.message;
+  const Eigen::Vector2d hidden(biceps.tendon_slack_length, brachialis.max_isometric_force);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const double sigma = std::sqrt(estimate.covariance(i, i));
+    EXPECT_LT(std::abs(estimate.theta(i) - hidden(i)), 4.0 * sigma);
+    // The data distinguish the subject from the generic model.
+    EXPECT_GT(std::abs(model.parameters()[static_cast<std::size_t>(i)].start - hidden(i)), 10.0 * sigma);
+  }
+}
+
+/// The built-in arm with muscles of Millard et al. in place of Thelen's.
+Model millard_arm() {
+  Model model = load_model("arm").model();
+  for (Muscle& muscle : model.muscles) {
+    muscle.parameters.curves = MillardCurves{};
+    muscle.parameters.fiber_damping = 0.1;
+  }
+  return model;
+}
+
+/// Largest difference of any output's derivative from central differences, of the largest one of that output.
+void expect_central_differences(const MuscleParametricModel& model, const MuscleParametricModel& finer) {
+  const auto n = static_cast<Eigen::Index>(model.parameters().size());
+  const auto initial = model.initial_conditions(0);
+  Eigen::VectorXd theta(n + static_cast<Eigen::Index>(initial.size()));
+  for (Eigen::Index i = 0; i < n; ++i) theta(i) = model.parameters()[static_cast<std::size_t>(i)].start;
+  for (std::size_t i = 0; i < initial.size(); ++i) theta(n + static_cast<Eigen::Index>(i)) = initial[i].start;
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index i = 0; i < theta.size(); ++i) active.push_back(i);
+  estimation::ModelResponse exact, values, plus, minus;
+  ASSERT_TRUE(model.respond(0, theta, active, exact));
+  ASSERT_TRUE(model.respond(0, theta, {}, values));
+  const Eigen::Index rows = exact.output.rows(), columns = exact.output.cols();
+  for (Eigen::Index c = 0; c < columns; ++c) {
+    const double size = values.output.col(c).cwiseAbs().maxCoeff();
+    EXPECT_LT((values.output.col(c) - exact.output.col(c)).cwiseAbs().maxCoeff(), 1e-6 * size);
+  }
+  for (Eigen::Index j = 0; j < theta.size(); ++j) {
+    const double h = 2e-4 * std::max(std::abs(theta(j)), 0.1);
+    Eigen::VectorXd moved = theta;
+    moved(j) = theta(j) + h;
+    ASSERT_TRUE(finer.respond(0, moved, {}, plus));
+    moved(j) = theta(j) - h;
+    ASSERT_TRUE(finer.respond(0, moved, {}, minus));
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      double largest = 0.0, difference = 0.0;
+      for (Eigen::Index k = 0; k < rows; ++k) {
+        const double central = (plus.output(k, c) - minus.output(k, c)) / (2.0 * h);
+        largest = std::max(largest, std::abs(central));
+        difference = std::max(difference, std::abs(central - exact.sensitivity(k * columns + c, j)));
+      }
+      EXPECT_LE(difference, 1e-4 * largest + 1e-9)
+          << model.outputs()[static_cast<std::size_t>(c)].name << " by "
+          << (j < n ? model.parameters()[static_cast<std::size_t>(j)].name : "start");
+    }
+  }
+}
+
+class OutputSensitivities : public ::testing::TestWithParam<std::pair<bool, Interpolation>> {};
+
+TEST_P(OutputSensitivities, OfAllUnknownsAreThoseOfCentralDifferences) {
+  const auto [millard, interpolation] = GetParam();
+  const MusculoskeletalSystem system(millard ? millard_arm() : load_model("arm").model(),
+                                     {.paths = PathSource::kFitted});
+  const Model& arm = system.model();
+  const std::vector<MuscleUnknown> unknowns{
+      make_unknown(arm, {.name = "forces", .muscles = {"all"}, .fields = {"max_isometric_force"}, .factor = true}, "x"),
+      make_unknown(arm,
+                   {.name = "lengths",
+                    .muscles = {"biceps_long"},
+                    .fields = {"optimal_fiber_length", "tendon_slack_length"},
+                    .factor = true},
+                   "x"),
+      make_unknown(arm, {.name = "strain", .muscles = {"all"}, .fields = {"tendon_strain_factor"}}, "x"),
+      make_unknown(arm, {.name = "activation", .muscles = {"all"}, .fields = {"activation_time_constant"}}, "x"),
+      make_unknown(arm, {.name = "gain", .muscles = {"biceps_long", "brachialis"}, .fields = {"excitation_gain"}}, "x"),
+      make_unknown(arm, {.name = "delay", .muscles = {"biceps_long", "brachialis"}, .fields = {"excitation_delay"}},
+                   "x"),
+      make_unknown(arm, {.name = "other delay", .muscles = {"triceps_long"}, .fields = {"excitation_delay"}}, "x")};
+  std::vector<MuscleOutput> outputs;
+  for (const char* name : {"elbow_flexion", "shoulder_flexion", "elbow_flexion.speed", "elbow_flexion.moment",
+                           "biceps_long.fiber_length", "brachialis.tendon_force"})
+    outputs.push_back(parse_output(arm, name, "x"));
+  MotionSegment segment = segment_of(system, 0.6, std::vector<double>(6, 0.05), 0.12);
+  // Between samples, where held ones jump: 0.033 s is none of the outputs' instants.
+  std::vector<double> u;
+  for (const double value : {0.05, 0.1, 0.3, 0.2}) {
+    for (int m = 0; m < 6; ++m) u.push_back(value + 0.02 * m);
+  }
+  segment.drive.excitation = ControlSignals({-0.02, 0.033, 0.071, 0.2}, u, 6, interpolation);
+  const MuscleParametricModel model(system, unknowns, {segment}, {.accuracy = 1e-9, .outputs = outputs});
+  const MuscleParametricModel finer(system, unknowns, {segment}, {.accuracy = 1e-12, .outputs = outputs});
+  expect_central_differences(model, finer);
+}
+
+INSTANTIATE_TEST_SUITE_P(Muscles, OutputSensitivities,
+                         ::testing::Values(std::pair{false, Interpolation::kHold},
+                                           std::pair{false, Interpolation::kLinear},
+                                           std::pair{true, Interpolation::kHold},
+                                           std::pair{true, Interpolation::kLinear}));
+
+TEST(MuscleParametricModel, SegmentsWithTheirOwnLoadsAndLocksAreOneEstimate) {
+  // The subject's flexors are 12 % stronger; lifted with 0, 1 and 2 kg, and once with the shoulder held.
+  Model subject = load_model("arm").model();
+  const std::vector<std::string> flexors{"biceps_long", "biceps_short", "brachialis"};
+  for (const std::string& name : flexors)
+    subject.muscles[static_cast<std::size_t>(subject.muscle(name))].parameters.musculotendon.max_isometric_force *=
+        1.12;
+  const MusculoskeletalSystem generic(load_model("arm").model(), {.paths = PathSource::kFitted});
+  const MusculoskeletalSystem held(load_model("arm").model(),
+                                   {.paths = PathSource::kFitted, .locked = {"shoulder_flexion"}});
+  const std::vector<HeldLoad> one{{"forearm", 1.0, Eigen::Vector3d(0.0, -0.3, 0.0)}},
+      two{{"forearm", 2.0, Eigen::Vector3d(0.0, -0.3, 0.0)}};
+  const MusculoskeletalSystem with_one(generic, one), with_two(generic, two);
+  EXPECT_EQ(generic.fit(), with_two.fit());  // paths fitted once
+  const MusculoskeletalSystem strong(subject, {.paths = PathSource::kFitted}), strong_one(strong, one),
+      strong_two(strong, two), strong_held(subject, {.paths = PathSource::kFitted, .locked = {"shoulder_flexion"}});
+  const std::vector<double> lift{0.05, 0.05, 0.05, 0.4, 0.3, 0.3};
+  const auto tasks = [&](std::vector<const MusculoskeletalSystem*> systems) {
+    std::vector<MotionSegment> segments;
+    for (const MusculoskeletalSystem* system : systems) {
+      segments.push_back(segment_of(*system, 0.5, lift, 0.25));
+      segments.back().system = system;
+    }
+    segments.back().name = "shoulder held";
+    return segments;
+  };
+  const MuscleParametricModel recorded(strong, std::vector<MuscleUnknown>{},
+                                       tasks({&strong, &strong_one, &strong_two, &strong_held}), {});
+  numerics::RandomStream random(3, "noise of the angles");
+  std::vector<estimation::RowMatrix> measured;
+  for (std::size_t s = 0; s < 4; ++s) {
+    Eigen::VectorXd theta = Eigen::VectorXd::Zero(s == 3 ? 2 : 4);
+    theta(s == 3 ? 0 : 1) = 0.5;
+    estimation::ModelResponse response;
+    ASSERT_TRUE(recorded.respond(s, theta, {}, response));
+    for (double& angle : response.output.reshaped()) angle += 1e-3 * random.normal();
+    measured.push_back(response.output);
+  }
+  // The load matters, and the shoulder that is held rests.
+  EXPECT_GT((measured[0] - measured[2]).cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_LT(measured[3].col(0).cwiseAbs().maxCoeff(), 6e-3);
+  const MuscleParametricModel model(
+      generic,
+      {make_unknown(generic.model(),
+                    {.name = "flexors", .muscles = flexors, .fields = {"max_isometric_force"}, .factor = true}, "x")},
+      tasks({&generic, &with_one, &with_two, &held}), {});
+  EXPECT_EQ(model.segment_name(3), "shoulder held");
+  estimation::OutputErrorOptions options{.noise = estimation::OutputNoise::kGiven,
+                                         .noise_start = Eigen::Vector2d::Constant(1e-3),
+                                         .covariance = estimation::CovarianceKind::kWhite,
+                                         .free_initial_conditions = false,
+                                         .threads = 1};
+  const estimation::OutputErrorEstimate estimate = estimation::output_error(model, measured, options);
+  ASSERT_TRUE(estimate.usable()) << estimate.message;
+  const double sigma = std::sqrt(estimate.covariance(0, 0));
+  EXPECT_LT(std::abs(estimate.theta(0) - 1.12), 4.0 * sigma);
+  EXPECT_LT(sigma, 0.01);
+  options.threads = 2;
+  EXPECT_EQ(estimation::output_error(model, measured, options).theta(0), estimate.theta(0));
+}
+
+TEST(MuscleParametricModel, ASystemWithOtherMusclesIsRefused) {
+  Model other = load_model("arm").model();
+  std::swap(other.muscles[0], other.muscles[1]);
+  const MusculoskeletalSystem system(load_model("arm").model()), swapped(other);
+  MotionSegment segment = segment_of(system, 0.5, std::vector<double>(6, 0.1), 0.1);
+  segment.system = &swapped;
+  try {
+    const MuscleParametricModel model(system, std::vector<MuscleUnknown>{}, {segment}, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::AllOf(::testing::HasSubstr("segment 1"), ::testing::HasSubstr("muscle 1 is")));
+  }
+}
+
+TEST(MuscleParametricModel, OneTaskLeavesWhatItDoesNotDetermineWhereItWas) {
+  const MusculoskeletalSystem system(load_model("arm").model(), {.paths = PathSource::kFitted});
+  std::vector<MuscleParameterName> names;
+  for (int m = 0; m < 6; ++m) {
+    for (std::size_t f = 0; f < 3; ++f) names.push_back({m, f});
+  }
+  const MotionSegment task = segment_of(system, 0.5, {0.05, 0.05, 0.05, 0.4, 0.2, 0.1}, 0.4);
+  const MuscleParametricModel model(system, names, {task});
+  Eigen::VectorXd theta(22);
+  for (Eigen::Index i = 0; i < 18; ++i)
+    theta(i) = (i % 2 == 0 ? 1.03 : 0.97) * model.parameters()[static_cast<std::size_t>(i)].start;
+  theta.tail(4) << 0.0, 0.5, 0.0, 0.0;
+  estimation::ModelResponse person;
+  ASSERT_TRUE(model.respond(0, theta, {}, person));
+  numerics::RandomStream random(5, "noise of the angles");
+  for (double& angle : person.output.reshaped()) angle += 1e-3 * random.normal();
+  const auto largest_move = [&](bool hold) {
+    const estimation::OutputErrorEstimate e =
+        estimation::output_error(model, {person.output},
+                                 {.noise = estimation::OutputNoise::kGiven,
+                                  .noise_start = Eigen::Vector2d::Constant(1e-3),
+                                  .covariance = estimation::CovarianceKind::kWhite,
+                                  .free_initial_conditions = false,
+                                  .hold_undetermined = hold});
+    EXPECT_TRUE(e.usable()) << e.message;
+    EXPECT_EQ(e.held.empty(), !hold);
+    // Either way the motion is explained.
+    EXPECT_LT(e.outputs[0].fit.rmse, 2e-3);
+    EXPECT_LT(e.outputs[1].fit.rmse, 2e-3);
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < 18; ++i)
+      largest = std::max(largest, std::abs(e.theta(i) / model.parameters()[static_cast<std::size_t>(i)].start - 1.0));
+    return largest;
+  };
+  const double held = largest_move(true), wandering = largest_move(false);
+  EXPECT_LT(held, 0.15);
+  EXPECT_GT(wandering, 1.5 * held);
+}
+
+TEST(MuscleParametricModel, WrongNamesGetTheNearestOne) {
+  const Model model = load_model("arm").model();
+  try {
+    (void)parse_parameter_name(model, "biceps_long.optimal_fibre_length", "study.toml:3: subject.parameters");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean 'optimal_fiber_length'"));
+  }
+  EXPECT_THROW((void)parse_parameter_name(model, "soleus.optimal_fiber_length", "x"), InputError);
+  EXPECT_THROW((void)parse_parameter_name(model, "soleus", "x"), InputError);
+}
+
+}  // namespace
+}  // namespace veridyn::muscle

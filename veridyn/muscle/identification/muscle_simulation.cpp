@@ -1,0 +1,361 @@
+#include "veridyn/muscle/identification/muscle_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/shaped_drive.hpp"
+#include "veridyn/muscle/simulation/system_evaluator.hpp"
+#include "veridyn/muscle/simulation/system_linearization.hpp"
+#include "veridyn/numerics/dormand_prince.hpp"
+
+namespace veridyn::muscle::internal {
+namespace {
+
+using DoubleStepper = numerics::DormandPrince<double>;
+
+/// Muscles and excitations at theta.
+struct TaskParameters {
+  std::vector<MusculotendonParameters<double>> muscles;
+  std::vector<double> gain, delay;
+};
+
+double& parameter_of(TaskParameters& p, const MuscleParameterName& name) {
+  if (name.field == MuscleParameterName::kGain) return p.gain[at(name.muscle)];
+  if (name.field == MuscleParameterName::kDelay) return p.delay[at(name.muscle)];
+  return field_of(p.muscles[at(name.muscle)], name.field);
+}
+
+TaskParameters parameters_at(const MuscleTask& task, const Eigen::VectorXd& theta) {
+  TaskParameters p;
+  const MuscleGroup<double>& muscles = task.system->muscles();
+  for (std::size_t m = 0; m < muscles.size(); ++m) p.muscles.push_back(muscles.settings(m).musculotendon);
+  p.gain.assign(muscles.size(), 1.0);
+  p.delay.assign(muscles.size(), 0.0);
+  for (std::size_t i = 0; i < task.unknowns.size(); ++i) {
+    const MuscleUnknown& u = task.unknowns[i];
+    for (const MuscleParameterName& name : u.parameters) {
+      double& value = parameter_of(p, name);
+      value = u.factor ? value * theta(signed_index(i)) : theta(signed_index(i));
+    }
+  }
+  return p;
+}
+
+/// Bounds of the search keep estimates inside; a step beyond them must not crash.
+bool possible(const TaskParameters& p) {
+  for (const MusculotendonParameters<double>& m : p.muscles) {
+    for (std::size_t f = 0; f < kEstimableFields; ++f) {
+      const double value = field_of(m, f);
+      if (!std::isfinite(value) || !(f == 3 ? value >= 0.0 && value < 1.5 : value > 0.0)) return false;
+    }
+  }
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return std::all_of(p.gain.begin(), p.gain.end(), finite) && std::all_of(p.delay.begin(), p.delay.end(), finite);
+}
+
+numerics::StepControl step_control(double accuracy) {
+  // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
+  constexpr double kLeast = 1e-6;
+  return {.tolerance = accuracy,
+          .derivative_tolerance = std::max(10.0 * accuracy, kLeast),
+          .smallest_step = 1e-12,
+          .max_steps = 200000};
+}
+
+/// Initial motion, and the activations that muscles start with.
+void set_start(const MuscleTask& task, const Eigen::VectorXd& theta, std::vector<double>& x) {
+  const std::size_t free = task.system->layout().free;
+  for (std::size_t i = 0; i < 2 * free; ++i) x[i] = theta(signed_index(task.unknowns.size() + i));
+}
+
+const double* start_activation(const MuscleTask& task, ShapedDrive& drive) {
+  const Eigen::VectorXd& given = task.segment->start.activation;
+  return given.size() > 0 ? given.data() : drive.at(task.segment->time.front()).excitation.data();
+}
+
+/// Integrates from the first sample to the last; `on_jump(t)` is called where held signals have jumped.
+template <typename Derivative, typename OnStep, typename OnJump>
+bool integrate(const MuscleTask& task, ShapedDrive& drive, DoubleStepper& stepper, const Derivative& derivative,
+               double* x, const OnStep& on_step, const OnJump& on_jump) {
+  const numerics::StepControl control = step_control(task.accuracy);
+  double t = task.segment->time.front();
+  const double end = task.segment->time.back();
+  while (t < end) {
+    const auto step = [&](double, double to) {
+      on_step(to);
+      return true;
+    };
+    if (stepper.advance(derivative, t, x, std::min(end, drive.piece_end(t)), task.system->scales(), control, step) !=
+        numerics::IntegrationEnd::kReached)
+      return false;
+    if (!(t < end)) break;
+    drive.begin_piece(t);
+    on_jump(t);
+    stepper.restart(true);
+  }
+  return true;
+}
+
+bool states_suffice(std::span<const MuscleOutput> outputs) {
+  return std::all_of(outputs.begin(), outputs.end(), [](const MuscleOutput& o) {
+    return o.kind == MuscleOutputKind::kValue || o.kind == MuscleOutputKind::kSpeed;
+  });
+}
+
+/// Moment of the muscles about a coordinate, with those that follow it.
+double muscle_moment(SystemEvaluator<double>& e, const MusculoskeletalSystem& system, int coordinate) {
+  const auto pairs = system.pairs();
+  const double* slope = e.dynamics().state().slope.data();
+  double moment = 0.0;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    moment -= e.tendon_force()[at(pairs[p].muscle)] * e.path_gradient()[p] *
+              system.reduction().share_in(pairs[p].coordinate, coordinate, slope);
+  return moment;
+}
+
+double fiber_length_of(const SystemEvaluator<double>& e, const MusculoskeletalSystem& system,
+                       const TaskParameters& parameters, int muscle) {
+  if (system.layout().fiber_length[at(muscle)] >= 0) return e.fiber_length()[at(muscle)];
+  const MusculotendonParameters<double>& p = parameters.muscles[at(muscle)];
+  return std::hypot(std::max(0.0, e.path_length()[at(muscle)] - p.tendon_slack_length),
+                    p.optimal_fiber_length * std::sin(p.pennation_angle_at_optimal));
+}
+
+/// The forcings of the tangents by unknowns of the muscles, and which unknown each belongs to.
+struct Forcings {
+  std::vector<TangentForcing> list;
+  std::vector<MuscleParameterName> of;  ///< the parameter behind each
+  std::vector<double> factor;           ///< d(parameter)/d(unknown)
+};
+
+Forcings forcings_of(const MuscleTask& task, std::span<const Eigen::Index> active) {
+  Forcings result;
+  for (std::size_t column = 0; column < active.size(); ++column) {
+    const std::size_t i = at(active[column]);
+    if (i >= task.unknowns.size()) continue;
+    const MuscleUnknown& u = task.unknowns[i];
+    for (const MuscleParameterName& name : u.parameters) {
+      double weight = 1.0;
+      if (u.factor && !name.of_excitation())
+        weight = field_of(task.system->muscles().settings(at(name.muscle)).musculotendon, name.field);
+      result.list.push_back({column, at(name.muscle), name.of_excitation() ? TangentForcing::kExcitation : name.field,
+                             name.of_excitation() ? 0.0 : weight});
+      result.of.push_back(name);
+      result.factor.push_back(weight);
+    }
+  }
+  return result;
+}
+
+/// View of one task with its linearisation: simulates it with tangents.
+class TangentSimulation {
+ public:
+  TangentSimulation(const MuscleTask& task, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
+                    TaskParameters parameters, estimation::ModelResponse& response)
+      : task_(task),
+        system_(*task.system),
+        columns_(active.size()),
+        size_(system_.layout().size),
+        forcings_(forcings_of(task, active)),
+        linearization_(system_, parameters.muscles, forcings_.list, columns_),
+        drive_(task.segment->drive, system_.coordinates(), std::move(parameters.gain), std::move(parameters.delay)),
+        stepper_(size_, columns_),
+        x_(size_ * (1 + columns_), 0.0),
+        between_(x_.size()),
+        rate_(size_),
+        simple_outputs_(states_suffice(task.outputs)),
+        response_(response) {
+    set_start(task, theta, x_);
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const std::size_t i = at(active[j]);
+      if (i >= task.unknowns.size()) x_[size_ + (i - task.unknowns.size()) * columns_ + j] = 1.0;
+    }
+  }
+
+  bool run() {
+    const double begin = task_.segment->time.front();
+    linearization_.hold(task_.segment->start.q.data());
+    drive_.begin_piece(begin);
+    static_cast<void>(inputs(begin));
+    linearization_.start_muscles(start_activation(task_, drive_), task_.segment->start.activation.size() == 0,
+                                 x_.data(), x_.data() + size_);
+    if (!write(begin, x_.data())) return false;
+    bool good = true;
+    const auto derivative = [&](double t, const double* x, double* rate) {
+      if (!linearization_.derivative(x, inputs(t), rate)) return false;
+      linearization_.tangent_rate(x + size_, rate + size_);
+      return true;
+    };
+    const auto on_step = [&](double to) {
+      const std::vector<double>& time = task_.segment->time;
+      while (row_ < time.size() && time[row_] <= to) {
+        stepper_.interpolate(time[row_], between_.data());
+        good = write(time[row_], between_.data()) && good;
+      }
+    };
+    const bool reached =
+        integrate(task_, drive_, stepper_, derivative, x_.data(), on_step, [&](double t) { add_jumps(t); });
+    return reached && good && row_ == task_.segment->time.size();
+  }
+
+ private:
+  SystemInputs inputs(double time) {
+    const SystemInputs in = drive_.at(time);
+    for (std::size_t i = 0; i < forcings_.of.size(); ++i) {
+      const MuscleParameterName& name = forcings_.of[i];
+      if (!name.of_excitation()) continue;
+      linearization_.set_weight(
+          i, forcings_.factor[i] * (name.field == MuscleParameterName::kGain ? drive_.by_gain(at(name.muscle))
+                                                                             : drive_.by_delay(at(name.muscle))));
+    }
+    return in;
+  }
+
+  /// Where an excitation that is held jumps, a delay moves the instant: the tangent jumps by the rate before less the
+  /// rate after.
+  void add_jumps(double time) {
+    const SystemInputs after = inputs(time);
+    bool any = false;
+    for (const MuscleParameterName& name : forcings_.of)
+      any = any || (name.field == MuscleParameterName::kDelay && drive_.jumped(at(name.muscle)));
+    if (any) {
+      std::vector<double> u(last_excitation_), rate_before(size_);
+      if (!linearization_.derivative(x_.data(), {u, after.coordinate_force}, rate_before.data())) return;
+      for (std::size_t i = 0; i < forcings_.of.size(); ++i) {
+        const std::size_t m = at(forcings_.of[i].muscle);
+        if (forcings_.of[i].field != MuscleParameterName::kDelay || !drive_.jumped(m)) continue;
+        u[m] = after.excitation[m];
+        if (!linearization_.derivative(x_.data(), {u, after.coordinate_force}, rate_.data())) return;
+        u[m] = last_excitation_[m];
+        for (std::size_t s = 0; s < size_; ++s)
+          x_[size_ + s * columns_ + forcings_.list[i].column] += forcings_.factor[i] * (rate_before[s] - rate_[s]);
+      }
+    }
+    last_excitation_.assign(after.excitation.begin(), after.excitation.end());
+  }
+
+  bool write(double time, const double* x) {
+    const double* const S = x + size_;
+    const SystemInputs in = inputs(time);
+    if (row_ == 0) last_excitation_.assign(in.excitation.begin(), in.excitation.end());
+    if (!simple_outputs_ && !linearization_.derivative(x, in, rate_.data())) return false;
+    const CoordinateReduction& reduction = system_.reduction();
+    for (std::size_t o = 0; o < task_.outputs.size(); ++o) {
+      const MuscleOutput& output = task_.outputs[o];
+      const std::size_t at_row = row_ * task_.outputs.size() + o;
+      double* const row = response_.sensitivity.data() + at_row * columns_;
+      double& value = response_.output(signed_index(row_), signed_index(o));
+      const std::size_t index = at(output.index);
+      if (output.kind == MuscleOutputKind::kTendonForce) {
+        value = linearization_.tendon_force(index);
+        linearization_.tendon_force_row(index, S, row);
+        continue;
+      }
+      if (output.kind == MuscleOutputKind::kFiberLength) {
+        value = linearization_.fiber_length(index, x);
+        linearization_.fiber_length_row(index, S, row);
+        continue;
+      }
+      const int root = reduction.role(output.index) == CoordinateRole::kFree ? reduction.free_root(output.index) : -1;
+      if (root < 0 && output.kind != MuscleOutputKind::kMoment) {
+        value = output.kind == MuscleOutputKind::kValue ? task_.segment->start.q(output.index) : 0.0;
+        std::fill(row, row + columns_, 0.0);
+        continue;
+      }
+      if (output.kind == MuscleOutputKind::kMoment) {
+        value = linearization_.muscle_moment(output.index);
+        linearization_.muscle_moment_row(output.index, S, row);
+        continue;
+      }
+      const std::size_t state = at(root) + (output.kind == MuscleOutputKind::kSpeed ? system_.layout().free : 0);
+      value = x[state];
+      std::copy(S + state * columns_, S + (state + 1) * columns_, row);
+    }
+    ++row_;
+    return true;
+  }
+
+  const MuscleTask& task_;
+  const MusculoskeletalSystem& system_;
+  std::size_t columns_, size_;
+  Forcings forcings_;
+  SystemLinearization linearization_;
+  ShapedDrive drive_;
+  DoubleStepper stepper_;
+  std::vector<double> x_, between_, rate_, last_excitation_;
+  bool simple_outputs_;
+  estimation::ModelResponse& response_;
+  std::size_t row_ = 0;
+};
+
+}  // namespace
+
+bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estimation::ModelResponse& response) {
+  TaskParameters parameters = parameters_at(task, theta);
+  if (!possible(parameters)) return false;
+  const MusculoskeletalSystem& system = *task.system;
+  const StateLayout& layout = system.layout();
+  SystemEvaluator<double> evaluator(system, system.muscles().with<double>(parameters.muscles));
+  evaluator.hold(task.segment->start.q.data());
+  ShapedDrive drive(task.segment->drive, system.coordinates(), parameters.gain, parameters.delay);
+  const std::vector<double>& time = task.segment->time;
+  drive.begin_piece(time.front());
+  std::vector<double> x(layout.size), between(x.size()), rate(x.size());
+  set_start(task, theta, x);
+  evaluator.set_motion(x.data(), x.data() + layout.free);
+  evaluator.start_muscles(start_activation(task, drive), x.data());
+  const bool simple = states_suffice(task.outputs);
+  std::optional<SystemEvaluator<double>> at_sample;
+  if (!simple) at_sample = evaluator;
+  std::size_t row = 0;
+  bool good = true;
+  const auto write = [&](double t, const double* state) {
+    if (!simple && !at_sample->derivative(state, drive.at(t), rate.data())) good = false;
+    for (std::size_t o = 0; o < task.outputs.size(); ++o) {
+      const MuscleOutput& output = task.outputs[o];
+      double& value = response.output(signed_index(row), signed_index(o));
+      switch (output.kind) {
+        case MuscleOutputKind::kTendonForce:
+          value = at_sample->tendon_force()[at(output.index)];
+          continue;
+        case MuscleOutputKind::kFiberLength:
+          value = fiber_length_of(*at_sample, system, parameters, output.index);
+          continue;
+        case MuscleOutputKind::kMoment:
+          value = muscle_moment(*at_sample, system, output.index);
+          continue;
+        case MuscleOutputKind::kValue:
+        case MuscleOutputKind::kSpeed:
+          break;
+      }
+      const bool speed = output.kind == MuscleOutputKind::kSpeed;
+      const bool free = system.reduction().role(output.index) == CoordinateRole::kFree;
+      const std::size_t root = free ? at(system.reduction().free_root(output.index)) : 0;
+      value = free ? state[root + (speed ? layout.free : 0)] : speed ? 0.0 : task.segment->start.q(output.index);
+    }
+    ++row;
+  };
+  write(time.front(), x.data());
+  DoubleStepper stepper(layout.size);
+  const auto derivative = [&](double t, const double* state, double* out) {
+    return evaluator.derivative(state, drive.at(t), out);
+  };
+  const auto on_step = [&](double to) {
+    while (row < time.size() && time[row] <= to) {
+      stepper.interpolate(time[row], between.data());
+      write(time[row], between.data());
+    }
+  };
+  return integrate(task, drive, stepper, derivative, x.data(), on_step, [](double) {}) && good && row == time.size();
+}
+
+bool simulate_tangents(const MuscleTask& task, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
+                       estimation::ModelResponse& response) {
+  TaskParameters parameters = parameters_at(task, theta);
+  if (!possible(parameters)) return false;
+  return TangentSimulation(task, theta, active, std::move(parameters), response).run();
+}
+
+}  // namespace veridyn::muscle::internal

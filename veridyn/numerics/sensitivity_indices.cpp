@@ -1,0 +1,216 @@
+#include "veridyn/numerics/sensitivity_indices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <span>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/random.hpp"
+
+namespace veridyn::numerics {
+namespace {
+
+/// Results of one row of the design: at A, at B, and at A with each column of B in turn.
+struct Rows {
+  std::vector<std::size_t> kept;
+  const Eigen::VectorXd* y = nullptr;
+  std::size_t samples = 0;
+
+  [[nodiscard]] double A(std::size_t row) const { return (*y)(static_cast<Eigen::Index>(row)); }
+  [[nodiscard]] double B(std::size_t row) const { return (*y)(static_cast<Eigen::Index>(samples + row)); }
+  [[nodiscard]] double mixed(std::size_t input, std::size_t row) const {
+    return (*y)(static_cast<Eigen::Index>((2 + input) * samples + row));
+  }
+};
+
+struct Estimate {
+  double mean = 0.0, variance = 0.0;
+  std::vector<double> first, total;
+};
+
+/// Saltelli's and Jansen's estimators over the rows named, some of them several times.
+Estimate estimate_over(const Rows& rows, std::span<const std::size_t> chosen, std::size_t inputs) {
+  Estimate e;
+  const auto n = static_cast<double>(chosen.size());
+  for (const std::size_t r : chosen) e.mean += 0.5 * (rows.A(r) + rows.B(r)) / n;
+  for (const std::size_t r : chosen)
+    e.variance += 0.5 * (std::pow(rows.A(r) - e.mean, 2) + std::pow(rows.B(r) - e.mean, 2)) / n;
+  for (std::size_t i = 0; i < inputs; ++i) {
+    double first = 0.0, total = 0.0;
+    for (const std::size_t r : chosen) {
+      // The mean is taken off: without it the products' own variance would hide small indices.
+      first += (rows.B(r) - e.mean) * (rows.mixed(i, r) - rows.A(r)) / n;
+      total += 0.5 * std::pow(rows.A(r) - rows.mixed(i, r), 2) / n;
+    }
+    e.first.push_back(e.variance > 0.0 ? first / e.variance : 0.0);
+    e.total.push_back(e.variance > 0.0 ? total / e.variance : 0.0);
+  }
+  return e;
+}
+
+/// Percentile of values that are sorted.
+double percentile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto i = static_cast<std::size_t>(at);
+  const double part = at - static_cast<double>(i);
+  return i + 1 < sorted.size() ? sorted[i] + part * (sorted[i + 1] - sorted[i]) : sorted.back();
+}
+
+void set_intervals(SensitivityIndices& result, const Rows& rows, const SensitivityOptions& options) {
+  const std::size_t inputs = result.inputs.size(), n = rows.kept.size();
+  RandomStream random(options.seed, "bootstrap of sensitivity indices");
+  std::vector<std::vector<double>> first(inputs), total(inputs);
+  std::vector<std::size_t> chosen(n);
+  for (std::size_t b = 0; b < options.resamples; ++b) {
+    for (std::size_t& r : chosen) r = rows.kept[random.index(n)];
+    const Estimate e = estimate_over(rows, chosen, inputs);
+    for (std::size_t i = 0; i < inputs; ++i) {
+      first[i].push_back(e.first[i]);
+      total[i].push_back(e.total[i]);
+    }
+  }
+  const double tail = 0.5 * (1.0 - options.level);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    std::sort(first[i].begin(), first[i].end());
+    std::sort(total[i].begin(), total[i].end());
+    SensitivityIndex& index = result.inputs[i];
+    index.first_low = percentile(first[i], tail);
+    index.first_high = percentile(first[i], 1.0 - tail);
+    index.total_low = percentile(total[i], tail);
+    index.total_high = percentile(total[i], 1.0 - tail);
+  }
+}
+
+}  // namespace
+
+void SensitivityOptions::validate() const {
+  if (samples < 2) throw InputError("sensitivity.samples", fmt::format("is {}; must be >= 2", samples));
+  if (resamples < 2) throw InputError("sensitivity.resamples", fmt::format("is {}; must be >= 2", resamples));
+  if (!(level > 0.0 && level < 1.0))
+    throw InputError("sensitivity.level", fmt::format("is {}; must be in (0, 1)", level));
+}
+
+Eigen::MatrixXd sobol_points(std::size_t points, std::size_t dimensions, std::uint64_t seed) {
+  constexpr std::size_t kMostDimensions = 1000;
+  if (dimensions < 1 || dimensions > kMostDimensions)
+    throw InputError("sobol sequence", fmt::format("{} dimensions; must be 1 to {}", dimensions, kMostDimensions));
+  boost::random::sobol sequence(dimensions);
+  RandomStream random(seed, "digital shift of a Sobol sequence");
+  std::vector<std::uint64_t> shift(dimensions);
+  for (std::uint64_t& s : shift) s = random.index(std::uint64_t{1} << 32) << 32 | random.index(std::uint64_t{1} << 32);
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(dimensions));
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      // The sequence's first point, the origin, which Boost leaves out: without it 2^m points are not balanced.
+      const std::uint64_t point = i == 0 ? 0 : sequence();
+      const std::uint64_t bits = point ^ shift[static_cast<std::size_t>(j)];
+      x(i, j) = static_cast<double>(bits >> 11) * 0x1.0p-53;
+    }
+  }
+  return x;
+}
+
+Eigen::MatrixXd variance_design(std::size_t inputs, const SensitivityOptions& options) {
+  options.validate();
+  const auto k = static_cast<Eigen::Index>(inputs), n = static_cast<Eigen::Index>(options.samples);
+  const Eigen::MatrixXd both = sobol_points(options.samples, 2 * inputs, options.seed);
+  Eigen::MatrixXd design(n * (k + 2), k);
+  design.topRows(n) = both.leftCols(k);
+  design.middleRows(n, n) = both.rightCols(k);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    design.middleRows((2 + i) * n, n) = both.leftCols(k);
+    design.block((2 + i) * n, i, n, 1) = both.col(k + i);
+  }
+  return design;
+}
+
+SensitivityIndices variance_indices(const Eigen::VectorXd& results, std::size_t inputs,
+                                    const SensitivityOptions& options) {
+  options.validate();
+  const std::size_t expected = options.samples * (inputs + 2);
+  if (static_cast<std::size_t>(results.size()) != expected)
+    throw InputError("sensitivity indices", fmt::format("{} results for a design of {}", results.size(), expected));
+  Rows rows{{}, &results, options.samples};
+  for (std::size_t r = 0; r < options.samples; ++r) {
+    bool finite = std::isfinite(rows.A(r)) && std::isfinite(rows.B(r));
+    for (std::size_t i = 0; i < inputs; ++i) finite = finite && std::isfinite(rows.mixed(i, r));
+    if (finite) rows.kept.push_back(r);
+  }
+  if (rows.kept.size() < 2)
+    throw InputError("sensitivity indices",
+                     fmt::format("of {} rows {} have finite results; needs 2", options.samples, rows.kept.size()));
+  SensitivityIndices result;
+  result.evaluations = expected;
+  result.dropped = options.samples - rows.kept.size();
+  const Estimate e = estimate_over(rows, rows.kept, inputs);
+  result.mean = e.mean;
+  result.variance = e.variance;
+  result.inputs.resize(inputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    result.inputs[i].first = e.first[i];
+    result.inputs[i].total = e.total[i];
+  }
+  set_intervals(result, rows, options);
+  return result;
+}
+
+Eigen::MatrixXd morris_design(std::size_t inputs, std::size_t trajectories, std::size_t levels, std::uint64_t seed) {
+  if (inputs < 1 || trajectories < 1) throw InputError("morris", "needs at least one input and one trajectory");
+  if (levels < 2 || levels % 2 != 0)
+    throw InputError("morris.levels", fmt::format("is {}; must be even and at least 2", levels));
+  RandomStream random(seed, "trajectories of Morris");
+  const double spacing = 1.0 / static_cast<double>(levels - 1);
+  const double step = 0.5 * static_cast<double>(levels) * spacing;
+  Eigen::MatrixXd design(static_cast<Eigen::Index>(trajectories * (inputs + 1)), static_cast<Eigen::Index>(inputs));
+  std::vector<std::size_t> order(inputs);
+  for (std::size_t t = 0; t < trajectories; ++t) {
+    auto row = static_cast<Eigen::Index>(t * (inputs + 1));
+    for (std::size_t i = 0; i < inputs; ++i) {
+      order[i] = i;
+      // Of the lower half of the grid, so that a step up stays inside; half of the walks' inputs step down instead.
+      const double low = static_cast<double>(random.index(levels / 2)) * spacing;
+      design(row, static_cast<Eigen::Index>(i)) = random.index(2) == 0 ? low : low + step;
+    }
+    for (std::size_t i = inputs; i-- > 1;) std::swap(order[i], order[random.index(i + 1)]);
+    for (const std::size_t i : order) {
+      const auto column = static_cast<Eigen::Index>(i);
+      design.row(row + 1) = design.row(row);
+      ++row;
+      design(row, column) += design(row, column) < 0.5 ? step : -step;
+    }
+  }
+  return design;
+}
+
+std::vector<MorrisEffect> morris_effects(const Eigen::MatrixXd& design, const Eigen::VectorXd& results) {
+  const Eigen::Index k = design.cols(), walks = k > 0 ? design.rows() / (k + 1) : 0;
+  if (design.rows() != results.size() || walks * (k + 1) != design.rows())
+    throw InputError("morris", fmt::format("{} results for a design of {} points", results.size(), design.rows()));
+  std::vector<std::vector<double>> effects(static_cast<std::size_t>(k));
+  for (Eigen::Index w = 0; w < walks; ++w) {
+    const Eigen::Index first = w * (k + 1);
+    if (!results.segment(first, k + 1).allFinite()) continue;
+    for (Eigen::Index row = first; row < first + k; ++row) {
+      Eigen::Index moved = 0;
+      (design.row(row + 1) - design.row(row)).cwiseAbs().maxCoeff(&moved);
+      const double step = design(row + 1, moved) - design(row, moved);
+      effects[static_cast<std::size_t>(moved)].push_back((results(row + 1) - results(row)) / step);
+    }
+  }
+  std::vector<MorrisEffect> result(effects.size());
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const auto n = static_cast<double>(effects[i].size());
+    for (const double e : effects[i]) {
+      result[i].mean += e / n;
+      result[i].absolute += std::abs(e) / n;
+    }
+    for (const double e : effects[i]) result[i].sd += std::pow(e - result[i].mean, 2) / std::max(1.0, n - 1.0);
+    result[i].sd = std::sqrt(result[i].sd);
+  }
+  return result;
+}
+
+}  // namespace veridyn::numerics
