@@ -35,15 +35,46 @@ TEST(VerdictOf, IsEffectiveWhereOnlyThePredictionMayBeUsed) {
 }
 
 TEST(Marked, LeavesWhatIsFixedOrNotExcited) {
-  const std::vector<Parameter> parameters{{.name = "a", .status = ParameterStatus::kIdentified},
-                                          {.name = "b", .status = ParameterStatus::kFixed},
-                                          {.name = "c", .status = ParameterStatus::kNotExcited}};
+  const std::vector<Parameter> parameters{
+      {.name = "a", .value = 1.0, .low95 = 0.9, .high95 = 1.1, .status = ParameterStatus::kIdentified},
+      {.name = "b", .status = ParameterStatus::kFixed},
+      {.name = "c", .status = ParameterStatus::kNotExcited}};
   const auto effective = marked(parameters, GroupVerdict::kEffective);
   EXPECT_EQ(effective[0].status, ParameterStatus::kEffective);
   EXPECT_EQ(effective[1].status, ParameterStatus::kFixed);
   EXPECT_EQ(effective[2].status, ParameterStatus::kNotExcited);
   EXPECT_EQ(marked(parameters, GroupVerdict::kRejected)[0].status, ParameterStatus::kRejected);
   EXPECT_EQ(marked(parameters, GroupVerdict::kIdentified)[0].status, ParameterStatus::kIdentified);
+}
+
+TEST(Marked, CallsWhatHasAWideIntervalWeak) {
+  // Half the width over the value: 0.4 and 0.6; the limit is 0.5.
+  std::vector<Parameter> parameters{
+      {.name = "a", .value = -1.0, .low95 = -1.4, .high95 = -0.6, .status = ParameterStatus::kIdentified},
+      {.name = "b", .value = -1.0, .low95 = -1.6, .high95 = -0.4, .status = ParameterStatus::kIdentified},
+      {.name = "c", .value = 1.0, .low95 = -1.0, .high95 = 3.0, .status = ParameterStatus::kInsignificant}};
+  const auto of_identified = marked(parameters, GroupVerdict::kIdentified);
+  EXPECT_EQ(of_identified[0].status, ParameterStatus::kIdentified);
+  EXPECT_EQ(of_identified[1].status, ParameterStatus::kWeak);
+  EXPECT_EQ(of_identified[2].status, ParameterStatus::kInsignificant);
+  EXPECT_EQ(marked(parameters, GroupVerdict::kEffective)[1].status, ParameterStatus::kEffective);
+}
+
+TEST(Marked, SaysWhichParameterARowObjectsTo) {
+  const std::vector<Parameter> parameters{{.name = "mu", .status = ParameterStatus::kIdentified},
+                                          {.name = "C_f", .status = ParameterStatus::kIdentified},
+                                          {.name = "C_r", .status = ParameterStatus::kNotExcited}};
+  const std::vector<Evidence> rows{{.about = "mu", .outcome = Outcome::kCare},
+                                   {.about = "C_f", .outcome = Outcome::kPassed},
+                                   {.about = "C_r", .outcome = Outcome::kFailed}};
+  const auto found = marked(parameters, rows, ParameterStatus::kImplausible);
+  EXPECT_EQ(found[0].status, ParameterStatus::kImplausible);
+  EXPECT_EQ(found[1].status, ParameterStatus::kIdentified);
+  EXPECT_EQ(found[2].status, ParameterStatus::kNotExcited);
+  // What is known to be implausible stays so where the group predicts, and is rejected with it.
+  EXPECT_EQ(marked(found, GroupVerdict::kEffective)[0].status, ParameterStatus::kImplausible);
+  EXPECT_EQ(marked(found, GroupVerdict::kEffective)[1].status, ParameterStatus::kEffective);
+  EXPECT_EQ(marked(found, GroupVerdict::kRejected)[0].status, ParameterStatus::kRejected);
 }
 
 }  // namespace

@@ -45,5 +45,20 @@ TEST(SetInterval, IsEndlessForWhatIsNotDetermined) {
   EXPECT_DOUBLE_EQ(p.p_value, 1.0);
 }
 
+TEST(Widen, StretchesTheIntervalByTheRootOfTheVarianceFactor) {
+  Parameter p = parameter(5.0, 1.0);
+  set_interval(p, 10.0);
+  const double half = p.high95 - p.value;
+  widen(p, 4.0, 10.0, 0.05);
+  EXPECT_DOUBLE_EQ(p.sigma, 2.0);
+  EXPECT_NEAR(p.high95 - p.value, 2.0 * half, 1e-12);
+  EXPECT_EQ(p.status, ParameterStatus::kIdentified);  // t = 2.5, p = 0.031
+  widen(p, 4.0, 10.0, 0.05);
+  EXPECT_EQ(p.status, ParameterStatus::kInsignificant);
+  const Parameter before = p;
+  widen(p, 0.5, 10.0, 0.05);
+  EXPECT_DOUBLE_EQ(p.sigma, before.sigma);
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

@@ -78,7 +78,8 @@ VehicleTrajectory drive_bicycle(const std::function<Model(double)>& model_at, do
       out.r.push_back(r);
       out.steer.push_back(steer(t));
       out.yaw_acceleration.push_back(k1.dr);
-      out.longitudinal_acceleration.push_back(-r * v);
+      out.longitudinal_acceleration.push_back((speed(t + h) - speed(std::max(0.0, t - h))) / (t > 0.0 ? 2.0 * h : h) -
+                                              r * v);
       out.lateral_acceleration.push_back(k1.lateral_acceleration);
     }
     const auto k2 = rates(t + 0.5 * h, v + 0.5 * h * k1.dv, r + 0.5 * h * k1.dr);

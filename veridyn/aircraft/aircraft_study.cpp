@@ -222,9 +222,12 @@ estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& a
   of_all.insert(of_all.end(), flown.begin(), flown.end());
   estimate.judgement = judgement_of(analysis, of_all);
   estimate.evidence = std::move(of_all);
-  for (const CoefficientResult& result : analysis.coefficients)
-    for (const estimation::Evidence& row : result.evidence)
-      if (row.about == result.name) estimate.evidence.push_back(row);
+  for (const CoefficientResult& result : analysis.coefficients) {
+    for (const estimation::Evidence& row : result.evidence) {
+      const bool of_parameter = result.chosen && result.chosen->find(row.about) != nullptr;
+      if (row.about == result.name || of_parameter) estimate.evidence.push_back(row);
+    }
+  }
   return estimate;
 }
 

@@ -1,5 +1,8 @@
 #include "veridyn/estimation/analysis.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::estimation {
@@ -26,11 +29,35 @@ GroupVerdict verdict_of(const Judgement& judgement) {
   return may_be_used(judgement.prediction) ? GroupVerdict::kEffective : GroupVerdict::kRejected;
 }
 
+namespace {
+
+bool was_estimated(const Parameter& p) {
+  return p.status != ParameterStatus::kFixed && p.status != ParameterStatus::kNotExcited;
+}
+
+bool is_weak(const Parameter& p) {
+  return p.status == ParameterStatus::kIdentified && !(0.5 * (p.high95 - p.low95) <= kWeakShare * std::abs(p.value));
+}
+
+}  // namespace
+
 std::vector<Parameter> marked(std::vector<Parameter> parameters, GroupVerdict verdict) {
-  if (verdict != GroupVerdict::kEffective && verdict != GroupVerdict::kRejected) return parameters;
   for (Parameter& p : parameters) {
-    if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited) continue;
-    p.status = verdict == GroupVerdict::kEffective ? ParameterStatus::kEffective : ParameterStatus::kRejected;
+    if (verdict == GroupVerdict::kIdentified && is_weak(p)) p.status = ParameterStatus::kWeak;
+    if (!was_estimated(p)) continue;
+    const bool worse = p.status == ParameterStatus::kImplausible || p.status == ParameterStatus::kAtBound;
+    if (verdict == GroupVerdict::kRejected) p.status = ParameterStatus::kRejected;
+    if (verdict == GroupVerdict::kEffective && !worse) p.status = ParameterStatus::kEffective;
+  }
+  return parameters;
+}
+
+std::vector<Parameter> marked(std::vector<Parameter> parameters, std::span<const Evidence> rows,
+                              ParameterStatus status) {
+  for (Parameter& p : parameters) {
+    const bool objected =
+        std::ranges::any_of(rows, [&](const Evidence& row) { return row.about == p.name && !row.passed(); });
+    if (objected && was_estimated(p)) p.status = status;
   }
   return parameters;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,9 +32,14 @@ enum class GroupVerdict {
 /// it only predicts, else rejected.
 [[nodiscard]] GroupVerdict verdict_of(const Judgement& judgement);
 
-/// The parameters of a group as its verdict marks them: what is neither fixed nor unexcited becomes effective or
-/// rejected with the group.
+/// The parameters of a group as its verdict marks them: what is neither fixed nor unexcited becomes rejected with the
+/// group, or effective where nothing worse is known of it (implausible, at its bound); of an identified group what has
+/// a wide interval becomes weak.
 [[nodiscard]] std::vector<Parameter> marked(std::vector<Parameter> parameters, GroupVerdict verdict);
+
+/// The parameters with `status` for those that a row is about which did not pass; what is fixed or not excited stays.
+[[nodiscard]] std::vector<Parameter> marked(std::vector<Parameter> parameters, std::span<const Evidence> rows,
+                                            ParameterStatus status);
 
 /// Parameters by one method.
 struct MethodResult {

@@ -14,6 +14,12 @@ std::string_view to_string(ParameterStatus status) {
       return "identified";
     case ParameterStatus::kInsignificant:
       return "insignificant";
+    case ParameterStatus::kWeak:
+      return "weak";
+    case ParameterStatus::kImplausible:
+      return "implausible";
+    case ParameterStatus::kAtBound:
+      return "at_bound";
     case ParameterStatus::kEffective:
       return "effective";
     case ParameterStatus::kNotExcited:
@@ -42,6 +48,18 @@ void set_interval(Parameter& parameter, double degrees_of_freedom) {
   }
   p.t = p.sigma > 0.0 ? p.value / p.sigma : std::copysign(kInfinity, p.value);
   p.p_value = numerics::student_t_two_sided_p(p.t, degrees_of_freedom);
+}
+
+void widen(Parameter& p, double variance_factor, double degrees_of_freedom, double significance) {
+  if (!(variance_factor > 1.0) || !(p.sigma > 0.0) || !std::isfinite(p.sigma)) return;
+  const double factor = std::sqrt(variance_factor);
+  p.sigma *= factor;
+  p.low95 = p.value + factor * (p.low95 - p.value);
+  p.high95 = p.value + factor * (p.high95 - p.value);
+  p.t = p.value / p.sigma;
+  p.p_value = numerics::student_t_two_sided_p(p.t, degrees_of_freedom);
+  if (p.status == ParameterStatus::kIdentified && !(p.p_value < significance))
+    p.status = ParameterStatus::kInsignificant;
 }
 
 }  // namespace veridyn::estimation

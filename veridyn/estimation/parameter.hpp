@@ -10,12 +10,18 @@ namespace veridyn::estimation {
 enum class ParameterStatus {
   kIdentified,     ///< differs from zero at the chosen significance
   kInsignificant,  ///< determined, but zero lies inside its interval: marked, not zeroed
+  kWeak,           ///< differs from zero, but its interval is wide: see kWeakShare
   kEffective,      ///< predicts, but is no physical constant: the model lacks something that it makes up for
+  kImplausible,    ///< determined, but no individual of this kind has such a value
+  kAtBound,        ///< its search ended at the limit of what was allowed: neither value nor error bar are the data's
   kNotExcited,     ///< the data do not determine it; its error bar is the bound on what is not excited
   kRejected,       ///< the estimate as a whole must not be used
   kFixed           ///< pinned by the user
 };
 [[nodiscard]] std::string_view to_string(ParameterStatus status);
+
+/// Half the width of the interval of 95 % over the value, beyond which what is identified is `weak`.
+inline constexpr double kWeakShare = 0.5;
 
 /// One estimated parameter, whichever method estimated it and whatever it belongs to: in results of estimators, in
 /// `Estimate` and so in estimate.json, in tables of the report.
@@ -44,5 +50,9 @@ struct Parameter {
 /// Sets interval, t and p_value from value and sigma, by Student's t with `degrees_of_freedom`. What is fixed has no
 /// test: its p_value is NaN.
 void set_interval(Parameter& parameter, double degrees_of_freedom);
+
+/// Widens the interval by a factor on the variance (1 or less changes nothing); what is then no longer distinguishable
+/// from zero at the level `significance` becomes insignificant.
+void widen(Parameter& parameter, double variance_factor, double degrees_of_freedom, double significance);
 
 }  // namespace veridyn::estimation

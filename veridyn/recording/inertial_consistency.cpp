@@ -310,21 +310,18 @@ std::optional<SensorMatrix> compare_rates(const Recording& recording, const Iner
 }
 
 Evidence delay_row(double delay_s, double sigma_s) {
-  constexpr double kStandardErrors = 3.0;
   constexpr double kCare_s = 0.02;
   constexpr double kFailed_s = 0.2;
-  const double excess = std::abs(delay_s) - kStandardErrors * sigma_s;
-  Evidence row{.name = "delay of the accelerometer",
-               .about = "accelerometer and gyro",
-               .outcome = excess > kFailed_s ? estimation::Outcome::kFailed
-                          : excess > kCare_s ? estimation::Outcome::kCare
-                                             : estimation::Outcome::kPassed,
-               .value = delay_s,
-               .limit = kCare_s,
-               .scale = "s",
-               .text = fmt::format("the accelerometer is {:.3f} +- {:.3f} s {} gyro and attitude", std::abs(delay_s),
-                                   sigma_s, delay_s < 0.0 ? "before" : "behind"),
-               .bears_on = estimation::kAllPurposes};
+  Evidence row{
+      .name = "delay of the accelerometer",
+      .about = "accelerometer and gyro",
+      .outcome = estimation::outcome_of(delay_s, sigma_s, estimation::Tolerance::about(0.0, kCare_s, kFailed_s)),
+      .value = delay_s,
+      .limit = kCare_s,
+      .scale = "s",
+      .text = fmt::format("the accelerometer is {:.3f} +- {:.3f} s {} gyro and attitude", std::abs(delay_s), sigma_s,
+                          delay_s < 0.0 ? "before" : "behind"),
+      .bears_on = estimation::kAllPurposes};
   if (!row.passed()) row.advice = "check the stamps of accelerometer and gyro, and the filters that they went through";
   return row;
 }

@@ -14,16 +14,16 @@ namespace {
 using estimation::Evidence;
 using estimation::Outcome;
 using estimation::Purpose;
+using estimation::Tolerance;
 
-/// Standard errors beyond which a difference is no chance: over the nine elements of a gain one in a hundred clean
-/// recordings would exceed three of them by chance alone.
-constexpr double kStandardErrors = 3.0;
+/// Over the nine elements of a gain one in a hundred clean recordings would exceed these by chance alone.
+using estimation::kBeyondChance;
 /// Share of an axis by which it may answer another one and still be that axis.
 constexpr double kOwnAxis = 0.5;
 
 /// By how much an element is off beyond what chance explains.
 double excess(const SensorMatrix& m, Eigen::Index i, Eigen::Index j) {
-  return std::max(0.0, std::abs(m.gain(i, j) - (i == j ? 1.0 : 0.0)) - kStandardErrors * m.gain_sigma(i, j));
+  return std::max(0.0, std::abs(m.gain(i, j) - (i == j ? 1.0 : 0.0)) - kBeyondChance * m.gain_sigma(i, j));
 }
 
 struct Element {
@@ -66,7 +66,7 @@ std::string swapped_axes(const SensorMatrix& m, const SensorNames& names) {
 std::string wrong_signs(const SensorMatrix& m, const SensorNames& names) {
   std::vector<std::string> axes;
   for (Eigen::Index i = 0; i < 3; ++i)
-    if (m.gain(i, i) < -kStandardErrors * m.gain_sigma(i, i) && m.gain(i, i) < -kOwnAxis * 0.1)
+    if (m.gain(i, i) < -kBeyondChance * m.gain_sigma(i, i) && m.gain(i, i) < -kOwnAxis * 0.1)
       axes.push_back(axis(names, i));
   if (axes.empty()) return {};
   std::string list = axes.front();
@@ -93,7 +93,7 @@ std::string common_factor(const SensorMatrix& m) {
 
 }  // namespace
 
-std::string mistaken_unit(double factor) {
+std::string mistaken_unit(double factor, double doubt) {
   struct Known {
     double factor;
     const char* text;
@@ -108,8 +108,10 @@ std::string mistaken_unit(double factor) {
                                                  {0.51444, "m/s taken for knots"},
                                                  {3.2808, "feet taken for metres"},
                                                  {0.3048, "metres taken for feet"}}};
-  for (const Known& known : kKnown)
-    if (std::abs(factor / known.factor - 1.0) < 0.03) return known.text;
+  constexpr double kNear = 0.03, kMostDoubt = 0.15;
+  const auto distance = [factor](const Known& known) { return std::abs(factor / known.factor - 1.0); };
+  const Known& nearest = *std::ranges::min_element(kKnown, {}, distance);
+  if (distance(nearest) < std::clamp(doubt, kNear, kMostDoubt)) return nearest.text;
   for (const double power : {1e-3, 1e-2, 1e2, 1e3})
     if (std::abs(factor / power - 1.0) < 0.05) return fmt::format("a factor of {:g} between units", power);
   return {};
@@ -141,9 +143,8 @@ std::vector<Evidence> sensor_matrix_evidence(const SensorMatrix& m, const Sensor
   rows.push_back(
       {.name = fmt::format("gain of the {}", names.sensor),
        .about = names.sensor,
-       .outcome = !fault                                 ? Outcome::kPassed
-                  : worst.excess > tolerance.gain_failed ? Outcome::kFailed
-                                                         : Outcome::kCare,
+       .outcome =
+           estimation::outcome_of(worst.excess, 0.0, Tolerance::about(0.0, tolerance.gain_care, tolerance.gain_failed)),
        .value = m.gain(worst.row, worst.column),
        .limit = tolerance.gain_care,
        .scale = "reading over truth",
@@ -156,11 +157,10 @@ std::vector<Evidence> sensor_matrix_evidence(const SensorMatrix& m, const Sensor
        .advice = fault ? fmt::format("check unit, sign, axis and calibration of the {} in [data.map]", names.sensor)
                        : std::string()});
   Eigen::Index i = 0;
-  const Eigen::Vector3d off = (m.bias.cwiseAbs() - kStandardErrors * m.bias_sigma).cwiseMax(0.0);
+  const Eigen::Vector3d off = (m.bias.cwiseAbs() - kBeyondChance * m.bias_sigma).cwiseMax(0.0);
   const double largest = off.maxCoeff(&i);
-  const Outcome outcome = largest > tolerance.bias_failed ? Outcome::kFailed
-                          : largest > tolerance.bias_care ? Outcome::kCare
-                                                          : Outcome::kPassed;
+  const Outcome outcome =
+      estimation::outcome_of(largest, 0.0, Tolerance::about(0.0, tolerance.bias_care, tolerance.bias_failed));
   rows.push_back(
       {.name = fmt::format("bias of the {}", names.sensor),
        .about = names.sensor,

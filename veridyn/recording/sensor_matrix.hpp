@@ -51,6 +51,7 @@ struct SensorNames {
                                                     double tolerance);
 
 /// A unit that was taken for another, by the factor between the two: "g instead of m/s^2"; empty where none is near.
-[[nodiscard]] std::string mistaken_unit(double factor);
+/// @param doubt  of the factor, as a share of it; at most 0.15 counts
+[[nodiscard]] std::string mistaken_unit(double factor, double doubt = 0.0);
 
 }  // namespace veridyn::recording

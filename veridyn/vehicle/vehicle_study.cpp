@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/identification/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 
@@ -172,8 +173,10 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   VehicleAnalysis out;
   out.signals = prepare_drive_signals(study.log.mapped, study.signals);
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
-  out.identification =
-      identify_parameters({out.signals, out.segments, study.vehicle, study.signals, study.identify}, progress);
+  const std::vector<estimation::Evidence> recording =
+      drive_evidence(study.log.mapped, out.signals, out.segments, study.vehicle, study.signals, progress);
+  out.identification = identify_parameters(
+      {out.signals, out.segments, study.vehicle, study.signals, study.identify, recording}, progress);
   out.interrupted = out.identification.interrupted;
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
@@ -221,6 +224,14 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
                                          : fmt::format("it explains {:.1f} % of the yaw rate's variance of this drive",
                                                        100.0 * std::max(0.0, r->fit.r2)),
                   .bears_on = estimation::Purpose::kPrediction}};
+    for (estimation::Evidence& row :
+         drive_evidence(study.log.mapped, out.signals, out.segments, given.vehicle, study.signals, progress)) {
+      // Validation says nothing of the parameters.
+      const bool predicts = row.bears_on.contains(estimation::Purpose::kPrediction);
+      row.bears_on = estimation::Purpose::kData;
+      if (predicts) row.bears_on = row.bears_on | estimation::Purpose::kPrediction;
+      id.checks.push_back(std::move(row));
+    }
     id.judgement = estimation::judge(id.checks);
     id.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
     id.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", id.checks.front().text);

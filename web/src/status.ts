@@ -5,6 +5,10 @@ type Tone = 'good' | 'caution' | 'bad' | 'muted' | 'info';
 const kStatus: Record<string, [label: string, tone: Tone, mark: string]> = {
   identified: ['identified', 'good', '✓'],
   insignificant: ['insignificant', 'muted', '○'],
+  weak: ['weak', 'caution', '~'],
+  effective: ['effective', 'caution', '!'],
+  implausible: ['implausible', 'bad', '?'],
+  at_bound: ['at its bound', 'bad', '|'],
   not_excited: ['not excited', 'caution', '–'],
   rejected: ['rejected', 'bad', '×'],
   fixed: ['fixed', 'info', '='],

@@ -34,8 +34,8 @@ TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
   log << "aircraft,fault,finding,data,parameters,reason\n";
   for (std::size_t i = 0; i < aircraft.size(); ++i) {
     std::string wrong;
-    for (const auto& [name, text] : clean[i].wrong) wrong += text + "; ";
-    log << fmt::format("{},none,{} confident,{},{},\"{}\"\n", aircraft[i], clean[i].confident,
+    for (const auto& [name, text] : clean[i].confidence.wrong) wrong += text + "; ";
+    log << fmt::format("{},none,{} confident,{},{},\"{}\"\n", aircraft[i], clean[i].confidence.confident,
                        to_string(clean[i].analysis.estimate.judgement.data.grade),
                        to_string(clean[i].analysis.estimate.judgement.parameters.grade), wrong);
   }
@@ -44,11 +44,11 @@ TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
   numerics::parallel_for(trials.size(), 0, [&](std::size_t k) {
     const std::size_t i = k % aircraft.size();
     Trial trial = testing::try_fault(studies[i], clean[i], faults()[k / aircraft.size()]);
-    trial.aircraft = aircraft[i];
+    trial.subject = aircraft[i];
     std::string reason = trial.reason;
     std::ranges::replace(reason, '"', '\'');
     const std::lock_guard lock(writing);
-    log << fmt::format("{},{},{},{},{},\"{}\"\n", trial.aircraft, trial.fault, to_string(trial.finding), trial.data,
+    log << fmt::format("{},{},{},{},{},\"{}\"\n", trial.subject, trial.fault, to_string(trial.finding), trial.data,
                        trial.parameters, reason)
         << std::flush;
     trials[k] = std::move(trial);
@@ -73,8 +73,8 @@ struct Coverage {
     ++flights;
     data_yes += data ? 1 : 0;
     both_yes += data && judgement.parameters.grade == estimation::Grade::kYes ? 1 : 0;
-    confident += flight.confident;
-    covered += flight.covered;
+    confident += flight.confidence.confident;
+    covered += flight.confidence.covered;
   }
   [[nodiscard]] double share() const { return static_cast<double>(covered) / static_cast<double>(confident); }
 };
@@ -99,8 +99,7 @@ TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
       // What is counted; a hundred flights' signals take gigabytes.
       Identified kept;
       kept.refused = flight.refused;
-      kept.confident = flight.confident;
-      kept.covered = flight.covered;
+      kept.confidence = flight.confidence;
       kept.analysis.estimate.judgement = flight.analysis.estimate.judgement;
       flights[k][assumed == testing::Assumed::kTruth ? 0 : 1] = std::move(kept);
     }
@@ -131,8 +130,8 @@ TEST(Campaign, NamesWhatIsWrong) {
   const Identified clean = testing::identified(study);
   ASSERT_FALSE(clean.refused) << clean.message;
   EXPECT_EQ(clean.analysis.estimate.judgement.data.grade, estimation::Grade::kYes);
-  EXPECT_LE(clean.wrong.size(), 1u);
-  EXPECT_GT(clean.confident, 10u);
+  EXPECT_LE(clean.confidence.wrong.size(), 1u);
+  EXPECT_GT(clean.confidence.confident, 10u);
   for (const char* name :
        {"accelerometer in g", "gyro x reversed", "gyro frozen for 10 %", "roll reversed", "velocity in knots",
         "alpha reversed", "deflections in degrees", "clock in ms taken for s"}) {

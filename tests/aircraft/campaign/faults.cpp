@@ -4,13 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/channel_faults.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::aircraft::testing {
 namespace {
 
-using Names = std::vector<const char*>;
+using Names = test::ChannelNames;
 using Change = std::function<void(FlightStudy&)>;
 
 const Names kAccel{"accel_x", "accel_y", "accel_z"};
@@ -20,110 +21,30 @@ const Names kVelocity{"vel_north", "vel_east", "vel_down"};
 const Names kPitot{"dynamic_pressure"};
 const Names kSurfaces{"elevator", "aileron", "rudder"};
 
-/// Each channel by a function of its samples.
-void each(FlightStudy& study, const Names& names, const std::function<void(Channel&)>& change) {
-  Recording& recording = study.mapped.recording;
-  for (const char* name : names) {
-    Channel channel = recording.at(name);
-    change(channel);
-    recording.set(std::move(channel));
-  }
+/// A fault of the recording.
+Change in_recording(test::RecordingFault fault) {
+  return [fault = std::move(fault)](FlightStudy& study) { fault(study.mapped.recording); };
 }
 
 Change scaled(Names names, double factor, double offset = 0.0) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      for (double& v : c.value) v = factor * v + offset;
-    });
-  };
+  return in_recording(test::scaled(std::move(names), factor, offset));
 }
-
-Change swapped(const char* first, const char* second) {
-  return [=](FlightStudy& study) {
-    Channel a = study.mapped.recording.at(first), b = study.mapped.recording.at(second);
-    std::swap(a.value, b.value);
-    study.mapped.recording.set(std::move(a));
-    study.mapped.recording.set(std::move(b));
-  };
-}
-
-void restamp(Channel& c, const std::function<double(double)>& stamp) {
-  std::vector<double> times(c.times().begin(), c.times().end());
-  for (double& t : times) t = stamp(t);
-  c.time = make_time_base(std::move(times));
-}
-
-Change delayed(Names names, double delay_s) {
-  return [=](FlightStudy& study) {
-    each(study, names, [=](Channel& c) { restamp(c, [=](double t) { return t + delay_s; }); });
-  };
-}
-
-/// The value of the last of every so many seconds, repeated.
-Change held(Names names, double period_s) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      double until = -kInfinity, value = 0.0;
-      for (std::size_t i = 0; i < c.size(); ++i) {
-        if (c.times()[i] >= until) {
-          value = c.value[i];
-          until = c.times()[i] + period_s - 1e-6;
-        }
-        c.value[i] = value;
-      }
-    });
-  };
-}
-
-/// Stands still for a share of the recording from its middle on.
-Change frozen(Names names, double share) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      const auto n = static_cast<double>(c.size());
-      const auto first = static_cast<std::size_t>(0.4 * n), last = static_cast<std::size_t>((0.4 + share) * n);
-      std::fill(c.value.begin() + static_cast<std::ptrdiff_t>(first),
-                c.value.begin() + static_cast<std::ptrdiff_t>(last), c.value[first]);
-    });
-  };
-}
-
+Change swapped(const char* first, const char* second) { return in_recording(test::swapped(first, second)); }
+Change delayed(Names names, double delay_s) { return in_recording(test::delayed(std::move(names), delay_s)); }
+Change held(Names names, double period_s) { return in_recording(test::held(std::move(names), period_s)); }
+Change frozen(Names names, double share) { return in_recording(test::frozen(std::move(names), share)); }
 Change clipped(Names names, double low, double high) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      for (double& v : c.value) v = std::clamp(v, low, high);
-    });
-  };
+  return in_recording(test::clipped(std::move(names), low, high));
 }
-
-Change quantised(Names names, double step) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      for (double& v : c.value) v = step * std::round(v / step);
-    });
-  };
-}
-
+Change quantised(Names names, double step) { return in_recording(test::quantised(std::move(names), step)); }
 Change with_spikes(Names names, double size, std::size_t every) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      for (std::size_t i = every / 2; i < c.size(); i += every) c.value[i] += size;
-    });
-  };
+  return in_recording(test::with_spikes(std::move(names), size, every));
 }
-
-/// First-order low pass, as a smoothing that the autopilot logs.
 Change smoothed(Names names, double time_constant_s) {
-  return [=](FlightStudy& study) {
-    each(study, names, [&](Channel& c) {
-      double state = c.value.front();
-      for (std::size_t i = 1; i < c.size(); ++i) {
-        const double share = 1.0 - std::exp(-(c.times()[i] - c.times()[i - 1]) / time_constant_s);
-        state += share * (c.value[i] - state);
-        c.value[i] = state;
-      }
-    });
-  };
+  return in_recording(test::smoothed(std::move(names), time_constant_s));
 }
+Change with_clock(std::function<double(double)> stamp) { return in_recording(test::with_clock(std::move(stamp))); }
+Change with_gaps(double every_s, double length_s) { return in_recording(test::with_gaps(every_s, length_s)); }
 
 /// Turns the three channels about an axis of the body.
 Change turned(Names names, const Eigen::Vector3d& rotation) {
@@ -150,33 +71,6 @@ void without_gravity(FlightStudy& study) {
     for (std::size_t k = 0; k < 3; ++k) a[k].value[i] += g(static_cast<Eigen::Index>(k));
   }
   for (Channel& channel : a) recording.set(std::move(channel));
-}
-
-Change of_all_channels(const std::function<void(Channel&)>& change) {
-  return [=](FlightStudy& study) {
-    Names names;
-    std::vector<std::string> owned = study.mapped.recording.names();
-    for (const std::string& name : owned) names.push_back(name.c_str());
-    each(study, names, change);
-  };
-}
-
-Change with_clock(std::function<double(double)> stamp) {
-  return of_all_channels([=](Channel& c) { restamp(c, stamp); });
-}
-
-/// What was recorded in a stretch of every so many seconds is lost.
-Change with_gaps(double every_s, double length_s) {
-  return of_all_channels([=](Channel& c) {
-    std::vector<double> times, values;
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      if (std::fmod(c.times()[i], every_s) < length_s && c.times()[i] > every_s) continue;
-      times.push_back(c.times()[i]);
-      values.push_back(c.value[i]);
-    }
-    c.time = make_time_base(std::move(times));
-    c.value = std::move(values);
-  });
 }
 
 Change of_subject(std::function<void(Subject&)> change) {

@@ -47,8 +47,27 @@ TEST(VehiclePlausibility, RefusesWhatNoVehicleHas) {
   EXPECT_EQ(worst({determined("I_z", 5e3, 50.0)}, known), Outcome::kCare);
   EXPECT_EQ(worst({determined("I_z", 5e3, 800.0)}, known), Outcome::kPassed) << "not beyond its error";
   EXPECT_EQ(worst({determined("mu", 5.0, 0.1)}, known), Outcome::kFailed);
-  EXPECT_EQ(worst({determined("mu", 0.9, 1e-113)}, known), Outcome::kFailed) << "a search that ended at a bound";
+  EXPECT_EQ(bound_rows(std::vector{determined("mu", 0.9, 1e-113)}).size(), 1U) << "a search that ended at a bound";
   EXPECT_EQ(worst({determined("C_f", 3e3, 10.0)}, known), Outcome::kFailed) << "a stiffness in N/deg";
+}
+
+TEST(VehiclePlausibility, SaysWhatEndedAtItsBound) {
+  Parameter p = determined("mu", 3.0, 0.1);
+  EXPECT_TRUE(bound_rows(std::vector{p}).empty());
+  p.status = estimation::ParameterStatus::kAtBound;
+  const auto rows = bound_rows(std::vector{p});
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows.front().about, "mu");
+  EXPECT_EQ(rows.front().outcome, Outcome::kFailed);
+}
+
+TEST(VehiclePlausibility, ComparesUndersteerAsAnAnglePerG) {
+  VehicleParameters<double> known;
+  known.mass = 1200.0;
+  known.a = known.b = 1.3;
+  EXPECT_EQ(worst({determined("understeer_gradient", 0.005, 1e-4)}, known), Outcome::kPassed);
+  EXPECT_EQ(worst({determined("understeer_gradient", 0.03, 1e-3)}, known), Outcome::kCare);
+  EXPECT_EQ(worst({determined("understeer_gradient", -0.05, 1e-3)}, known), Outcome::kFailed);
 }
 
 TEST(VehiclePlausibility, SaysNothingOfWhatWasNotDetermined) {

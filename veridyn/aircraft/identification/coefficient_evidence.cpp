@@ -142,13 +142,12 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
                                                       {"Cl_p", -1.0, "the sign of gyro_x, or a delay"},
                                                       {"Cm_q", -1.0, "the sign of gyro_y, or a delay"},
                                                       {"Cn_r", -1.0, "the sign of gyro_z, or a delay"}}};
-  constexpr double kStandardErrors = 3.0;
   constexpr double kLiftSlopeFactor = 2.0;
   std::vector<Evidence> rows;
   const auto row = [&](const estimation::Parameter& p, bool plausible, double limit, std::string text,
                        std::string advice) {
     rows.push_back({.name = fmt::format("plausibility of {}", p.name),
-                    .about = std::string(name_of(coefficient)),
+                    .about = p.name,
                     .outcome = passed_or(plausible, Outcome::kCare),
                     .value = p.value,
                     .limit = limit,
@@ -166,7 +165,7 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
     if (coefficient == Coefficient::kCL && !linear_in_alpha) continue;
     const estimation::Parameter* p = estimation::find_parameter(parameters, e.parameter);
     if (p == nullptr || !std::isfinite(p->sigma) || !std::isfinite(p->value)) continue;
-    const bool plausible = !(-e.sign * p->value > kStandardErrors * p->sigma);
+    const bool plausible = !(-e.sign * p->value > estimation::kBeyondChance * p->sigma);
     row(*p, plausible, 0.0,
         plausible ? fmt::format("{} has the sign that an aircraft has", p->name)
                   : fmt::format("{} is {:.3g} +- {:.2g}, but every aircraft has it {}", p->name, p->value, p->sigma,
@@ -177,8 +176,8 @@ std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const esti
   if (slope != nullptr && linear_in_alpha && std::isfinite(slope->sigma) && slope->value > 0.0) {
     const double aspect_ratio = subject.span * subject.span / subject.wing_area;
     const double theory = 2.0 * kPi * aspect_ratio / (2.0 + std::sqrt(4.0 + aspect_ratio * aspect_ratio));
-    const double low = theory / kLiftSlopeFactor - kStandardErrors * slope->sigma;
-    const double high = theory * kLiftSlopeFactor + kStandardErrors * slope->sigma;
+    const double low = theory / kLiftSlopeFactor - estimation::kBeyondChance * slope->sigma;
+    const double high = theory * kLiftSlopeFactor + estimation::kBeyondChance * slope->sigma;
     const bool plausible = slope->value >= low && slope->value <= high;
     row(*slope, plausible, theory,
         fmt::format("the lift slope is {:.3g} per rad, lifting-line theory of a wing of aspect ratio {:.3g} gives "

@@ -319,10 +319,9 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
     estimation::widen(*fit.chosen, checks.scatter, options.significance);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
-    if (!result.per_unit_inertia) {
-      for (estimation::Evidence& row : plausibility(given.coefficient, fit.chosen->parameters, flight.subject))
-        result.evidence.push_back(std::move(row));
-    }
+    std::vector<estimation::Evidence> plausible;
+    if (!result.per_unit_inertia) plausible = plausibility(given.coefficient, fit.chosen->parameters, flight.subject);
+    result.evidence.insert(result.evidence.end(), plausible.begin(), plausible.end());
     for (const FlightEvidence& of_recording : flight.recording)
       if (of_recording.bears_on(given.coefficient)) result.evidence.push_back(of_recording.row);
     result.judgement = estimation::judge(result.evidence);
@@ -334,8 +333,9 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
           explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
     } else {
       verdict = {reached, objection(result, checks)};
-      fit.chosen->parameters = estimation::marked(std::move(fit.chosen->parameters), reached);
     }
+    fit.chosen->parameters = estimation::marked(
+        estimation::marked(std::move(fit.chosen->parameters), plausible, ParameterStatus::kImplausible), reached);
     result.identification_fit = checks.identification_fit;
     result.holdout_fit = checks.holdout_fit;
     result.unmodelled_share = checks.unmodelled_share;

@@ -12,6 +12,7 @@
 #include "veridyn/core/units.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
 #include "veridyn/recording/sample_evidence.hpp"
+#include "veridyn/recording/time_order.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -24,31 +25,22 @@ using estimation::Purpose;
 const std::vector<Coefficient> kByAlpha{Coefficient::kCL, Coefficient::kCD, Coefficient::kCm};
 const std::vector<Coefficient> kByBeta{Coefficient::kCY, Coefficient::kCl, Coefficient::kCn};
 
-/// Standard errors beyond which a difference is no chance.
-constexpr double kStandardErrors = 3.0;
-
-/// "with care" and "failed" limits on what exceeds chance.
-struct Limits {
-  double care, failed;
-};
-
-Outcome beyond(double difference, double sigma, Limits limits) {
-  const double excess = std::abs(difference) - kStandardErrors * sigma;
-  return excess > limits.failed ? Outcome::kFailed : excess > limits.care ? Outcome::kCare : Outcome::kPassed;
-}
+using estimation::kBeyondChance;
+using estimation::outcome_of;
+using estimation::Tolerance;
 
 FlightEvidence airspeed_row(const Determined& scale) {
-  constexpr Limits kLimits{0.02, 0.15};
+  constexpr double kCare = 0.02;
   /// A scale that is off by so much changes coefficients by twice as much.
   constexpr double kWellDetermined = 0.01;
   constexpr double kUndetermined = 0.1;
   Evidence row{.name = "airspeed against ground velocity",
                .about = "airspeed",
                .value = scale.value,
-               .limit = kLimits.care,
+               .limit = kCare,
                .scale = "reading over truth",
                .bears_on = kAllPurposes};
-  row.outcome = beyond(scale.value - 1.0, scale.sigma, kLimits);
+  row.outcome = outcome_of(scale.value, scale.sigma, Tolerance::about(1.0, kCare, 0.15));
   if (row.outcome == Outcome::kPassed && scale.sigma > kWellDetermined) {
     row.outcome = Outcome::kNotVerified;
     row.text =
@@ -58,7 +50,7 @@ FlightEvidence airspeed_row(const Determined& scale) {
             : fmt::format(
                   "the scale of the airspeed is verified to no better than {:.0f} % by the headings flown "
                   "({:.3f} +- {:.3f}); an error of 1 % changes coefficients by 2 %",
-                  100.0 * kStandardErrors * scale.sigma, scale.value, scale.sigma);
+                  100.0 * kBeyondChance * scale.sigma, scale.value, scale.sigma);
     row.advice = "fly several full circles, or calibrate the pitot tube";
     return {std::move(row)};
   }
@@ -74,14 +66,16 @@ FlightEvidence airspeed_row(const Determined& scale) {
 }
 
 FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
-  constexpr Limits kBias{0.5 * kDegree, 5.0 * kDegree};
+  constexpr double kCare = 0.5 * kDegree, kFailed = 5.0 * kDegree;
   constexpr double kLargestFlowAngle = 0.5 * kPi;
   const bool impossible = fit.largest_reading > kLargestFlowAngle;
   Evidence row{.name = fmt::format("{} vane against inertial angle", name),
                .about = name,
-               .outcome = impossible ? Outcome::kFailed : beyond(fit.bias.value, fit.bias.sigma, kBias),
+               .outcome = impossible
+                              ? Outcome::kFailed
+                              : outcome_of(fit.bias.value, fit.bias.sigma, Tolerance::about(0.0, kCare, kFailed)),
                .value = fit.bias.value / kDegree,
-               .limit = kBias.care / kDegree,
+               .limit = kCare / kDegree,
                .scale = "deg",
                .bears_on = kAllPurposes};
   if (row.outcome == Outcome::kPassed) row.outcome = Outcome::kNotVerified;
@@ -97,14 +91,14 @@ FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
 }
 
 FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name) {
-  constexpr Limits kSlope{0.1, 0.4};
+  constexpr double kCare = 0.1, kFailed = 0.4;
   /// An error of the scale is one of the derivatives by the angle.
   constexpr double kVerified = 0.15;
   Evidence row{.name = fmt::format("scale of the {} vane", name),
                .about = name,
                .outcome = Outcome::kNotVerified,
                .value = fit ? fit->slope.value : kNaN,
-               .limit = kSlope.care,
+               .limit = kCare,
                .scale = "reading over angle",
                .text = fmt::format("the scale of the {} vane is not verified by this recording: the controls do not "
                                    "move the angle enough",
@@ -113,8 +107,8 @@ FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string&
                .advice = fmt::format("fly sharp {} doublets, or calibrate the vane in a wind tunnel",
                                      name == "alpha" ? "elevator" : "rudder")};
   if (fit) {
-    const double doubt = std::abs(fit->slope.value - 1.0) + kStandardErrors * fit->slope.sigma;
-    row.outcome = beyond(fit->slope.value - 1.0, fit->slope.sigma, kSlope);
+    const double doubt = std::abs(fit->slope.value - 1.0) + kBeyondChance * fit->slope.sigma;
+    row.outcome = outcome_of(fit->slope.value, fit->slope.sigma, Tolerance::about(1.0, kCare, kFailed));
     const bool passed = row.outcome == Outcome::kPassed;
     row.text = fmt::format("in manoeuvres the {} vane reads {:.2f} +- {:.2f} times what gyro and accelerometer say{}",
                            name, fit->slope.value, fit->slope.sigma,
@@ -135,48 +129,20 @@ FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string&
 
 /// What the alignment of the clocks found that no sensor can be: early, or of opposite sign.
 std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
-  constexpr double kEarly_s = 0.03;
+  const auto order_of = [](const DelayReport& report) -> recording::TimeOrder {
+    return {.is_control = report.group == "elevator" || report.group == "aileron" || report.group == "rudder"};
+  };
   std::vector<FlightEvidence> rows;
-  const auto is_surface = [](const DelayReport& report) {
-    return report.group == "elevator" || report.group == "aileron" || report.group == "rudder";
-  };
-  const auto early = [&](const DelayReport& report) {
-    return report.delay_s < -std::max(kEarly_s, kStandardErrors * report.sigma_s) && report.correlation > 0.0;
-  };
-  const auto row = [&](const char* name, std::string about, double value, std::string text, std::string advice) {
-    rows.push_back({{.name = name,
-                     .about = std::move(about),
-                     .outcome = Outcome::kCare,
-                     .value = value,
-                     .limit = kEarly_s,
-                     .scale = "s",
-                     .text = std::move(text),
-                     .bears_on = kAllPurposes,
-                     .advice = std::move(advice)}});
-  };
   const auto attitude = std::ranges::find(delays, "attitude", &DelayReport::group);
-  const bool gyro_is_late = attitude != delays.end() && early(*attitude);
-  if (gyro_is_late) {
-    row("delay of the gyro", "gyro", -attitude->delay_s,
-        fmt::format("the gyro is {:.2f} s late: the attitude, which follows from it, shows the motion before",
-                    -attitude->delay_s),
-        "check the gyro's stamps and the filter that its values went through");
-  }
+  const bool gyro_is_late = attitude != delays.end() && recording::is_early(*attitude, order_of(*attitude));
+  if (gyro_is_late)
+    rows.push_back({recording::late_row("gyro", "attitude", -attitude->delay_s, order_of(*attitude).early_s)});
   for (const DelayReport& report : delays) {
-    if (report.correlation < 0.0 && report.text.starts_with("opposite sign")) {
-      row("sign against the other sensors", report.group, report.correlation,
-          fmt::format("{} moves against what {} implies (correlation {:.2f})", report.group, report.reference,
-                      report.correlation),
-          fmt::format("check the sign of {}", report.group));
-    } else if (early(report) && !gyro_is_late) {
-      const bool surface = is_surface(report);
-      row("order in time", report.group, report.delay_s,
-          surface
-              ? fmt::format("{} is recorded {:.2f} s after its effect", report.group, -report.delay_s)
-              : fmt::format("{} shows the motion {:.2f} s before {}", report.group, -report.delay_s, report.reference),
-          fmt::format("check the stamps of {}, or give its delay: delays.{} = \"{:.0f} ms\"", report.group,
-                      report.group, 1000.0 * (surface ? -report.delay_s : report.delay_s)));
-    }
+    const recording::TimeOrder order = order_of(report);
+    if (recording::is_opposite(report))
+      rows.push_back({recording::opposite_row(report)});
+    else if (recording::is_early(report, order) && !gyro_is_late)
+      rows.push_back({recording::early_row(report, order)});
   }
   return rows;
 }
@@ -253,17 +219,17 @@ void raise_causes(std::vector<FlightEvidence>& causes, std::span<const FlightEvi
 
 /// A sensor whose samples the reconstruction had to refuse, or that is noisier than assumed.
 FlightEvidence innovation_row(const SensorReport& sensor) {
-  constexpr Limits kRefused{0.01, 0.2};
+  constexpr double kCare = 0.01, kFailed = 0.2;
   const estimation::InnovationSummary& s = sensor.innovations;
   const double count = static_cast<double>(std::max<std::size_t>(1, s.count));
   const double refused = static_cast<double>(s.rejected + s.recovered) / count;
   Evidence row{.name = "agreement with the reconstruction",
                .about = sensor.channel,
                .value = refused,
-               .limit = kRefused.care,
+               .limit = kCare,
                .scale = "share of the samples",
                .bears_on = kAllPurposes};
-  row.outcome = beyond(refused, 0.0, kRefused);
+  row.outcome = outcome_of(refused, 0.0, Tolerance::about(0.0, kCare, kFailed));
   row.text = fmt::format(
       "{:.1f} % of the samples of {} contradict the reconstructed motion{}", 100.0 * refused, sensor.channel,
       row.outcome == Outcome::kFailed ? ": either the sensor is wrong or what it is compared with" : "");
@@ -307,7 +273,7 @@ std::optional<FlightEvidence> gust_row(const Reconstruction& reconstruction, con
     const double mean = sum / static_cast<double>(count);
     const double independent = std::max(1.0, distance / (2.0 * std::max(1.0, length[i])));
     const double sigma_of_mean = sigma[i] / std::sqrt(independent);
-    const Outcome of_axis = beyond(mean, sigma_of_mean, {0.3, 3.0});
+    const Outcome of_axis = outcome_of(mean, sigma_of_mean, Tolerance::about(0.0, 0.3, 3.0));
     if (i == 0 || of_axis > outcome || (of_axis == outcome && std::abs(mean) > std::abs(worst))) {
       outcome = of_axis;
       worst = mean;

@@ -74,4 +74,28 @@ struct Evidence {
   return passed ? Outcome::kPassed : otherwise;
 }
 
+/// Standard errors beyond which a difference is no chance.
+inline constexpr double kBeyondChance = 3.0;
+
+/// What a statistic may be: outside of `low` to `high` with care, outside of `lowest` to `highest` failed.
+struct Tolerance {
+  double low = 0.0, high = 0.0, lowest = 0.0, highest = 0.0;
+
+  /// `care` and `failed` to either side of a centre.
+  [[nodiscard]] static constexpr Tolerance about(double centre, double care, double failed) {
+    return {centre - care, centre + care, centre - failed, centre + failed};
+  }
+};
+
+/// The outcome for a statistic that is somewhere from `low` to `high`: what all of that range exceeds counts.
+[[nodiscard]] constexpr Outcome outcome_between(double low, double high, const Tolerance& tolerance) {
+  if (high < tolerance.lowest || low > tolerance.highest) return Outcome::kFailed;
+  return high < tolerance.low || low > tolerance.high ? Outcome::kCare : Outcome::kPassed;
+}
+
+/// The outcome for a statistic with a standard error: what it exceeds by more than kBeyondChance of them counts.
+[[nodiscard]] constexpr Outcome outcome_of(double value, double sigma, const Tolerance& tolerance) {
+  return outcome_between(value - kBeyondChance * sigma, value + kBeyondChance * sigma, tolerance);
+}
+
 }  // namespace veridyn::estimation

@@ -61,6 +61,17 @@ class SegmentCost : public ceres::CostFunction {
   std::size_t segment_;
 };
 
+/// Whether a search ended at the limit of what an unknown may be.
+bool ends_at_bound(double value, const ModelParameter& unknown) {
+  constexpr double kRounding = 1e-6;
+  const auto at = [&](double bound) {
+    const double range = unknown.high - unknown.low;
+    return std::isfinite(bound) &&
+           std::abs(value - bound) <= kRounding * (std::isfinite(range) ? range : std::abs(bound - unknown.start));
+  };
+  return at(unknown.low) || at(unknown.high);
+}
+
 /// (x - start) / sigma of unknowns with a prior; zero rows for the others.
 class PriorCost : public ceres::CostFunction {
  public:
@@ -393,6 +404,7 @@ class Estimation {
       }
       p.status = p.p_value < options_.significance ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
       if (result_.learned_share(a) < 0.1) p.status = ParameterStatus::kNotExcited;
+      if (ends_at_bound(p.value, *unknowns[static_cast<std::size_t>(i)])) p.status = ParameterStatus::kAtBound;
     }
   }
 

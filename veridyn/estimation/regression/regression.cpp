@@ -81,17 +81,7 @@ RegressionEstimate estimate(const RegressionData& data, Method method, const Reg
 void widen(RegressionEstimate& estimate, double variance_factor, double significance) {
   if (!(variance_factor > 1.0)) return;
   estimate.covariance *= variance_factor;
-  const double factor = std::sqrt(variance_factor);
-  for (Parameter& p : estimate.parameters) {
-    if (!(p.sigma > 0.0) || !std::isfinite(p.sigma)) continue;
-    p.sigma *= factor;
-    p.low95 = p.value + factor * (p.low95 - p.value);
-    p.high95 = p.value + factor * (p.high95 - p.value);
-    p.t = p.value / p.sigma;
-    p.p_value = numerics::student_t_two_sided_p(p.t, estimate.degrees_of_freedom);
-    if (p.status == ParameterStatus::kIdentified && !(p.p_value < significance))
-      p.status = ParameterStatus::kInsignificant;
-  }
+  for (Parameter& p : estimate.parameters) widen(p, variance_factor, estimate.degrees_of_freedom, significance);
 }
 
 std::string describe_combination(const Eigen::VectorXd& combination, const std::vector<std::string>& names) {

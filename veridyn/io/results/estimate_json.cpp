@@ -45,19 +45,20 @@ std::string read_text(const ordered_json& object, const char* key, const std::st
 
 ParameterStatus read_status(const std::string& text, const std::string& place) {
   for (const ParameterStatus status :
-       {ParameterStatus::kIdentified, ParameterStatus::kInsignificant, ParameterStatus::kNotExcited,
-        ParameterStatus::kEffective, ParameterStatus::kRejected, ParameterStatus::kFixed}) {
+       {ParameterStatus::kIdentified, ParameterStatus::kInsignificant, ParameterStatus::kWeak,
+        ParameterStatus::kEffective, ParameterStatus::kImplausible, ParameterStatus::kAtBound,
+        ParameterStatus::kNotExcited, ParameterStatus::kRejected, ParameterStatus::kFixed}) {
     if (estimation::to_string(status) == text) return status;
   }
   throw InputError(
-      place, fmt::format("status '{}' is not one of identified, insignificant, effective, not_excited, rejected, fixed",
+      place, fmt::format("status '{}' is not one of identified, insignificant, weak, effective, implausible, at_bound, "
+                         "not_excited, rejected, fixed",
                          text));
 }
 
 /// A usable parameter has a value, and no error bar is negative. What was rejected or not excited may have neither.
 void check_parameter(const Parameter& p, const std::string& file) {
-  const bool usable = p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kInsignificant ||
-                      p.status == ParameterStatus::kEffective || p.status == ParameterStatus::kFixed;
+  const bool usable = p.status != ParameterStatus::kNotExcited && p.status != ParameterStatus::kRejected;
   const std::string place = fmt::format("{}: parameter '{}'", file, p.name);
   if (usable && !std::isfinite(p.value))
     throw InputError(place, fmt::format("has no value, but status {}", estimation::to_string(p.status)));

@@ -13,11 +13,15 @@
 /// style without the brackets ("m/s", "deg", "" for none) and numbers are in that unit: convert before filling in.
 namespace veridyn::report {
 
-/// What became of an estimate, shown as a coloured badge. The first five are those of `estimate.json`.
+/// What became of an estimate, shown as a coloured badge. The first nine are those of `estimate.json`.
 enum class Status {
   kNone,           ///< no badge
   kIdentified,     ///< trust it
   kInsignificant,  ///< not distinguishable from zero
+  kWeak,           ///< distinguishable from zero, but with a wide interval
+  kEffective,      ///< predicts, but is no physical constant
+  kImplausible,    ///< no individual of this kind has such a value
+  kAtBound,        ///< its search ended at the limit of what was allowed
   kNotExcited,     ///< the data hold nothing about it
   kRejected,       ///< estimated, but wrong by some check
   kFixed,          ///< given, not estimated

@@ -17,9 +17,13 @@ std::string_view badge_class(Status status) {
     case Status::kIdentified:
     case Status::kGood:
       return "good";
+    case Status::kWeak:
+    case Status::kEffective:
     case Status::kNotExcited:
     case Status::kCaution:
       return "caution";
+    case Status::kImplausible:
+    case Status::kAtBound:
     case Status::kRejected:
     case Status::kBad:
       return "bad";

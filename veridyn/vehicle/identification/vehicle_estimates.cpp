@@ -46,7 +46,8 @@ Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
 std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double max_relative_sigma) {
   for (Parameter& p : parameters) {
     const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
-    if (physical && !(p.sigma <= max_relative_sigma * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
+    if (physical && p.status != ParameterStatus::kAtBound && !(p.sigma <= max_relative_sigma * std::abs(p.value)))
+      p.status = ParameterStatus::kNotExcited;
   }
   return parameters;
 }
@@ -86,9 +87,9 @@ GeometrySlopes geometry_slopes(const VehicleProblem& problem, const AxleEstimate
           slope(&VehicleParameters<double>::b, problem.options.b_sigma)};
 }
 
-/// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset.
-Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimate& axle, const GeometrySlopes& slopes,
-                                bool steer_bias) {
+/// Covariance of C_f, C_r, I_z, the understeer gradient and, where there is one, the steer offset; mass, a and b taken
+/// as exact.
+Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimate& axle, bool steer_bias) {
   const Eigen::Index n = steer_bias ? 5 : 4;
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n, n);
   if (axle.usable) {
@@ -102,7 +103,6 @@ Eigen::MatrixXd axle_covariance(const VehicleProblem& problem, const AxleEstimat
     P.block(0, 3, 3, 1) = axle.covariance * g;
     P.block(3, 0, 1, 3) = (axle.covariance * g).transpose();
     P(3, 3) = g.dot(axle.covariance * g);
-    P.topLeftCorner(4, 4) += known_covariance(problem, slopes, values_of(axle));
   } else {
     P.diagonal().head(3).setConstant(kInfinity);
     P(3, 3) = axle.understeer_only ? axle.understeer_sigma * axle.understeer_sigma : kInfinity;
@@ -117,7 +117,13 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const AxleEstimate& a
   e.method = vehicle_method(axle.method);
   e.message = axle.message;
   e.usable = axle.usable;
-  e.covariance = axle_covariance(problem, axle, slopes, steer_bias);
+  e.covariance = axle_covariance(problem, axle, steer_bias);
+  if (axle.usable) {
+    e.given_covariance = Eigen::MatrixXd::Zero(e.covariance.rows(), e.covariance.cols());
+    e.given_covariance.topLeftCorner(4, 4) = known_covariance(problem, slopes, values_of(axle));
+    e.covariance += e.given_covariance;
+  }
+  e.degrees_of_freedom = std::max(1.0, axle.degrees_of_freedom);
   const auto add = [&](const char* name, const char* unit, double v) {
     const auto i = static_cast<Eigen::Index>(e.parameters.size());
     e.parameters.push_back(
@@ -177,9 +183,8 @@ Places places_of(const DriveModelOptions& options) {
   return places;
 }
 
-/// Covariance of the rows of `places`, with what the uncertainty of mass, a and b adds.
-Eigen::MatrixXd output_error_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
-                                        const estimation::OutputErrorEstimate& result,
+/// Covariance of the rows of `places`, mass, a and b taken as exact.
+Eigen::MatrixXd output_error_covariance(const estimation::OutputErrorEstimate& result,
                                         const VehicleParameters<double>& p, const Places& places) {
   const Eigen::Index n = places.rows(), understeer = places.understeer;
   const Eigen::Vector3d g = understeer_slope(p);
@@ -200,6 +205,15 @@ Eigen::MatrixXd output_error_covariance(const VehicleProblem& problem, const Geo
       if (J(i, j) != 0.0 && !std::isfinite(result.covariance(j, j))) P(i, i) = kInfinity;
     }
   }
+  return P;
+}
+
+/// What the uncertainty of mass, a and b adds to the rows of `places`.
+Eigen::MatrixXd given_covariance(const VehicleProblem& problem, const GeometrySlopes& slopes,
+                                 const estimation::OutputErrorEstimate& result, const VehicleParameters<double>& p,
+                                 const Places& places) {
+  const Eigen::Index understeer = places.understeer;
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(places.rows(), places.rows());
   const Eigen::Matrix4d extra =
       known_covariance(problem, slopes, {result.theta(0), result.theta(1), result.theta(2), understeer_gradient(p)});
   // Rows of C_f, C_r, I_z (where free) and the understeer gradient.
@@ -224,6 +238,7 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
   e.usable = result.usable();
   e.message = result.message;
   if (!e.usable) return e;
+  e.degrees_of_freedom = std::max(1.0, result.degrees_of_freedom);
   const VehicleIdentifyOptions& o = problem.options;
   const Places places = places_of(o.model);
   VehicleParameters<double> p = problem.start;
@@ -232,7 +247,8 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
   p.I_z = result.theta(2);
   p.a = result.theta(3);
   p.b = problem.start.wheelbase() - p.a;
-  e.covariance = output_error_covariance(problem, slopes, result, p, places);
+  e.given_covariance = given_covariance(problem, slopes, result, p, places);
+  e.covariance = output_error_covariance(result, p, places) + e.given_covariance;
   for (Eigen::Index i = 0; i < places.rows(); ++i) {
     if (i == places.understeer) {
       e.parameters.push_back(describe("understeer_gradient", "rad s^2/m", understeer_gradient(p), e.covariance(i, i),
@@ -245,7 +261,8 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
     made.sigma_white = given.sigma_white;
     made.variance_inflation = given.variance_inflation;
     made.unexcited_share = given.unexcited_share;
-    if (given.status == ParameterStatus::kNotExcited) made.status = given.status;
+    if (given.status == ParameterStatus::kNotExcited || given.status == ParameterStatus::kAtBound)
+      made.status = given.status;
     e.parameters.push_back(std::move(made));
   }
   e.parameters = with_unexcited(std::move(e.parameters), o.max_relative_sigma);

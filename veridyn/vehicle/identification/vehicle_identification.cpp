@@ -6,6 +6,7 @@
 
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/vehicle_judgement.hpp"
+#include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
 
 namespace veridyn::vehicle {
@@ -19,6 +20,8 @@ VehicleIdentification not_excited(const VehicleProblem& problem) {
   out.verdict = estimation::GroupVerdict::kNotExcited;
   out.reason = fmt::format("there is nothing to identify from: {}", problem.segments.text);
   out.estimates.push_back(unexcited_estimate(problem, out.reason));
+  out.checks.assign(problem.recording.begin(), problem.recording.end());
+  out.judgement = estimation::judge(out.checks);
   return out;
 }
 
@@ -30,9 +33,17 @@ std::string why_no_estimate(std::span<const VehicleEstimate> estimates, const Eq
   return reason;
 }
 
-/// What the drive does that the model does not is in all methods.
-std::vector<VehicleEstimate> marked(std::vector<VehicleEstimate> estimates, estimation::GroupVerdict verdict) {
-  for (VehicleEstimate& e : estimates) e.parameters = estimation::marked(std::move(e.parameters), verdict);
+/// What the drive does that the model does not is in all methods; what is implausible is each method's own.
+std::vector<VehicleEstimate> marked(std::vector<VehicleEstimate> estimates, const VehicleParameters<double>& known,
+                                    estimation::GroupVerdict verdict) {
+  using estimation::ParameterStatus;
+  for (VehicleEstimate& e : estimates) {
+    const std::vector<estimation::Evidence> implausible = plausibility(e.parameters, known);
+    const std::vector<estimation::Evidence> at_bound = bound_rows(e.parameters);
+    e.parameters = estimation::marked(std::move(e.parameters), implausible, ParameterStatus::kImplausible);
+    e.parameters = estimation::marked(std::move(e.parameters), at_bound, ParameterStatus::kAtBound);
+    e.parameters = estimation::marked(std::move(e.parameters), verdict);
+  }
   return estimates;
 }
 
@@ -65,14 +76,22 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   if (out.interrupted) return out;
   out.chosen =
       choose_method(out.estimates, by_regression ? &by_regression->regression : nullptr, problem.options.method);
-  const VehicleEstimate* const chosen = out.best();
-  if (chosen == nullptr) {
+  if (out.best() == nullptr) {
     out.reason = why_no_estimate(out.estimates, by_regression);
+    out.checks.assign(problem.recording.begin(), problem.recording.end());
+    out.judgement = estimation::judge(out.checks);
     return out;
   }
 
   progress.stage("validating on the hold-out");
-  const DriveTheta theta = theta_of(problem, *chosen, out.output_error ? &*out.output_error : nullptr, progress);
+  const std::optional<PartsAgreement> parts =
+      compare_parts(problem, out.chosen, by_regression, output_error ? &*output_error : nullptr, progress);
+  DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, progress);
+  const double widening = variance_factor(parts);
+  theta.covariance *= widening;
+  for (VehicleEstimate& e : out.estimates)
+    if (e.method == out.chosen) e = widened(std::move(e), widening, problem.options.significance);
+  const VehicleEstimate* const chosen = out.best();
   const DriveModelOptions& model = problem.options.model;
   out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta, progress);
   out.validation = predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta, progress);
@@ -84,7 +103,8 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
                                                        .output_error = output_error ? &*output_error : nullptr,
                                                        .fit = out.fit,
                                                        .validation = out.validation,
-                                                       .by_noise = by_noise});
+                                                       .by_noise = by_noise,
+                                                       .parts = parts});
   out.verdict = judgement.verdict;
   out.reason = std::move(judgement.reason);
   out.checks = std::move(judgement.checks);
@@ -92,7 +112,7 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   for (const estimation::Evidence& row : out.checks)
     if (!row.passed()) out.warnings.push_back(row.text);
   if (out.verdict != estimation::GroupVerdict::kRejected) out.identified = identified_vehicle(problem, *chosen);
-  out.estimates = marked(std::move(out.estimates), out.verdict);
+  out.estimates = marked(std::move(out.estimates), problem.start, out.verdict);
   return out;
 }
 

@@ -57,6 +57,9 @@ struct VehicleEstimate {
   /// equation error `steer_offset`, what the biases of steering, gyro and accelerometer add up to as a steer angle.
   std::vector<estimation::Parameter> parameters;
   Eigen::MatrixXd covariance;  ///< in their order
+  /// The part of it that comes from what is not known of mass, a and b; empty: none.
+  Eigen::MatrixXd given_covariance = {};
+  double degrees_of_freedom = 1.0;
   /// Null where the method does not estimate it.
   [[nodiscard]] const estimation::Parameter* find(std::string_view name) const;
 };
@@ -91,6 +94,8 @@ struct VehicleProblem {
   const VehicleParameters<double>& start;
   const DriveSignalOptions& signal_options;
   const VehicleIdentifyOptions& options;
+  /// What was found of the recording: rows that bear on the estimate too.
+  std::span<const estimation::Evidence> recording = {};
 };
 
 /// Identifies the vehicle from a drive: equation error by all methods (`vehicle_estimates.hpp`), output error started

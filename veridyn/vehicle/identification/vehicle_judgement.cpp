@@ -189,20 +189,6 @@ std::optional<Evidence> check_methods(const VehicleProblem& problem, const AxleE
                           p));
 }
 
-/// The estimate from the hold-out against that of the identification segments.
-std::optional<Evidence> check_data_parts(const VehicleProblem& problem, const AxleEstimate& axle) {
-  if (problem.segments.holdout.empty()) return std::nullopt;
-  const DriveRegressionResult of_holdout = regress(problem, problem.segments.holdout, problem.start);
-  const AxleEstimate* other = of_holdout.find(axle.method);
-  if (other == nullptr || !other->usable) return std::nullopt;
-  const double p = estimation::agreement_p(other->value - axle.value, other->covariance + axle.covariance);
-  return by_p("agreement of data parts", p, problem.options,
-              fmt::format("identification and hold-out data, estimated separately, agree (p = {:.2g})", p),
-              fmt::format("estimates from two parts of the drive contradict each other beyond their error bars (p = "
-                          "{:.1e}): the vehicle, the road or the range of motion is not the same in both",
-                          p));
-}
-
 bool of_the_vehicle(const Parameter& p) {
   return p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu" || p.name == "a" ||
          p.name == "understeer_gradient";
@@ -224,7 +210,6 @@ AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFind
                        "incomplete for this vehicle, or a, b or a sensor's place is wrong",
                        p));
   checks.methods = check_methods(problem, *axle, findings.output_error);
-  checks.data_parts = check_data_parts(problem, *axle);
   return checks;
 }
 
@@ -232,12 +217,16 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   const estimation::PredictedQuantity* there = findings.validation.find("yaw_rate");
   const estimation::PredictedQuantity* here = findings.fit.find("yaw_rate");
   VehicleJudgement out;
-  out.checks = check_residuals(problem, findings);
+  // A contradiction in the recording is the cause of others.
+  out.checks.assign(problem.recording.begin(), problem.recording.end());
+  for (Evidence& row : check_residuals(problem, findings)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_simulation(here != nullptr));
   const AgreementChecks agreement = check_agreement(problem, findings);
-  for (const auto& check : {agreement.consistency, agreement.methods, agreement.data_parts})
+  for (const auto& check : {agreement.consistency, agreement.methods})
     if (check) out.checks.push_back(*check);
+  if (findings.parts) out.checks.push_back(parts_row(*findings.parts, problem.options.contradiction_level));
   for (Evidence& row : plausibility(findings.chosen.parameters, problem.start)) out.checks.push_back(std::move(row));
+  for (Evidence& row : bound_rows(findings.chosen.parameters)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));
   if (there != nullptr && here != nullptr) out.checks.push_back(check_residual_on_holdout(*there, *here));
   out.judgement = estimation::judge(out.checks);

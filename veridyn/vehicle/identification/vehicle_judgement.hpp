@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/vehicle/identification/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 
 namespace veridyn::vehicle {
@@ -16,6 +17,7 @@ struct VehicleFindings {
   const DriveValidation& fit;         ///< of the chosen estimate on the identification segments
   const DriveValidation& validation;  ///< on the hold-out
   const DriveValidation& by_noise;    ///< see with_noisier_inputs
+  std::optional<PartsAgreement> parts = {};
 };
 
 /// The verdict on an identified vehicle and what it rests on.
@@ -26,10 +28,10 @@ struct VehicleJudgement {
   estimation::Judgement judgement;           ///< of them
 };
 
-/// Equation error against output error and hold-out, and the regressions' consistency equation; each is missing where
-/// there is nothing to compare.
+/// Equation error against output error, and the regressions' consistency equation; each is missing where there is
+/// nothing to compare.
 struct AgreementChecks {
-  std::optional<estimation::Evidence> consistency, methods, data_parts;
+  std::optional<estimation::Evidence> consistency, methods;
 };
 /// The checks of an estimate against the others of the same drive.
 [[nodiscard]] AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings);

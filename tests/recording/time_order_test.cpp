@@ -1,0 +1,42 @@
+#include "veridyn/recording/time_order.hpp"
+
+#include <gmock/gmock.h>
+
+namespace veridyn::recording {
+namespace {
+
+using ::testing::HasSubstr;
+
+DelayReport report(double delay_s, double sigma_s, double correlation = 0.9) {
+  return {.group = "attitude",
+          .reference = "gyro",
+          .delay_s = delay_s,
+          .sigma_s = sigma_s,
+          .correlation = correlation,
+          .text = correlation < 0.0 ? "opposite sign: is the channel's sign right?" : ""};
+}
+
+TEST(TimeOrder, IsEarlyBeyondLimitAndChance) {
+  EXPECT_TRUE(is_early(report(-0.05, 0.01), {}));
+  EXPECT_FALSE(is_early(report(-0.05, 0.02), {})) << "within three standard errors";
+  EXPECT_FALSE(is_early(report(-0.02, 0.001), {})) << "within the limit";
+  EXPECT_FALSE(is_early(report(0.2, 0.001), {})) << "late, as sensors are";
+  EXPECT_FALSE(is_early(report(-0.05, 0.0), {.early_s = 0.08}));
+  EXPECT_FALSE(is_early(report(-0.05, 0.01, -0.9), {}));
+}
+
+TEST(TimeOrder, NamesWhatIsEarlyOrOpposite) {
+  const estimation::Evidence early = early_row(report(-0.05, 0.01), {});
+  EXPECT_EQ(early.about, "attitude");
+  EXPECT_EQ(early.outcome, estimation::Outcome::kCare);
+  EXPECT_THAT(early.text, HasSubstr("attitude shows the motion 0.05 s before gyro"));
+  EXPECT_THAT(early.advice, HasSubstr("delays.attitude = \"-50 ms\""));
+  EXPECT_THAT(early_row(report(-0.05, 0.0), {.is_control = true}).text, HasSubstr("0.05 s after its effect"));
+  EXPECT_TRUE(is_opposite(report(0.0, 0.0, -0.9)));
+  EXPECT_FALSE(is_opposite(report(0.0, 0.0)));
+  EXPECT_THAT(opposite_row(report(0.0, 0.0, -0.9)).text, HasSubstr("moves against what gyro implies"));
+  EXPECT_EQ(late_row("gyro", "attitude", 0.1, 0.03).about, "gyro");
+}
+
+}  // namespace
+}  // namespace veridyn::recording

@@ -1,0 +1,126 @@
+#include "tests/support/fault_campaign.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace veridyn::test {
+namespace {
+
+using estimation::Evidence;
+using estimation::Outcome;
+
+constexpr std::array kFindings{Finding::kNamed, Finding::kMisnamed, Finding::kHarmless, Finding::kNotVerified,
+                               Finding::kMissed};
+
+/// Rows of the worst outcome that the clean recording does not have; those of the recording before others.
+std::vector<Evidence> deciding_rows(std::span<const Evidence> faulty, std::span<const Evidence> clean) {
+  std::vector<Evidence> rows;
+  Outcome worst = Outcome::kCare;
+  bool of_recording = false;
+  for (const Evidence& row : faulty) {
+    if (row.outcome < Outcome::kCare || row.outcome == Outcome::kMissing) continue;
+    const bool on_data = row.bears_on.contains(estimation::Purpose::kData);
+    if (of_recording && !on_data) continue;
+    const bool same = std::ranges::any_of(clean, [&](const Evidence& e) {
+      return e.name == row.name && e.about == row.about && e.outcome >= row.outcome;
+    });
+    if (same) continue;
+    if (on_data && !of_recording) {
+      rows.clear();
+      worst = Outcome::kCare;
+      of_recording = true;
+    }
+    if (row.outcome > worst) rows.clear();
+    worst = std::max(worst, row.outcome);
+    if (row.outcome == worst) rows.push_back(row);
+  }
+  return rows;
+}
+
+bool names_one(std::span<const std::string> words, std::string_view text) {
+  return std::ranges::any_of(words, [&](const std::string& word) { return text.find(word) != std::string_view::npos; });
+}
+
+}  // namespace
+
+std::string_view to_string(Finding finding) {
+  switch (finding) {
+    case Finding::kHarmless:
+      return "harmless";
+    case Finding::kNamed:
+      return "named";
+    case Finding::kMisnamed:
+      return "misnamed";
+    case Finding::kNotVerified:
+      return "not verified";
+    case Finding::kMissed:
+      return "missed";
+  }
+  return "";
+}
+
+void Confidence::add(std::span<const estimation::Parameter> parameters,
+                     const std::map<std::string, double, std::less<>>& truth) {
+  for (const estimation::Parameter& p : parameters) {
+    const auto known = truth.find(p.name);
+    if (p.status != estimation::ParameterStatus::kIdentified || known == truth.end()) continue;
+    ++confident;
+    const double error = std::abs(p.value - known->second);
+    if (known->second >= p.low95 && known->second <= p.high95) ++covered;
+    if (error > 3.0 * p.sigma && error > kWrongBy * std::abs(known->second))
+      wrong[p.name] = fmt::format("{} {:.3g} +- {:.2g} ({:.3g})", p.name, p.value, p.sigma, known->second);
+  }
+}
+
+Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span<const std::string> words) {
+  Trial trial;
+  if (faulty.refused) {
+    trial.finding = names_one(words, faulty.message) ? Finding::kNamed : Finding::kMisnamed;
+    trial.data = trial.parameters = "refused";
+    trial.reason = faulty.message;
+    return trial;
+  }
+  std::vector<std::string> wrong;
+  // What was wrong without the fault is the noise of this recording.
+  for (const auto& [name, text] : faulty.confidence.wrong)
+    if (!clean.confidence.wrong.contains(name)) wrong.push_back(text);
+  if (!wrong.empty()) {
+    const bool said = std::ranges::any_of(faulty.evidence, [&](const Evidence& row) {
+      return row.outcome == Outcome::kNotVerified && names_one(words, row.about);
+    });
+    trial.finding = said ? Finding::kNotVerified : Finding::kMissed;
+    trial.reason = fmt::format("{}", fmt::join(wrong, ", "));
+    return trial;
+  }
+  if (!found) {
+    trial.finding = Finding::kHarmless;
+    return trial;
+  }
+  const std::vector<Evidence> rows = deciding_rows(faulty.evidence, clean.evidence);
+  const bool named = std::ranges::any_of(
+      rows, [&](const Evidence& row) { return names_one(words, row.about) || names_one(words, row.advice); });
+  trial.finding = named ? Finding::kNamed : Finding::kMisnamed;
+  if (!rows.empty()) trial.reason = fmt::format("{}: {}", rows.front().name, rows.front().text);
+  return trial;
+}
+
+std::string confusion_table(std::span<const Trial> trials, std::span<const std::string> faults) {
+  std::string table = "| fault | named | misnamed | harmless | not verified | missed |\n|---|---|---|---|---|---|\n";
+  for (const std::string& fault : faults) {
+    std::array<std::size_t, kFindings.size()> count{};
+    for (const Trial& trial : trials) {
+      if (trial.fault != fault) continue;
+      ++count[static_cast<std::size_t>(std::ranges::find(kFindings, trial.finding) - kFindings.begin())];
+    }
+    table += fmt::format("| {} |", fault);
+    for (const std::size_t n : count) table += n == 0 ? std::string(" |") : fmt::format(" {} |", n);
+    table += "\n";
+  }
+  return table;
+}
+
+}  // namespace veridyn::test

@@ -1,0 +1,86 @@
+#include "tests/vehicle/campaign/campaign.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+using test::Finding;
+using test::Trial;
+using testing::campaign_drive;
+using testing::campaign_vehicles;
+using testing::drive_faults;
+using testing::IdentifiedDrive;
+
+// All faults in all vehicles, a minute. Writes drive_campaign.md (what became of each) and drive_campaign.csv.
+TEST(DriveCampaignSoak, CatchesFaultsInAllVehicles) {
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "a long-running campaign; `make soak` runs it";
+  const std::vector<std::string>& vehicles = campaign_vehicles();
+  std::vector<VehicleStudy> studies(vehicles.size());
+  std::vector<IdentifiedDrive> clean(vehicles.size());
+  numerics::parallel_for(vehicles.size(), 0, [&](std::size_t i) {
+    studies[i] = campaign_drive(vehicles[i], 1);
+    clean[i] = testing::identified(studies[i]);
+  });
+  std::ofstream log("drive_campaign.csv");
+  const auto write = [&](const Trial& trial) {
+    std::string reason = trial.reason;
+    std::ranges::replace(reason, '"', '\'');
+    log << fmt::format("{},{},{},{},{},\"{}\"\n", trial.subject, trial.fault, to_string(trial.finding), trial.data,
+                       trial.parameters, reason);
+  };
+  log << "vehicle,fault,finding,data,parameters,reason\n";
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    const estimation::Judgement& judgement = clean[i].analysis.estimate.judgement;
+    write({.subject = vehicles[i],
+           .fault = "none",
+           .finding = Finding::kHarmless,
+           .data = std::string(to_string(judgement.data.grade)),
+           .parameters = std::string(to_string(judgement.parameters.grade)),
+           .reason = clean[i].analysis.estimate.verdict});
+    EXPECT_TRUE(clean[i].confidence.wrong.empty()) << vehicles[i];
+  }
+  std::vector<Trial> trials(vehicles.size() * drive_faults().size());
+  numerics::parallel_for(trials.size(), 0, [&](std::size_t k) {
+    const std::size_t i = k % vehicles.size();
+    trials[k] = testing::try_fault(studies[i], clean[i], drive_faults()[k / vehicles.size()]);
+  });
+  for (const Trial& trial : trials) write(trial);
+  std::vector<std::string> names;
+  for (const testing::DriveFault& fault : drive_faults()) names.push_back(fault.name);
+  std::ofstream("drive_campaign.md") << test::confusion_table(trials, names);
+  const auto count = [&](Finding finding) {
+    return static_cast<double>(std::ranges::count(trials, finding, &Trial::finding));
+  };
+  EXPECT_GE(count(Finding::kNamed), 0.8 * (count(Finding::kNamed) + count(Finding::kMisnamed)));
+  EXPECT_EQ(count(Finding::kMissed), 0.0);
+}
+
+// The short form: one fault of each sensor in one drive.
+TEST(DriveCampaign, NamesWhatIsWrong) {
+  const VehicleStudy study = campaign_drive("reference bicycle", 1);
+  const IdentifiedDrive clean = testing::identified(study);
+  ASSERT_FALSE(clean.refused) << clean.message;
+  EXPECT_EQ(clean.analysis.estimate.judgement.data.grade, estimation::Grade::kYes);
+  EXPECT_EQ(clean.analysis.estimate.judgement.parameters.grade, estimation::Grade::kYes)
+      << clean.analysis.estimate.verdict;
+  EXPECT_TRUE(clean.confidence.wrong.empty());
+  EXPECT_EQ(clean.confidence.confident, 4u);
+  for (const char* name : {"yaw rate in deg/s", "accel_y in g", "speed in km/h", "hand wheel taken for road wheels",
+                           "steering reversed", "yaw rate frozen for 10 %"}) {
+    const Trial trial = testing::try_fault(study, clean, testing::drive_fault(name));
+    EXPECT_EQ(trial.finding, Finding::kNamed) << name << ": " << to_string(trial.finding) << ", " << trial.reason;
+  }
+  // What no drive shows is said by a row.
+  EXPECT_EQ(testing::try_fault(study, clean, testing::drive_fault("mass 1.3 times")).finding, Finding::kNotVerified);
+}
+
+}  // namespace
+}  // namespace veridyn::vehicle

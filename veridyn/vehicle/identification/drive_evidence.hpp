@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/recording/delays.hpp"
+#include "veridyn/vehicle/identification/drive_consistency.hpp"
+#include "veridyn/vehicle/identification/drive_segments.hpp"
+#include "veridyn/vehicle/identification/drive_signals.hpp"
+
+namespace veridyn::vehicle {
+
+/// Does the recording of a drive agree with itself and with physics? Rows of the samples, of the relations between the
+/// sensors (`drive_relations`), of gravity, of a steering that stands still in a turn, of the order in time; and, "not
+/// verified", of what no drive shows: mass and the place of the centre of gravity.
+[[nodiscard]] std::vector<estimation::Evidence> drive_evidence(
+    const recording::MappedRecording& mapped, const DriveSignals& signals, const DriveSegments& segments,
+    const VehicleParameters<double>& vehicle, const DriveSignalOptions& options, const Progress& progress);
+
+/// The rows of the relations: which sensor is wrong and by how much, where one alone explains what is off.
+[[nodiscard]] std::vector<estimation::Evidence> relation_rows(std::span<const DriveRelation> relations,
+                                                              bool gravity_removed, double gravity);
+
+/// How late the yaw acceleration follows the steering, where the drive shows it.
+[[nodiscard]] recording::DelayReport steering_delay(const DriveSignals& signals, std::span<const TimeSpan> spans,
+                                                    const Progress& progress);
+
+}  // namespace veridyn::vehicle
