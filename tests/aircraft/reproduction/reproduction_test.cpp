@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/aircraft/reproduction/experiment_flight.hpp"
 #include "veridyn/core/error.hpp"
 
@@ -19,6 +21,53 @@ TEST(Reproduction, FailsWhenAResultDoesNotShow) {
   const Reproduction result = reproduce(Study::parse(study, "test.toml").root(), silent);
   ASSERT_EQ(result.checks.size(), 1u);
   EXPECT_FALSE(result.passed());
+}
+
+/// One regressor's direction stands out only late, in a flight that begins with a multisine already.
+Reproduction order_of(const std::string& key, double regressor_snr) {
+  Progress silent;
+  const std::string study = fmt::format(
+      "title = \"order\"\n{}[experiment]\ncoefficient = \"CD\"\nseeds = 3\nrate = 50\nsnr = 40\n"
+      "regressor_snr = {}\n[[experiment.tracker]]\nname = \"PCA\"\nlambda = 1.0\nforgetting = \"constant\"\n"
+      "[expect]\n{} = \"PCA\"\n",
+      kExperimentFlight, regressor_snr, key);
+  return reproduce(Study::parse(study, "test.toml").root(), silent);
+}
+
+TEST(Reproduction, AnEstimateThatSettlesBeforeItIsExcitedFails) {
+  // CD_q and CD_de hardly move CD, so that its errors are small long before these directions stand out of the noise.
+  const Reproduction result = order_of("settles_when_excited", 20.0);
+  ASSERT_EQ(result.checks.size(), 1u);
+  const auto& run = result.tracking->runs[0][0];
+  ASSERT_LT(run.settling_s[0], run.excited_s) << "the case is no case";
+  EXPECT_FALSE(result.passed());
+  EXPECT_NE(result.checks[0].text.find("before what is claimed to be its cause"), std::string::npos)
+      << result.checks[0].text;
+}
+
+TEST(Reproduction, WithoutNoiseOnTheRegressorsTheOrderIsRight) {
+  // Everything stands out at once; then it settles.
+  const Reproduction result = order_of("settles_when_excited", 60.0);
+  const auto& run = result.tracking->runs[0][0];
+  ASSERT_TRUE(std::isfinite(run.excited_s));
+  EXPECT_EQ(result.passed(), run.settling_s[0] >= run.excited_s) << result.checks[0].text;
+}
+
+TEST(Reproduction, NoFalseAlarmStatesTheExposureThatItsRateNeeds) {
+  Progress silent;
+  const std::string study = fmt::format(
+      "title = \"alarms\"\n{}[experiment]\ncoefficient = \"Cm\"\nseeds = 9\nrate = 50\nsnr = 30\n"
+      "regressor_snr = 25\n[[experiment.tracker]]\nname = \"T\"\ndetection_learning = \"20 s\"\n"
+      "[expect]\nno_false_alarm = [\"T\"]\nfalse_alarm_rate = [\"T\"]\n",
+      kExperimentFlight);
+  const Reproduction result = reproduce(Study::parse(study, "test.toml").root(), silent);
+  // Nine times 40 s, 0.1 hours: no more than 30 an hour (3/T) with 95 %, where one in ten hours is stated.
+  EXPECT_NEAR(result.tracking->unchanged_hours(0, 30.0), 0.1, 1e-3);
+  ASSERT_EQ(result.checks.size(), 2u);
+  EXPECT_TRUE(result.checks[0].passed);
+  EXPECT_NE(result.checks[0].text.find("at most 30 an hour (95 %)"), std::string::npos) << result.checks[0].text;
+  EXPECT_NE(result.checks[0].text.find("takes 30 hours"), std::string::npos) << result.checks[0].text;
+  EXPECT_FALSE(result.checks[1].passed) << "0.1 hours cannot show one alarm in ten hours";
 }
 
 TEST(Reproduction, RefusesAMisspeltExpectation) {
