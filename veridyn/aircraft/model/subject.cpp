@@ -36,7 +36,7 @@ Inertia read_inertia(const StudyTable& subject, std::vector<std::string>& warnin
   return J;
 }
 
-BodySigma read_sigma(const StudyTable& table) {
+BodySigma read_body_sigma(const StudyTable& table) {
   const auto sigma = [&](std::string_view key, std::string_view unit) {
     const double value = table.number_or(key, unit, 0.0);
     if (!(value >= 0.0)) table.fail(key, fmt::format("= {:g} must be >= 0", value));
@@ -144,7 +144,7 @@ Subject read_subject(const StudyTable& table) {
     s.warnings.clear();
     s.inertia = read_inertia(table, s.warnings);
   }
-  if (table.has("sigma")) s.sigma = read_sigma(table.table("sigma"));
+  if (table.has("sigma")) s.sigma = read_body_sigma(table.table("sigma"));
   s.model = read_aero_model(table.table_or_empty("model"), s.model);
   s.propulsion = read_propulsion(table.table_or_empty("propulsion"), s.propulsion);
   const StudyTable actuators = table.table_or_empty("actuators");

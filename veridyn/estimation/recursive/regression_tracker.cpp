@@ -104,6 +104,15 @@ RegressionTracker::RegressionTracker(std::vector<std::string> names, const Eigen
 
 void RegressionTracker::start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows,
                               double residual_sd) {
+  // What the residual of the estimate showed beyond W is error of the equation, for the rows behind it too.
+  if (residual_sd > 0.0 && options_.method != Method::kOls) {
+    const Eigen::Index n = theta_0.size();
+    SmallVector h(n + 1);
+    h << theta_0, -1.0;
+    const double beyond = std::max(0.0, residual_sd * residual_sd - h.dot(W_ * h));
+    regression_.set_equation_error(beyond);
+    W_(n, n) += beyond;
+  }
   regression_.start(theta_0, P_0, rows, residual_sd);
 }
 
