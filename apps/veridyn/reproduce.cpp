@@ -76,7 +76,13 @@ int reproduce(const Arguments& arguments, const std::string& domain, std::span<c
     const std::optional<report::ReproducedRow> row = run(study.root(), progress);
     if (!row) throw Interrupted();
     print_line(options, fmt::format("{:<4} {}", row->passed() ? "ok" : "NO", row->title));
-    Summary json = Summary::object({{"row", named.name}, {"title", row->title}, {"passed", row->passed()}});
+    if (!row->finding.empty()) print_line(options, fmt::format("       published: {}", row->finding));
+    if (!row->ours.empty()) print_line(options, fmt::format("       here: {}", row->ours));
+    Summary json = Summary::object({{"row", named.name},
+                                    {"title", row->title},
+                                    {"published", row->finding},
+                                    {"here", row->ours},
+                                    {"passed", row->passed()}});
     for (const Check& check : row->checks) {
       print_line(options, fmt::format("       {} {}", check.passed ? "+" : "-", check.text));
       json["checks"].push_back(Summary::object({{"passed", check.passed}, {"text", check.text}}));

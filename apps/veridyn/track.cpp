@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/follow.hpp"
@@ -77,10 +78,11 @@ class LiveView {
 void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
                       const TrackedFlight& flight) {
   const FlightTracker& tracker = flight.tracker();
-  const estimation::Estimate estimate = tracker.estimate();
+  const estimation::Estimate estimate = flight.estimate();
   std::string changes = "coefficient,kind,detected[s],began[s],shift\n";
   Summary summary;
   summary["verdict"] = estimate.verdict;
+  summary["grades"] = grades_summary(estimate.judgement);
   summary["folder"] = folder.path().string();
   summary["rows"] = tracker.rows();
   summary["changes"] = Summary::array();
@@ -99,6 +101,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
   if (!study.track.estimate_file.empty()) record.inputs.push_back(study.track.estimate_file);
   folder.publish(record, run.options(), summary);
   print_line(run.options(), estimate.verdict);
+  print_judgement(run.options(), estimate);
   print_line(run.options(), fmt::format("changes found: {}; report: {}", tracker.changes().size(),
                                         (folder.path() / "report.html").string()));
 }
@@ -123,6 +126,8 @@ void follow_flight(const StudyRun& run, OutputFolder& folder) {
     if (!flight) flight.emplace(*study);
     view.show(*flight, flight->advance(study->mapped, *study, finished, silent));
   });
+  Progress silent;
+  flight->check_recording(study->mapped, *study, {}, silent);
   publish_tracking(run, folder, *study, *flight);
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/drive_results.hpp"
 #include "apps/veridyn/follow.hpp"
@@ -43,6 +44,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
   std::size_t count = 0;
   Summary summary;
   summary["verdict"] = estimate.verdict;
+  summary["grades"] = grades_summary(estimate.judgement);
   summary["folder"] = folder.path().string();
   summary["changes"] = Summary::array();
   if (const DriveTracker* tracker = tracked.tracker()) {
@@ -63,6 +65,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
   folder.publish(run.record(drive.study.seed, drive.study.inputs), run.options(), summary);
   for (const std::string& warning : estimate.warnings) print_line(run.options(), "warning: " + warning);
   print_line(run.options(), estimate.verdict);
+  print_judgement(run.options(), estimate);
   print_line(run.options(),
              fmt::format("changes found: {}; report: {}", count, (folder.path() / "report.html").string()));
 }

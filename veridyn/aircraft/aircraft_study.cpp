@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/excited_segments.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
@@ -96,20 +97,6 @@ FlightAnalysis reconstruct_with(const FlightStudy& study, const ReconstructOptio
   }
   analysis.interrupted = analysis.reconstruction.interrupted;
   return analysis;
-}
-
-Segments excited_segments(const FlightSignals& s, const SegmentOptions& options) {
-  SegmentSignals signals;
-  signals.begin = s.grid.begin;
-  signals.step = s.grid.step;
-  signals.airspeed = s[FlightSignal::kAirspeed].value;
-  signals.p = s[FlightSignal::kP].value;
-  signals.q = s[FlightSignal::kQ].value;
-  signals.r = s[FlightSignal::kR].value;
-  signals.elevator = s[FlightSignal::kElevator].value;
-  signals.aileron = s[FlightSignal::kAileron].value;
-  signals.rudder = s[FlightSignal::kRudder].value;
-  return find_segments(signals, options);
 }
 
 /// What identification and validation share: from recording to signals and segments.

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/excited_segments.hpp"
+#include "veridyn/aircraft/identification/recording_evidence.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/aircraft/tracking/direct_air_data.hpp"
+#include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -32,7 +35,7 @@ FlightTracker make_tracker(const FlightStudy& study) {
 TrackedFlight::TrackedFlight(const FlightStudy& study) : tracker_(make_tracker(study)) {}
 
 std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
-                                                 Progress& progress) {
+                                                 Progress& progress, std::span<const DelayReport> delays) {
   const std::vector<std::string> needed{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
   require_channels(mapped, needed, "tracking");
   const TimeSpan span = mapped.recording.at("gyro_x").span();
@@ -48,29 +51,51 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
   const bool whole = begin <= span.begin;
   if (!whole) part.recording = recording::cut(mapped.recording, {begin, kInfinity});
   Recording air;
+  std::optional<Reconstruction> reconstruction;
   if (by_sensors) {
     air = direct_air_data(part.recording, study.reconstruct, study.signals);
   } else {
     ReconstructOptions options = study.reconstruct;
     options.keep_filter = true;
-    Reconstruction reconstruction = reconstruct(part.recording, options, progress);
-    if (reconstruction.interrupted) return {};
-    air = std::move(reconstruction.filtered);
+    reconstruction = reconstruct(part.recording, options, progress);
+    if (reconstruction->interrupted) return {};
+    air = std::move(reconstruction->filtered);
   }
   const SensorSigma known = internal::load_streams(part.recording, study.reconstruct).sigma;
   const FlightSignals signals = prepare_signals(
       part, air, study.subject, study.signals, study.reconstruct.sensors == NoiseSource::kReference ? &known : nullptr);
   if (tracker_.rows() == 0) notes_ = signals.notes;
+  if (whole && finished && reconstruction) judge_recording(part, study, *reconstruction, signals, delays);
   const double margin = filter_margin(signals);
   return tracker_.feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);
 }
+
+void TrackedFlight::judge_recording(const MappedRecording& mapped, const FlightStudy& study,
+                                    const Reconstruction& reconstruction, const FlightSignals& signals,
+                                    std::span<const DelayReport> delays) {
+  recording_evidence_ = recording_evidence(mapped.recording, reconstruction, study.reconstruct,
+                                           excited_segments(signals, study.segments), delays);
+}
+
+void TrackedFlight::check_recording(const MappedRecording& mapped, const FlightStudy& study,
+                                    std::span<const DelayReport> delays, Progress& progress) {
+  if (!recording_evidence_.empty()) return;
+  progress.stage("checking the recording");
+  const Reconstruction reconstruction = reconstruct(mapped.recording, study.reconstruct, progress);
+  if (reconstruction.interrupted) return;
+  judge_recording(mapped, study, reconstruction,
+                  prepare_signals(mapped, reconstruction.smoothed, study.subject, study.signals), delays);
+}
+
+estimation::Estimate TrackedFlight::estimate() const { return judged_estimate(tracker_, recording_evidence_); }
 
 TrackingAnalysis track_flight(const FlightStudy& study, Progress& progress) {
   progress.stage("aligning sensor delays");
   const AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
   TrackingAnalysis analysis{aligned.delays, TrackedFlight(study), false};
   progress.stage("tracking");
-  static_cast<void>(analysis.flight.advance(aligned.mapped, study, true, progress));
+  static_cast<void>(analysis.flight.advance(aligned.mapped, study, true, progress, aligned.delays));
+  analysis.flight.check_recording(aligned.mapped, study, aligned.delays, progress);
   analysis.interrupted = progress.interrupted();
   return analysis;
 }

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "veridyn/aircraft/aircraft_study.hpp"
 #include "veridyn/aircraft/tracking/flight_tracker.hpp"
 
@@ -20,15 +24,27 @@ class TrackedFlight {
   /// Takes what the recording has beyond what was taken before. `finished`: nothing will follow, so that the end is
   /// taken too. @return the changes found. @throws InputError when channels are missing
   std::vector<FlightChange> advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
-                                    Progress& progress);
+                                    Progress& progress, std::span<const DelayReport> delays = {});
+
+  /// Checks the whole recording against itself and physics, as `identify` does, where `advance` has not done so already
+  /// (it does when it takes a whole, finished recording through the filter). Runs the state estimation.
+  /// @param delays what the alignment of the clocks found
+  void check_recording(const MappedRecording& mapped, const FlightStudy& study, std::span<const DelayReport> delays,
+                       Progress& progress);
 
   [[nodiscard]] const FlightTracker& tracker() const { return tracker_; }
+  /// The estimates as they stand, with evidence and grades; see judged_estimate.
+  [[nodiscard]] estimation::Estimate estimate() const;
   [[nodiscard]] AirDataSource air_data() const { return air_data_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] double end_time() const { return end_; }  ///< last stamp seen [s]
 
  private:
+  void judge_recording(const MappedRecording& mapped, const FlightStudy& study, const Reconstruction& reconstruction,
+                       const FlightSignals& signals, std::span<const DelayReport> delays);
+
   FlightTracker tracker_;
+  std::vector<FlightEvidence> recording_evidence_;
   AirDataSource air_data_ = AirDataSource::kFilter;
   std::vector<std::string> notes_;
   double end_ = 0.0;

@@ -115,7 +115,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   };
   add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
-  add(evidence_section(analysis));
+  add(evidence_section(analysis.estimate));
   add(methods_section(analysis), !given);
   add(other_estimators_section(analysis));
   add(structure_section(analysis));

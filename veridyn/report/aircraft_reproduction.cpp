@@ -18,6 +18,30 @@ std::vector<double> column(const Eigen::MatrixXd& matrix, Eigen::Index j) {
   return {matrix.col(j).data(), matrix.col(j).data() + matrix.rows()};
 }
 
+/// NaN where none was published. GTLS is total least squares with the errors' covariance given, published as TLS.
+double published_value(const Reproduction& r, estimation::Method method, const std::string& parameter) {
+  auto found = r.published.find(std::string(estimation::to_string(method)));
+  if (found == r.published.end() && method == estimation::Method::kGtls) found = r.published.find("TLS");
+  return found != r.published.end() && found->second.contains(parameter) ? found->second.at(parameter) : kNaN;
+}
+
+/// " OLS: CY_beta -0.9803 +- 0.0007 (published -0.9804, true -0.98)." for every method with published values.
+std::string side_by_side(const Reproduction& r) {
+  std::string text;
+  for (const BatchStatistics& s : r.batch->methods) {
+    std::string values;
+    for (std::size_t i = 0; i < r.batch->rows.names.size(); ++i) {
+      const double published = published_value(r, s.method, r.batch->rows.names[i]);
+      const auto k = static_cast<Eigen::Index>(i);
+      if (!std::isfinite(published)) continue;
+      values += fmt::format("{}{} {:.4g} +- {:.1g} (published {:.4g}, true {:.4g})", values.empty() ? "" : ", ",
+                            r.batch->rows.names[i], s.mean(k), s.sd(k), published, r.batch->rows.truth(k));
+    }
+    if (!values.empty()) text += fmt::format(" {}: {}.", estimation::to_string(s.method), values);
+  }
+  return text;
+}
+
 Table batch_table(const Reproduction& r) {
   const BatchExperiment& e = *r.batch;
   Table table;
@@ -41,11 +65,7 @@ Table batch_table(const Reproduction& r) {
     Row row;
     row.cells = {text_cell(e.rows.names[i]), number_cell(e.rows.truth(k))};
     for (const BatchStatistics& s : e.methods) {
-      const auto method = r.published.find(std::string(estimation::to_string(s.method)));
-      double published = kNaN;
-      if (method != r.published.end() && method->second.contains(e.rows.names[i]))
-        published = method->second.at(e.rows.names[i]);
-      row.cells.push_back(number_cell(published));
+      row.cells.push_back(number_cell(published_value(r, s.method, e.rows.names[i])));
       row.cells.push_back(measured_cell(s.mean(k), s.sd(k)));
       row.cells.push_back(number_cell(s.sd(k)));
       row.cells.push_back(number_cell(s.bias(k, e.rows.truth), 2));
@@ -185,6 +205,8 @@ ReproducedRow reproduced_row(const Reproduction& r) {
   if (o.noise_time_s > 0.0) noise += fmt::format(", correlated over {:g} s", o.noise_time_s);
   row.ours = fmt::format("{} flown for {:.0f} s, {:g} rows a second, {}, {} seeds.", o.flight.subject.name,
                          o.flight.duration, o.rate_Hz, noise, o.seeds);
+  if (r.batch) row.ours += side_by_side(r);
+  if (!r.conditions.empty()) row.ours += fmt::format(" {}.", r.conditions);
   if (r.batch) {
     row.blocks.push_back(batch_table(r));
     row.blocks.push_back(batch_figure(r));

@@ -287,7 +287,7 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       "bars where [identify.uncertainty] gives it."));
   if (!id.validation.stretches.empty()) add(validation_section(id.validation));
   add(methods_section(analysis));
-  add(evidence_section(analysis));
+  add(evidence_section(analysis.estimate));
   if (!id.fit.stretches.empty()) document.sections.push_back(fit_section(id.fit));
   const VehicleParameters<double>& p = id.best() != nullptr ? id.identified : study.vehicle;
   document.sections.push_back(cornering_section(analysis, p));

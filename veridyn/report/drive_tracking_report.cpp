@@ -9,6 +9,7 @@
 
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
@@ -57,12 +58,16 @@ Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& dr
   document.facts = {{"Vehicle", study.subject_name}, {"Log", study.log.mapped.recording.source}};
   const DriveTracker* tracker = drive.tracker();
   document.verdict.headline = estimate.verdict;
+  if (tracker != nullptr && !estimate.evidence.empty()) {
+    document.verdict = verdict_of(estimate);
+    document.verdict.lines.insert(document.verdict.lines.begin(), estimate.verdict);
+  }
   if (tracker == nullptr) {
     document.verdict.level = Level::kBad;
     return document;
   }
   const auto& changes = tracker->changes();
-  document.verdict.level = changes.empty() ? Level::kGood : Level::kCaution;
+  if (!changes.empty() && document.verdict.level == Level::kGood) document.verdict.level = Level::kCaution;
   document.verdict.word = changes.empty() ? "No change" : "Changed";
   document.facts.push_back({"Rows", fmt::format("{} at {:g} Hz", tracker->rows(), tracker->row_rate_Hz())});
   document.facts.push_back({"Latency", fmt::format("{:.2f} s", tracker->latency_s())});
@@ -86,6 +91,7 @@ Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& dr
         axle_figure(*tracker, axle, truth == study.truth.end() ? std::nullopt : std::optional(truth->second)));
   }
   document.sections.push_back(std::move(section));
+  if (!estimate.evidence.empty()) document.sections.push_back(evidence_section(estimate));
   add_notes(document, drive.notes());
   add_warnings(document, estimate.warnings);
   return document;

@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/track_panels.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
@@ -73,10 +74,9 @@ TimeSeries figure_of(const FlightStudy& study, const TrackedCoefficient& c) {
   return figure;
 }
 
-Table parameter_table(const FlightStudy& study, const FlightTracker& tracker) {
+Table parameter_table(const FlightStudy& study, const FlightTracker& tracker, const estimation::Estimate& estimate) {
   Table table{.title = "Parameters as they stand at the end",
               .columns = parameter_columns(study.true_subject.has_value())};
-  const estimation::Estimate estimate = tracker.estimate();
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     if (!c.tracker) continue;
     for (std::size_t i = 0; i < c.model.size(); ++i) {
@@ -104,24 +104,26 @@ Table change_table(const FlightTracker& tracker) {
 
 Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, const std::string& program) {
   const FlightTracker& tracker = flight.tracker();
-  const estimation::Estimate estimate = tracker.estimate();
+  const estimation::Estimate estimate = flight.estimate();
   const TrackOptions& options = tracker.options();
   Document document = started_document(study.subject.name, "followed on line", program);
   const std::size_t changes = tracker.changes().size();
-  document.verdict.level = changes == 0 ? Level::kGood : Level::kCaution;
+  document.verdict = verdict_of(estimate);
+  if (changes > 0 && document.verdict.level == Level::kGood) document.verdict.level = Level::kCaution;
   document.verdict.word = changes == 0 ? "No change" : "The aircraft changed";
-  document.verdict.headline =
+  const std::string change_text =
       changes == 0
           ? "No coefficient changed during the flight."
           : fmt::format("{} found, the first at {:.1f} s in {}.",
                         changes == 1 ? std::string("One change was") : fmt::format("{} changes were", changes),
                         tracker.changes().front().change.detected_s, name_of(tracker.changes().front().coefficient));
-  document.verdict.lines = {
-      estimate.verdict, options.detect_changes
-                            ? fmt::format("Stated rate of false alarms: one per {:.1f} hours of unchanged flight for "
-                                          "each coefficient.",
-                                          options.detection.false_alarm_interval_s / 3600.0)
-                            : std::string("Changes were not looked for.")};
+  const std::vector<std::string> found = {
+      change_text, estimate.verdict,
+      options.detect_changes ? fmt::format("Stated rate of false alarms: one per {:.1f} hours of unchanged flight for "
+                                           "each coefficient.",
+                                           options.detection.false_alarm_interval_s / 3600.0)
+                             : std::string("Changes were not looked for.")};
+  document.verdict.lines.insert(document.verdict.lines.begin(), found.begin(), found.end());
   const double rate = tracker.row_rate_Hz() > 0.0 ? tracker.row_rate_Hz() : 1.0;
   const estimation::ForgettingOptions forgetting = options.forgetting_at(rate);
   document.facts = {{"Recording", study.mapped.recording.source},
@@ -137,7 +139,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
                               fmt::format("{}{:.2g} an hour on white noise with 4 parameters",
                                           triggers.bound ? "less than " : "", triggers.per_second * 3600.0)});
   }
-  document.sections.push_back({.title = "Parameters", .blocks = {parameter_table(study, tracker)}});
+  document.sections.push_back({.title = "Parameters", .blocks = {parameter_table(study, tracker, estimate)}});
   if (changes > 0) document.sections.push_back({.title = "Changes", .blocks = {change_table(tracker)}});
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     // Where something changed, one looks first.
@@ -157,6 +159,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
     }
     document.sections.push_back(std::move(section));
   }
+  document.sections.push_back(evidence_section(estimate));
   std::vector<std::string> warnings = estimate.warnings;
   warnings.insert(warnings.end(), flight.notes().begin(), flight.notes().end());
   warnings.insert(warnings.end(), study.mapped.notes.begin(), study.mapped.notes.end());

@@ -108,9 +108,9 @@ TEST(VerdictOf, SaysWhatDecidedAndWhatToDo) {
 
 TEST(EvidenceSection, HasARowForEachCheck) {
   Analysis analysis = analysis_with(GroupVerdict::kIdentified);
-  EXPECT_TRUE(evidence_section(analysis).blocks.empty());
+  EXPECT_TRUE(evidence_section(analysis.estimate).blocks.empty());
   analysis.estimate = judged_estimate(estimation::Outcome::kFailed);
-  const auto tables = blocks<Table>(evidence_section(analysis));
+  const auto tables = blocks<Table>(evidence_section(analysis.estimate));
   ASSERT_EQ(tables.size(), 1U);
   ASSERT_EQ(tables[0].rows.size(), 1U);
   EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());

@@ -43,13 +43,10 @@ using internal::needed_signals;
 /// Rows on which the error covariance is averaged: the Jacobian varies slowly.
 constexpr std::size_t kCovarianceRows = 2000;
 
-/// Deflections that jump between two samples are known to half a sample only, and aerodynamic moments and rates answer
-/// the moment at which they did. The effect of that on the filtered rows is an impulse through the filter: what such
-/// impulses, one a jump, explain is taken out of every column (Frisch & Waugh 1933; their sizes are nuisance
-/// parameters). Without it, damping in roll comes out up to 8 % off where the roll mode is as fast as 20 rad/s and
-/// deflections are sampled at 100 Hz.
-void take_out_jumps(const CoefficientModel& model, const FlightSignals& signals, const std::vector<std::size_t>& rows,
-                    RegressionData& data) {
+}  // namespace
+
+void internal::take_out_jumps(const CoefficientModel& model, const FlightSignals& signals,
+                              const std::vector<std::size_t>& rows, RegressionData& data) {
   const std::vector<FlightSignal> needed = needed_signals(model);
   const std::size_t half = signals.jump_response.size() / 2;
   std::vector<Eigen::VectorXd> impulses;
@@ -74,9 +71,6 @@ void take_out_jumps(const CoefficientModel& model, const FlightSignals& signals,
   data.regressors = columns.leftCols(data.parameters());
   data.regressand = columns.rightCols(1);
 }
-
-}  // namespace
-
 std::string identification_obstacle(const CoefficientModel& model, const FlightSignals& signals,
                                     const Subject& subject) {
   const std::string name = regressed_name(model.coefficient, subject);
@@ -170,7 +164,7 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     data.regressand(i) = select(regressed_coefficients(sample, subject, rho, torque), model.coefficient);
   }
   if (count == 0) return data;
-  take_out_jumps(model, signals, rows, data);
+  internal::take_out_jumps(model, signals, rows, data);
 
   // The Jacobian varies slowly: a mean over some of the rows.
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n + 1, n + 1);

@@ -19,8 +19,7 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
   out.rows = exact_rows(o, progress);
   const auto n = out.rows.regressors.cols();
   const auto seeds = static_cast<std::size_t>(o.seeds);
-  estimation::RegressionOptions options;
-  if (o.noise_time_s == 0.0) options.covariance = estimation::CovarianceKind::kWhite;
+  const estimation::RegressionOptions options;
   struct One {
     bool usable = false;
     Eigen::VectorXd theta, sigma, low, high;

@@ -29,8 +29,8 @@ struct BatchExperiment {
   bool interrupted = false;
 };
 
-/// Estimates the parameters once a seed with every method, on the same noise. Errors are white by construction unless
-/// `noise_time` says otherwise, and so are the error bars.
+/// Estimates the parameters once a seed with every method, on the same noise, with the error bars that `identify` gives
+/// by default: they allow for autocorrelation, whether the noise has any or not.
 [[nodiscard]] BatchExperiment run_batch_experiment(const ExperimentOptions& options,
                                                    const std::vector<estimation::Method>& methods, Progress& progress);
 

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -33,6 +34,28 @@ std::vector<Method> read_methods(const StudyTable& experiment) {
     methods.push_back(*found);
   }
   return methods;
+}
+
+/// "204 s", "228 to 376 s", "never" where there is no time.
+std::string range_text(double first, double last) {
+  if (!std::isfinite(first) || !std::isfinite(last)) return "never";
+  const std::string from = fmt::format("{:.0f}", first), to = fmt::format("{:.0f}", last);
+  return from == to ? from + " s" : fmt::format("{} to {} s", from, to);
+}
+
+/// Upper 95 % bound of a Poisson rate of which `count` events were seen in `hours`: 3/hours for none.
+double most_alarms_per_hour(int count, double hours) {
+  return 0.5 * numerics::chi_square_quantile(0.95, 2.0 * (count + 1.0)) / hours;
+}
+
+std::string alarm_text(const std::string& name, int alarms, double hours, double stated_per_hour) {
+  const double bound = most_alarms_per_hour(alarms, hours);
+  const bool shown = bound <= stated_per_hour;
+  return fmt::format(
+      "{}: {} false alarm{} in {:.1f} hours in which nothing changed: at most {:.2g} an hour (95 %); "
+      "the stated rate is {:.2g} an hour{}",
+      name, alarms, alarms == 1 ? "" : "s", hours, bound, stated_per_hour,
+      shown ? "" : fmt::format(", which takes {:.0f} hours without an alarm to show", 3.0 / stated_per_hour));
 }
 
 /// View of an experiment and of what its study expects.
@@ -140,16 +163,8 @@ class Expectations {
       add(std::isfinite(times.back()),
           fmt::format("{}: settles in every repetition, after {:.0f} to {:.0f} s", name, times.front(), times.back()));
     }
-    if (expect_.has("settles_when_excited")) {
-      const std::string name = expect_.text("settles_when_excited");
-      const TrackingRun& run = e.runs[tracker_of("settles_when_excited", name)][0];
-      const double excited = fully_excited(run);
-      const double settled = e.phase_s[0] + run.settling_s[0];
-      const double after = expect_.number_or("settles_after", "s", 0.0);
-      add(std::isfinite(excited) && std::isfinite(settled) && settled >= after,
-          fmt::format("{}: every direction is excited at {:.0f} s, the estimate has settled at {:.0f} s{}", name,
-                      excited, settled, after > 0.0 ? fmt::format(" (not before {:.0f} s)", after) : std::string{}));
-    }
+    if (expect_.has("settles_when_excited")) check_order("settles_when_excited", false);
+    if (expect_.has("known_when_excited")) check_order("known_when_excited", true);
     if (expect_.has("faster")) {
       const StudyTable faster = expect_.table("faster");
       const std::string fast = faster.text("tracker"), slow = faster.text("than");
@@ -166,11 +181,16 @@ class Expectations {
     for (const std::string& name : names("no_false_alarm")) {
       const std::size_t tracker = tracker_of("no_false_alarm", name);
       const int alarms = e.false_alarms(tracker, window);
-      const double hours =
-          static_cast<double>(e.runs[tracker].size()) * (e.rows.time.back() - e.rows.time.front()) / 3600.0;
-      add(alarms == 0, fmt::format("{}: {} false alarms in {} flights, {:.2f} hours; the stated rate allows {:.2f}",
-                                   name, alarms, e.runs[tracker].size(), hours,
-                                   hours * 3600.0 / e.trackers[tracker].options.detection.false_alarm_interval_s));
+      add(alarms == 0, alarm_text(name, alarms, e.unchanged_hours(tracker, window), stated_per_hour(tracker)));
+    }
+    for (const std::string& name : names("false_alarm_rate")) {
+      const std::size_t tracker = tracker_of("false_alarm_rate", name);
+      const int alarms = e.false_alarms(tracker, window);
+      const double hours = e.unchanged_hours(tracker, window), rate = stated_per_hour(tracker);
+      // Fewer hours could not show the rate with no alarm at all, and so many alarms would come by chance at that rate.
+      const bool enough = most_alarms_per_hour(0, hours) <= rate;
+      const bool by_chance = alarms == 0 || numerics::chi_square_upper_p(2.0 * rate * hours, 2.0 * alarms) <= 0.95;
+      add(enough && by_chance, alarm_text(name, alarms, hours, rate));
     }
     for (const std::string& name : names("detects")) {
       for (std::size_t phase = 1; phase < e.phase_s.size(); ++phase) {
@@ -201,13 +221,40 @@ class Expectations {
     if (expect_.has("holds")) check_held(expect_.table("holds"));
   }
 
-  /// First time at which every direction stood above the threshold.
-  double fully_excited(const TrackingRun& run) const {
-    const auto n = static_cast<int>(result_.tracking->rows.names.size());
-    for (std::size_t k = 0; k < run.history.time.size(); ++k) {
-      if (run.history.excited[k] >= n) return run.history.time[k];
+  [[nodiscard]] double stated_per_hour(std::size_t tracker) const {
+    return 3600.0 / result_.tracking->trackers[tracker].options.detection.false_alarm_interval_s;
+  }
+
+  /// Does the estimate settle (or is it known) once every direction is excited, in this order, in every repetition?
+  void check_order(const char* key, bool known) {
+    const TrackingExperiment& e = *result_.tracking;
+    const std::string name = expect_.text(key);
+    double first_excited = kInfinity, last_excited = -kInfinity, first = kInfinity, last = -kInfinity;
+    double earliest_error = kInfinity;
+    std::size_t in_order = 0, before = 0;
+    const std::vector<TrackingRun>& runs = e.runs[tracker_of(key, name)];
+    for (const TrackingRun& run : runs) {
+      const double settled = e.phase_s[0] + run.settling_s[0];
+      const double then = known ? run.known_s : settled;
+      first_excited = std::min(first_excited, run.excited_s), last_excited = std::max(last_excited, run.excited_s);
+      first = std::min(first, then), last = std::max(last, then);
+      earliest_error = std::min(earliest_error, settled);
+      in_order += std::isfinite(run.excited_s) && std::isfinite(then) && then >= run.excited_s;
+      before += then < run.excited_s;
     }
-    return kInfinity;
+    std::string text = fmt::format(
+        "{}: every direction is excited at {}, the estimate {} from {} on; in this order in "
+        "{} of {} repetitions",
+        name, range_text(first_excited, last_excited), known ? "is known to 5 %" : "has settled",
+        range_text(first, last), in_order, runs.size());
+    if (before > 0) text += fmt::format(", {} before what is claimed to be its cause", before);
+    if (known && earliest_error < first_excited) {
+      text += fmt::format(
+          ". Its errors are below 5 % from {:.0f} s on already: what is excited last hardly moves the "
+          "coefficient, and its held value does no harm",
+          earliest_error);
+    }
+    add(in_order == runs.size(), std::move(text));
   }
 
   /// Largest share of the coefficient's deviation that some parameter's error amounts to at a stored moment.
@@ -283,6 +330,7 @@ Reproduction reproduce(const StudyTable& root, Progress& progress) {
   Reproduction result;
   result.title = root.text("title");
   result.finding = root.text_or("finding", "");
+  result.conditions = root.text_or("conditions", "");
   result.options = ExperimentOptions::read(root);
   const StudyTable experiment = root.table("experiment");
   const StudyTable expect = root.table("expect");

@@ -16,6 +16,7 @@ namespace veridyn::aircraft {
 ///
 ///     title = "CY, OLS, exact regressors"
 ///     finding = "what was published, in words"
+///     conditions = "why this noise, excitation and duration"
 ///     [published.OLS]            # published estimates by method and parameter
 ///     CY_beta = -0.9804
 ///     [experiment]               # see ExperimentOptions, and
@@ -31,12 +32,16 @@ namespace veridyn::aircraft {
 ///     output_error_above = { OLS = 0.10 }
 ///     never_settles = ["OLS"]    # trackers; see TrackingRun::settling_s
 ///     settles = ["PCA-GTLS"]
-///     settles_when_excited = "PCA-GTLS"        # first every direction is excited, then the estimate settles
+///     settles_when_excited = "PCA-GTLS"        # in every repetition first every direction is excited, then the
+///                                # estimate settles: the other order fails
+///     known_when_excited = "PCA-GTLS"          # the same of the time from which it is known, see TrackingRun::known_s
 ///     settles_last = ["variable"]              # settles in the last phase, in every repetition
 ///     loses = { tracker = "GTLS", from = "350 s", to = "480 s" }  # is far off at some time in between: some
 ///                                # parameter's error moves the coefficient by more than half of its deviation
 ///     faster = { tracker = "variable", than = "constant", factor = 5 }  # median settling after the first change
 ///     no_false_alarm = ["variable"]            # neither detector nor forgetting before the first change
+///     false_alarm_rate = ["variable"]          # no more than the stated rate explains (95 %), in at least as many
+///                                # hours as no alarm at all would take to show it: three times its interval
 ///     detects = ["variable"]     # every change within `detection_window`, in every repetition
 ///     detection_window = "30 s"
 ///     holds = { tracker = "PCA-GTLS", from = "50 s", to = "300 s" }   # no parameter's error moves the coefficient by
@@ -46,6 +51,7 @@ namespace veridyn::aircraft {
 struct Reproduction {
   std::string title;
   std::string finding;
+  std::string conditions;
   std::map<std::string, std::map<std::string, double>> published;
   ExperimentOptions options;
   std::optional<BatchExperiment> batch;

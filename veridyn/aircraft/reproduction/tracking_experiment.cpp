@@ -11,6 +11,14 @@ namespace veridyn::aircraft {
 namespace {
 
 constexpr double kSettled = 0.05;
+constexpr double kNormal95 = 1.96;
+
+/// First time at which every direction stands above the threshold.
+double fully_excited(const TrackHistory& history, std::size_t parameters) {
+  for (std::size_t k = 0; k < history.time.size(); ++k)
+    if (history.excited[k] >= static_cast<int>(parameters)) return history.time[k];
+  return kNaN;
+}
 
 /// Index of the phase that a time belongs to.
 std::size_t phase_at(const std::vector<double>& begins, double t) {
@@ -46,6 +54,20 @@ class Settling {
         result[phase] = history.time[k] - e_.phase_s[phase];
     }
     return result;
+  }
+
+  double known_from(const TrackHistory& history) const {
+    double from = kNaN;
+    for (std::size_t k = 0; k < history.time.size() && phase_at(e_.phase_s, history.time[k]) == 0; ++k) {
+      bool known = settled(history, k, 0);
+      for (std::size_t i = 0; i < history.sigma.size() && known; ++i)
+        known = kNormal95 * history.sigma[i][k] <= at_start_(static_cast<Eigen::Index>(i));
+      if (!known)
+        from = kNaN;
+      else if (std::isnan(from))
+        from = history.time[k];
+    }
+    return from;
   }
 
  private:
@@ -98,6 +120,16 @@ int TrackingExperiment::false_alarms(std::size_t tracker, double window_s) const
   return count;
 }
 
+double TrackingExperiment::unchanged_hours(std::size_t tracker, double window_s) const {
+  double seconds = 0.0;
+  for (std::size_t phase = 0; phase < phase_s.size(); ++phase) {
+    const double end = phase + 1 < phase_s.size() ? phase_s[phase + 1] : rows.time.back();
+    const double blind = phase == 0 ? trackers[tracker].options.detection.learn_s : window_s;
+    seconds += std::max(0.0, end - phase_s[phase] - blind);
+  }
+  return seconds * static_cast<double>(runs[tracker].size()) / 3600.0;
+}
+
 double TrackingExperiment::detected(std::size_t tracker, std::size_t phase, double window_s) const {
   double count = 0.0;
   for (const TrackingRun& run : runs[tracker]) {
@@ -139,6 +171,8 @@ TrackingExperiment run_tracking_experiment(const ExperimentOptions& o, const std
       }
       TrackingRun& run = out.runs[m][seed];
       run.settling_s = settling.times(tracker.history());
+      run.known_s = settling.known_from(tracker.history());
+      run.excited_s = fully_excited(tracker.history(), n);
       run.changes = tracker.changes();
       run.triggers = tracker.regression().triggers();
       if (seed == 0) run.history = tracker.history();

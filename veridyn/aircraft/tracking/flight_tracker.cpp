@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/coefficient_rows.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -15,6 +16,13 @@ namespace veridyn::aircraft {
 using estimation::Parameter;
 using estimation::RegressionEstimate;
 
+namespace {
+
+/// Rows are prepared together, and the equation error is fitted, over windows of this length by the clock.
+constexpr double kWindowSeconds = 10.0;
+
+}  // namespace
+
 double filter_margin(const FlightSignals& signals) {
   const auto width = static_cast<double>(numerics::low_pass_differentiator(signals.filter).half_width());
   return (width + 1.0) * signals.grid.step;
@@ -22,7 +30,11 @@ double filter_margin(const FlightSignals& signals) {
 
 FlightTracker::FlightTracker(Subject subject, TrackOptions options, double min_airspeed_mps,
                              const estimation::Estimate* start)
-    : subject_(std::move(subject)), options_(std::move(options)), min_airspeed_(min_airspeed_mps), last_(-kInfinity) {
+    : subject_(std::move(subject)),
+      options_(std::move(options)),
+      min_airspeed_(min_airspeed_mps),
+      last_(-kInfinity),
+      window_(-kInfinity) {
   if (start != nullptr) start_ = *start;
   for (const auto& model : subject_.model.coefficients) {
     const auto& some = options_.coefficients;
@@ -52,47 +64,82 @@ std::vector<FlightChange> FlightTracker::feed(const FlightSignals& signals, doub
   const auto first = static_cast<long long>(std::llround(signals.grid.begin / signals.grid.step));
   const auto stride = static_cast<long long>(signals.stride);
   const auto offset = static_cast<std::size_t>(((-first) % stride + stride) % stride);
+  std::vector<std::size_t> window;
   for (std::size_t k = offset; k < signals.size(); k += signals.stride) {
     const double t = signals.grid.at(k);
     if (t <= last_ || t < from || t > until) continue;
-    last_ = t;
-    const double airspeed = signals[FlightSignal::kAirspeed].value[k];
-    if (!(airspeed >= min_airspeed_)) continue;
-    ++rows_;
-    for (std::size_t i = 0; i < coefficients_.size(); ++i) {
-      if (coefficients_[i].obstacle.empty()) take(i, t, signals, k, found);
+    if (!window.empty() && std::floor(t / kWindowSeconds) > std::floor(last_ / kWindowSeconds)) {
+      take_window(signals, window, found);
+      window.clear();
     }
+    last_ = t;
+    if (signals[FlightSignal::kAirspeed].value[k] >= min_airspeed_) window.push_back(k);
   }
+  take_window(signals, window, found);
   changes_.insert(changes_.end(), found.begin(), found.end());
   return found;
 }
 
-void FlightTracker::take(std::size_t index, double time, const FlightSignals& signals, std::size_t k,
+void FlightTracker::take_window(const FlightSignals& signals, const std::vector<std::size_t>& rows,
+                                std::vector<FlightChange>& found) {
+  if (rows.empty()) return;
+  rows_ += rows.size();
+  // By the clock, so that a flight in pieces gives what the whole gives.
+  const double number = std::floor(signals.grid.at(rows.front()) / kWindowSeconds);
+  if (number != window_) {
+    window_ = number;
+    for (TrackedCoefficient& c : coefficients_)
+      if (c.tracker) c.tracker->fit_equation_error();
+  }
+  const auto before = static_cast<std::ptrdiff_t>(found.size());
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    if (coefficients_[i].obstacle.empty()) take(i, signals, rows, found);
+  }
+  std::stable_sort(found.begin() + before, found.end(), [](const FlightChange& a, const FlightChange& b) {
+    return a.change.detected_s < b.change.detected_s;
+  });
+}
+
+void FlightTracker::take(std::size_t index, const FlightSignals& signals, const std::vector<std::size_t>& grid_points,
                          std::vector<FlightChange>& found) {
   TrackedCoefficient& c = coefficients_[index];
-  const FlightSample<double> sample = signals.sample(k);
-  const double rho = signals.air_density[k];
-  const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
-  const AeroVariables<double> v = aero_variables(sample, subject_, rho);
-  std::array<double, estimation::kMaxRecursiveParameters> x{};
-  const std::size_t n = c.model.size();
-  bool finite = true;
-  for (std::size_t j = 0; j < n; ++j) {
-    x[j] = c.model.terms[j].evaluate(v);
-    finite = finite && std::isfinite(x[j]);
+  const auto n = static_cast<Eigen::Index>(c.model.size());
+  std::vector<std::size_t> rows;
+  estimation::RegressionData data;
+  data.parameter_names.resize(c.model.size());
+  data.regressors.resize(static_cast<Eigen::Index>(grid_points.size()), n);
+  data.regressand.resize(data.regressors.rows());
+  for (const std::size_t k : grid_points) {
+    const FlightSample<double> sample = signals.sample(k);
+    const double rho = signals.air_density[k];
+    const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
+    const auto row = static_cast<Eigen::Index>(rows.size());
+    data.regressors.row(row) = c.model.regressors(aero_variables(sample, subject_, rho)).transpose();
+    data.regressand(row) = select(regressed_coefficients(sample, subject_, rho, torque), c.model.coefficient);
+    if (data.regressors.row(row).allFinite() && std::isfinite(data.regressand(row))) rows.push_back(k);
   }
-  const double z = select(regressed_coefficients(sample, subject_, rho, torque), c.model.coefficient);
-  if (!finite || !std::isfinite(z)) return;
-  Eigen::MatrixXd W = row_error_covariance(c.model, signals, k, subject_);
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  data.regressors.conservativeResize(count, n);
+  data.regressand.conservativeResize(count);
+  internal::take_out_jumps(c.model, signals, rows, data);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t k = rows[static_cast<std::size_t>(i)];
+    take_row(index, signals.grid.at(k), {data.regressors.row(i).data(), c.model.size()}, data.regressand(i),
+             row_error_covariance(c.model, signals, k, subject_), found);
+  }
+}
+
+void FlightTracker::take_row(std::size_t index, double time, std::span<const double> x, double z, Eigen::MatrixXd W,
+                             std::vector<FlightChange>& found) {
+  TrackedCoefficient& c = coefficients_[index];
   if (c.tracker) {
-    W(W.rows() - 1, W.cols() - 1) += c.equation_error;
-    if (const auto change = c.tracker->update(time, {x.data(), n}, z, &W))
-      found.push_back({c.model.coefficient, *change});
+    W(W.rows() - 1, W.cols() - 1) += c.tracker->equation_error();
+    if (const auto change = c.tracker->update(time, x, z, &W)) found.push_back({c.model.coefficient, *change});
     return;
   }
   Learning& learning = learning_[index];
   learning.time.push_back(time);
-  learning.rows.insert(learning.rows.end(), x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n));
+  learning.rows.insert(learning.rows.end(), x.begin(), x.end());
   learning.rows.push_back(z);
   learning.W = learning.count == 0 ? W : Eigen::MatrixXd(learning.W + W);
   ++learning.count;
@@ -131,16 +178,12 @@ void FlightTracker::begin(std::size_t index, std::vector<FlightChange>& found) {
     const auto found_fit = start_ ? start_->fit.find(name + "." + key) : decltype(start_->fit.end()){};
     return start_ && found_fit != start_->fit.end() ? found_fit->second : 0.0;
   };
-  if (complete) {
-    // What the batch residual showed beyond the sensors is error of the equation.
-    Eigen::VectorXd h(n + 1);
-    h << theta, -1.0;
-    const double beyond = fit("residual_sd") * fit("residual_sd") - h.dot(W * h);
-    c.equation_error = std::max(0.0, beyond);
-    W(n, n) += c.equation_error;
-  }
   c.tracker.emplace(c.model, W, options_, rate_, names);
-  if (complete) c.tracker->start(theta, P, fit("samples"), fit("residual_sd"));
+  if (complete) {
+    c.tracker->start(theta, P, fit("samples"), fit("residual_sd"));
+    // What the batch residual showed beyond the sensors is error of the equation.
+    c.tracker->fit_equation_error();
+  }
   c.start = complete ? "batch estimate" : "no estimate";
   const auto width = static_cast<std::size_t>(n) + 1;
   for (std::size_t i = 0; i < learning.time.size(); ++i) {
@@ -171,7 +214,7 @@ estimation::Estimate FlightTracker::estimate() const {
       continue;
     }
     followed.push_back(name);
-    const RegressionEstimate e = c.tracker->regression().estimate();
+    const RegressionEstimate e = c.tracker->estimate();
     const auto n = static_cast<Eigen::Index>(c.model.size());
     for (std::size_t i = 0; i < c.model.size(); ++i) {
       out.parameters.push_back(e.parameters[i]);

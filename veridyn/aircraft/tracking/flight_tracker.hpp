@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,6 @@ struct TrackedCoefficient {
   CoefficientModel model;
   std::string obstacle = {};                       ///< why it cannot be followed at all, or empty
   std::string start = {};                          ///< where it began: "batch estimate", "no estimate"
-  double equation_error = 0.0;                     ///< variance of z that the batch estimate left beyond the sensors
   std::optional<CoefficientTracker> tracker = {};  ///< from the moment its noise is known
 };
 
@@ -29,8 +29,9 @@ struct FlightChange {
 ///
 /// A row is taken from every stride-th grid point in the air, as in batch identification. The error covariance W of a
 /// coefficient's rows is averaged over its first `kLearnSeconds` in the air, whose rows are kept until then, so that
-/// nothing is missed. With a batch estimate the tracker starts from it, and what its residual showed beyond the
-/// sensors' noise is added to W as equation error.
+/// nothing is missed. With a batch estimate the tracker starts from it. Every ten seconds what the residual shows
+/// beyond the sensors' noise is added to W as equation error, and the effect of deflections that jump between two
+/// samples is taken out of the rows, as in batch identification.
 class FlightTracker {
  public:
   static constexpr double kLearnSeconds = 20.0;
@@ -61,8 +62,12 @@ class FlightTracker {
     std::size_t count = 0;
   };
 
-  void take(std::size_t index, double time, const FlightSignals& signals, std::size_t k,
+  void take_window(const FlightSignals& signals, const std::vector<std::size_t>& rows,
+                   std::vector<FlightChange>& found);
+  void take(std::size_t index, const FlightSignals& signals, const std::vector<std::size_t>& grid_points,
             std::vector<FlightChange>& found);
+  void take_row(std::size_t index, double time, std::span<const double> x, double z, Eigen::MatrixXd W,
+                std::vector<FlightChange>& found);
   void begin(std::size_t index, std::vector<FlightChange>& found);
 
   Subject subject_;
@@ -74,6 +79,7 @@ class FlightTracker {
   std::vector<FlightChange> changes_;
   std::size_t rows_ = 0;
   double last_;
+  double window_;
   double rate_ = 0.0;
   bool obstacles_known_ = false;
 };

@@ -9,6 +9,8 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/recursive/recursive_state.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
@@ -173,6 +175,23 @@ void RecursiveRegression::State::add_unexcited_bound(const SmallMatrix& jacobian
   }
 }
 
+// Factor on the variances for correlation that is longer than a block: those from blocks of L and of k L rows fall
+// short by b/L and b/(k L), so that V = V_kL + (V_kL - V_L)/(k - 1). Pooled over the parameters; 1 while too few are
+// closed.
+double RecursiveRegression::State::long_correlation(const SmallMatrix& inverse) const {
+  if (!(scores.wide_weight() > 0.0)) return 1.0;
+  const SmallMatrix narrow = sandwich(inverse, scores.sum()), wide = sandwich(inverse, scores.wide_sum());
+  double sum = 0.0, number = 0.0;
+  for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
+    if (!(narrow(i, i) > 0.0)) continue;
+    sum += wide(i, i) / narrow(i, i) * scores.weight() / scores.wide_weight();
+    number += 1.0;
+  }
+  if (number == 0.0) return 1.0;
+  const double ratio = sum / number;
+  return std::max(1.0, ratio + (ratio - 1.0) / (internal::ScoreBlocks::kWide - 1.0));
+}
+
 void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& result) const {
   const auto all = static_cast<Eigen::Index>(names.size());
   const Eigen::Index n = count();
@@ -180,6 +199,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
   result.sigma.setZero(all);
   result.excited_variance.setZero(all);
   result.degrees_of_freedom = std::max(1.0, samples - static_cast<double>(n));
+  result.freedom.setConstant(all, result.degrees_of_freedom);
   bool good = termination == EstimateTermination::kEstimated && residual_variance >= 0.0;
   SmallMatrix inverse, jacobian, excited, bound;
   if (good) {
@@ -199,15 +219,19 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
         jacobian.setZero(n, n);
       }
       white_filling(jacobian, W_h, residual_variance, S);
-      if (kind == CovarianceKind::kAutocorrelated && scores.weight > 0.0) {
+      if (kind == CovarianceKind::kAutocorrelated && scores.weight() > 0.0) {
         // Few blocks know little: the white filling counts as one of them.
         const double blocks = scores.blocks();
         const double trust = blocks / (blocks + 1.0);
         const double freedom = result.degrees_of_freedom;
-        const double whole = squared_weights / scores.weight * (samples > freedom ? samples / freedom : 1.0);
-        S = (1.0 - trust) * S + (trust * whole) * scores.sum;
+        const double whole = squared_weights / scores.weight() * (samples > freedom ? samples / freedom : 1.0);
+        S = (1.0 - trust) * S + (trust * whole * long_correlation(inverse)) * scores.sum();
         leading *= 1.0 - trust;
-        result.degrees_of_freedom = std::min(freedom, std::max(1.0, blocks));
+        for (Eigen::Index j = 0; j < n; ++j) {
+          double& of_one = result.freedom(free[static_cast<std::size_t>(j)]);
+          of_one = std::min(freedom, std::max(1.0, scores.blocks_behind(inverse.col(j).data())));
+          result.degrees_of_freedom = std::min(result.degrees_of_freedom, of_one);
+        }
       }
       excited = sandwich(inverse, S);
       if (leading > 0.0) excited += leading * inverse;
@@ -251,12 +275,45 @@ ParameterStatus RecursiveRegression::State::status(Eigen::Index parameter, doubl
   const double sigma = known.sigma(parameter);
   if (termination != EstimateTermination::kEstimated || !std::isfinite(sigma)) return ParameterStatus::kRejected;
   const double critical =
-      numerics::student_t_quantile(1.0 - 0.5 * significance, std::max(1.0, known.degrees_of_freedom));
+      numerics::student_t_quantile(1.0 - 0.5 * significance, std::max(1.0, known.freedom(parameter)));
   const bool differs = std::abs(theta(parameter)) > critical * sigma;
   const double bound = sigma * sigma - known.excited_variance(parameter);
   if (unexcited_share(parameter) > 0.5 || (bound > known.excited_variance(parameter) && !differs))
     return ParameterStatus::kNotExcited;
   return differs ? ParameterStatus::kIdentified : ParameterStatus::kInsignificant;
+}
+
+// Condition number and variance inflation 1/(1 - R^2) of the weighted rows, from X'X with columns of unit length. Where
+// a column is constant the others' variance is that about their means, and its own inflation says nothing.
+void RecursiveRegression::State::add_collinearity(RegressionEstimate& result) const {
+  constexpr double kConstant = 1e-3;
+  const Eigen::Index n = count();
+  SmallMatrix A;
+  data.square_root(A);
+  const Eigen::MatrixXd X = A.leftCols(n);
+  const Eigen::VectorXd length = X.colwise().norm().transpose();
+  result.condition_number = kInfinity;
+  if (!(length.minCoeff() > 0.0)) return;
+  const Eigen::MatrixXd scaled = X * length.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd s = numerics::singular_values(scaled, numerics::SingularVectors::kNone).values;
+  if (s(n - 1) > 0.0) result.condition_number = s(0) / s(n - 1);
+  if (n < 2) return;
+  // Share of each column's squares that is variance about its mean.
+  Eigen::VectorXd spread = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    if (column_squares(j) > 0.0)
+      spread(j) = 1.0 - column_sums(j) * column_sums(j) / (column_weight * column_squares(j));
+  const bool has_constant = spread.minCoeff() < kConstant;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (spread(j) < kConstant) continue;
+    Eigen::MatrixXd others(scaled.rows(), n - 1);
+    others << scaled.leftCols(j), scaled.rightCols(n - 1 - j);
+    const Eigen::VectorXd column = scaled.col(j);
+    const double left = (column - others * numerics::shortest_least_squares(others, column)).squaredNorm();
+    const double all = has_constant ? spread(j) : 1.0;
+    result.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(j)])].variance_inflation =
+        left > 0.0 ? std::max(1.0, all / left) : kInfinity;
+  }
 }
 
 RegressionEstimate RecursiveRegression::State::estimate(double significance) const {
@@ -284,7 +341,7 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
     p.sigma = known.sigma(i);
     p.sigma_white = white.sigma(i);
     p.status = status(i, significance);
-    set_interval(p, std::max(1.0, known.degrees_of_freedom));
+    set_interval(p, std::max(1.0, known.freedom(i)));
     p.unexcited_share = unexcited_share(i);
     result.parameters.push_back(p);
   }
@@ -294,6 +351,7 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
     result.unexcited.push_back(
         {combination, kNormal95 * std::sqrt(std::max(0.0, variance)), describe_combination(combination, names)});
   }
+  add_collinearity(result);
   switch (termination) {
     case EstimateTermination::kEstimated:
       result.message = result.unexcited.empty()

@@ -79,6 +79,12 @@ void RecursiveRegression::start(const Eigen::VectorXd& theta_0, const Eigen::Mat
   state_->start(theta_0, P_0, rows, residual_sd);
 }
 
+void RecursiveRegression::set_equation_error(double variance) {
+  if (state_->options.method != Method::kOls && variance != state_->equation_error)
+    state_->set_equation_error(variance);
+}
+double RecursiveRegression::equation_error() const { return state_->equation_error; }
+
 RecursiveUpdate RecursiveRegression::update(std::span<const double> x, double z) { return state_->update(x, z); }
 
 Eigen::Index RecursiveRegression::parameters() const { return static_cast<Eigen::Index>(state_->names.size()); }

@@ -67,7 +67,10 @@ struct RecursiveUpdate {
 ///
 /// Error bars. White: s2 M^-1 A2 M^-1 with its second-order term, where squares carry their weight and A2 the weight
 /// squared (docs/estimation.md). For autocorrelated residuals: M^-1 S M^-1, S from sums of scores over blocks of
-/// `block` samples under the same weights, hence correct for any correlation shorter than a block.
+/// `block` samples under the same weights, hence correct for any correlation shorter than a block, and extrapolated
+/// from blocks of four times that length for what is longer. Degrees of freedom are, parameter by parameter, the blocks
+/// that determine it. Scores begin again when a direction is excited for the first time: innovations before held its
+/// error.
 class RecursiveRegression {
  public:
   /// @param names of the parameters, 1 to 8 @throws InputError when names or options are wrong
@@ -87,6 +90,13 @@ class RecursiveRegression {
   ///   sqrt(h' W h), or without W 1 (then P_0 must be (X'X)^-1).
   /// @throws InputError when sizes do not fit, P_0 is not positive definite or rows were already taken
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows = 0.0, double residual_sd = 0.0);
+
+  /// GTLS and PCA-GTLS: from now on, and for the rows that were taken, W has this variance more in z alone: an error of
+  /// the equation. The estimate is that of the same rows with that W, which must stay positive semi-definite with
+  /// W_zz > 0; less than what was given is allowed too. Allocates. No effect with OLS.
+  void set_equation_error(double variance);
+  /// Variance of z that was added to W.
+  [[nodiscard]] double equation_error() const;
 
   /// Takes one row. Does not allocate or throw; `x` must have n_p values.
   RecursiveUpdate update(std::span<const double> x, double z);
@@ -130,7 +140,7 @@ class RecursiveRegression {
   [[nodiscard]] double residual_sd() const;
   /// Estimated factor on W: 1 when model and assumed errors are right. OLS: 0.
   [[nodiscard]] double error_scale() const;
-  /// Of Student's t: N - n_p, or what the number of blocks gives.
+  /// Of Student's t: N - n_p, or the blocks that determine the parameter of which there are fewest.
   [[nodiscard]] double degrees_of_freedom() const;
   /// Rows taken and refused.
   [[nodiscard]] std::uint64_t rows() const;

@@ -51,41 +51,6 @@ SmallVector prior_of(const RecursiveOptions& options, Eigen::Index parameters) {
 
 }  // namespace
 
-namespace internal {
-
-void ScoreBlocks::reset(Eigen::Index parameters, Eigen::Index block) {
-  length = block;
-  open = SmallVector::Zero(parameters);
-  sum = SmallMatrix::Zero(parameters, parameters);
-}
-
-void ScoreBlocks::forget(double lambda) {
-  if (lambda == 1.0) return;
-  const double square = lambda * lambda;
-  open *= lambda;
-  open_weight *= square;
-  sum *= square;
-  weight *= square;
-  weight_squared *= square * square;
-}
-
-void ScoreBlocks::add(const SmallVector& score, double lambda) {
-  forget(lambda);
-  open += score;
-  open_weight += 1.0;
-  if (++filled < length) return;
-  for (Eigen::Index j = 0; j < open.size(); ++j) {
-    for (Eigen::Index i = 0; i < open.size(); ++i) sum(i, j) += open(i) * open(j);
-  }
-  weight += open_weight;
-  weight_squared += open_weight * open_weight;
-  open.setZero();
-  open_weight = 0.0;
-  filled = 0;
-}
-
-}  // namespace internal
-
 RecursiveRegression::State::State(std::vector<std::string> parameter_names, RecursiveOptions recursive_options)
     : names(std::move(parameter_names)),
       options(std::move(recursive_options)),
@@ -106,6 +71,7 @@ RecursiveRegression::State::State(std::vector<std::string> parameter_names, Recu
   }
   theta = prior;
   squares = SmallMatrix::Zero(n, n);
+  column_sums = column_squares = SmallVector::Zero(n);
   scores.reset(n, options.block);
   h.resize(n + 1);
   h << free_theta, -1.0;
@@ -158,10 +124,28 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
   samples = squared_weights = prior_rows;
   const Eigen::MatrixXd information = root.transpose() * root;
   squares = information;
-  scores.sum = c_0 * c_0 * information;
-  scores.weight = prior_rows;
-  scores.weight_squared = prior_rows * std::min(prior_rows, static_cast<double>(options.block));
+  scores.start(c_0 * c_0 * information, information, prior_rows);
   for (Eigen::Index j = 0; j < n; ++j) theta(free[static_cast<std::size_t>(j)]) = free_theta(j);
+  solve();
+  most_excited = excited_directions;
+}
+
+void RecursiveRegression::State::set_equation_error(double variance) {
+  const Eigen::Index n = count();
+  options.error_covariance.bottomRightCorner<1, 1>()(0, 0) += variance - equation_error;
+  W(n, n) += variance - equation_error;
+  equation_error = variance;
+  // The rows so far, whitened by the new W: all that is kept of them is D'D.
+  SmallMatrix A;
+  data.square_root(A);
+  data = RecursiveTotalLeastSquares(W);
+  Buffer row{};
+  for (Eigen::Index i = 0; i <= n; ++i) {
+    for (Eigen::Index j = 0; j <= n; ++j) row[static_cast<std::size_t>(j)] = A(i, j);
+    (void)data.append(row.data(), 1.0);
+  }
+  W_h = W.lazyProduct(h);
+  h_W_h = h.dot(W_h);
   solve();
 }
 
@@ -225,12 +209,18 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
     SmallVector score(n);
     const double residual = innovation / std::sqrt(1.0 + q);
     for (Eigen::Index j = 0; j < n; ++j) score(j) = d_hat[static_cast<std::size_t>(j)] * residual;
-    scores.add(score, lambda);
+    scores.add(d_hat.data(), score, lambda);
   } else {
     scores.forget(lambda);
   }
   result.lambda = lambda;
   (void)data.append(row.data(), lambda);
+  column_weight = lambda * column_weight + 1.0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double value = row[static_cast<std::size_t>(j)];
+    column_sums(j) = lambda * column_sums(j) + value;
+    column_squares(j) = lambda * column_squares(j) + value * value;
+  }
   if (forgets) {
     const double square = lambda * lambda;
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -244,6 +234,11 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
   ++rows;
   result.accepted = true;
   solve();
+  if (options.method == Method::kPcaGtls && excited_directions > most_excited) {
+    // Until now innovations held the error of a parameter that was not known.
+    most_excited = excited_directions;
+    scores.restart();
+  }
   return result;
 }
 

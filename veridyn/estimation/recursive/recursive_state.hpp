@@ -7,6 +7,7 @@
 #include "veridyn/estimation/recursive/forgetting.hpp"
 #include "veridyn/estimation/recursive/recursive_regression.hpp"
 #include "veridyn/estimation/recursive/recursive_total_least_squares.hpp"
+#include "veridyn/estimation/recursive/score_blocks.hpp"
 
 namespace veridyn::estimation {
 
@@ -16,27 +17,10 @@ namespace internal {
 struct RecursiveErrorBars {
   SmallMatrix covariance;
   SmallVector sigma;
-  SmallVector excited_variance;  ///< part of sigma^2 that does not come from the bound
-  double degrees_of_freedom = 0.0;
+  SmallVector excited_variance;     ///< part of sigma^2 that does not come from the bound
+  SmallVector freedom;              ///< of Student's t, parameter by parameter
+  double degrees_of_freedom = 0.0;  ///< least of them
   bool fresh = false;
-};
-
-/// Sums of scores over blocks under the weights of the squares (not the roots): S = sum_b G_b G_b', G_b = sum_k w_k
-/// g_k. Forgetting by lambda multiplies G by lambda and S by lambda^2. Batch means (overlap-free), so autocorrelation
-/// shorter than a block is in S in full.
-struct ScoreBlocks {
-  Eigen::Index length = 1;
-  Eigen::Index filled = 0;
-  SmallVector open;             ///< G of the block that is being filled
-  double open_weight = 0.0;     ///< sum of w_k^2 in it
-  SmallMatrix sum;              ///< S
-  double weight = 0.0;          ///< sum over blocks of W_b = sum w_k^2
-  double weight_squared = 0.0;  ///< sum over blocks of W_b^2
-
-  void reset(Eigen::Index parameters, Eigen::Index block);
-  void add(const SmallVector& score, double lambda);
-  void forget(double lambda);
-  [[nodiscard]] double blocks() const { return weight_squared > 0.0 ? weight * weight / weight_squared : 0.0; }
 };
 
 }  // namespace internal
@@ -46,6 +30,7 @@ struct RecursiveRegression::State {
   State(std::vector<std::string> parameter_names, RecursiveOptions recursive_options);
 
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows_behind, double residual_sd);
+  void set_equation_error(double variance);
   RecursiveUpdate update(std::span<const double> x, double z);
   void solve();
   bool solve_least();
@@ -56,6 +41,8 @@ struct RecursiveRegression::State {
   bool inverse_jacobian(const SmallVector& h, SmallMatrix& inverse) const;
   void inverse_on_excited(const SmallMatrix& jacobian, SmallMatrix& inverse) const;
   void white_filling(const SmallMatrix& jacobian, const SmallVector& W_h, double s2, SmallMatrix& S) const;
+  void add_collinearity(RegressionEstimate& result) const;
+  [[nodiscard]] double long_correlation(const SmallMatrix& inverse) const;
   void corrected_jacobian(SmallMatrix& M) const;
   ParameterStatus status(Eigen::Index parameter, double significance) const;
   RegressionEstimate estimate(double significance) const;
@@ -68,11 +55,14 @@ struct RecursiveRegression::State {
   SmallVector prior;                 // of all parameters
   SmallVector free_weight;           // U
   SmallMatrix W;                     // of the free regressors and z
+  double equation_error = 0.0;       // variance of z in W beyond what was given
   bool forgets = false;
 
   RecursiveTotalLeastSquares data;
   VariableForgetting variable;
   internal::ScoreBlocks scores;
+  SmallVector column_sums, column_squares;  // of the free regressors, weighted, rows of a start not among them
+  double column_weight = 0.0;
   SmallMatrix squares;  // A2: sum of w_k^2 x x', free parameters
 
   std::uint64_t rows = 0;
@@ -92,6 +82,7 @@ struct RecursiveRegression::State {
   double threshold = 0.0;
   int excited_noisy = 0;
   Eigen::Index excited_directions = 0;
+  Eigen::Index most_excited = 0;  // so far
   SmallVector singular_values;
   SmallMatrix unexcited;               // orthonormal in U coordinates, free parameters
   SmallMatrix unexcited_combinations;  // unit columns, all parameters

@@ -6,12 +6,25 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
 namespace {
 
 /// Standard deviations of the regressors' noise by which a row moves along a held direction.
 constexpr double kExcursion = 3.0;
+/// Standard deviations of a residual's variance that are no chance any more.
+constexpr double kChance = 3.0;
+/// Variance of z that is left where the residual is less than W says: this share of what W gives it, and more than what
+/// it shares with the regressors.
+double least_noise(const Eigen::MatrixXd& W) {
+  const Eigen::Index n = W.rows() - 1;
+  const Eigen::VectorXd shared = W.topRightCorner(n, 1);
+  const double with_regressors = shared.dot(numerics::shortest_least_squares(W.topLeftCorner(n, n), shared));
+  return std::max(0.1 * W(n, n), 1.01 * with_regressors);
+}
 
 RecursiveOptions regression_options(const Eigen::MatrixXd& W, const TrackerOptions& options, double rate_Hz) {
   RecursiveOptions o;
@@ -80,6 +93,7 @@ RegressionTracker::RegressionTracker(std::vector<std::string> names, const Eigen
     : options_(options),
       rate_Hz_(rate_Hz),
       W_(error_covariance),
+      least_noise_(least_noise(error_covariance)),
       regression_(std::move(names), regression_options(error_covariance, options, rate_Hz)),
       detector_(detection_options(options, rate_Hz)) {
   const auto n = static_cast<std::size_t>(regression_.parameters());
@@ -90,13 +104,112 @@ RegressionTracker::RegressionTracker(std::vector<std::string> names, const Eigen
 
 void RegressionTracker::start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows,
                               double residual_sd) {
+  // What the residual of the estimate showed beyond W is error of the equation, for the rows behind it too.
+  if (residual_sd > 0.0 && options_.method != Method::kOls) {
+    const Eigen::Index n = theta_0.size();
+    SmallVector h(n + 1);
+    h << theta_0, -1.0;
+    const double beyond = std::max(0.0, residual_sd * residual_sd - h.dot(W_ * h));
+    regression_.set_equation_error(beyond);
+    W_(n, n) += beyond;
+  }
   regression_.start(theta_0, P_0, rows, residual_sd);
 }
 
 void RegressionTracker::restart(const Eigen::VectorXd& sigma) {
   const Eigen::VectorXd theta = regression_.theta();
+  // Of what is forgotten the equation error too.
+  W_(W_.rows() - 1, W_.rows() - 1) -= regression_.equation_error();
+  regression_.set_equation_error(0.0);
   regression_ = RecursiveRegression(regression_.names(), regression_.options());
   regression_.start(theta, sigma.cwiseAbs2().asDiagonal());
+  forget_parts();
+}
+
+void TrackedPower::add(double z, double lambda) {
+  weight = lambda * weight + 1.0;
+  const double before = z - mean;
+  mean += before / weight;
+  deviation = lambda * deviation + before * (z - mean);
+}
+
+void TrackedPower::add_innovation(double value, double previous, double lambda) {
+  innovation = lambda * innovation + value * value;
+  lagged = lambda * lagged + value * previous;
+}
+
+double RegressionTracker::error_ratio() const {
+  const double residual = regression_.residual_sd();
+  if (options_.method == Method::kOls || !regression_.usable()) return kNaN;
+  const double by_W = variance_of(W_) - regression_.equation_error();
+  return by_W > 0.0 ? residual * residual / by_W : kNaN;
+}
+
+std::optional<RegressionTracker::Part> RegressionTracker::part_of(const RecursiveRegression& r) {
+  const SmallMatrix& covariance = r.covariance();
+  if (!r.usable() || r.unexcited().cols() > 0 || !covariance.allFinite()) return std::nullopt;
+  return Part{r.theta(), covariance, r.degrees_of_freedom()};
+}
+
+void RegressionTracker::forget_parts() {
+  parts_.clear();
+  next_part_s_ = kNaN;
+}
+
+void RegressionTracker::keep_part(double t) {
+  const double memory = cut_off_time(options_.forgetting_at(rate_Hz_).square_weight(), rate_Hz_);
+  if (std::isnan(next_part_s_)) next_part_s_ = t + memory;
+  if (t < next_part_s_) return;
+  next_part_s_ = t + memory;
+  if (std::optional<Part> part = part_of(regression_)) parts_.push_back(std::move(*part));
+}
+
+TrackedScatter RegressionTracker::scatter() const {
+  TrackedScatter result;
+  const std::vector<Part>& parts = parts_;
+  if (parts.size() < 2) return result;
+  double chi_square = 0.0, freedom = 0.0;
+  Eigen::VectorXd sum = parts[0].theta;
+  Eigen::MatrixXd covariance = parts[0].covariance;
+  double least_freedom = parts[0].degrees_of_freedom;
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    // Against the mean of those before, which shares nothing with it.
+    const auto before = static_cast<double>(k);
+    const Agreement a = agreement(parts[k].theta - sum / before, parts[k].covariance + covariance / (before * before));
+    least_freedom = std::min(least_freedom, parts[k].degrees_of_freedom);
+    // Error bars from few blocks are uncertain themselves, by which chi-square comes out too large: Student's variance.
+    const double excess = least_freedom > 3.0 ? least_freedom / (least_freedom - 2.0) : 3.0;
+    const auto n = static_cast<double>(sum.size());
+    chi_square += a.ratio * n / excess;
+    freedom += n;
+    sum += parts[k].theta;
+    covariance += parts[k].covariance;
+  }
+  result.parts = static_cast<int>(parts.size());
+  result.ratio = chi_square / freedom;
+  result.p = numerics::chi_square_upper_p(chi_square, freedom);
+  return result;
+}
+
+RegressionEstimate RegressionTracker::estimate() const {
+  constexpr double kSignificance = 0.05;
+  RegressionEstimate result = regression_.estimate(kSignificance);
+  widen(result, scatter().ratio, kSignificance);
+  return result;
+}
+
+void RegressionTracker::fit_equation_error() {
+  const double residual = regression_.residual_sd();
+  if (!regression_.usable() || !std::isfinite(residual)) return;
+  // A variance from N rows, two of which tell as much as one, is uncertain by a share of sqrt(4/N): what lies within
+  // that is no reason to leave a W that is known.
+  const double chance = kChance * std::sqrt(4.0 / std::max(1.0, regression_.effective_samples()));
+  const double by_W = variance_of(W_);
+  if (std::abs(residual * residual - by_W) <= chance * by_W) return;
+  const Eigen::Index z = W_.rows() - 1;
+  W_(z, z) -= regression_.equation_error();
+  regression_.set_equation_error(std::max(residual * residual - variance_of(W_), least_noise_ - W_(z, z)));
+  W_(z, z) += regression_.equation_error();
 }
 
 bool RegressionTracker::moves_held_direction(std::span<const double> x) const {
@@ -111,22 +224,23 @@ bool RegressionTracker::moves_held_direction(std::span<const double> x) const {
   return false;
 }
 
-/// Variance of the row's residual over that which W gives.
-double RegressionTracker::noise_ratio(const Eigen::MatrixXd& row_W) const {
-  const Eigen::Index n = row_W.rows();
+/// h' W h, h = [theta; -1]: the variance of z - x theta that W gives.
+double RegressionTracker::variance_of(const SmallMatrix& W) const {
+  const Eigen::Index n = W.rows();
   SmallVector h(n);
   h.head(n - 1) = regression_.theta();
   h(n - 1) = -1.0;
-  const double usual = h.dot(W_ * h);
-  return usual > 0.0 ? h.dot(row_W * h) / usual : 1.0;
+  return h.dot(W * h);
+}
+
+/// Variance of the row's residual over that which W gives.
+double RegressionTracker::noise_ratio(const Eigen::MatrixXd& row_W) const {
+  const double usual = variance_of(W_);
+  return usual > 0.0 ? variance_of(row_W) / usual : 1.0;
 }
 
 double RegressionTracker::against_W(double innovation, const Eigen::MatrixXd* row_W) const {
-  const Eigen::Index n = W_.rows();
-  SmallVector h(n);
-  h.head(n - 1) = regression_.theta();
-  h(n - 1) = -1.0;
-  return innovation / std::sqrt(row_W != nullptr ? h.dot(*row_W * h) : h.dot(W_ * h));
+  return innovation / std::sqrt(variance_of(row_W != nullptr ? SmallMatrix(*row_W) : W_));
 }
 
 std::optional<Change> RegressionTracker::update(double t, std::span<const double> x, double z,
@@ -137,6 +251,10 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
   std::optional<Change> change;
   if (u.accepted) {
     least_lambda_ = std::min(least_lambda_, u.lambda);
+    power_.add(z, u.lambda);
+    const bool known = std::isfinite(u.innovation_sigma);
+    power_.add_innovation(known ? u.innovation : 0.0, last_innovation_, u.lambda);
+    last_innovation_ = known ? u.innovation : 0.0;
     double normalised = u.innovation / u.innovation_sigma;
     if (row_W != nullptr) normalised /= std::sqrt(noise_ratio(*row_W));
     if (std::isfinite(normalised)) {
@@ -149,7 +267,11 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
       }
     }
   }
-  if (change) changes_.push_back(*change);
+  if (change) {
+    changes_.push_back(*change);
+    forget_parts();
+  }
+  keep_part(t);
   watching_ = watching_ || (regression_.usable() && regression_.excited_directions() >= regression_.parameters() &&
                             static_cast<double>(regression_.rows()) >= options_.watch_after_s * rate_Hz_);
   if (first_) next_s_ = t;

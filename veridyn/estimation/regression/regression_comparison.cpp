@@ -8,6 +8,7 @@
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/regression_analysis.hpp"
+#include "veridyn/estimation/regression/regression_evidence.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 
 namespace veridyn::estimation {
@@ -50,28 +51,6 @@ Evidence residual_autocorrelation(const RegressionEstimate& estimate) {
                          "the residual is autocorrelated (Durbin-Watson {:.2f}), which the error bars allow for: those "
                          "of white noise would be up to {:.1f} times too small",
                          check.value, std::max(1.0, worst));
-  return check;
-}
-
-Evidence collinearity(const RegressionEstimate& ols) {
-  Evidence check{.name = "collinearity",
-                 .value = ols.condition_number,
-                 .limit = kConditionLimit,
-                 .scale = "condition number",
-                 .bears_on = Purpose::kParameters};
-  const auto worst = std::ranges::max_element(ols.parameters, {}, &Parameter::variance_inflation);
-  const bool inflated = worst->variance_inflation > kInflationLimit;
-  check.outcome = passed_or(check.value <= kConditionLimit && !inflated, Outcome::kCare);
-  check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g} ({})", check.value,
-                           worst->variance_inflation, worst->name);
-  if (inflated) {
-    std::vector<std::string> names;
-    for (const Parameter& p : ols.parameters)
-      if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
-    check.text = fmt::format("the regressors of {} move together (variance inflation up to {:.3g})",
-                             fmt::join(names, ", "), worst->variance_inflation);
-    check.advice = "excite them separately: move one control at a time, in its own manoeuvre";
-  }
   return check;
 }
 
@@ -174,6 +153,28 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
 }
 
 }  // namespace
+
+Evidence collinearity(const RegressionEstimate& ols) {
+  Evidence check{.name = "collinearity",
+                 .value = ols.condition_number,
+                 .limit = kConditionLimit,
+                 .scale = "condition number",
+                 .bears_on = Purpose::kParameters};
+  const auto worst = std::ranges::max_element(ols.parameters, {}, &Parameter::variance_inflation);
+  const bool inflated = worst->variance_inflation > kInflationLimit;
+  check.outcome = passed_or(check.value <= kConditionLimit && !inflated, Outcome::kCare);
+  check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g} ({})", check.value,
+                           worst->variance_inflation, worst->name);
+  if (inflated) {
+    std::vector<std::string> names;
+    for (const Parameter& p : ols.parameters)
+      if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
+    check.text = fmt::format("the regressors of {} move together (variance inflation up to {:.3g})",
+                             fmt::join(names, ", "), worst->variance_inflation);
+    check.advice = "excite them separately: move one control at a time, in its own manoeuvre";
+  }
+  return check;
+}
 
 RegressionComparison compare(const RegressionData& data, const RegressionOptions& options) {
   const internal::RegressionAnalysis analysis(data, options);

@@ -171,9 +171,9 @@ Verdict verdict_of(const estimation::Estimate& estimate) {
   return verdict;
 }
 
-Section evidence_section(const Analysis& analysis) {
+Section evidence_section(const estimation::Estimate& estimate) {
   Section section{.title = "What was checked", .id = "evidence", .folded = true};
-  if (analysis.estimate.evidence.empty()) return section;
+  if (estimate.evidence.empty()) return section;
   Table table{.title = "Evidence",
               .caption =
                   "The grades above follow from these rows alone. A row bears on the data, the parameters or the "
@@ -186,7 +186,7 @@ Section evidence_section(const Analysis& analysis) {
                           {.name = "as", .align = Align::kLeft},
                           {.name = "what was seen", .align = Align::kLeft},
                           {.name = "bears on", .align = Align::kLeft}}};
-  for (const estimation::Evidence& row : analysis.estimate.evidence) {
+  for (const estimation::Evidence& row : estimate.evidence) {
     std::string purposes;
     for (const estimation::Purpose purpose : estimation::kPurposes)
       if (row.bears_on.contains(purpose))

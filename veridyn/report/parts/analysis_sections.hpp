@@ -28,7 +28,7 @@ namespace veridyn::report {
 [[nodiscard]] Verdict verdict_of(const estimation::Estimate& estimate);
 
 /// Every row of the evidence, folded.
-[[nodiscard]] Section evidence_section(const estimation::Analysis& analysis);
+[[nodiscard]] Section evidence_section(const estimation::Estimate& estimate);
 
 /// How well each quantity was predicted on data that identification did not see.
 [[nodiscard]] Table prediction_table(std::span<const estimation::PredictedQuantity> predictions, std::string title);

@@ -9,6 +9,8 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/recursive/tracking_evidence.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
@@ -278,6 +280,36 @@ std::vector<DriveChange> DriveTracker::append(const DriveSample& s) {
   return found;
 }
 
+namespace {
+
+/// Values that no tyre has, and the grades that all rows give; what must not be used is marked.
+void judge(estimation::Estimate& estimate) {
+  std::vector<estimation::Judgement> parts;
+  for (estimation::Parameter& p : estimate.parameters) {
+    const bool plausible = p.name == "understeer_gradient" || p.value > 0.0;
+    if (!plausible) {
+      estimate.evidence.push_back({.name = "plausibility of " + p.name,
+                                   .about = p.name,
+                                   .outcome = estimation::Outcome::kFailed,
+                                   .value = p.value,
+                                   .limit = 0.0,
+                                   .scale = p.unit,
+                                   .text = fmt::format("{} is negative: no tyre pushes that way", p.name),
+                                   .bears_on = estimation::Purpose::kParameters,
+                                   .advice = "check the signs of steer, yaw_rate and accel_y"});
+    }
+    std::vector<estimation::Evidence> own;
+    for (const estimation::Evidence& row : estimate.evidence)
+      if (row.about == p.name) own.push_back(row);
+    if (own.empty()) continue;
+    parts.push_back(estimation::judge(own));
+    p = estimation::marked({p}, estimation::verdict_of(parts.back())).front();
+  }
+  estimate.judgement = estimation::judge_together(parts);
+}
+
+}  // namespace
+
 estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
   estimation::Estimate out;
   out.subject = subject;
@@ -296,6 +328,21 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
     if (started()) {
       const estimation::RecursiveRegression& r = trackers_[i].regression();
       p.status = r.status(0);
+      // In units of the start's value, or its inverse: a relative error is the same in both.
+      const estimation::RegressionEstimate regression = trackers_[i].estimate();
+      const double factor = regression.parameters[0].sigma / r.sigma()(0);
+      if (factor > 1.0 && std::isfinite(factor)) {
+        p.sigma *= factor;
+        out.covariance(at, at) *= factor * factor;
+      }
+      const double half =
+          regression.parameters[0].sigma > 0.0
+              ? (regression.parameters[0].high95 - regression.parameters[0].value) / regression.parameters[0].sigma
+              : 1.96;
+      p.low95 = v - half * p.sigma;
+      p.high95 = v + half * p.sigma;
+      for (estimation::Evidence& row : estimation::tracking_evidence(p.name, trackers_[i], regression))
+        out.evidence.push_back(std::move(row));
       out.fit[p.name + ".residual_sd"] = r.residual_sd();
       out.fit[p.name + ".samples"] = r.effective_samples();
       const bool is_held = !history_[i].held.empty() && history_[i].held.back();
@@ -308,6 +355,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
       started() ? fmt::format("followed: {}; started from the {}",
                               followed.empty() ? "nothing" : fmt::format("{}", fmt::join(followed, ", ")), begin_text_)
                 : "nothing was followed: no stretch without holes is as long as the filter";
+  judge(out);
   if (!held.empty()) out.verdict += fmt::format("; held at the end, because not excited: {}", fmt::join(held, ", "));
   return out;
 }

@@ -1,0 +1,122 @@
+#include "veridyn/aircraft/tracking/tracking_judgement.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <mutex>
+
+#include "tests/aircraft/campaign/campaign.hpp"
+#include "veridyn/aircraft/track_flight.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using aircraft::testing::campaign_flight;
+using estimation::Evidence;
+using estimation::Grade;
+
+/// The progress of a flight among others.
+class OneThread : public Progress {
+ public:
+  [[nodiscard]] int threads() const override { return 1; }
+};
+
+struct Coverage {
+  int all = 0, covered = 0;
+  int flights = 0, data_yes = 0;
+};
+
+/// Intervals at the end of tracked flights in moderate turbulence, of what is identified and not rejected.
+Coverage coverage_on_line(const std::string& aircraft, std::uint64_t seeds) {
+  Coverage coverage;
+  std::mutex adding;
+  numerics::parallel_for(seeds, 0, [&](std::size_t seed) {
+    OneThread silent;
+    const FlightStudy study = campaign_flight(aircraft, seed + 1, 300.0);
+    const estimation::Estimate estimate = track_flight(study, silent).flight.estimate();
+    const std::lock_guard lock(adding);
+    ++coverage.flights;
+    coverage.data_yes += estimate.judgement.data.grade == Grade::kYes;
+    for (const auto& model : study.true_subject->model.coefficients) {
+      if (!model) continue;
+      const std::vector<std::string> names = model->parameter_names();
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const estimation::Parameter* p = estimate.find(names[i]);
+        if (p == nullptr || p->status != estimation::ParameterStatus::kIdentified) continue;
+        ++coverage.all;
+        coverage.covered += model->values[i] >= p->low95 && model->values[i] <= p->high95;
+      }
+    }
+  });
+  return coverage;
+}
+
+const Evidence* row_named(const estimation::Estimate& estimate, const std::string& name, const std::string& about) {
+  for (const Evidence& row : estimate.evidence)
+    if (row.name == name && row.about == about) return &row;
+  return nullptr;
+}
+
+TEST(TrackingJudgement, GradesACleanFlightAndSaysWhatItRestsOn) {
+  Progress silent;
+  const FlightStudy study = campaign_flight("unatrap", 1, 150.0);
+  const estimation::Estimate estimate = track_flight(study, silent).flight.estimate();
+  EXPECT_EQ(estimate.judgement.data.grade, Grade::kYes);
+  EXPECT_NE(estimate.judgement.parameters.grade, Grade::kNo);
+  EXPECT_EQ(estimate.judgement.prediction.grade, Grade::kYes);
+  // Rows of the recording, those of identify, and rows of every coefficient.
+  EXPECT_NE(row_named(estimate, "deflections", "controls"), nullptr);
+  for (const char* name : {"CL", "CD", "CY", "Cl", "Cm", "Cn"}) {
+    const Evidence* row = row_named(estimate, "residual beyond the sensors", name);
+    ASSERT_NE(row, nullptr) << name;
+    EXPECT_TRUE(row->passed()) << name << ": " << row->text;
+  }
+}
+
+TEST(TrackingJudgement, ARecordingThatContradictsItselfIsSaidToBe) {
+  Progress silent;
+  FlightStudy study = campaign_flight("unatrap", 1, 150.0);
+  aircraft::testing::fault("gyro y reversed").apply(study);
+  const estimation::Estimate estimate = track_flight(study, silent).flight.estimate();
+  EXPECT_EQ(estimate.judgement.data.grade, Grade::kNo);
+  EXPECT_NE(estimate.judgement.parameters.grade, Grade::kYes);
+  for (const estimation::Parameter& p : estimate.parameters)
+    EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified) << p.name;
+}
+
+TEST(TrackingJudgement, SaysThatALiveRecordingWasNotChecked) {
+  Progress silent;
+  const FlightStudy study = campaign_flight("unatrap", 1, 60.0);
+  TrackedFlight live(study);
+  (void)live.advance(study.mapped, study, false, silent);
+  const estimation::Estimate before = live.estimate();
+  EXPECT_EQ(before.judgement.data.grade, Grade::kNotJudged);
+  EXPECT_NE(row_named(before, "recording", ""), nullptr);
+  live.check_recording(study.mapped, study, {}, silent);
+  EXPECT_EQ(live.estimate().judgement.data.grade, Grade::kYes);
+}
+
+TEST(TrackingJudgement, IntervalsOnLineHoldTheTruthInTurbulence) {
+  // 3 flights of some 25 parameters, which depend on each other: a standard error of about 4 %.
+  const Coverage coverage = coverage_on_line("unatrap", 3);
+  ASSERT_GT(coverage.all, 50);
+  EXPECT_GE(static_cast<double>(coverage.covered), 0.85 * coverage.all);
+}
+
+// The table of docs/tracking.md: track_coverage.md in the working folder.
+TEST(TrackingJudgementSoak, IntervalsOnLineHoldTheTruthInTurbulence) {
+  std::ofstream table("track_coverage.md");
+  table << "| aircraft | flights | data yes | coverage on line |\n|---|---|---|---|\n";
+  for (const char* aircraft : {"unatrap", "aerosonde", "x8"}) {
+    const Coverage coverage = coverage_on_line(aircraft, 20);
+    const double share = static_cast<double>(coverage.covered) / coverage.all;
+    table << fmt::format("| {} | {} | {} | {:.1f} % of {} |\n", aircraft, coverage.flights, coverage.data_yes,
+                         100.0 * share, coverage.all);
+    EXPECT_GE(share, 0.85) << aircraft;
+  }
+}
+
+}  // namespace
+}  // namespace veridyn::aircraft

@@ -1,0 +1,73 @@
+#include "veridyn/aircraft/tracking/tracking_judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "veridyn/aircraft/identification/coefficient_evidence.hpp"
+#include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/recursive/tracking_evidence.hpp"
+
+namespace veridyn::aircraft {
+namespace {
+
+using estimation::Evidence;
+using estimation::Judgement;
+
+FlightEvidence unchecked_row() {
+  return {{.name = "recording",
+           .outcome = estimation::Outcome::kMissing,
+           .value = kNaN,
+           .limit = kNaN,
+           .text = "the recording was not checked against itself and physics",
+           .bears_on = estimation::Purpose::kData,
+           .advice = "run veridyn identify on the finished log"}};
+}
+
+/// Rows of one coefficient that is followed.
+std::vector<Evidence> coefficient_rows(const TrackedCoefficient& c, const Subject& subject,
+                                       std::span<const estimation::Parameter> parameters) {
+  const std::string name = regressed_name(c.model.coefficient, subject);
+  std::vector<Evidence> rows = estimation::tracking_evidence(name, *c.tracker, c.tracker->estimate());
+  // Held values were not measured, and what the subject's model is not of has no signs to expect.
+  if (name != name_of(c.model.coefficient)) return rows;
+  std::vector<estimation::Parameter> known(parameters.begin(), parameters.end());
+  std::erase_if(known, [](const estimation::Parameter& p) {
+    return p.status == estimation::ParameterStatus::kNotExcited || p.status == estimation::ParameterStatus::kRejected;
+  });
+  for (Evidence& row : plausibility(c.model.coefficient, known, subject)) rows.push_back(std::move(row));
+  return rows;
+}
+
+}  // namespace
+
+estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<const FlightEvidence> recording) {
+  estimation::Estimate estimate = tracker.estimate();
+  std::vector<FlightEvidence> of_flight(recording.begin(), recording.end());
+  if (of_flight.empty()) of_flight.push_back(unchecked_row());
+  std::vector<Evidence> of_all;
+  for (const FlightEvidence& e : of_flight) of_all.push_back(e.row);
+  estimate.evidence = of_all;
+  std::vector<Judgement> parts;
+  std::size_t at = 0;
+  for (const TrackedCoefficient& c : tracker.coefficients()) {
+    if (!c.tracker) continue;
+    const auto first = estimate.parameters.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto last = first + static_cast<std::ptrdiff_t>(c.model.size());
+    at += c.model.size();
+    const std::vector<Evidence> own = coefficient_rows(c, tracker.subject(), {first, last});
+    std::vector<Evidence> all = own;
+    for (const FlightEvidence& e : of_flight)
+      if (e.bears_on(c.model.coefficient)) all.push_back(e.row);
+    parts.push_back(estimation::judge(all));
+    estimate.evidence.insert(estimate.evidence.end(), own.begin(), own.end());
+    const std::vector<estimation::Parameter> marked =
+        estimation::marked({first, last}, estimation::verdict_of(parts.back()));
+    std::copy(marked.begin(), marked.end(), first);
+  }
+  estimate.judgement = estimation::judge_together(parts);
+  estimate.judgement.data = estimation::judge(of_all).data;
+  return estimate;
+}
+
+}  // namespace veridyn::aircraft

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+#include "veridyn/aircraft/identification/flight_evidence.hpp"
+#include "veridyn/aircraft/tracking/flight_tracker.hpp"
+
+namespace veridyn::aircraft {
+
+/// The tracker's estimate with its evidence and grades: rows of the recording, of every coefficient that is followed,
+/// and of the plausibility of its values. What must not be taken for physical constants is marked as `identify` marks
+/// it: effective or rejected.
+/// @param recording rows of the recording; empty: it was not checked, which a row says
+[[nodiscard]] estimation::Estimate judged_estimate(const FlightTracker& tracker,
+                                                   std::span<const FlightEvidence> recording);
+
+}  // namespace veridyn::aircraft
