@@ -7,7 +7,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/delay.hpp"
-#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/recording/grid_signals.hpp"
 
 namespace veridyn::recording {
@@ -15,48 +14,9 @@ namespace {
 
 /// A shorter recording shows too little of any delay [s].
 constexpr double kShortest_s = 10.0;
-/// Rows that the search for an effect's delay looks at: five minutes at 100 Hz are plenty.
-constexpr std::size_t kMostRows = 30000;
-/// Share of the effect that must be explained, and how much of that by the cause.
-constexpr double kLeastExplained = 0.3;
-constexpr double kLeastByCause = 0.05;
 
 numerics::LowPassDesign design(double rate_Hz, double band_Hz) {
   return {.rate_Hz = rate_Hz, .pass_Hz = band_Hz, .stop_Hz = 1.5 * band_Hz};
-}
-
-/// Share of z that a constant, `others` and the cause `lag` samples before explain.
-double share_explained(const std::vector<double>& z, const std::vector<double>& cause,
-                       const std::vector<std::vector<double>>& others, long lag) {
-  const auto n = static_cast<long>(z.size());
-  const long stride = std::max<long>(1, n / static_cast<long>(kMostRows));
-  const auto columns = static_cast<Eigen::Index>(others.size() + 1 + (cause.empty() ? 0 : 1));
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(columns, columns);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(columns);
-  Eigen::VectorXd row(columns);
-  double squares = 0.0;
-  double sum = 0.0;
-  double count = 0.0;
-  for (long k = 0; k < n; k += stride) {
-    row(0) = 1.0;
-    for (std::size_t j = 0; j < others.size(); ++j)
-      row(static_cast<Eigen::Index>(j) + 1) = others[j][static_cast<std::size_t>(k)];
-    if (!cause.empty()) {
-      if (k - lag < 0 || k - lag >= n) continue;
-      row(columns - 1) = cause[static_cast<std::size_t>(k - lag)];
-    }
-    const double value = z[static_cast<std::size_t>(k)];
-    if (!row.allFinite() || !std::isfinite(value)) continue;
-    normal += row * row.transpose();
-    right += value * row;
-    squares += value * value;
-    sum += value;
-    count += 1.0;
-  }
-  const double total = squares - sum * sum / std::max(1.0, count);
-  if (!(count > 100.0) || !(total > 0.0)) return 0.0;
-  const Eigen::VectorXd theta = numerics::shortest_least_squares(normal, right);
-  return 1.0 - (squares - right.dot(theta)) / total;
 }
 
 }  // namespace
@@ -128,51 +88,6 @@ DelayReport shared_delay(std::string group, std::string reference, const std::ve
   } else if (!found.determined) {
     report.text = fmt::format("not determined: {}", found.reason);
   } else if (std::abs(found.delay_s) < std::max(options.min_delay_s, 3.0 * found.sigma_s)) {
-    report.text = "too small to matter";
-  } else {
-    report.applied = true;
-    report.text = "applied";
-  }
-  return report;
-}
-
-DelayReport effect_delay(std::string cause_name, std::string effect_name, const std::vector<double>& effect,
-                         const std::vector<double>& cause, const std::vector<std::vector<double>>& others,
-                         double step_s, const DelayOptions& options, const Progress& progress, std::string_view kind) {
-  DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0, false, ""};
-  const auto longest = static_cast<long>(options.max_delay_s / step_s);
-  const long first = -longest / 3;
-  std::vector<double> explained;
-  for (long lag = first; lag <= longest; ++lag) {
-    if (progress.interrupted()) {
-      report.text = "not determined: interrupted";
-      return report;
-    }
-    explained.push_back(share_explained(effect, cause, others, lag));
-  }
-  const auto best = std::max_element(explained.begin(), explained.end()) - explained.begin();
-  const auto at = static_cast<std::size_t>(best);
-  const double top = explained[at];
-  report.correlation = std::sqrt(std::max(0.0, top));
-  const bool by_cause = top - share_explained(effect, {}, others, 0) > kLeastByCause;
-  if (best == 0 && top > kLeastExplained && by_cause) {
-    report.delay_s = static_cast<double>(first) * step_s;
-    report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
-    return report;
-  }
-  if (best == 0 || at + 1 == explained.size() || !(top > kLeastExplained) || !by_cause) {
-    report.text =
-        by_cause ? "not determined: no clear optimum" : fmt::format("not determined: the {} explains too little", kind);
-    return report;
-  }
-  const double left = explained[at - 1];
-  const double right = explained[at + 1];
-  const double curvature = left - 2.0 * top + right;
-  const double part = curvature < 0.0 ? 0.5 * (left - right) / curvature : 0.0;
-  report.delay_s = (static_cast<double>(first + best) + part) * step_s;
-  if (report.delay_s < -options.min_delay_s) {
-    report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);
-  } else if (report.delay_s < options.min_delay_s) {
     report.text = "too small to matter";
   } else {
     report.applied = true;
