@@ -32,7 +32,7 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
                                     {"accelerometer in g", "accelerometer"},
                                     {"accelerometer z reversed", "accelerometer"},
                                     {"gyro in deg/s", "gyro"},
-                                    {"attitude in degrees", "attitude"},
+                                    {"attitude in degrees", "roll"},
                                     {"velocity in km/h", "ground velocity"},
                                     {"north and east swapped", "vel_north"}}) {
     FlightStudy faulty = study;
