@@ -11,6 +11,7 @@ namespace {
 Summary summary_of(const aircraft::Reconstruction& reconstruction, const std::filesystem::path& folder) {
   Summary summary;
   summary["folder"] = folder.string();
+  if (reconstruction.contradiction) summary["contradiction"] = reconstruction.contradiction->statement;
   for (const aircraft::QuantityReport& q : reconstruction.quantities) {
     summary["quantities"][q.quantity] = Summary::object(
         {{"sigma", q.sigma}, {"unit", q.unit}, {"observability", aircraft::to_string(q.observability)}});
@@ -56,7 +57,8 @@ int reconstruct_aircraft(const StudyRun& run) {
                  summary_of(analysis.reconstruction, folder.path()));
   print_reconstruction(analysis.reconstruction, run.options());
   print_line(run.options(), fmt::format("report: {}", (folder.path() / "report.html").string()));
-  return kDone;
+  // What could be reconstructed before the contradiction is in the files.
+  return analysis.reconstruction.contradiction ? kFailed : kDone;
 }
 
 Command reconstruct_command() {

@@ -256,6 +256,29 @@ TEST_F(Program, RejectsTheThorFlight) {
     EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified) << p.name << " = " << p.value;
 }
 
+// An accelerometer without gravity: by dead reckoning the aircraft would fall at 880 m/s.
+TEST_F(Program, IdentifiesNothingWhereTheSensorsContradictEachOther) {
+  const std::string flight = file("flight.toml", kFlight);
+  ASSERT_EQ(run("simulate " + flight + " --quiet --out " + (folder_ / "sim").string()).exit_code, 0);
+  const std::string study =
+      file("study.toml",
+           "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"sim/recording.csv\"\n"
+           "[data.map]\naccel_z = { channel = \"accel_z\", zero = -9.80665, unit = \"m/s^2\" }\n");
+  const Outcome identified = run("identify " + study + out());
+  EXPECT_EQ(identified.exit_code, 0) << identified.text;
+  EXPECT_THAT(identified.text, HasSubstr("The recording contradicts itself"));
+  EXPECT_THAT(identified.text, HasSubstr("vel_down contradicts accelerometer and attitude"));
+  EXPECT_THAT(identified.text, HasSubstr("CL is not identified"));
+  const estimation::Estimate estimate = io::read_estimate(folder_ / "out" / "estimate.json");
+  EXPECT_TRUE(estimate.parameters.empty());
+  EXPECT_EQ(estimate.judgement.data.grade, estimation::Grade::kNo);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "report.html"));
+  const Outcome reconstructed = run("reconstruct " + study + " --out " + (folder_ / "motion").string());
+  EXPECT_EQ(reconstructed.exit_code, 1) << reconstructed.text;
+  EXPECT_THAT(reconstructed.text, HasSubstr("vel_down contradicts accelerometer and attitude"));
+  EXPECT_THAT(read_file(folder_ / "motion" / "report.html"), HasSubstr("Contradiction"));
+}
+
 // Every real flight log is read, or refused in one sentence.
 TEST_F(Program, InspectsEveryRealLogOrSaysWhyNot) {
   const fs::path logs = test::shared_folder() / "data/flight";

@@ -15,8 +15,8 @@ using testing::message_of;
 constexpr double kRate_Hz = 100.0;
 
 /// Band-limited noise: a random walk through a slow pole, the same for the same name.
-std::vector<double> lively(std::size_t count, const char* name) {
-  numerics::RandomStream random(3, name);
+std::vector<double> lively(std::size_t count, const char* name, std::uint64_t seed = 3) {
+  numerics::RandomStream random(seed, name);
   std::vector<double> x(count);
   double fast = 0.0, slow = 0.0;
   for (double& v : x) {
@@ -107,6 +107,46 @@ TEST(Delays, NoiseOfWhatTheCauseReactsToDoesNotBiasItsDelay) {
   };
   EXPECT_LT(std::abs(delay(kNoise * kNoise)), 0.25 * std::abs(delay(0.0)));
   EXPECT_GT(std::abs(delay(0.0)), 0.002);
+}
+
+/// A cause whose effect is 0.06 s late and half as large, with as much noise of the same colour as effect.
+DelayReport noisy_delay(std::uint64_t seed) {
+  const std::vector<double> cause = lively(6000, "cause", seed), noise = lively(6000, "noise", seed);
+  std::vector<double> effect = later(cause, 6);
+  for (std::size_t k = 0; k < effect.size(); ++k) effect[k] += noise[k];
+  return effect_delay("elevator", "angular acceleration", effect, {cause}, {}, 1.0 / kRate_Hz, {}, Progress());
+}
+
+// The jackknife's standard error against the scatter that it predicts. Its own relative error is 1/sqrt(2 9) for ten
+// parts, over 40 seeds 4 %; that of the scatter 11 %: the ratio of sound ones lies within 1 +- 0.35.
+TEST(Delays, OfEffectsHaveAStandardErrorThatIsTheirScatter) {
+  constexpr int kSeeds = 40;
+  double squares = 0.0, predicted = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const DelayReport report = noisy_delay(seed);
+    squares += std::pow(report.delay_s - 0.06, 2) / kSeeds;
+    predicted += std::pow(report.sigma_s, 2) / kSeeds;
+  }
+  EXPECT_NEAR(std::sqrt(squares / predicted), 1.0, 0.35);
+}
+
+TEST(Delays, CausesThatMoveTogetherHaveOneThatIsRightForAllTheirEffects) {
+  const std::vector<double> stick = lively(6000, "stick"), gust = lively(6000, "gust"), own = lively(6000, "own");
+  std::vector<double> aileron = stick, rudder = stick;
+  for (std::size_t k = 0; k < stick.size(); ++k) rudder[k] = 0.4 * stick[k] + 0.05 * own[k];
+  EXPECT_GT(correlation_of(aileron, rudder), kMoveTogether);
+  EXPECT_LT(std::abs(correlation_of(aileron, own)), 0.3);
+  std::vector<double> roll = later(aileron, 8), yaw = later(rudder, 8);
+  for (std::size_t k = 0; k < roll.size(); ++k) {
+    roll[k] += 0.3 * gust[k] + 0.2 * yaw[k];
+    yaw[k] += 0.5 * gust[k];
+  }
+  const DelayReport report = common_effect_delay("aileron", "angular acceleration",
+                                                 {{roll, {{aileron}, {rudder}}, {}}, {yaw, {{aileron}, {rudder}}, {}}},
+                                                 1.0 / kRate_Hz, {}, Progress());
+  EXPECT_TRUE(report.applied);
+  EXPECT_LT(report.sigma_s, 0.01);
+  EXPECT_NEAR(report.delay_s, 0.08, 1.96 * report.sigma_s);
 }
 
 TEST(Delays, SearchStopsWhenItIsInterrupted) {

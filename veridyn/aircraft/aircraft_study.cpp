@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/excited_segments.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
@@ -106,6 +107,13 @@ FlightAnalysis analyse_motion(const FlightStudy& study, Progress& progress) {
   options.keep_filter = study.truth.has_value();
   FlightAnalysis analysis = reconstruct_with(study, options, progress);
   if (analysis.interrupted) return analysis;
+  if (analysis.reconstruction.contradiction) {
+    progress.stage("checking the recording");
+    analysis.segments = recorded_flight(analysis.aligned.recording, study.segments.min_airspeed_mps);
+    analysis.recording_evidence = recording_evidence(analysis.aligned.recording, analysis.reconstruction, options,
+                                                     analysis.segments, analysis.delays);
+    return analysis;
+  }
   const bool data_sheet = options.sensors == NoiseSource::kReference;
   analysis.signals = prepare_signals(analysis.aligned, analysis.reconstruction.smoothed, study.subject, study.signals,
                                      data_sheet ? &analysis.reconstruction.sigma : nullptr);
@@ -228,6 +236,14 @@ FlightAnalysis with_results(FlightAnalysis analysis, const FlightStudy& study, c
   return analysis;
 }
 
+/// What is left to say where the motion could not be reconstructed: the rows of the recording.
+FlightAnalysis without_motion(FlightAnalysis analysis, const FlightStudy& study, const Progress& progress) {
+  analysis.coefficients = not_identified(study.subject, study.identify, *analysis.reconstruction.contradiction,
+                                         analysis.recording_evidence);
+  analysis.identified = identified_subject(study.subject, analysis.coefficients);
+  return with_results(std::move(analysis), study, progress);
+}
+
 }  // namespace
 
 FlightStudy read_study(const Study& study, Progress& progress) {
@@ -292,6 +308,7 @@ FlightAnalysis reconstruct(const FlightStudy& study, Progress& progress) {
 FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
+  if (analysis.reconstruction.contradiction) return without_motion(std::move(analysis), study, progress);
   const FlightSignals& signals = analysis.signals;
   const Segments& segments = analysis.segments;
   analysis.coefficients =
@@ -315,6 +332,7 @@ FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
 FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
   FlightAnalysis analysis = analyse_motion(study, progress);
   if (analysis.interrupted) return analysis;
+  if (analysis.reconstruction.contradiction) return without_motion(std::move(analysis), study, progress);
   const FlightSignals& signals = analysis.signals;
   const Segments& segments = analysis.segments;
   analysis.coefficients = evaluate_estimate(signals, segments, study.subject, study.identify, estimate);

@@ -59,12 +59,17 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
     options.keep_filter = true;
     reconstruction = reconstruct(part.recording, options, progress);
     if (reconstruction->interrupted) return {};
+    // Nothing is learnt from dead reckoning.
+    if (reconstruction->contradiction) {
+      notes_ = {reconstruction->contradiction->statement};
+      if (reconstruction->filtered.channels().empty()) return {};
+    }
     air = std::move(reconstruction->filtered);
   }
   const SensorSigma known = internal::load_streams(part.recording, study.reconstruct).sigma;
   const FlightSignals signals = prepare_signals(
       part, air, study.subject, study.signals, study.reconstruct.sensors == NoiseSource::kReference ? &known : nullptr);
-  if (tracker_.rows() == 0) notes_ = signals.notes;
+  if (tracker_.rows() == 0 && notes_.empty()) notes_ = signals.notes;
   if (whole && finished && reconstruction) judge_recording(part, study, *reconstruction, signals, delays);
   const double margin = filter_margin(signals);
   return tracker_.feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);

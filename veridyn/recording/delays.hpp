@@ -43,6 +43,8 @@ struct DelayReport {
   double correlation = 0.0;
   bool applied = false;
   std::string text;  ///< "applied", or why not
+  /// Groups that move together and were given one delay, this one among them; empty: it was searched alone.
+  std::vector<std::string> together = {};
 };
 
 /// The longest part of a recording that is searched [s]. A delay is one number: the middle quarter of an hour of a
@@ -107,15 +109,35 @@ struct Explanatory {
 
 /// How much later `effect` answers `cause` when it is a linear function of the cause and of `others`: the lag at which
 /// least squares, corrected for the noise of both (Fuller 1987, sec. 2.2), leaves least, from -max/3 to max.
-/// `delay_s` is positive when the effect is late; `sigma_s` comes from how sharp the least is, with a residual as
-/// correlated as the band allows; `correlation` is the multiple correlation. `applied` as above; never for a negative
-/// delay, an effect before its cause. Stops early, undetermined, when `progress` is interrupted. `kind` is what
-/// messages call the cause.
+/// `delay_s` is positive when the effect is late; `correlation` is the multiple correlation. `applied` as above; never
+/// for a negative delay, an effect before its cause. `sigma_s` is the jackknife's, by tenths of the recording: it needs
+/// no white residual; never less than half a step, between which a cause may jump.
+/// Stops early, undetermined, when `progress` is interrupted. `kind` is what messages call the cause.
 [[nodiscard]] DelayReport effect_delay(std::string cause_name, std::string effect_name,
                                        const std::vector<double>& effect, const Explanatory& cause,
                                        const std::vector<Explanatory>& others, double step_s,
                                        const DelayOptions& options, const Progress& progress,
                                        std::string_view kind = "cause");
+
+/// What causes that are late together bring about, with what else does.
+struct DelayedEffect {
+  std::vector<double> effect;
+  std::vector<Explanatory> causes, others;
+};
+
+/// The same for causes that move together, of which single delays cannot be distinguished: the one lag of all of them
+/// that explains most of all effects (mean of the shares).
+[[nodiscard]] DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
+                                              const std::vector<DelayedEffect>& effects, double step_s,
+                                              const DelayOptions& options, const Progress& progress,
+                                              std::string_view kind = "cause");
+
+/// Correlation beyond which two causes move together: two thirds of the one's variance is the other's, and a delay that
+/// is searched for one alone is pulled by the effect of the other.
+inline constexpr double kMoveTogether = 0.8;
+
+/// Correlation of two series where both are finite; 0 where there is no content.
+[[nodiscard]] double correlation_of(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Takes a delay off the stamps of those of the channels that are there. Says whether there was one.
 bool take_off_delay(Recording& recording, const std::vector<std::string>& channels, double delay_s);

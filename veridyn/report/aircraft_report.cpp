@@ -113,6 +113,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   const auto add = [&](Section section, bool shown = true) {
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
+  const bool motion = !analysis.reconstruction.contradiction;
   add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
   add(evidence_section(analysis.estimate));
@@ -120,17 +121,19 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(other_estimators_section(analysis));
   add(structure_section(analysis));
   add(validation_section(analysis));
-  Section flight = flight_section(study, analysis);
-  flight.folded = true;
-  add(std::move(flight));
+  if (motion) {
+    Section flight = flight_section(study, analysis);
+    flight.folded = true;
+    add(std::move(flight));
+  }
   add(coefficient_series_section(analysis));
-  add(excitation_section(analysis), !given);
+  add(excitation_section(analysis), !given && motion);
   add(residual_section(analysis), !given);
   add(uncertainty_section(analysis.uncertainty), analysis.uncertainty.available());
   add(sensors_section(study, analysis));
   add_warnings(document, analysis.estimate.warnings);
   add(rejected_section(analysis));
-  add(method_section(study, analysis));
+  if (motion) add(method_section(study, analysis));
   return document;
 }
 
@@ -139,6 +142,16 @@ Document reconstruction_report(const FlightStudy& study, const FlightAnalysis& a
   Document document = started_document(fmt::format("{}: motion through the air", study.subject.name),
                                        "Airspeed, flow angles and wind from the recording", context.program);
   document.facts = facts_of(study, analysis);
+  if (const std::optional<Contradiction>& contradiction = analysis.reconstruction.contradiction) {
+    document.verdict.level = Level::kBad;
+    document.verdict.word = "Contradiction";
+    document.verdict.headline = contradiction->statement + ".";
+    if (!analysis.reconstruction.smoothed.channels().empty())
+      document.sections.push_back(flight_section(study, analysis));
+    document.sections.push_back(sensors_section(study, analysis));
+    add_warnings(document, analysis.reconstruction.warnings);
+    return document;
+  }
   std::vector<std::string> weak;
   for (const QuantityReport& q : analysis.reconstruction.quantities) {
     const bool air_data =

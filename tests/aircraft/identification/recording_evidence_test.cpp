@@ -107,6 +107,24 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
   EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
 }
 
+TEST(RecordingEvidence, SaysWhichSurfacesHaveNoDelayOfTheirOwn) {
+  const Flown& flight = flown();
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  DelayReport aileron{"aileron", "angular acceleration", 0.1, 0.02, 0.9, true, "applied"};
+  const auto rows_with = [&](const std::vector<DelayReport>& delays) {
+    return recording_evidence(flight.measured, reconstructed(flight, reference_options()), reference_options(),
+                              segments, delays);
+  };
+  const DelayReport alone = aileron;
+  aileron.together = {"aileron", "rudder"};
+  DelayReport rudder = aileron;
+  rudder.group = "rudder";
+  const auto together = rows_with({aileron, rudder});
+  EXPECT_NE(find(together, "aileron and rudder", Outcome::kNotVerified), nullptr) << texts(together);
+  EXPECT_EQ(together.size(), rows_with({alone}).size() + 1);
+}
+
 TEST(RecordingEvidence, NamesDeflectionsInDegrees) {
   const auto rows = evidence_of(changed({"elevator"}, 1.0 / kDegree));
   EXPECT_NE(find(rows, "elevator", Outcome::kFailed), nullptr) << texts(rows);

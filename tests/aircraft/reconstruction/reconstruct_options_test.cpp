@@ -38,6 +38,7 @@ min_airspeed = "5 m/s"
 max_gap = "200 ms"
 gate = 4.0
 gate_recovery = "1 s"
+dead_reckoning = "20 s"
 [reconstruct.sigma]
 alpha = "0.8 deg"
 dynamic_pressure = 12.0
@@ -46,6 +47,7 @@ velocity = "0.2 s"
 )");
   EXPECT_EQ(o.rate_Hz, 50.0);
   EXPECT_EQ(o.turbulence.value().name, "medium_light");
+  EXPECT_DOUBLE_EQ(o.gate.dead_reckoning_s, 20.0);
   EXPECT_TRUE(o.alpha_bias && o.pitot_scale && !o.beta_bias && !o.use_beta && o.use_alpha);
   EXPECT_TRUE(!o.airspeed_is_true && o.beta_is_flank);
   EXPECT_EQ(o.vane_position.x(), 0.5);

@@ -1,5 +1,6 @@
 #include "veridyn/aircraft/sensors/delays.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -119,6 +120,72 @@ TEST(AlignDelays, GivenOnesAreAppliedAndNothingElseWithoutTheAutomatic) {
   ASSERT_EQ(aligned.delays.size(), 1u);
   EXPECT_EQ(aligned.delays[0].text, "given in the study");
   EXPECT_DOUBLE_EQ(aligned.mapped.recording.at("vel_east").times().front(), -0.05);
+}
+
+/// The surfaces are recorded before they move.
+MappedRecording recorded_early(MappedRecording mapped, double aileron_s, double rudder_s) {
+  for (const auto& [name, early] : {std::pair{"aileron", aileron_s}, {"rudder", rudder_s}})
+    recording::take_off_delay(mapped.recording, {name}, early);
+  return mapped;
+}
+
+// The default plan excites them with signals that are orthogonal.
+TEST(AlignDelays, SurfacesThatMoveSeparatelyKeepDelaysOfTheirOwn) {
+  const FlightStudy study = testing::campaign_flight("aerosonde", 1, 150.0);
+  const std::vector<DelayReport> reports = align_delays(recorded_early(study.mapped, 0.08, 0.15), {}).delays;
+  for (const auto& [name, truth] : {std::pair{"aileron", 0.08}, {"rudder", 0.15}}) {
+    const DelayReport* report = find(reports, name);
+    ASSERT_NE(report, nullptr);
+    EXPECT_TRUE(report->applied) << report->text;
+    EXPECT_NEAR(report->delay_s, truth, 1.96 * report->sigma_s) << name;
+    EXPECT_LT(report->sigma_s, 0.03);
+    EXPECT_THAT(report->together, IsEmpty());
+  }
+  EXPECT_GT(find(reports, "rudder")->delay_s - find(reports, "aileron")->delay_s, 0.04);
+}
+
+// An autopilot's mix: the same multisine on both.
+TEST(AlignDelays, SurfacesThatMoveTogetherGetOneDelay) {
+  Progress silent;
+  for (const char* aircraft : {"aerosonde", "unatrap"}) {
+    const FlightStudy study = read_study(
+        Study::parse(fmt::format("seed = 1\n[subject]\nbuiltin = \"{}\"\n[flight]\nduration = 140\naltitude = 300\n"
+                                 "wind = [4, -3, 0]\nturbulence = \"low_light\"\n"
+                                 "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 5\nduration = 130\n"
+                                 "surfaces = [\"aileron\"]\namplitude = \"6 deg\"\n"
+                                 "[[flight.manoeuvre]]\nkind = \"multisine\"\nstart = 5\nduration = 130\n"
+                                 "surfaces = [\"rudder\"]\namplitude = \"4 deg\"\n",
+                                 aircraft),
+                     "mix.toml"),
+        silent);
+    const AlignedRecording aligned = align_delays(recorded_early(study.mapped, 0.1, 0.1), {});
+    const DelayReport *aileron = find(aligned.delays, "aileron"), *rudder = find(aligned.delays, "rudder");
+    ASSERT_TRUE(aileron != nullptr && rudder != nullptr);
+    EXPECT_EQ(aileron->delay_s, rudder->delay_s) << aircraft;
+    EXPECT_NEAR(aileron->delay_s, 0.1, 1.96 * aileron->sigma_s) << aircraft;
+    EXPECT_LT(aileron->sigma_s, 0.03);
+    EXPECT_TRUE(aileron->applied && rudder->applied);
+    EXPECT_THAT(rudder->together, ::testing::ElementsAre("aileron", "rudder"));
+    EXPECT_THAT(rudder->text, HasSubstr("one delay for aileron and rudder"));
+    // Both are taken off once.
+    for (const char* name : {"aileron", "rudder"})
+      EXPECT_NEAR(aligned.mapped.recording.at(name).times().front(),
+                  study.mapped.recording.at(name).times().front() - 0.1 + aileron->delay_s, 1e-9);
+    EXPECT_TRUE(find(aligned.delays, "elevator")->together.empty());
+  }
+}
+
+// What the study gives is no part of a search.
+TEST(AlignDelays, GivenOnesAreNotFoundTogetherWithOthers) {
+  DelayAlignment given;
+  given.given = {{"rudder", 0.0}};
+  MappedRecording mapped = testing::campaign_flight("aerosonde", 1, 60.0).mapped;
+  Channel copy = mapped.recording.at("aileron");
+  copy.name = "rudder";
+  mapped.recording.set(std::move(copy));
+  const std::vector<DelayReport> reports = align_delays(mapped, given).delays;
+  EXPECT_THAT(find(reports, "aileron")->together, IsEmpty());
+  EXPECT_EQ(find(reports, "rudder")->text, "given in the study");
 }
 
 }  // namespace

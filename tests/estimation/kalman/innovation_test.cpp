@@ -81,5 +81,56 @@ TEST(InnovationMonitor, TakesASensorBackThatWasRefusedForLong) {
   EXPECT_EQ(monitor.summary().recovered, 2U);
 }
 
+/// Judges one sample every 0.1 s from `from` for `duration_s`, of which `share_outside` are beyond the gate.
+void feed(InnovationMonitor& monitor, double from, double duration_s, double share_outside) {
+  double due = 0.0;
+  for (int i = 0; i < static_cast<int>(10.0 * duration_s); ++i) {
+    due += share_outside;
+    const bool outside = due >= 1.0;
+    if (outside) due -= 1.0;
+    static_cast<void>(monitor.judge(from + 0.1 * i, outside ? 1000.0 : 0.5, 1.0));
+  }
+}
+
+TEST(InnovationMonitor, IsLostWhenItRefusesForLong) {
+  InnovationMonitor monitor;
+  feed(monitor, 0.0, 20.0, 0.0);
+  feed(monitor, 20.0, 9.5, 1.0);
+  EXPECT_FALSE(monitor.lost());
+  feed(monitor, 29.5, 1.0, 1.0);
+  EXPECT_TRUE(monitor.lost());
+  EXPECT_NEAR(monitor.unsupported_since(), 19.9, 1e-9);
+  EXPECT_NEAR(monitor.summary().unsupported_s, 10.5, 1e-9);
+  EXPECT_DOUBLE_EQ(monitor.largest_innovation(), 1000.0);
+  EXPECT_DOUBLE_EQ(monitor.largest_sigma(), 1.0);
+  EXPECT_NEAR(monitor.largest_rate(), 1000.0 / 2.1, 1.0);
+  monitor.restart();
+  EXPECT_FALSE(monitor.lost());
+}
+
+// An innovation that crosses zero now and then is as lost; one that is mostly inside the gate is not.
+TEST(InnovationMonitor, IsLostWhenMostOfItIsRefused) {
+  InnovationMonitor mostly, less;
+  feed(mostly, 0.0, 60.0, 0.7);
+  feed(less, 0.0, 600.0, 0.45);
+  EXPECT_TRUE(mostly.lost());
+  EXPECT_FALSE(less.lost());
+  EXPECT_LT(less.summary().unsupported_s, 1.0);
+}
+
+TEST(InnovationMonitor, IsNotLostBySilenceNorByAShortFault) {
+  InnovationMonitor silent;
+  feed(silent, 0.0, 1.0, 1.0);
+  feed(silent, 100.0, 1.0, 1.0);  // a silence of 99 s stands for one
+  EXPECT_FALSE(silent.lost());
+  InnovationMonitor fault;
+  for (int i = 0; i < 20; ++i) {
+    feed(fault, 20.0 * i, 5.0, 1.0);
+    feed(fault, 20.0 * i + 5.0, 15.0, 0.0);
+  }
+  EXPECT_FALSE(fault.lost());
+  EXPECT_LT(fault.summary().unsupported_s, 5.2);
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/contradicted_flight.hpp"
 #include "veridyn/aircraft/sensors/air_data_consistency.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
@@ -127,6 +128,18 @@ FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string&
   return {std::move(row), name == "alpha" ? kByAlpha : kByBeta};
 }
 
+/// The air data as the reconstruction took them: without the errors that it estimated and took off.
+AirDataConsistency corrected(AirDataConsistency air, const Reconstruction& reconstruction) {
+  const auto taken_off = [&](const char* error) {
+    const Channel* channel = reconstruction.smoothed.find(error);
+    return channel == nullptr || channel->empty() ? 0.0 : channel->value.front();
+  };
+  if (air.airspeed_scale) air.airspeed_scale->value /= std::sqrt(std::max(1.0 + taken_off("pitot_scale"), 0.01));
+  if (air.alpha) air.alpha->bias.value -= taken_off("alpha_bias");
+  if (air.beta) air.beta->bias.value -= taken_off("beta_bias");
+  return air;
+}
+
 /// What the alignment of the clocks found that no sensor can be: early, or of opposite sign.
 std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
   const auto order_of = [](const DelayReport& report) -> recording::TimeOrder {
@@ -143,6 +156,27 @@ std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
       rows.push_back({recording::opposite_row(report)});
     else if (recording::is_early(report, order) && !gyro_is_late)
       rows.push_back({recording::early_row(report, order)});
+  }
+  return rows;
+}
+
+/// Deflections whose single delays a recording does not show.
+std::vector<FlightEvidence> together_rows(std::span<const DelayReport> delays) {
+  std::vector<FlightEvidence> rows;
+  for (const DelayReport& report : delays) {
+    if (report.together.empty() || report.group != report.together.front()) continue;
+    const std::string names = fmt::format("{}", fmt::join(report.together, " and "));
+    rows.push_back({{.name = "delay of inputs that move together",
+                     .about = names,
+                     .outcome = Outcome::kNotVerified,
+                     .value = report.delay_s,
+                     .limit = kNaN,
+                     .scale = "s",
+                     .text = fmt::format("{} move together, so that neither single delays nor single effects can be "
+                                         "seen: one delay was searched for, {:.3f} +- {:.3f} s ({})",
+                                         names, report.delay_s, report.sigma_s, report.text),
+                     .bears_on = Purpose::kData | Purpose::kParameters,
+                     .advice = fmt::format("move {} one at a time in doublets of their own", names)}});
   }
   return rows;
 }
@@ -204,9 +238,10 @@ std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segmen
 
 /// What the reconstruction had to refuse shows that a contradiction found before matters: the row that names the sensor
 /// counts as much as what follows from it.
-void raise_causes(std::vector<FlightEvidence>& causes, std::span<const FlightEvidence> symptoms) {
-  const bool refused = std::ranges::any_of(
-      symptoms, [](const FlightEvidence& symptom) { return symptom.row.outcome == Outcome::kFailed; });
+void raise_causes(std::vector<FlightEvidence>& causes, std::span<const FlightEvidence> symptoms, bool lost) {
+  const bool refused = lost || std::ranges::any_of(symptoms, [](const FlightEvidence& symptom) {
+                         return symptom.row.outcome == Outcome::kFailed;
+                       });
   const bool named =
       std::ranges::any_of(causes, [](const FlightEvidence& cause) { return cause.row.outcome == Outcome::kFailed; });
   if (!refused || named) return;
@@ -342,9 +377,10 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
   for (Evidence& row : recording::inertial_evidence(recording::inertial_consistency(recording, segments.airborne)))
     rows.push_back({std::move(row)});
   add(delay_rows(delays));
+  add(together_rows(delays));
   if (const Channel* density = reconstruction.smoothed.find("air_density")) {
-    const AirDataConsistency air =
-        air_data_consistency(recording, *density, options.airspeed_is_true, segments.airborne);
+    const AirDataConsistency air = corrected(
+        air_data_consistency(recording, *density, options.airspeed_is_true, segments.airborne), reconstruction);
     if (air.airspeed_scale) rows.push_back(airspeed_row(*air.airspeed_scale));
     if (air.alpha) {
       rows.push_back(vane_row(*air.alpha, "alpha"));
@@ -364,7 +400,11 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
   for (const SensorReport& sensor : reconstruction.sensors)
     if (sensor.innovations.count > 0) symptoms.push_back(innovation_row(sensor));
   if (std::optional<FlightEvidence> gust = gust_row(reconstruction, segments)) symptoms.push_back(std::move(*gust));
-  raise_causes(rows, symptoms);
+  const bool lost = reconstruction.contradiction.has_value();
+  raise_causes(rows, symptoms, lost);
+  // First of all rows, as the reason that there is no more.
+  if (lost)
+    rows.insert(rows.begin(), contradiction_row(*reconstruction.contradiction, options.gate.dead_reckoning_s, rows));
   add(std::move(symptoms));
   return rows;
 }

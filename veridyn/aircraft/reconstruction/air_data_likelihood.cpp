@@ -153,6 +153,7 @@ AirDataErrors estimate_air_data_errors(const FilterEngine& engine, const RunSett
   }
   result.covariance = scale.asDiagonal() * now.information.inverse().topLeftCorner(errors, errors) * scale.asDiagonal();
   result.spectrum = evaluate.spectrum(theta);
+  for (Eigen::Index i = 0; i < errors; ++i) result.applied.push_back(i);
   return result;
 }
 

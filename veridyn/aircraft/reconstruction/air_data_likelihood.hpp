@@ -15,8 +15,19 @@ struct AirDataErrors {
   Eigen::Matrix<double, 5, 1> value = Eigen::Matrix<double, 5, 1>::Zero();  ///< 0 where not estimated
   Eigen::MatrixXd covariance;                                               ///< in the order of `index`
   DrydenSettings spectrum;                                                  ///< with intensities as they fit best
+  std::vector<Eigen::Index> applied;  ///< positions in `index` of those that are taken off the sensors
   int iterations = 0;
   bool converged = true;
+
+  /// `value` of those that are applied, 0 elsewhere.
+  [[nodiscard]] Eigen::Matrix<double, 5, 1> correction() const {
+    Eigen::Matrix<double, 5, 1> result = Eigen::Matrix<double, 5, 1>::Zero();
+    for (const Eigen::Index i : applied) {
+      const int at = index[static_cast<std::size_t>(i)];
+      result(at) = value(at);
+    }
+    return result;
+  }
 };
 
 /// 1 sigma of each before the flight; see kVaneBiasPrior and its like.
@@ -29,7 +40,9 @@ struct AirDataErrors {
 ///
 ///     ln L(theta) = -1/2 sum [nu^2 / S + ln S] - 1/2 sum (theta / prior)^2
 ///
-/// over all innovations nu with predicted variance S. Fisher scoring with
+/// over all innovations nu with predicted variance S. For the model-based filter only: without a model of the aircraft
+/// the motion with which pilot and airframe answer a gust is taken for an error of the sensor (a clean flight's pitot
+/// tube came out 34 +- 2 % low), see `check_air_data_errors`. Fisher scoring with
 ///
 ///     I = sum [nu_i nu_j / S + S_i S_j / (2 S^2)] + prior^-2
 ///

@@ -80,6 +80,7 @@ class EngineOf final : public FilterEngine {
                  const OnSmoothed& smoothed) const override {
     constexpr std::size_t kBlock = 512;
     const auto forward = [&](const FlightRun<Model>& now) {
+      if (lost_sensor(now.monitors())) return false;
       return !now.at_output() ||
              filtered(now.output(), now.time(), now.filter().state(), view_of<Model>(now.filter().covariance()));
     };

@@ -1,6 +1,7 @@
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -216,18 +217,18 @@ std::vector<std::string> missing_sensor_warnings(const FlightStreams& s) {
 }
 
 /// Where errors of vanes and pitot tube were estimated.
-std::vector<std::string> air_data_error_warnings(bool converged, bool with_model) {
+std::vector<std::string> air_data_error_warnings(const Solution& solution) {
   std::vector<std::string> warnings;
-  if (!converged) {
+  if (!solution.air_data_errors_converged) {
     warnings.emplace_back(
         "the errors of vanes and pitot tube did not converge: their values are the best found, and the bands too "
         "narrow");
   }
-  if (!with_model) {
-    warnings.emplace_back(
-        "errors of vanes and pitot tube found without a model of the aircraft are biased when pilot or autopilot "
-        "answer the gusts, which then look like errors of the sensors; reconstruct.filter = \"model-based\" is not "
-        "misled so");
+  if (!solution.not_applied.empty()) {
+    warnings.push_back(
+        fmt::format("{}: not corrected, since headings, attitude, ground velocity and manoeuvres of this flight show "
+                    "no such error beyond their own doubt; reconstruct.filter = \"model-based\" sees smaller ones",
+                    fmt::join(solution.not_applied, ", ")));
   }
   return warnings;
 }
@@ -291,11 +292,14 @@ std::vector<SensorErrorReport> sensor_error_reports(const Solution& solution, co
     const double prior = error_prior(c, model);
     if (!(prior > 0.0)) continue;
     const auto part = [&](const std::vector<double>& v) { return std::span<const double>(v.data(), solution.count); };
-    errors.push_back({.name = internal::kColumns[c].name,
-                      .unit = internal::kColumns[c].unit,
-                      .value = numerics::median(part(solution.smoothed->value(c))),
-                      .prior_sigma = prior,
-                      .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
+    const bool air_data = c >= internal::kFirstAirDataError && c < internal::kFirstCoefficientError;
+    errors.push_back(
+        {.name = internal::kColumns[c].name,
+         .unit = internal::kColumns[c].unit,
+         .value = air_data ? solution.air_error_found(static_cast<Eigen::Index>(c - internal::kFirstAirDataError))
+                           : numerics::median(part(solution.smoothed->value(c))),
+         .prior_sigma = prior,
+         .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
     kept.push_back(static_cast<Eigen::Index>(i));
   }
   const auto n = static_cast<Eigen::Index>(kept.size());
@@ -344,6 +348,18 @@ void add_guard_channels(const internal::GuardTrace& trace, const TimeBase& time,
                             {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));
 }
 
+Solution solved(FilterKind kind, const internal::SolveTask& task, Progress& progress) {
+  switch (kind) {
+    case FilterKind::kGuarded:
+      return internal::solve_guarded(task, progress);
+    case FilterKind::kModelBased:
+      return internal::solve_model_based(task, progress);
+    case FilterKind::kModelFree:
+      break;
+  }
+  return internal::solve_model_free(task, progress);
+}
+
 }  // namespace
 
 Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,
@@ -381,10 +397,9 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
                                  .stamps = &stamps.time,
                                  .first_stamp = stamps.first,
                                  .spectrum = turbulence.spectrum,
-                                 .subject = force_model ? &*force_model : nullptr};
-  Solution solution = options.filter == FilterKind::kGuarded      ? internal::solve_guarded(task, progress)
-                      : options.filter == FilterKind::kModelBased ? internal::solve_model_based(task, progress)
-                                                                  : internal::solve_model_free(task, progress);
+                                 .subject = force_model ? &*force_model : nullptr,
+                                 .recording = &mapped};
+  Solution solution = solved(options.filter, task, progress);
 
   Reconstruction out;
   const auto warn = [&](std::vector<std::string> texts) {
@@ -396,18 +411,21 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   out.turbulence = turbulence.spectrum;
   out.turbulence_origin = std::move(turbulence.origin);
   for (const Segment& segment : segments) out.segments.push_back({segment.begin, segment.end});
-  out.interrupted = solution.count < stamps.time.size();
+  out.contradiction = solution.contradiction;
+  out.interrupted = !out.contradiction && solution.count < stamps.time.size();
+  if (out.contradiction) warn({out.contradiction->statement});
   warn(streams.warnings);
   warn(sampling_warnings(streams, segments.size(), options.max_gap));
   out.sensors = sensor_reports(streams, solution);
   for (const SensorReport& sensor : out.sensors) out.log_likelihood += sensor.innovations.log_likelihood;
   warn(contradiction_warnings(out.sensors));
-  out.quantities = quantity_reports(options, out.turbulence, *solution.smoothed, solution.count);
+  if (solution.count > 0)
+    out.quantities = quantity_reports(options, out.turbulence, *solution.smoothed, solution.count);
   warn(missing_sensor_warnings(streams));
-  if (options.estimates_air_data_errors())
-    warn(air_data_error_warnings(solution.air_data_errors_converged, force_model.has_value()));
-  out.sensor_errors =
-      sensor_error_reports(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{});
+  if (options.estimates_air_data_errors()) warn(air_data_error_warnings(solution));
+  if (solution.count > 0)
+    out.sensor_errors =
+        sensor_error_reports(solution, force_model ? internal::model_error_of(*force_model, options) : ModelError{});
   if (solution.guard) {
     out.guard = guard_report(*solution.guard, stamps.time, solution.count);
     if (out.guard->reverts > 0) out.warnings.push_back(out.guard->statement);
@@ -417,6 +435,7 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   const auto finish = [&](Recording& recording, ResultColumns& columns) {
     recording.source = mapped.source;
     recording.frame = Frame::kFrd;
+    if (solution.count == 0) return;
     columns.move_into(recording, time, solution.count);
   };
   finish(out.smoothed, *solution.smoothed);

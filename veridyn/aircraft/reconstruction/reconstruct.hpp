@@ -41,6 +41,19 @@ struct GuardReport {
   std::string statement;             ///< one sentence
 };
 
+/// A sensor that the filter refused for so long that what it measures was dead reckoning: it contradicts the others,
+/// and one of them is wrong.
+struct Contradiction {
+  std::string channel;     ///< "vel_down"
+  std::string against;     ///< "accelerometer and attitude"
+  TimeSpan span;           ///< from the first refusal to where the reconstruction ended
+  double departure = 0.0;  ///< the largest of the reconstruction from the sensor, in `unit`
+  double expected = 0.0;   ///< standard deviation that the filter expected of it
+  std::string unit;        ///< SI
+  std::string meaning;     ///< "as if the accelerometer were off by 9.8 m/s^2"
+  std::string statement;   ///< one sentence
+};
+
 /// Errors of one filter and its smoother for one quantity, where the truth is known.
 struct FilterError {
   std::string quantity;    ///< "alpha"
@@ -78,6 +91,8 @@ struct Reconstruction {
   std::vector<QuantityReport> quantities;
   std::vector<SensorErrorReport> sensor_errors;  ///< those that were to be estimated
   std::optional<GuardReport> guard;
+  /// Where the reconstruction ended because of one: the results then end where it began, and may be empty.
+  std::optional<Contradiction> contradiction;
   std::vector<FilterError> comparison;  ///< filled by `compare_filters`, where the truth is known
   FilterKind filter = FilterKind::kModelFree;
   SensorSigma sigma;              ///< as used
@@ -101,6 +116,12 @@ struct Reconstruction {
 /// Each segment starts from the first attitude, ground velocity and airspeed: v_r points as the vanes show, without
 /// vanes along the ground velocity, and is scaled to the airspeed; the rest of the ground velocity is wind.
 /// @throws InputError naming a missing channel and what the recording has, or saying that there is too little data.
+///
+/// Attitude, ground velocity and airspeed are corrected by one sensor each. Where that is refused for 10 s
+/// (`dead_reckoning`), and a twentieth of the recording, longer than it is accepted, the estimate is dead reckoning,
+/// which grows to absurd values with a small sigma: the reconstruction ends, and `contradiction` says which sensors
+/// contradict each other. A short fault or dropout does not: the estimate is still near when the sensor is back.
+///
 /// The model-based and the guarded filter need `subject` with values for CL (and CD, CY as far as known), deflections,
 /// and `thrust` or `throttle`; see ModelBasedAirData and GuardedFilter.
 [[nodiscard]] Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,

@@ -69,8 +69,12 @@ GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>
 }  // namespace
 
 Solution solve_guarded(const SolveTask& task, Progress& progress) {
-  Solution based = solve_model_based(task, progress);
+  // A wrong model, too, has the model-based filter refuse sensors: only the other tells a contradiction among them.
   Solution free = solve_model_free(task, progress);
+  if (free.contradiction) return free;
+  SolveTask whole = task;
+  whole.ends_at_contradiction = false;
+  Solution based = solve_model_based(whole, progress);
   GuardedPass guarded = run_guarded(task, free.air_error, std::move(based.filtered), progress);
   const GuardTrace& trace = guarded.trace;
   based.filtered = std::move(guarded.filtered);
@@ -97,6 +101,8 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   if (trace.reverts > 0) {
     based.monitors = free.monitors;
     based.error_columns = free.error_columns;
+    based.air_error_found = free.air_error_found;
+    based.not_applied = free.not_applied;
     based.error_covariance = free.error_covariance;
   }
   based.guard = std::move(guarded.trace);

@@ -85,6 +85,7 @@ struct AssumedTurbulence {
 ///     max_gap = "0.5 s"        # without gyro or accelerometer for longer: the estimate ends and starts again
 ///     gate = 5.0               # innovations beyond this many sigma are dropped
 ///     gate_recovery = "2 s"    # a sensor dropped for this long is taken back with inflated variance
+///     dead_reckoning = "10 s"  # a sensor dropped for this much longer than accepted ends the reconstruction
 ///     [reconstruct.sigma]      # overrides `sensors`, 1 sigma per sample: accelerometer, gyro, attitude, velocity,
 ///     alpha = "0.6 deg"        # velocity_down, dynamic_pressure, airspeed, alpha, beta
 ///     [reconstruct.guard]      # see estimation::GuardOptions

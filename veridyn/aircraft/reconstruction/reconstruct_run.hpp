@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "veridyn/aircraft/reconstruction/air_data_measurement.hpp"
@@ -13,6 +14,14 @@ namespace veridyn::aircraft::internal {
 
 /// The innovations of all sensors.
 using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
+
+/// Of attitude, ground velocity and pitot tube, which alone correct what they measure, the one that no longer corrects
+/// it. Vanes are not among them: without one the gust model bounds its angle.
+[[nodiscard]] inline std::optional<Sensor> lost_sensor(const Monitors& monitors) {
+  for (std::size_t i = 0; i <= kPitot; ++i)
+    if (monitors[i].lost()) return static_cast<Sensor>(i);
+  return std::nullopt;
+}
 
 /// View of what does not change along a run: streams, options and stamps must outlive it.
 struct RunSetting {

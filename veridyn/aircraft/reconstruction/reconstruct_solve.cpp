@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/reconstruction/air_data_check.hpp"
 #include "veridyn/aircraft/reconstruction/air_data_likelihood.hpp"
+#include "veridyn/aircraft/reconstruction/contradiction.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -34,6 +37,17 @@ std::vector<std::size_t> error_columns_of(const ColumnSet& columns) {
   return errors;
 }
 
+/// Short faults are no contradiction: what is refused must also be a twentieth of the recording.
+estimation::InnovationGate gate_of(const SolveTask& task) {
+  constexpr double kLeastShare = 0.05;
+  estimation::InnovationGate gate = task.options->gate;
+  double total_s = 0.0;
+  for (const Segment& segment : task.segments) total_s += segment.end - segment.begin;
+  gate.dead_reckoning_s =
+      task.ends_at_contradiction ? std::max(gate.dead_reckoning_s, kLeastShare * total_s) : kInfinity;
+  return gate;
+}
+
 /// The share of the progress that a pass makes up.
 struct PassProgress {
   Progress* progress;
@@ -51,7 +65,7 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
   solution.error_columns = error_columns_of(columns);
   const auto n = static_cast<Eigen::Index>(solution.error_columns.size());
   solution.error_covariance = Eigen::MatrixXd::Zero(n, n);
-  solution.monitors = monitors_with(task.options->gate);
+  solution.monitors = monitors_with(gate_of(task));
   solution.air_error = setting.air_error;
 
   constexpr std::size_t kReport = 4096;
@@ -80,6 +94,12 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
     PassEnd end = engine.smooth(setting, segment, solution.monitors, task.first_stamp[i], solution.error_columns,
                                 filtered, smoothed);
     solution.monitors = end.monitors;
+    solution.contradiction = contradiction_of(s, end.monitors);
+    if (solution.contradiction) {
+      const auto before = std::lower_bound(stamps.begin(), stamps.end(), solution.contradiction->span.begin);
+      solution.count = std::min(solution.count, static_cast<std::size_t>(before - stamps.begin()));
+      break;
+    }
     if (segment.end - segment.begin <= longest) continue;
     longest = segment.end - segment.begin;
     solution.error_covariance = std::move(end.error_covariance);
@@ -91,12 +111,14 @@ Solution run_pass(const FilterEngine& engine, const SolveTask& task, const RunSe
 /// by passes with each moved by one sigma.
 Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask& task, RunSetting setting,
                                     const ColumnSet& columns, Progress& progress) {
-  const AirDataErrors errors = estimate_air_data_errors(engine, setting, task);
-  setting.air_error = errors.value;
+  const AirDataErrors errors =
+      engine.has_forces() ? estimate_air_data_errors(engine, setting, task) : check_air_data_errors(setting, task);
+  setting.air_error = errors.correction();
   setting.motion.spectrum = errors.spectrum;
-  const double parts = static_cast<double>(errors.index.size()) + 1.0;
+  const double parts = static_cast<double>(errors.applied.size()) + 1.0;
   Solution solution = run_pass(engine, task, setting, columns, {&progress, 0.0, 1.0 / parts});
   solution.air_data_errors_converged = errors.converged;
+  if (solution.contradiction) return solution;
   const std::size_t count = solution.count;
   // What the errors leave uncertain in everything else: the estimate's derivative by each, by a shift of one sigma.
   const auto m = static_cast<Eigen::Index>(errors.index.size());
@@ -104,22 +126,29 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
   const Eigen::MatrixXd correlation =
       sigma.cwiseInverse().asDiagonal() * errors.covariance * sigma.cwiseInverse().asDiagonal();
   std::vector<ResultColumns> smoothed_shifts, filtered_shifts;
-  for (Eigen::Index i = 0; i < m; ++i) {
-    setting.air_error = errors.value;
+  for (std::size_t k = 0; k < errors.applied.size(); ++k) {
+    const Eigen::Index i = errors.applied[k];
+    setting.air_error = errors.correction();
     setting.air_error(errors.index[static_cast<std::size_t>(i)]) += sigma(i);
     Solution shifted = run_pass(engine, task, setting, columns,
-                                {&progress, static_cast<double>(i + 1) / parts, static_cast<double>(i + 2) / parts});
+                                {&progress, static_cast<double>(k + 1) / parts, static_cast<double>(k + 2) / parts});
     smoothed_shifts.push_back(std::move(*shifted.smoothed));
     if (shifted.filtered) filtered_shifts.push_back(std::move(*shifted.filtered));
     solution.count = std::min(count, shifted.count);
   }
-  solution.smoothed->widen(solution.count, smoothed_shifts, correlation);
-  if (solution.filtered) solution.filtered->widen(solution.count, filtered_shifts, correlation);
+  const Eigen::MatrixXd of_applied = correlation(errors.applied, errors.applied);
+  setting.air_error = errors.correction();
+  solution.air_error_found = errors.value;
+  solution.smoothed->widen(solution.count, smoothed_shifts, of_applied);
+  if (solution.filtered) solution.filtered->widen(solution.count, filtered_shifts, of_applied);
   for (Eigen::Index i = 0; i < m; ++i) {
     const auto index = errors.index[static_cast<std::size_t>(i)];
     const std::size_t column = kFirstAirDataError + static_cast<std::size_t>(index);
-    solution.smoothed->fill(column, errors.value(index), sigma(i));
-    if (solution.filtered) solution.filtered->fill(column, errors.value(index), sigma(i));
+    if (std::ranges::find(errors.applied, i) == errors.applied.end())
+      solution.not_applied.emplace_back(kColumns[column].name);
+    // What is taken off the readings, also by those who read the channel.
+    solution.smoothed->fill(column, setting.air_error(index), sigma(i));
+    if (solution.filtered) solution.filtered->fill(column, setting.air_error(index), sigma(i));
     for (Eigen::Index j = 0; j < m; ++j) {
       const auto at = [&](Eigen::Index k) {
         const std::size_t c = kFirstAirDataError + static_cast<std::size_t>(errors.index[static_cast<std::size_t>(k)]);

@@ -8,6 +8,7 @@
 
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/reconstruction/filter_engine.hpp"
+#include "veridyn/aircraft/reconstruction/reconstruct.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_columns.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/progress.hpp"
@@ -24,7 +25,9 @@ struct SolveTask {
   const std::vector<double>* stamps;         ///< of the results, all segments
   std::span<const std::size_t> first_stamp;  ///< of each segment
   DrydenSettings spectrum;
-  const Subject* subject = nullptr;  ///< the force model, for the model-based filter
+  const Subject* subject = nullptr;      ///< the force model, for the model-based filter
+  const Recording* recording = nullptr;  ///< that the streams were made of
+  bool ends_at_contradiction = true;     ///< else the pass goes on by dead reckoning: another filter decides
 };
 
 /// What the guard did along a run, at the stamps of the results.
@@ -43,8 +46,12 @@ struct Solution {
   std::vector<std::size_t> error_columns;
   Eigen::MatrixXd error_covariance;
   Eigen::Matrix<double, 5, 1> air_error = Eigen::Matrix<double, 5, 1>::Zero();  ///< as estimated, 0 elsewhere
+  /// As found, also where they were not applied: then `air_error` and the columns are 0.
+  Eigen::Matrix<double, 5, 1> air_error_found = Eigen::Matrix<double, 5, 1>::Zero();
   bool air_data_errors_converged = true;
+  std::vector<std::string> not_applied;  ///< errors of the air data that were looked for and not found
   std::optional<GuardTrace> guard;
+  std::optional<Contradiction> contradiction;  ///< then `count` ends where it began
 };
 
 /// Monitors of all sensors behind one gate.

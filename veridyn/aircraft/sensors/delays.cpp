@@ -1,10 +1,12 @@
 #include "veridyn/aircraft/sensors/delays.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "veridyn/aircraft/model/atmosphere.hpp"
@@ -34,6 +36,20 @@ const std::vector<DelayGroup>& groups() {
   return all;
 }
 
+/// What a surface moves: the rate whose derivative answers it.
+struct SurfaceAxis {
+  std::string_view surface;
+  const char* rate;
+};
+constexpr std::array<SurfaceAxis, 3> kSurfaceAxes{
+    {{"elevator", "gyro_y"}, {"aileron", "gyro_x"}, {"rudder", "gyro_z"}}};
+
+const SurfaceAxis* surface_axis(std::string_view name) {
+  const auto found = std::find_if(kSurfaceAxes.begin(), kSurfaceAxes.end(),
+                                  [&](const SurfaceAxis& axis) { return axis.surface == name; });
+  return found == kSurfaceAxes.end() ? nullptr : &*found;
+}
+
 /// View of a recording that is being aligned, group by group, and of how.
 class Alignment {
  public:
@@ -44,9 +60,7 @@ class Alignment {
   std::optional<DelayReport> align(const DelayGroup& group) {
     if (group.name == "attitude") return attitude(group);
     if (group.name == "gps") return gps(group);
-    if (group.name == "elevator") return deflection(group, "gyro_y");
-    if (group.name == "aileron") return deflection(group, "gyro_x");
-    if (group.name == "rudder") return deflection(group, "gyro_z");
+    if (surface_axis(group.name) != nullptr) return deflection(group);
     if (group.name == "airspeed") return airspeed(group);
     return vane(group);
   }
@@ -220,12 +234,10 @@ class Alignment {
     return report;
   }
 
-  /// The delay of a deflection at which the moment about its axis is explained best: angular acceleration over the
-  /// square of the airspeed, by flow angles, normalised rates, the other deflections and the products of the rates that
-  /// couple through the inertia. What is left out moves with the aircraft, and so with the pilot who holds it, and
-  /// biases the delay.
-  std::optional<DelayReport> deflection(const DelayGroup& group, const char* rate) {
-    if (!recording_.has(group.name)) return std::nullopt;
+  /// What the angular acceleration over the square of the airspeed about a surface's axis is explained by: flow angles,
+  /// normalised rates, products of the rates that couple through the inertia, and the other surface of the axis. What
+  /// is left out moves with the aircraft, and so with the pilot who holds it, and biases the delay.
+  Equation moment_equation(const SurfaceAxis& axis, const std::vector<std::string>& causes) const {
     const Series p = smooth("gyro_x"), q = smooth("gyro_y"), r = smooth("gyro_z");
     const auto products = [&](auto value) {
       Series series(band_.size());
@@ -233,31 +245,73 @@ class Alignment {
       return series;
     };
     Equation equation(*this, airspeed());
-    if (group.name == "elevator") {
+    if (axis.surface == "elevator") {
       equation.add("alpha", 0);
       equation.add("gyro_y", 1);
       equation.add_exact(products([&](std::size_t k) { return p[k] * r[k]; }), 2);
       equation.add_exact(products([&](std::size_t k) { return p[k] * p[k] - r[k] * r[k]; }), 2);
-    } else {
-      equation.add("beta", 0);
-      equation.add("gyro_x", 1);
-      equation.add("gyro_z", 1);
-      equation.add_exact(products([&](std::size_t k) { return q[k] * r[k]; }), 2);
-      equation.add_exact(products([&](std::size_t k) { return p[k] * q[k]; }), 2);
-      equation.add_position(group.name == "aileron" ? "rudder" : "aileron");
+      return equation;
     }
-    DelayReport report = recording::effect_delay(
-        group.name, fmt::format("angular acceleration ({})", rate), equation.over_speed(band_.derivative(at(rate)), 2),
-        {smooth(group.name.c_str())}, equation.others(), band_.step(), options_, progress_, "surface");
+    equation.add("beta", 0);
+    equation.add("gyro_x", 1);
+    equation.add("gyro_z", 1);
+    equation.add_exact(products([&](std::size_t k) { return q[k] * r[k]; }), 2);
+    equation.add_exact(products([&](std::size_t k) { return p[k] * q[k]; }), 2);
+    for (const char* other : {"aileron", "rudder"})
+      if (std::ranges::find(causes, other) == causes.end()) equation.add_position(other);
+    return equation;
+  }
+
+  /// The delay of a deflection at which the moment about its axis is explained best; one for all that move together.
+  std::optional<DelayReport> deflection(const DelayGroup& group) {
+    if (!recording_.has(group.name)) return std::nullopt;
+    if (const auto found = shared_.find(group.name); found != shared_.end()) return found->second;
+    const std::vector<std::string> together = moving_together(group.name);
+    std::vector<recording::Explanatory> causes;
+    for (const std::string& surface : together) causes.push_back({band_.smooth(at(surface))});
+    std::vector<recording::DelayedEffect> effects;
+    std::vector<std::string> rates;
+    for (const std::string& surface : together) {
+      const SurfaceAxis& axis = *surface_axis(surface);
+      const Equation equation = moment_equation(axis, together);
+      effects.push_back({equation.over_speed(band_.derivative(at(axis.rate)), 2), causes, equation.others()});
+      rates.emplace_back(axis.rate);
+    }
+    DelayReport report =
+        recording::common_effect_delay(group.name, fmt::format("angular acceleration ({})", fmt::join(rates, ", ")),
+                                       effects, band_.step(), options_, progress_, "surface");
+    if (together.size() > 1) {
+      report.together = together;
+      report.text += fmt::format("; one delay for {}, which move together", fmt::join(together, " and "));
+      for (const std::string& surface : together) {
+        shared_[surface] = report;
+        shared_[surface].group = surface;
+      }
+    }
     // What is late here is the effect: the position is moved later, onto the clock of the motion.
-    if (report.applied) recording::take_off_delay(recording_, group.channels, -report.delay_s);
+    if (report.applied) recording::take_off_delay(recording_, together, -report.delay_s);
     return report;
+  }
+
+  /// The surface and those whose delay is searched too and that move with it, in the order of `groups`.
+  std::vector<std::string> moving_together(const std::string& surface) const {
+    std::vector<std::string> together;
+    const Series position = band_.smooth(at(surface));
+    for (const SurfaceAxis& other : kSurfaceAxes) {
+      const bool same = other.surface == surface;
+      if (!same && (!recording_.has(other.surface) || options_.given_for(other.surface))) continue;
+      if (same ||
+          std::abs(recording::correlation_of(position, band_.smooth(at(other.surface)))) > recording::kMoveTogether)
+        together.emplace_back(other.surface);
+    }
+    return together;
   }
 
   Recording& recording_;
   const DelayAlignment& options_;
   const BandLimited& band_;
   Progress& progress_;
+  std::map<std::string, DelayReport> shared_;  ///< of surfaces that were found together with one before
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ struct AlignedRecording {
 /// derivative of the GPS velocity against rotated specific force and gravity, derivatives of airspeed, alpha and beta
 /// against those that rates, specific force and attitude imply in still air (gusts add noise, not delay). Deflections
 /// have no such twin: theirs is the delay at which angular acceleration is best explained by rates, flow angles and
-/// deflections together.
+/// deflections together. Deflections that move together (recording::kMoveTogether: a mix of the autopilot, the pair of
+/// a V-tail) are given one delay, since they have no single ones that a recording shows.
 ///
 /// A sensor slower than recording::kSlowestDelayed_Hz is left alone, with a note in its report. Stops after the group
 /// at hand when `progress` is interrupted: groups without a report are then as they were.

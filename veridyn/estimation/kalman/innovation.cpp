@@ -11,7 +11,9 @@ InnovationMonitor::Verdict InnovationMonitor::judge(double t, double nu, double 
   ++count_;
   const double limit = gate_.threshold * gate_.threshold * S;
   const double square = nu * nu;
-  if (square <= limit) {  // false for NaN too
+  const bool inside = square <= limit;  // false for NaN too
+  count_time(t, inside, nu, S);
+  if (inside) {
     run_ = 0;
     recovering_ = false;
     count_in(nu, S);
@@ -28,6 +30,28 @@ InnovationMonitor::Verdict InnovationMonitor::judge(double t, double nu, double 
   ++rejected_;
   recent_count_ = 0;
   return {false, 0.0};
+}
+
+void InnovationMonitor::count_time(double t, bool inside, double nu, double S) noexcept {
+  const double held = has_last_ ? std::min(t - last_t_, kLongestHold_s) : 0.0;
+  last_t_ = t;
+  has_last_ = true;
+  if (inside) {
+    unsupported_ = std::max(0.0, unsupported_ - held);
+  } else {
+    if (unsupported_ == 0.0) {
+      unsupported_since_ = t - held;
+      largest_nu_ = largest_sigma_ = largest_rate_ = 0.0;
+    }
+    unsupported_ += held;
+    most_unsupported_ = std::max(most_unsupported_, unsupported_);
+    const double size = std::abs(nu), passed = t - unsupported_since_;
+    if (std::isfinite(size) && size > std::abs(largest_nu_)) {
+      largest_nu_ = nu;
+      largest_sigma_ = std::sqrt(S);
+    }
+    if (std::isfinite(size) && passed > gate_.recovery_s) largest_rate_ = std::max(largest_rate_, size / passed);
+  }
 }
 
 void InnovationMonitor::count_in(double nu, double S) noexcept {
@@ -47,6 +71,8 @@ void InnovationMonitor::restart() noexcept {
   recent_count_ = 0;
   run_ = 0;
   recovering_ = false;
+  has_last_ = false;
+  unsupported_ = 0.0;
 }
 
 InnovationSummary InnovationMonitor::summary() const {
@@ -55,6 +81,7 @@ InnovationSummary InnovationMonitor::summary() const {
   s.rejected = rejected_;
   s.recovered = recovered_;
   s.log_likelihood = log_likelihood_;
+  s.unsupported_s = most_unsupported_;
   if (used_ == 0) return s;
   const double n = static_cast<double>(used_);
   s.mean = sum_ / n;

@@ -16,6 +16,9 @@ struct InnovationGate {
   /// towards it instead of jumping. Without this rule a filter that was wrong once would never accept the sensor again.
   double recovery_s = 2.0;
   int recovery_samples = 5;
+  /// A sensor that was refused for this much longer than it was accepted [s] does not correct the filter: what it
+  /// measures is dead reckoning. See InnovationMonitor::lost.
+  double dead_reckoning_s = 10.0;
 };
 
 /// What a sensor's innovations say about the filter, after Bar-Shalom, Li & Kirubarajan (2001), sections 5.4 and 11.6.
@@ -32,6 +35,7 @@ struct InnovationSummary {
   double ljung_box = 0.0;       ///< of the first 10 lags
   double ljung_box_p = 1.0;     ///< small: the innovations are autocorrelated
   double log_likelihood = 0.0;  ///< sum of -(ln 2 pi S + nu^2 / S) / 2 over the accepted samples
+  double unsupported_s = 0.0;   ///< largest value of InnovationMonitor::unsupported_s
 };
 
 /// Gates the scalar innovations of one sensor and keeps their statistics. Does not allocate.
@@ -54,6 +58,25 @@ class InnovationMonitor {
   /// A break in the record: neither lags nor a run of refusals reach across it.
   void restart() noexcept;
 
+  /// For how much longer the sensor was refused than accepted [s], by Page's cumulative sum (1954): time in which
+  /// samples were beyond the gate (refused, or taken back with inflated variance) counts up, time in which they were
+  /// inside counts down, never below 0. A sample stands for the time since the one before, at most `kLongestHold_s`, so
+  /// that silence is no refusal. A short fault leaves it small, a contradiction that lasts lets it grow without bound
+  /// also where the innovation crosses zero now and then.
+  [[nodiscard]] double unsupported_s() const noexcept { return unsupported_; }
+  /// When `unsupported_s` was last 0 [s].
+  [[nodiscard]] double unsupported_since() const noexcept { return unsupported_since_; }
+  /// Whether the filter is no longer corrected by this sensor: `unsupported_s` above the gate's `dead_reckoning_s`.
+  [[nodiscard]] bool lost() const noexcept { return unsupported_ > gate_.dead_reckoning_s; }
+  static constexpr double kLongestHold_s = 1.0;
+  /// Time [s] of the last sample.
+  [[nodiscard]] double last_time() const noexcept { return last_t_; }
+  /// The largest innovation since `unsupported_since`, its predicted standard deviation, and its fastest growth over
+  /// more than the recovery's time [1/s].
+  [[nodiscard]] double largest_innovation() const noexcept { return largest_nu_; }
+  [[nodiscard]] double largest_sigma() const noexcept { return largest_sigma_; }
+  [[nodiscard]] double largest_rate() const noexcept { return largest_rate_; }
+
   [[nodiscard]] InnovationSummary summary() const;
   [[nodiscard]] double log_likelihood() const noexcept { return log_likelihood_; }
   /// Whether the last sample was refused.
@@ -61,6 +84,7 @@ class InnovationMonitor {
 
  private:
   void count_in(double nu, double S) noexcept;
+  void count_time(double t, bool inside, double nu, double S) noexcept;
 
   InnovationGate gate_;
   std::size_t count_ = 0;
@@ -74,6 +98,10 @@ class InnovationMonitor {
   std::array<double, kLags> products_{};
   std::size_t recent_count_ = 0;
   double refused_since_ = 0.0;
+  double last_t_ = 0.0;
+  double largest_nu_ = 0.0, largest_sigma_ = 0.0, largest_rate_ = 0.0;
+  bool has_last_ = false;  ///< whether `last_t_` is the time of a sample since the last break
+  double unsupported_ = 0.0, most_unsupported_ = 0.0, unsupported_since_ = 0.0;
   int run_ = 0;
   bool recovering_ = false;
 };

@@ -1,0 +1,209 @@
+// Delays of causes against their effects: effect_delay and common_effect_delay of delays.hpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/recording/delays.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+/// Rows that the search looks at: five minutes at 100 Hz are plenty.
+constexpr std::size_t kMostRows = 30000;
+/// Share of the effect that must be explained, and how much of that by the cause: never less than what is left.
+constexpr double kLeastExplained = 0.3;
+constexpr double kLeastByCause = 0.05;
+/// Parts of the recording that the jackknife leaves out in turn.
+constexpr std::size_t kParts = 10;
+
+/// Normal equations of one part of the recording.
+struct PartialSums {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd right;
+  double squares = 0.0, sum = 0.0, count = 0.0;
+
+  explicit PartialSums(Eigen::Index columns)
+      : normal(Eigen::MatrixXd::Zero(columns, columns)), right(Eigen::VectorXd::Zero(columns)) {}
+  void add(const Eigen::VectorXd& row, double value) {
+    normal += row * row.transpose();
+    right += value * row;
+    squares += value * value;
+    sum += value;
+    count += 1.0;
+  }
+  void add(const PartialSums& other) {
+    normal += other.normal;
+    right += other.right;
+    squares += other.squares;
+    sum += other.sum;
+    count += other.count;
+  }
+  /// `noise` are the variances of the columns' noise, which is taken off their power.
+  [[nodiscard]] double share_explained(const Eigen::VectorXd& noise) const {
+    const double total = squares - sum * sum / std::max(1.0, count);
+    if (!(count > 100.0) || !(total > 0.0)) return 0.0;
+    Eigen::MatrixXd signal = normal;
+    // At least half of it is signal, or the noise is not what it was taken for.
+    signal.diagonal() = (normal.diagonal() - count * noise).cwiseMax(0.5 * normal.diagonal());
+    return 1.0 - (squares - right.dot(numerics::shortest_least_squares(signal, right))) / total;
+  }
+};
+
+/// Of a regression of the effect on a constant, the others and the causes `lag` samples before (or no causes), part by
+/// part.
+std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_causes) {
+  const auto n = static_cast<long>(e.effect.size());
+  const long stride = std::max<long>(1, n / static_cast<long>(kMostRows));
+  const std::size_t causes = with_causes ? e.causes.size() : 0;
+  Eigen::VectorXd row(static_cast<Eigen::Index>(1 + e.others.size() + causes));
+  std::vector<PartialSums> parts(kParts, PartialSums(row.size()));
+  for (long k = 0; k < n; k += stride) {
+    if (causes > 0 && (k - lag < 0 || k - lag >= n)) continue;
+    const auto at = static_cast<std::size_t>(k);
+    Eigen::Index column = 0;
+    row(column++) = 1.0;
+    for (const Explanatory& other : e.others) row(column++) = other.value[at];
+    for (std::size_t j = 0; j < causes; ++j) row(column++) = e.causes[j].value[static_cast<std::size_t>(k - lag)];
+    if (row.allFinite() && std::isfinite(e.effect[at])) parts[at * kParts / e.effect.size()].add(row, e.effect[at]);
+  }
+  return parts;
+}
+
+/// Variances of the noise of the columns of `sums_at`.
+Eigen::VectorXd noise_of(const DelayedEffect& e, bool with_causes) {
+  std::vector<double> variances{0.0};
+  for (const Explanatory& other : e.others) variances.push_back(other.noise_variance);
+  if (with_causes)
+    for (const Explanatory& cause : e.causes) variances.push_back(cause.noise_variance);
+  return Eigen::Map<const Eigen::VectorXd>(variances.data(), static_cast<Eigen::Index>(variances.size()));
+}
+
+/// The share that is explained at each lag, of all effects: with all parts, and without each.
+struct Shares {
+  std::vector<double> whole;
+  std::array<std::vector<double>, kParts> without;
+
+  void add(const std::vector<DelayedEffect>& effects, long lag) {
+    double all = 0.0;
+    std::array<double, kParts> rest{};
+    for (const DelayedEffect& effect : effects) {
+      const std::vector<PartialSums> parts = sums_at(effect, lag, true);
+      const Eigen::VectorXd noise = noise_of(effect, true);
+      for (std::size_t left_out = 0; left_out <= kParts; ++left_out) {
+        PartialSums together(parts[0].right.size());
+        for (std::size_t i = 0; i < kParts; ++i)
+          if (i != left_out) together.add(parts[i]);
+        (left_out < kParts ? rest[left_out] : all) +=
+            together.share_explained(noise) / static_cast<double>(effects.size());
+      }
+    }
+    whole.push_back(all);
+    for (std::size_t i = 0; i < kParts; ++i) without[i].push_back(rest[i]);
+  }
+};
+
+/// Where the parabola through the best of the inner points and its neighbours has its top, in samples from the first.
+double top_of(const std::vector<double>& shares) {
+  const auto best = std::max_element(shares.begin() + 1, shares.end() - 1) - shares.begin();
+  const auto at = static_cast<std::size_t>(best);
+  const double curvature = shares[at - 1] - 2.0 * shares[at] + shares[at + 1];
+  const double part = curvature < 0.0 ? 0.5 * (shares[at - 1] - shares[at + 1]) / curvature : 0.0;
+  return static_cast<double>(best) + std::clamp(part, -1.0, 1.0);
+}
+
+/// Standard error of the top, in samples (Efron & Tibshirani 1993, section 11.5).
+double jackknife_sigma(const Shares& shares) {
+  std::array<double, kParts> tops{};
+  double mean = 0.0;
+  for (std::size_t i = 0; i < kParts; ++i) mean += (tops[i] = top_of(shares.without[i])) / kParts;
+  double squares = 0.0;
+  for (const double top : tops) squares += (top - mean) * (top - mean);
+  return std::sqrt((kParts - 1.0) / kParts * squares);
+}
+
+/// The share that is explained without the causes.
+double share_without_causes(const std::vector<DelayedEffect>& effects) {
+  double mean = 0.0;
+  for (const DelayedEffect& effect : effects) {
+    PartialSums together(static_cast<Eigen::Index>(1 + effect.others.size()));
+    for (const PartialSums& part : sums_at(effect, 0, false)) together.add(part);
+    mean += together.share_explained(noise_of(effect, false)) / static_cast<double>(effects.size());
+  }
+  return mean;
+}
+
+}  // namespace
+
+DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
+                                const std::vector<DelayedEffect>& effects, double step_s, const DelayOptions& options,
+                                const Progress& progress, std::string_view kind) {
+  DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0, false, ""};
+  const auto longest = static_cast<long>(options.max_delay_s / step_s);
+  const long first = -longest / 3;
+  Shares shares;
+  for (long lag = first; lag <= longest; ++lag) {
+    if (progress.interrupted()) {
+      report.text = "not determined: interrupted";
+      return report;
+    }
+    shares.add(effects, lag);
+  }
+  const std::vector<double>& explained = shares.whole;
+  const auto best = std::max_element(explained.begin(), explained.end()) - explained.begin();
+  const auto at = static_cast<std::size_t>(best);
+  const double top = explained[at];
+  report.correlation = std::sqrt(std::clamp(top, 0.0, 1.0));
+  const bool by_cause = top - share_without_causes(effects) > std::max(kLeastByCause, 1.0 - top);
+  if (best == 0 && top > kLeastExplained && by_cause) {
+    report.delay_s = static_cast<double>(first) * step_s;
+    report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
+    return report;
+  }
+  if (best == 0 || at + 1 == explained.size() || !(top > kLeastExplained) || !by_cause) {
+    report.text =
+        by_cause ? "not determined: no clear optimum" : fmt::format("not determined: the {} explains too little", kind);
+    return report;
+  }
+  report.delay_s = (static_cast<double>(first) + top_of(explained)) * step_s;
+  // A cause that jumps between two samples, as a servo without lag does, is known to half a sample.
+  constexpr double kOfASample = 0.5;
+  report.sigma_s = std::hypot(jackknife_sigma(shares), kOfASample) * step_s;
+  const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
+  if (report.delay_s < -least) {
+    report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);
+  } else if (report.delay_s < least) {
+    report.text = "too small to matter";
+  } else {
+    report.applied = true;
+    report.text = "applied";
+  }
+  return report;
+}
+
+DelayReport effect_delay(std::string cause_name, std::string effect_name, const std::vector<double>& effect,
+                         const Explanatory& cause, const std::vector<Explanatory>& others, double step_s,
+                         const DelayOptions& options, const Progress& progress, std::string_view kind) {
+  return common_effect_delay(std::move(cause_name), std::move(effect_name), {{effect, {cause}, others}}, step_s,
+                             options, progress, kind);
+}
+
+double correlation_of(const std::vector<double>& a, const std::vector<double>& b) {
+  double n = 0.0, sum_a = 0.0, sum_b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    if (!std::isfinite(a[k]) || !std::isfinite(b[k])) continue;
+    n += 1.0;
+    sum_a += a[k];
+    sum_b += b[k];
+    aa += a[k] * a[k];
+    bb += b[k] * b[k];
+    ab += a[k] * b[k];
+  }
+  if (!(n > 1.0)) return 0.0;
+  const double spread = (aa - sum_a * sum_a / n) * (bb - sum_b * sum_b / n);
+  return spread > 0.0 ? (ab - sum_a * sum_b / n) / std::sqrt(spread) : 0.0;
+}
+
+}  // namespace veridyn::recording
