@@ -38,10 +38,12 @@ std::string fault_text(const DriveCulprit& culprit) {
   const std::string_view name = name_of(culprit.sensor);
   const double size = std::abs(culprit.factor);
   if (!std::isfinite(culprit.factor)) return fmt::format("{} shows another motion", name);
+  // What the sideslip's approximation leaves of a gain.
+  constexpr double kModelError = 0.03;
   // Ratios of steering gears from rack to hand wheel.
   const bool hand_wheel = culprit.sensor == DriveSuspect::kSteer && size > 8.0 && size < 30.0;
-  const std::string unit =
-      hand_wheel ? "the hand wheel's angle taken for the road wheels'" : recording::mistaken_unit(size, culprit.doubt);
+  const std::string unit = hand_wheel ? "the hand wheel's angle taken for the road wheels'"
+                                      : recording::mistaken_unit(size, culprit.doubt + kModelError);
   return fmt::format("{} reads {:.3g} times the truth{}{}", name, culprit.factor,
                      culprit.factor < 0.0 ? ": its sign is reversed" : "", unit.empty() ? "" : ": " + unit);
 }
@@ -199,7 +201,13 @@ std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const Tim
   const recording::DelayReport report = steering_delay(signals, spans, progress);
   const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true};
   const bool determined = report.correlation > 0.0 && !report.text.starts_with("not determined");
-  if (determined && recording::is_early(report, order)) return {recording::early_row(report, order)};
+  if (determined && recording::is_early(report, order)) {
+    Evidence early = recording::early_row(report, order);
+    early.advice =
+        fmt::format("check the stamps of steer; data.map takes a delay: steer = {{ ..., delay = \"{:.0f} ms\" }}",
+                    -1000.0 * report.delay_s);
+    return {std::move(early)};
+  }
   Evidence row{.name = "order in time",
                .about = "steer, yaw_rate",
                .outcome = determined ? outcome_of(report.delay_s, 0.0, kLate) : Outcome::kNotVerified,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/vehicle/identification/drive_parametric_model.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -15,6 +16,8 @@ namespace {
 /// Unknowns that are the vehicle's, not the day's.
 constexpr std::array kOfTheVehicle{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA,
                                    DriveUnknown::kMu};
+/// Longest correlation of residuals that is looked for.
+constexpr double kLongestMemory_s = 2.0;
 /// Parts that differ by less are one vehicle whose intervals were too narrow.
 constexpr double kSameVehicle = 0.05;
 
@@ -27,26 +30,34 @@ PartsAgreement compared(const Eigen::VectorXd& here, const Eigen::VectorXd& ther
 
 std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, const OutputErrorResult& here,
                                               Progress& progress) {
-  DriveSegments held = problem.segments;
-  held.identification = problem.segments.holdout;
   VehicleParameters<double> start = problem.start;
   start.C_f = here.raw.theta(0);
   start.C_r = here.raw.theta(1);
   start.I_z = here.raw.theta(2);
-  const VehicleProblem other{problem.signals, held, start, problem.signal_options, problem.options};
-  const OutputErrorResult there = estimate_by_output_error(other, nullptr, progress);
-  if (!there.raw.usable()) return std::nullopt;
+  DriveModelOptions model_options = problem.options.model;
+  model_options.gravity = problem.signal_options.gravity;
+  const DriveParametricModel model(problem.signals, problem.segments.holdout, start, model_options);
+  estimation::OutputErrorOptions options;
+  options.significance = problem.options.significance;
+  // It starts where the other part ended: what has not converged soon is not determined by this part.
+  options.noise_start = here.raw.noise_covariance.diagonal().cwiseSqrt();
+  options.max_relaxations = 5;
+  options.max_steps = 15;
+  options.max_lag =
+      std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestMemory_s * problem.signals.grid.rate_Hz()));
+  const estimation::OutputErrorEstimate there = estimation::output_error(model, model.measured(), options, progress);
+  if (there.termination != estimation::OutputErrorTermination::kConverged) return std::nullopt;
   std::vector<Eigen::Index> both;
   for (const DriveUnknown unknown : kOfTheVehicle) {
     const auto i = static_cast<Eigen::Index>(unknown);
     const auto determined = [i](const estimation::OutputErrorEstimate& e) {
       return e.covariance(i, i) > 0.0 && std::isfinite(e.covariance(i, i));
     };
-    if (determined(here.raw) && determined(there.raw)) both.push_back(i);
+    if (determined(here.raw) && determined(there)) both.push_back(i);
   }
   if (both.empty()) return std::nullopt;
-  const Eigen::MatrixXd covariance = here.raw.covariance + there.raw.covariance;
-  return compared(here.raw.theta(both), there.raw.theta(both), covariance(both, both));
+  const Eigen::MatrixXd covariance = here.raw.covariance + there.covariance;
+  return compared(here.raw.theta(both), there.theta(both), covariance(both, both));
 }
 
 }  // namespace
