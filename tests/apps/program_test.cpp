@@ -264,7 +264,7 @@ TEST_F(Program, IdentifiesNothingWhereTheSensorsContradictEachOther) {
       file("study.toml",
            "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"sim/recording.csv\"\n"
            "[data.map]\naccel_z = { channel = \"accel_z\", zero = -9.80665, unit = \"m/s^2\" }\n");
-  const Outcome identified = run("identify " + study + out());
+  const Outcome identified = run("identify " + study + " --out " + (folder_ / "out").string());
   EXPECT_EQ(identified.exit_code, 0) << identified.text;
   EXPECT_THAT(identified.text, HasSubstr("The recording contradicts itself"));
   EXPECT_THAT(identified.text, HasSubstr("vel_down contradicts accelerometer and attitude"));
