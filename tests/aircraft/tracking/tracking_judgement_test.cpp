@@ -18,22 +18,22 @@ using estimation::Evidence;
 using estimation::Grade;
 
 /// The progress of a flight among others.
-class OneThread : public Progress {
+class OneThreadOnly : public Progress {
  public:
   [[nodiscard]] int threads() const override { return 1; }
 };
 
-struct Coverage {
+struct OnLineCoverage {
   int all = 0, covered = 0;
   int flights = 0, data_yes = 0;
 };
 
 /// Intervals at the end of tracked flights in moderate turbulence, of what is identified and not rejected.
-Coverage coverage_on_line(const std::string& aircraft, std::uint64_t seeds) {
-  Coverage coverage;
+OnLineCoverage coverage_on_line(const std::string& aircraft, std::uint64_t seeds) {
+  OnLineCoverage coverage;
   std::mutex adding;
   numerics::parallel_for(seeds, 0, [&](std::size_t seed) {
-    OneThread silent;
+    OneThreadOnly silent;
     const FlightStudy study = campaign_flight(aircraft, seed + 1, 300.0);
     const estimation::Estimate estimate = track_flight(study, silent).flight.estimate();
     const std::lock_guard lock(adding);
@@ -100,7 +100,7 @@ TEST(TrackingJudgement, SaysThatALiveRecordingWasNotChecked) {
 
 TEST(TrackingJudgement, IntervalsOnLineHoldTheTruthInTurbulence) {
   // 3 flights of some 25 parameters, which depend on each other: a standard error of about 4 %.
-  const Coverage coverage = coverage_on_line("unatrap", 3);
+  const OnLineCoverage coverage = coverage_on_line("unatrap", 3);
   ASSERT_GT(coverage.all, 50);
   EXPECT_GE(static_cast<double>(coverage.covered), 0.85 * coverage.all);
 }
@@ -110,7 +110,7 @@ TEST(TrackingJudgementSoak, IntervalsOnLineHoldTheTruthInTurbulence) {
   std::ofstream table("track_coverage.md");
   table << "| aircraft | flights | data yes | coverage on line |\n|---|---|---|---|\n";
   for (const char* aircraft : {"unatrap", "aerosonde", "x8"}) {
-    const Coverage coverage = coverage_on_line(aircraft, 20);
+    const OnLineCoverage coverage = coverage_on_line(aircraft, 20);
     const double share = static_cast<double>(coverage.covered) / coverage.all;
     table << fmt::format("| {} | {} | {} | {:.1f} % of {} |\n", aircraft, coverage.flights, coverage.data_yes,
                          100.0 * share, coverage.all);

@@ -24,7 +24,7 @@ struct Drift {
   double share_of_z = 1.0;   ///< of the model in z
 };
 
-RegressionTracker tracked(const Drift& d, double duration_s = 400.0, unsigned seed = 1) {
+RegressionTracker tracked_regression(const Drift& d, double duration_s = 400.0, unsigned seed = 1) {
   Eigen::MatrixXd W = 0.0025 * Eigen::MatrixXd::Identity(4, 4);
   W(0, 0) = 0.0;
   TrackerOptions options;
@@ -46,71 +46,73 @@ RegressionTracker tracked(const Drift& d, double duration_s = 400.0, unsigned se
   return tracker;
 }
 
-std::vector<Evidence> rows_of(const RegressionTracker& tracker) {
+std::vector<Evidence> tracking_rows(const RegressionTracker& tracker) {
   return tracking_evidence("C", tracker, tracker.estimate());
 }
 
-Evidence row_of(const RegressionTracker& tracker, const std::string& name) {
-  const std::vector<Evidence> rows = rows_of(tracker);
+Evidence tracking_row(const RegressionTracker& tracker, const std::string& name) {
+  const std::vector<Evidence> rows = tracking_rows(tracker);
   const auto found = std::ranges::find(rows, name, &Evidence::name);
   if (found == rows.end()) throw std::logic_error("no row " + name);
   return *found;
 }
 
 TEST(TrackingEvidence, LetsARegressionPassThatIsAsItsNoiseSays) {
-  const RegressionTracker tracker = tracked({});
-  for (const Evidence& row : rows_of(tracker)) {
+  const RegressionTracker tracker = tracked_regression({});
+  for (const Evidence& row : tracking_rows(tracker)) {
     EXPECT_TRUE(row.passed()) << row.name << ": " << row.text;
     EXPECT_EQ(row.about, "C");
   }
-  const Judgement j = judge(rows_of(tracker));
+  const Judgement j = judge(tracking_rows(tracker));
   EXPECT_EQ(j.parameters.grade, Grade::kYes);
   EXPECT_EQ(j.prediction.grade, Grade::kYes);
   EXPECT_NEAR(tracker.error_ratio(), 1.0, 0.3);
 }
 
 TEST(TrackingEvidence, FindsAResidualBeyondTheSensors) {
-  EXPECT_EQ(row_of(tracked({.noise = 0.25}), "residual beyond the sensors").outcome, Outcome::kCare);
+  EXPECT_EQ(tracking_row(tracked_regression({.noise = 0.25}), "residual beyond the sensors").outcome, Outcome::kCare);
   // A term that the model lacks carries much of the variance.
-  const Evidence row = row_of(tracked({.quadratic = 1.0}), "residual beyond the sensors");
+  const Evidence row = tracking_row(tracked_regression({.quadratic = 1.0}), "residual beyond the sensors");
   EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
 }
 
 TEST(TrackingEvidence, SaysWhatIsHeld) {
-  const Evidence row = row_of(tracked({.y_moves = 0.0}), "excitation");
+  const Evidence row = tracking_row(tracked_regression({.y_moves = 0.0}), "excitation");
   EXPECT_EQ(row.outcome, Outcome::kCare);
   EXPECT_NE(row.text.find("b"), std::string::npos) << row.text;
 }
 
 TEST(TrackingEvidence, NamesRegressorsThatMoveTogether) {
   // With more than sensor noise in the residual collinearity matters.
-  const Evidence row = row_of(tracked({.noise = 0.25, .y_follows_x = 0.8}), "collinearity");
+  const Evidence row = tracking_row(tracked_regression({.noise = 0.25, .y_follows_x = 0.8}), "collinearity");
   EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
   EXPECT_NE(row.text.find("a, b"), std::string::npos) << row.text;
 }
 
 TEST(TrackingEvidence, FindsParametersThatDrift) {
-  const RegressionTracker tracker = tracked({.end_slope = 0.6});
-  const Evidence row = row_of(tracker, "agreement of the recording's parts");
+  const RegressionTracker tracker = tracked_regression({.end_slope = 0.6});
+  const Evidence row = tracking_row(tracker, "agreement of the recording's parts");
   EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
   // What is not constant gets the interval that its scatter shows.
   EXPECT_GT(tracker.estimate().parameters[1].sigma, 3.0 * tracker.regression().sigma()(1));
 }
 
 TEST(TrackingEvidence, CannotCompareWhatIsShorterThanTwoMemories) {
-  EXPECT_EQ(row_of(tracked({}, 150.0), "agreement of the recording's parts").outcome, Outcome::kNotVerified);
+  EXPECT_EQ(tracking_row(tracked_regression({}, 150.0), "agreement of the recording's parts").outcome,
+            Outcome::kNotVerified);
 }
 
 TEST(TrackingEvidence, DoesNotCallAPredictionWhatPredictsNothing) {
-  const Evidence row = row_of(tracked({.noise = 0.4, .share_of_z = 0.1}), "prediction of the next row");
+  const Evidence row =
+      tracking_row(tracked_regression({.noise = 0.4, .share_of_z = 0.1}), "prediction of the next row");
   EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
 }
 
 TEST(TrackingEvidence, RaisesFewAlarmsOnCleanRecordings) {
   int alarms = 0;
   for (unsigned seed = 1; seed <= 100; ++seed) {
-    const RegressionTracker tracker = tracked({}, 330.0, seed);
-    for (const Evidence& row : rows_of(tracker)) alarms += !row.passed() && !row.bears_on.empty();
+    const RegressionTracker tracker = tracked_regression({}, 330.0, seed);
+    for (const Evidence& row : tracking_rows(tracker)) alarms += !row.passed() && !row.bears_on.empty();
   }
   // Stated: at most 2 of 100 recordings with a row that is less than passed.
   EXPECT_LE(alarms, 2);

@@ -283,7 +283,7 @@ std::vector<DriveChange> DriveTracker::append(const DriveSample& s) {
 namespace {
 
 /// Values that no tyre has, and the grades that all rows give; what must not be used is marked.
-void judge(estimation::Estimate& estimate) {
+void judge_axles(estimation::Estimate& estimate) {
   std::vector<estimation::Judgement> parts;
   for (estimation::Parameter& p : estimate.parameters) {
     const bool plausible = p.name == "understeer_gradient" || p.value > 0.0;
@@ -355,7 +355,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
       started() ? fmt::format("followed: {}; started from the {}",
                               followed.empty() ? "nothing" : fmt::format("{}", fmt::join(followed, ", ")), begin_text_)
                 : "nothing was followed: no stretch without holes is as long as the filter";
-  judge(out);
+  judge_axles(out);
   if (!held.empty()) out.verdict += fmt::format("; held at the end, because not excited: {}", fmt::join(held, ", "));
   return out;
 }
