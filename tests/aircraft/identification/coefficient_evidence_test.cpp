@@ -60,8 +60,21 @@ TEST(CoefficientEvidence, WithoutAHoldOutPredictionIsNotJudged) {
 TEST(CoefficientEvidence, OfWhatDoesNotPredictIsNo) {
   CoefficientChecks checks = sound();
   checks.holdout_fit.r2 = -74.0;
+  checks.holdout_ratio = 9.0;
   EXPECT_EQ(judged(checks).prediction.grade, Grade::kNo);
   EXPECT_EQ(estimation::verdict_of(judged(checks)), estimation::GroupVerdict::kRejected);
+}
+
+// Drag in cruise: what is not explained is no more than the sensors' noise, so its parameters are as good as their
+// intervals.
+TEST(CoefficientEvidence, OfWhatHardlyVariesOnTheHoldOutIsCareOfPredictionOnly) {
+  CoefficientChecks checks = sound();
+  checks.holdout_fit.r2 = 0.1;
+  checks.holdout_ratio = 1.2;
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kWithCare);
+  EXPECT_EQ(judged(checks).parameters.grade, Grade::kYes);
+  checks.holdout_ratio = 4.5;
+  EXPECT_EQ(judged(checks).parameters.grade, Grade::kNo);
 }
 
 TEST(CoefficientEvidence, TakesAMethodThatTheUserFixesWithCare) {

@@ -65,6 +65,17 @@ class Alignment {
     return vane(group);
   }
 
+  /// Vanes and surfaces again, once all are on the clock of the motion: as long as one was not, its effect went to the
+  /// others at the wrong time.
+  void align_again(const DelayGroup& group, DelayReport& report) {
+    const bool surface = surface_axis(group.name) != nullptr;
+    if (!report.together.empty() || (surface && moving_together(group.name).size() > 1)) return;
+    // Of a surface the position was moved later.
+    if (report.applied)
+      recording::take_off_delay(recording_, group.channels, surface ? report.delay_s : -report.delay_s);
+    if (const std::optional<DelayReport> again = surface ? deflection(group) : vane(group)) report = *again;
+  }
+
  private:
   bool has(std::initializer_list<const char*> names) const {
     return std::all_of(names.begin(), names.end(), [&](const char* name) { return recording_.has(name); });
@@ -338,6 +349,16 @@ AlignedRecording align_delays(MappedRecording mapped, const DelayAlignment& opti
     if (!report && alignment && !options.given_for(group.name)) report = alignment->align(group);
     if (report) aligned.delays.push_back(std::move(*report));
   }
+  const auto by_effect = [&](const DelayReport& report) {
+    return (report.group == "alpha" || report.group == "beta" || surface_axis(report.group) != nullptr) &&
+           !options.given_for(report.group);
+  };
+  const bool moved = std::ranges::any_of(
+      aligned.delays, [&](const DelayReport& report) { return report.applied && by_effect(report); });
+  if (!alignment || !moved) return aligned;
+  for (DelayReport& report : aligned.delays)
+    if (by_effect(report))
+      alignment->align_again(*std::ranges::find(groups(), report.group, &DelayGroup::name), report);
   return aligned;
 }
 
