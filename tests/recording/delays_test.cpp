@@ -142,9 +142,9 @@ TEST(Delays, CausesThatMoveTogetherHaveOneThatIsRightForAllTheirEffects) {
     roll[k] += 0.3 * gust[k] + 0.2 * yaw[k];
     yaw[k] += 0.5 * gust[k];
   }
-  const DelayReport report = common_effect_delay("aileron", "angular acceleration",
-                                                 {{roll, {{aileron}, {rudder}}, {}}, {yaw, {{aileron}, {rudder}}, {}}},
-                                                 1.0 / kRate_Hz, {}, Progress());
+  const DelayReport report = common_effect_delay(
+      "aileron", "angular acceleration", {{roll, {{aileron}, {rudder}}, {}, {}}, {yaw, {{aileron}, {rudder}}, {}, {}}},
+      1.0 / kRate_Hz, {}, Progress());
   EXPECT_TRUE(report.applied);
   EXPECT_LT(report.sigma_s, 0.01);
   EXPECT_NEAR(report.delay_s, 0.08, 1.96 * report.sigma_s);

@@ -123,6 +123,7 @@ struct Explanatory {
 struct DelayedEffect {
   std::vector<double> effect;
   std::vector<Explanatory> causes, others;
+  std::vector<Explanatory> late_others;  ///< as late as the causes: where what is late is the effect's sensor
 };
 
 /// The same for causes that move together, of which single delays cannot be distinguished: the one lag of all of them

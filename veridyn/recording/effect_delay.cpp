@@ -52,21 +52,22 @@ struct PartialSums {
   }
 };
 
-/// Of a regression of the effect on a constant, the others and the causes `lag` samples before (or no causes), part by
-/// part.
+/// Of a regression of the effect on a constant, the others, and what is late and the causes (or no causes) `lag`
+/// samples before, part by part.
 std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_causes) {
   const auto n = static_cast<long>(e.effect.size());
   const long stride = std::max<long>(1, n / static_cast<long>(kMostRows));
   const std::size_t causes = with_causes ? e.causes.size() : 0;
-  Eigen::VectorXd row(static_cast<Eigen::Index>(1 + e.others.size() + causes));
+  Eigen::VectorXd row(static_cast<Eigen::Index>(1 + e.others.size() + e.late_others.size() + causes));
   std::vector<PartialSums> parts(kParts, PartialSums(row.size()));
   for (long k = 0; k < n; k += stride) {
-    if (causes > 0 && (k - lag < 0 || k - lag >= n)) continue;
-    const auto at = static_cast<std::size_t>(k);
+    if (k - lag < 0 || k - lag >= n) continue;
+    const auto at = static_cast<std::size_t>(k), before = static_cast<std::size_t>(k - lag);
     Eigen::Index column = 0;
     row(column++) = 1.0;
     for (const Explanatory& other : e.others) row(column++) = other.value[at];
-    for (std::size_t j = 0; j < causes; ++j) row(column++) = e.causes[j].value[static_cast<std::size_t>(k - lag)];
+    for (const Explanatory& late : e.late_others) row(column++) = late.value[before];
+    for (std::size_t j = 0; j < causes; ++j) row(column++) = e.causes[j].value[before];
     if (row.allFinite() && std::isfinite(e.effect[at])) parts[at * kParts / e.effect.size()].add(row, e.effect[at]);
   }
   return parts;
@@ -76,6 +77,7 @@ std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_cau
 Eigen::VectorXd noise_of(const DelayedEffect& e, bool with_causes) {
   std::vector<double> variances{0.0};
   for (const Explanatory& other : e.others) variances.push_back(other.noise_variance);
+  for (const Explanatory& late : e.late_others) variances.push_back(late.noise_variance);
   if (with_causes)
     for (const Explanatory& cause : e.causes) variances.push_back(cause.noise_variance);
   return Eigen::Map<const Eigen::VectorXd>(variances.data(), static_cast<Eigen::Index>(variances.size()));
@@ -125,11 +127,11 @@ double jackknife_sigma(const Shares& shares) {
 }
 
 /// The share that is explained without the causes.
-double share_without_causes(const std::vector<DelayedEffect>& effects) {
+double share_without_causes(const std::vector<DelayedEffect>& effects, long lag) {
   double mean = 0.0;
   for (const DelayedEffect& effect : effects) {
-    PartialSums together(static_cast<Eigen::Index>(1 + effect.others.size()));
-    for (const PartialSums& part : sums_at(effect, 0, false)) together.add(part);
+    PartialSums together(noise_of(effect, false).size());
+    for (const PartialSums& part : sums_at(effect, lag, false)) together.add(part);
     mean += together.share_explained(noise_of(effect, false)) / static_cast<double>(effects.size());
   }
   return mean;
@@ -156,7 +158,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   const auto at = static_cast<std::size_t>(best);
   const double top = explained[at];
   report.correlation = std::sqrt(std::clamp(top, 0.0, 1.0));
-  const bool by_cause = top - share_without_causes(effects) > std::max(kLeastByCause, 1.0 - top);
+  const bool by_cause = top - share_without_causes(effects, first + best) > std::max(kLeastByCause, 1.0 - top);
   if (best == 0 && top > kLeastExplained && by_cause) {
     report.delay_s = static_cast<double>(first) * step_s;
     report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
@@ -186,7 +188,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
 DelayReport effect_delay(std::string cause_name, std::string effect_name, const std::vector<double>& effect,
                          const Explanatory& cause, const std::vector<Explanatory>& others, double step_s,
                          const DelayOptions& options, const Progress& progress, std::string_view kind) {
-  return common_effect_delay(std::move(cause_name), std::move(effect_name), {{effect, {cause}, others}}, step_s,
+  return common_effect_delay(std::move(cause_name), std::move(effect_name), {{effect, {cause}, others, {}}}, step_s,
                              options, progress, kind);
 }
 

@@ -82,11 +82,11 @@ TEST(AlignDelays, FindsNoDelayInTurbulenceWhereThereIsNone) {
 TEST(AlignDelays, FindsThoseOfVanesAndSurfacesInTurbulence) {
   FlightStudy study = aircraft::testing::campaign_flight("unatrap", 3, 150.0);
   recording::take_off_delay(study.mapped.recording, {"alpha"}, -0.08);
-  recording::take_off_delay(study.mapped.recording, {"beta"}, -0.05);
+  recording::take_off_delay(study.mapped.recording, {"beta"}, -0.2);
   // A command whose surface follows late is stamped before its effect.
   recording::take_off_delay(study.mapped.recording, {"aileron"}, 0.06);
   const std::vector<DelayReport> reports = align_delays(study.mapped, {}).delays;
-  for (const auto& [group, late_s] : {std::pair{"alpha", 0.08}, {"beta", 0.05}, {"aileron", 0.06}}) {
+  for (const auto& [group, late_s] : {std::pair{"alpha", 0.08}, {"beta", 0.2}, {"aileron", 0.06}}) {
     const DelayReport* report = find(reports, group);
     ASSERT_NE(report, nullptr);
     EXPECT_TRUE(report->applied) << group << ": " << report->text;

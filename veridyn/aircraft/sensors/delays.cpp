@@ -238,9 +238,13 @@ class Alignment {
       for (const char* rate : {"gyro_x", "gyro_z"}) equation.add(rate, 1);
       for (const char* surface : {"aileron", "rudder"}) equation.add_position(surface);
     }
-    DelayReport report = recording::effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
-                                                 smooth(group.name.c_str()), equation.measured(force, 2),
-                                                 equation.others(), band_.step(), options_, progress_, "force");
+    // The vane is late against all of them.
+    DelayReport report = recording::common_effect_delay(group.name, lift ? "lift (accel_z)" : "side force (accel_y)",
+                                                        {{.effect = smooth(group.name.c_str()),
+                                                          .causes = {equation.measured(force, 2)},
+                                                          .others = {},
+                                                          .late_others = equation.others()}},
+                                                        band_.step(), options_, progress_, "force");
     if (report.applied) recording::take_off_delay(recording_, group.channels, report.delay_s);
     return report;
   }
@@ -285,7 +289,7 @@ class Alignment {
     for (const std::string& surface : together) {
       const SurfaceAxis& axis = *surface_axis(surface);
       const Equation equation = moment_equation(axis, together);
-      effects.push_back({equation.over_speed(band_.derivative(at(axis.rate)), 2), causes, equation.others()});
+      effects.push_back({equation.over_speed(band_.derivative(at(axis.rate)), 2), causes, equation.others(), {}});
       rates.emplace_back(axis.rate);
     }
     DelayReport report =
