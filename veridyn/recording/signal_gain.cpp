@@ -32,7 +32,7 @@ struct Slope {
   double value = 0.0, sigma = 0.0;
 };
 
-std::optional<Slope> slope_of(estimation::RegressionData data, double row_s) {
+std::optional<Slope> slope_of(const estimation::RegressionData& data, double row_s) {
   estimation::RegressionOptions options;
   options.max_lag = static_cast<Eigen::Index>(std::max(4.0, kLongestMemory_s / row_s));
   const estimation::RegressionEstimate estimate = estimation::estimate(data, estimation::Method::kOls, options);

@@ -10,8 +10,6 @@
 namespace veridyn::aircraft::internal {
 namespace {
 
-using Errors = AirDataErrorVector;
-
 /// An error as a check of the recording found it, and beyond what it counts.
 struct Found {
   Determined error;
@@ -70,18 +68,18 @@ std::optional<Found> found_of(int error, const AirDataConsistency& air, const st
     return Found{{k * k - 1.0, 2.0 * k * air.airspeed_scale->sigma}, 2.0 * kScale};
   };
   switch (error) {
-    case Errors::kAlphaBias:
+    case AirDataErrorVector::kAlphaBias:
       if (air.alpha) return Found{air.alpha->bias, kBias};
       break;
-    case Errors::kBetaBias:
+    case AirDataErrorVector::kBetaBias:
       if (air.beta) return Found{air.beta->bias, kBias};
       break;
-    case Errors::kAlphaScale:
+    case AirDataErrorVector::kAlphaScale:
       if (slope) return Found{{slope->slope.value - 1.0, slope->slope.sigma}, kSlope};
       break;
-    case Errors::kPitotScale:
+    case AirDataErrorVector::kPitotScale:
       return scale();
-    case Errors::kPitotBias:
+    case AirDataErrorVector::kPitotBias:
       if (const std::optional<Found> relative = scale(); relative && !task.options->pitot_scale) {
         const double pressure = mean_pressure(*task.streams) / (1.0 + relative->error.value);
         return Found{{relative->error.value * pressure, relative->error.sigma * pressure}, relative->limit * pressure};

@@ -77,9 +77,12 @@ class MuscleGroup {
   /// Forces as if tendons were rigid, at activation a for all muscles: what static optimisation and CMC scale by.
   void rigid_forces(double a, std::span<const double> path_length, std::span<const double> path_speed,
                     std::span<RigidTendonForces> forces) const requires std::same_as<Scalar, double> {
-    for_each([&](const auto& m) {
-      forces[m.muscle] = rigid_tendon_forces(m.curves, m.constants, a, path_length[m.muscle], path_speed[m.muscle]);
-    });
+    // clang 14 compiles constrained members of explicit instantiations too.
+    if constexpr (std::same_as<Scalar, double>) {
+      for_each([&](const auto& m) {
+        forces[m.muscle] = rigid_tendon_forces(m.curves, m.constants, a, path_length[m.muscle], path_speed[m.muscle]);
+      });
+    }
   }
 
   /// The same with an activation for each muscle, with derivatives if the scalar carries them.
@@ -89,13 +92,20 @@ class MuscleGroup {
   /// One muscle's forces at activation a, as if its tendon were rigid.
   [[nodiscard]] RigidTendonForces rigid_forces(std::size_t muscle, double a, double lMT,
                                                double vMT) const requires std::same_as<Scalar, double> {
-    return with_member(muscle, [&](const auto& m) { return rigid_tendon_forces(m.curves, m.constants, a, lMT, vMT); });
+    if constexpr (std::same_as<Scalar, double>) {
+      return with_member(muscle,
+                         [&](const auto& m) { return rigid_tendon_forces(m.curves, m.constants, a, lMT, vMT); });
+    }
+    return {};
   }
   /// One muscle's forces, lengths and energies.
   [[nodiscard]] MuscleDetails details(std::size_t muscle, double u, double a, double lM, double lMT,
                                       double vMT) const requires std::same_as<Scalar, double> {
-    return with_member(muscle,
-                       [&](const auto& m) { return musculotendon_details(m.curves, m.constants, u, a, lM, lMT, vMT); });
+    if constexpr (std::same_as<Scalar, double>) {
+      return with_member(
+          muscle, [&](const auto& m) { return musculotendon_details(m.curves, m.constants, u, a, lM, lMT, vMT); });
+    }
+    return {};
   }
   /// [N]
   [[nodiscard]] double max_isometric_force(std::size_t muscle) const;

@@ -82,7 +82,7 @@ class Relations {
   [[nodiscard]] GridSeries derivative(const GridSeries& values) const {
     return recording::low_passed_derivative(values, s_.grid, kBand_Hz);
   }
-  [[nodiscard]] std::optional<SignalGain> gain(recording::ComparedSignals signals,
+  [[nodiscard]] std::optional<SignalGain> gain(const recording::ComparedSignals& signals,
                                                std::span<const bool> used = {}) const {
     return recording::signal_gain(signals, s_.grid, spans_, kBand_Hz, used);
   }
