@@ -115,6 +115,22 @@ TEST(LongRunCovariance, EqualsTheSumOverLagsWithAFlatTop) {
   EXPECT_LT((long_run_covariance(g, segments, window).matrix - expected).norm(), 1e-12 * expected.norm());
 }
 
+// Independent rows of unit variances: Cov(x r) is the identity, and that of r^2/s2 - 1 is 2.
+TEST(ScoreCovariance, AddsWhatTheSquareOfTheResidualVaries) {
+  std::mt19937_64 generator(4);
+  const Eigen::Index N = 20000;
+  Scores scores;
+  scores.regressors.resize(N, 2);
+  for (Eigen::Index j = 0; j < 2; ++j) scores.regressors.col(j) = testing_support::coloured_noise(generator, N, 0.0);
+  scores.residual = 3.0 * testing_support::coloured_noise(generator, N, 0.0);
+  scores.quadratic = Eigen::Vector2d(0.0, 5.0);
+  EXPECT_NEAR(scores.rows().col(1).sum(), scores.residual.dot(scores.regressors.col(1)), 1e-6);
+  const Eigen::MatrixXd S = score_covariance(scores, {{0, N}}, 0).matrix / static_cast<double>(N);
+  EXPECT_NEAR(S(0, 0), 9.0, 0.3);
+  EXPECT_NEAR(S(1, 1), 9.0 + 50.0, 2.0);
+  EXPECT_NEAR(S(0, 1), 0.0, 0.6);
+}
+
 TEST(CorrelationLength, IsZeroForWhiteNoiseAndThatOfAMovingAverageOtherwise) {
   std::mt19937_64 generator(4);
   const Eigen::VectorXd white = testing_support::coloured_noise(generator, 20000, 0.0);

@@ -146,4 +146,32 @@ LongRunCovariance autocorrelated_normal_matrix(const RowMatrix& regressors,
   return result;
 }
 
+RowMatrix Scores::rows() const {
+  RowMatrix rows = residual.asDiagonal() * regressors;
+  if (quadratic.squaredNorm() > 0.0) {
+    const double mean_square = residual.squaredNorm() / static_cast<double>(residual.size());
+    rows += (residual.array().square() / mean_square - 1.0).matrix() * quadratic.transpose();
+  }
+  return rows;
+}
+
+LongRunCovariance score_covariance(const Scores& scores, const SegmentRanges& segments, Eigen::Index window) {
+  LongRunCovariance result = autocorrelated_normal_matrix(scores.regressors, scores.residual, segments, window);
+  if (scores.quadratic.squaredNorm() > 0.0) {
+    const double power = lagged(scores.residual, segments, 0);
+    double sum = 1.0;
+    for (Eigen::Index lag = 1; lag < 2 * window; ++lag) {
+      const double correlation = lagged(scores.residual, segments, lag) / power;
+      sum += 2.0 * flat_top_weight(lag, window) * correlation * correlation;
+    }
+    const auto N = static_cast<double>(scores.residual.size());
+    result.matrix += 2.0 * N * sum * scores.quadratic * scores.quadratic.transpose();
+  }
+  const LongRunCovariance sandwich = long_run_covariance(scores.rows(), segments, window);
+  // A variance from n degrees of freedom has a standard error of sqrt(2/n) of it.
+  const double surely = 1.0 / (1.0 + std::sqrt(2.0 / sandwich.degrees_of_freedom));
+  result.matrix = raised_to(result.matrix, sandwich.matrix, surely);
+  return result;
+}
+
 }  // namespace veridyn::estimation

@@ -245,11 +245,9 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
   result.covariance_white = tls.covariance_white;
   result.covariance = tls.covariance_white;
   if (options_.covariance == CovarianceKind::kAutocorrelated) {
-    RowMatrix scores;
-    Eigen::VectorXd r;
-    errors_in_variables_scores(X(), z(), W, tls.theta, ratio, scores, r);
-    const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
-    const LongRunCovariance filling = long_run_covariance(scores, segments_, window);
+    const Scores scores = errors_in_variables_scores(X(), z(), W, tls.theta, ratio);
+    const Eigen::Index window = correlation_length(scores.residual, segments_, options_.max_lag);
+    const LongRunCovariance filling = score_covariance(scores, segments_, window);
     result.covariance = rows() / freedom * (tls.inverse_jacobian * filling.matrix * tls.inverse_jacobian);
     result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
     result.lag_window = window;
@@ -288,18 +286,13 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
       inverse * white_score_covariance(pca.jacobian, W, pca.theta, pca.error_scale, rows(), ratio_) * inverse;
   Eigen::MatrixXd excited = excited_white;
   if (options_.covariance == CovarianceKind::kAutocorrelated) {
-    RowMatrix scores;
-    Eigen::VectorXd r;
-    if (free.count() < n) {
-      // Scores of the free parameters; pinned ones moved to the regressand.
-      const RowMatrix X_free = X() * free.lift;
-      const Eigen::VectorXd z_free = z() + X() * free.pinning.P.col(free.count()).head(n);
-      errors_in_variables_scores(X_free, z_free, W, pca.theta, ratio_, scores, r);
-    } else {
-      errors_in_variables_scores(X(), z(), W, pca.theta, ratio_, scores, r);
-    }
-    const Eigen::Index window = correlation_length(r, segments_, options_.max_lag);
-    const LongRunCovariance filling = long_run_covariance(scores, segments_, window);
+    // Of the free parameters; pinned ones are moved to the regressand.
+    const Scores scores = free.count() < n ? errors_in_variables_scores(
+                                                 X() * free.lift, z() + X() * free.pinning.P.col(free.count()).head(n),
+                                                 W, pca.theta, ratio_)
+                                           : errors_in_variables_scores(X(), z(), W, pca.theta, ratio_);
+    const Eigen::Index window = correlation_length(scores.residual, segments_, options_.max_lag);
+    const LongRunCovariance filling = score_covariance(scores, segments_, window);
     excited = rows() / freedom * (inverse * filling.matrix * inverse);
     result.degrees_of_freedom = std::min(freedom, filling.degrees_of_freedom);
     result.lag_window = window;

@@ -178,21 +178,17 @@ TotalLeastSquares total_least_squares(const Eigen::MatrixXd& triangle, const Eig
   return result;
 }
 
-void errors_in_variables_scores(const RowMatrix& X, const Eigen::VectorXd& z, const Eigen::MatrixXd& W,
-                                const Eigen::VectorXd& theta, ErrorRatio ratio, RowMatrix& scores,
-                                Eigen::VectorXd& residual) {
+Scores errors_in_variables_scores(const RowMatrix& X, const Eigen::VectorXd& z, const Eigen::MatrixXd& W,
+                                  const Eigen::VectorXd& theta, ErrorRatio ratio) {
   const Eigen::Index n = theta.size();
   const Eigen::VectorXd h = with_minus_one(theta);
   // e'h = -(z - x theta) in errors, so x_hat = x - (W h)_x (D h)/(h'Wh) with D h = -residual.
   const Eigen::RowVectorXd Wh = (W * h).head(n).transpose();
-  const double s2 = h.dot(W * h);
-  const Eigen::RowVectorXd slope = Wh / s2;
-  residual.noalias() = z - X * theta;
-  scores.resize(X.rows(), n);
-  for (Eigen::Index k = 0; k < X.rows(); ++k) scores.row(k) = (X.row(k) + slope * residual(k)) * residual(k);
-  if (ratio == ErrorRatio::kEstimated) {
-    for (Eigen::Index k = 0; k < X.rows(); ++k) scores.row(k) -= Wh * (residual(k) * residual(k) / s2 - 1.0);
-  }
+  Scores scores;
+  scores.residual = z - X * theta;
+  scores.regressors = X + scores.residual * (Wh / h.dot(W * h));
+  scores.quadratic = ratio == ErrorRatio::kEstimated ? Eigen::VectorXd(-Wh) : Eigen::VectorXd(Eigen::VectorXd::Zero(n));
+  return scores;
 }
 
 }  // namespace veridyn::estimation

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "veridyn/estimation/regression/long_run_covariance.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 
 namespace veridyn::estimation {
@@ -89,9 +90,9 @@ struct CorrectedNormalMatrix {
                                                      const Eigen::VectorXd& theta, double error_scale, double rows,
                                                      ErrorRatio ratio = ErrorRatio::kKnown);
 
-/// Scores (rows) and the residual r = z - X theta.
-void errors_in_variables_scores(const RowMatrix& regressors, const Eigen::VectorXd& regressand,
-                                const Eigen::MatrixXd& error_covariance, const Eigen::VectorXd& theta, ErrorRatio ratio,
-                                RowMatrix& scores, Eigen::VectorXd& residual);
+/// Scores at `theta`: regressors x_hat, residual r = z - X theta, and -(W h)_x where the ratio was estimated.
+[[nodiscard]] Scores errors_in_variables_scores(const RowMatrix& regressors, const Eigen::VectorXd& regressand,
+                                                const Eigen::MatrixXd& error_covariance, const Eigen::VectorXd& theta,
+                                                ErrorRatio ratio);
 
 }  // namespace veridyn::estimation

@@ -270,10 +270,10 @@ Eigen::MatrixXd influence(const RegressionData& data, const RegressionEstimate& 
     const double beyond = estimate.residual_sd * estimate.residual_sd - h.dot(W * h);
     W(n, n) += std::max(0.0, beyond);
   }
-  estimation::RowMatrix scores;
-  Eigen::VectorXd residual;
-  estimation::errors_in_variables_scores(data.regressors, data.regressand, W, estimate.theta,
-                                         estimation::ErrorRatio::kKnown, scores, residual);
+  const estimation::RowMatrix scores =
+      estimation::errors_in_variables_scores(data.regressors, data.regressand, W, estimate.theta,
+                                             estimation::ErrorRatio::kKnown)
+          .rows();
   const Eigen::VectorXd scale = data.regressors.colwise().norm().transpose().cwiseMax(1e-300).cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
   const Eigen::MatrixXd all =
