@@ -124,6 +124,55 @@ TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
   EXPECT_GE(static_cast<double>(all.data_yes), 0.95 * static_cast<double>(all.flights));
 }
 
+/// One manoeuvre of 20 s of each axis (multisines; 3-2-1-1 and doublets; multisine and 3-2-1-1), nothing held out.
+FlightStudy single_manoeuvres(FlightStudy study, std::size_t which) {
+  constexpr std::array<std::array<double, 2>, 3> kBegin{{{12, 62}, {43, 93}, {178, 228}}};
+  const auto [longitudinal, lateral] = kBegin[which];
+  study.segments.holdout = 0.0;
+  study.segments.longitudinal = {{longitudinal, longitudinal + 20.0}};
+  study.segments.lateral = {{lateral, lateral + 20.0}};
+  return study;
+}
+
+// Intervals from one manoeuvre of each axis alone. Writes single_manoeuvres.md.
+TEST(CampaignSoak, IntervalsOfSingleManoeuvresHoldTheTruth) {
+  const std::vector<std::string> aircraft = builtin_subject_names();
+  const std::vector<std::string> turbulence{"none", "low_light", "low_moderate"};
+  constexpr std::size_t kSeeds = 9, kManoeuvres = 3;
+  std::vector<std::array<test::Confidence, kManoeuvres>> found(aircraft.size() * kSeeds);
+  numerics::parallel_for(found.size(), 0, [&](std::size_t k) {
+    const std::size_t seed = k / aircraft.size();
+    const FlightStudy study =
+        campaign_flight(aircraft[k % aircraft.size()], seed + 1, 300.0, turbulence[seed % turbulence.size()]);
+    for (std::size_t which = 0; which < kManoeuvres; ++which)
+      found[k][which] = testing::identified(single_manoeuvres(study, which)).confidence;
+  });
+  std::ofstream table("single_manoeuvres.md");
+  table << "| aircraft | multisines | 3-2-1-1, doublets | multisine, 3-2-1-1 | all |\n|---|---|---|---|---|\n";
+  const auto share = [](std::size_t covered, std::size_t confident) {
+    return fmt::format("{:.1f} % of {}", 100.0 * static_cast<double>(covered) / static_cast<double>(confident),
+                       confident);
+  };
+  for (std::size_t i = 0; i < aircraft.size(); ++i) {
+    std::array<std::size_t, kManoeuvres + 1> confident{}, covered{};
+    for (std::size_t k = i; k < found.size(); k += aircraft.size()) {
+      for (std::size_t which = 0; which < kManoeuvres; ++which) {
+        for (const std::size_t column : {which, kManoeuvres}) {
+          confident[column] += found[k][which].confident;
+          covered[column] += found[k][which].covered;
+        }
+      }
+    }
+    table << fmt::format("| {} |", aircraft[i]);
+    for (std::size_t column = 0; column <= kManoeuvres; ++column)
+      table << fmt::format(" {} |", share(covered[column], confident[column]));
+    table << "\n";
+    const double all = static_cast<double>(covered.back()) / static_cast<double>(confident.back());
+    EXPECT_GE(all, 0.90) << aircraft[i];
+    EXPECT_LE(all, 0.985) << aircraft[i];
+  }
+}
+
 // The short form of the campaign: one fault of each sensor in one flight.
 TEST(Campaign, NamesWhatIsWrong) {
   const FlightStudy study = campaign_flight("unatrap", 1, 150.0);

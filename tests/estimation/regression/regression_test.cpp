@@ -79,6 +79,49 @@ TEST(Compare, TakesPcaWhenADirectionIsNotExcited) {
   EXPECT_EQ(c.best()->find("theta1")->status, ParameterStatus::kIdentified);
 }
 
+/// Rows of `s` with a fifth regressor, 0.5 + 0.5 of the first's two: as the piece of a polyline whose knot is never
+/// passed.
+RegressionData with_dependent_column(const RegressionData& s) {
+  RegressionData data = s;
+  Eigen::MatrixXd T = Eigen::MatrixXd::Zero(5, 6);
+  T.topLeftCorner(4, 4).setIdentity();
+  T(0, 4) = T(1, 4) = 0.5;
+  T(4, 5) = 1.0;
+  data.regressors = s.regressors * T.topLeftCorner(4, 5);
+  data.error_covariance = T.transpose() * s.error_covariance * T;
+  data.parameter_names.emplace_back("theta4");
+  return data;
+}
+
+// One exact dependency is held. Whether the residual is as large as assumed is then judged by what is estimated: three
+// times too large errors of the regressors were a refusal ("moves inf sigma").
+TEST(Compare, JudgesWhatIsEstimatedWhereADirectionIsHeld) {
+  auto s = simulate_regression(5, regression_theta(), errors(0.001, 0.001));
+  s.data.error_covariance *= 10.0;
+  const RegressionComparison c = compare(with_dependent_column(s.data));
+  ASSERT_TRUE(c.recommends) << c.reason;
+  EXPECT_EQ(c.recommended, Method::kPcaGtls);
+  ASSERT_EQ(c.best()->unexcited.size(), 1u);
+  EXPECT_NEAR(c.best()->find("theta2")->value, regression_theta()(2), 0.01);
+  const auto row = std::ranges::find(c.checks, "collinearity", &Evidence::name);
+  ASSERT_NE(row, c.checks.end());
+  EXPECT_TRUE(row->passed()) << row->text;
+}
+
+// What moves together beside it is still named, and nothing else.
+TEST(Compare, NamesCollinearRegressorsBesideADirectionThatIsHeld) {
+  auto s = simulate_regression(5, regression_theta(), errors(0.001, 0.001));
+  const Eigen::VectorXd before = s.data.regressors.col(3);
+  s.data.regressors.col(3) = s.data.regressors.col(2) + 0.15 * before;
+  s.data.regressand += regression_theta()(3) * (s.data.regressors.col(3) - before);
+  const RegressionComparison c = compare(with_dependent_column(s.data));
+  const auto row = std::ranges::find(c.checks, "collinearity", &Evidence::name);
+  ASSERT_NE(row, c.checks.end());
+  EXPECT_FALSE(row->passed());
+  EXPECT_NE(row->text.find("theta2, theta3"), std::string::npos) << row->text;
+  EXPECT_EQ(row->text.find("theta1"), std::string::npos) << row->text;
+}
+
 TEST(Compare, MarksInsignificantParametersWithoutZeroingThem) {
   Eigen::VectorXd theta = regression_theta();
   theta(3) = 0.0;

@@ -10,6 +10,7 @@
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
 #include "veridyn/estimation/regression/total_least_squares.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 
 namespace veridyn::estimation::internal {
 namespace {
@@ -49,6 +50,14 @@ struct FreeParameters {
   Eigen::MatrixXd lift;                   ///< all parameters by free ones
 
   [[nodiscard]] Eigen::Index count() const { return prior.size(); }
+  /// All parameters, pinned ones at their prior.
+  [[nodiscard]] Eigen::VectorXd all_values(const Eigen::VectorXd& free) const {
+    Eigen::VectorXd theta = lift * free;
+    for (Eigen::Index i = 0; i < theta.size(); ++i) {
+      if (!std::isfinite(all_weight(i))) theta(i) = all_prior(i);
+    }
+    return theta;
+  }
 };
 
 FreeParameters free_parameters(const RegressionOptions& options, const Eigen::MatrixXd& triangle,
@@ -106,6 +115,16 @@ UnexcitedBound bound_unexcited(const PcaTotalLeastSquares& pca, const FreeParame
   return out;
 }
 
+/// Variance inflation of each free parameter when what is not excited is held.
+Eigen::VectorXd inflation_on_excited(const PcaTotalLeastSquares& pca, const FreeParameters& free,
+                                     const Eigen::VectorXd& spread) {
+  const Eigen::MatrixXd directions = free.weight.cwiseInverse().asDiagonal() * pca.excited;
+  const Eigen::MatrixXd rows = free.triangle.leftCols(free.count()) * directions;
+  const Eigen::MatrixXd inverse = directions * numerics::solve_symmetric(Eigen::MatrixXd(rows.transpose() * rows),
+                                                                         Eigen::MatrixXd(directions.transpose()));
+  return spread.cwiseProduct(inverse.diagonal()).cwiseMax(1.0);
+}
+
 std::string list_of(const std::vector<Direction>& directions) {
   std::string text;
   for (const Direction& d : directions) text += (text.empty() ? "" : "; ") + d.text;
@@ -141,13 +160,13 @@ RegressionAnalysis::RegressionAnalysis(const RegressionData& data, const Regress
     constant_.push_back((data.regressors.col(j).array() == data.regressors(0, j)).all());
     has_constant = has_constant || constant_.back();
   }
+  spread_ = triangle_.leftCols(n).colwise().squaredNorm().transpose();
+  if (has_constant && data.row_scale.size() == 0) spread_ -= rows() * mean.cwiseAbs2().transpose();
   variance_inflation_ = Eigen::VectorXd::Ones(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     if (constant_[static_cast<std::size_t>(j)]) continue;
-    double spread = triangle_.col(j).squaredNorm();
-    if (has_constant && data.row_scale.size() == 0) spread -= rows() * mean(j) * mean(j);
     variance_inflation_(j) =
-        least_squares_.full_rank ? std::max(1.0, spread * least_squares_.inverse_normal(j, j)) : kInfinity;
+        least_squares_.full_rank ? std::max(1.0, spread_(j) * least_squares_.inverse_normal(j, j)) : kInfinity;
   }
 }
 
@@ -258,6 +277,29 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
                   result.rows, 100.0 * tls.noise_share);
 }
 
+std::optional<Eigen::VectorXd> RegressionAnalysis::theta_under(Method method, const Eigen::MatrixXd& W) const {
+  if (method == Method::kGtls) {
+    const TotalLeastSquares tls = total_least_squares(triangle_, W, rows());
+    return tls.solved ? std::optional(tls.theta) : std::nullopt;
+  }
+  // GTLS within the directions that are excited under the assumed errors.
+  const FreeParameters free = free_parameters(options_, triangle_, error_covariance(method));
+  const Eigen::Index count = free.count();
+  const PcaTotalLeastSquares pca =
+      pca_total_least_squares(free.triangle, free.error_covariance, rows(), options_.signal_to_noise,
+                              data_.error_scale_known, free.prior, free.weight);
+  if (!pca.solved) return std::nullopt;
+  const Eigen::MatrixXd directions = free.weight.cwiseInverse().asDiagonal() * pca.excited;
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(count + 1, directions.cols() + 1);
+  change.topLeftCorner(count, directions.cols()) = directions;
+  change.col(directions.cols()) << -free.prior, 1.0;
+  const Eigen::MatrixXd P = free.pinning.P * change;
+  const TotalLeastSquares tls =
+      total_least_squares(retriangulate(triangle_ * P), Eigen::MatrixXd(P.transpose() * W * P), rows());
+  if (!tls.solved) return std::nullopt;
+  return free.all_values(free.prior + directions * tls.theta);
+}
+
 void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
   const Eigen::Index n = data_.parameters();
   const double freedom = rows() - static_cast<double>(n);
@@ -266,10 +308,7 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
   const bool scale_known = data_.has_error_covariance() && data_.error_scale_known;
   const PcaTotalLeastSquares pca =
       pca_total_least_squares(free.triangle, W, rows(), options_.signal_to_noise, scale_known, free.prior, free.weight);
-  result.theta = free.lift * pca.theta;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(free.all_weight(i))) result.theta(i) = free.all_prior(i);
-  }
+  result.theta = free.all_values(pca.theta);
   result.singular_values.assign(pca.singular_values.data(), pca.singular_values.data() + pca.singular_values.size());
   result.threshold = pca.threshold;
   result.error_scale = pca.error_scale;
@@ -310,12 +349,14 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
   // Kept here because `finish` cannot distinguish the bound from the excited part.
   const double critical = numerics::student_t_quantile(1.0 - 0.5 * options_.significance, result.degrees_of_freedom);
   result.parameters.resize(static_cast<std::size_t>(n));
+  const Eigen::VectorXd inflation = inflation_on_excited(pca, free, free.lift.transpose() * spread_);
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(free.all_weight(i)))
       result.parameters[static_cast<std::size_t>(i)].status = ParameterStatus::kFixed;
   }
   for (Eigen::Index j = 0; j < free.count(); ++j) {
     Parameter& p = result.parameters[static_cast<std::size_t>(free.pinning.free[static_cast<std::size_t>(j)])];
+    p.variance_inflation = inflation(j);
     p.unexcited_share = std::min(1.0, bound.share(j));
     const double by_bound = bound.covariance(j, j);
     const double sigma = std::sqrt(std::max(0.0, excited(j, j) + by_bound));
@@ -342,7 +383,7 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
     p.name = data_.parameter_names[static_cast<std::size_t>(i)];
     if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[static_cast<std::size_t>(i)];
     p.value = result.theta(i);
-    p.variance_inflation = variance_inflation_(i);
+    if (result.unexcited.empty()) p.variance_inflation = variance_inflation_(i);
     if (!usable) {
       p.sigma = p.sigma_white = kInfinity;
       p.low95 = -p.sigma;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "veridyn/estimation/regression/long_run_covariance.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
@@ -21,6 +22,9 @@ class RegressionAnalysis {
   [[nodiscard]] const OrdinaryLeastSquares& least_squares() const { return least_squares_; }
   [[nodiscard]] double rows() const { return static_cast<double>(X().rows()); }
   [[nodiscard]] const RegressionData& data() const { return data_; }
+  /// theta of the method (GTLS, PCA-GTLS) if the errors had covariance `W`, what the assumed ones call not excited
+  /// held; none where it then has no solution.
+  [[nodiscard]] std::optional<Eigen::VectorXd> theta_under(Method method, const Eigen::MatrixXd& W) const;
   /// Residual z - X theta of the scaled rows.
   [[nodiscard]] Eigen::VectorXd residual(const Eigen::VectorXd& theta) const { return z() - X() * theta; }
   [[nodiscard]] const SegmentRanges& segments() const { return segments_; }
@@ -42,6 +46,7 @@ class RegressionAnalysis {
   SegmentRanges segments_;
   Eigen::MatrixXd triangle_;
   OrdinaryLeastSquares least_squares_;
+  Eigen::VectorXd spread_;  // sum of squares of each column about its mean
   Eigen::VectorXd variance_inflation_;
   std::vector<bool> constant_;
   Eigen::MatrixXd error_covariance_;  // of GTLS, equation error included

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
@@ -89,24 +90,20 @@ Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& 
 /// What a residual of another size than the assumed errors says changes when it is read the other way: all of it as
 /// equation error, or as smaller errors of the regressors.
 struct OtherReading {
-  bool too_large = false;      ///< is the residual larger than the errors say?
-  TotalLeastSquares estimate;  ///< under the other reading
-  Distance moved;              ///< of the candidate to it
-  Evidence check;              ///< whether that matters
+  bool too_large = false;                ///< is the residual larger than the errors say?
+  std::optional<Eigen::VectorXd> theta;  ///< under the other reading; none: it has no solution
+  Distance moved;                        ///< of the candidate to it
+  Evidence check;                        ///< whether that matters
 };
 
-OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate,
-                            const TotalLeastSquares& raised) {
+OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate) {
   const Eigen::MatrixXd& W = analysis.data().error_covariance;
   OtherReading out;
   out.too_large = candidate.error_scale > 1.0;
-  out.estimate = out.too_large
-                     ? raised
-                     : total_least_squares(analysis.triangle(),
-                                           with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()),
-                                           analysis.rows());
-  const bool solved = out.estimate.solved;
-  out.moved = solved ? distance(candidate, candidate.theta, out.estimate.theta) : Distance{kInfinity, ""};
+  out.theta = analysis.theta_under(
+      candidate.method, out.too_large ? with_equation_error(analysis.triangle(), W, analysis.rows())
+                                      : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
+  out.moved = out.theta ? distance(candidate, candidate.theta, *out.theta) : Distance{kInfinity, ""};
   const Distance& moved = out.moved;
   out.check = {.name = "sensitivity to the error ratio",
                .outcome = passed_or(moved.sigmas <= kSensitivityLimit, Outcome::kCare),
@@ -114,11 +111,12 @@ OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const 
                .limit = kSensitivityLimit,
                .scale = "sigma"};
   out.check.text =
-      !solved ? std::string("with the other reading of the mismatch there is no estimate")
-              : fmt::format("{} moves {:.1f} sigma at most{} if {}", to_string(candidate.method), moved.sigmas,
-                            moved.parameter.empty() ? "" : fmt::format(" ({})", moved.parameter),
-                            out.too_large ? "what the assumed errors leave unexplained is error of the equation alone"
-                                          : "the regressors' errors are smaller than assumed");
+      !out.theta
+          ? std::string("with the other reading of the mismatch there is no estimate")
+          : fmt::format("{} moves {:.1f} sigma at most{} if {}", to_string(candidate.method), moved.sigmas,
+                        moved.parameter.empty() ? "" : fmt::format(" ({})", moved.parameter),
+                        out.too_large ? "what the assumed errors leave unexplained is error of the equation alone"
+                                      : "the regressors' errors are smaller than assumed");
   return out;
 }
 
@@ -137,14 +135,16 @@ RegressionComparison refuse(RegressionComparison comparison, std::string reason)
 
 RegressionComparison compare_with_exact_regressors(RegressionComparison result, bool errors_given) {
   const RegressionEstimate& ols = result.estimates[0];
+  const RegressionEstimate* pca = result.find(Method::kPcaGtls);
+  const bool held = !ols.usable() && pca != nullptr && pca->usable();
+  result.checks.push_back(collinearity(held ? *pca : ols));
   result.checks.push_back(residual_autocorrelation(ols));
   if (ols.usable()) {
     return recommend(std::move(result), Method::kOls,
                      errors_given ? "OLS: the regressors are exact"
                                   : "OLS: no errors of the regressors are given, so they are taken as exact");
   }
-  const RegressionEstimate* pca = result.find(Method::kPcaGtls);
-  if (pca != nullptr && pca->usable()) {
+  if (held) {
     std::string reason = fmt::format("PCA-GTLS: {}", pca->message);
     return recommend(std::move(result), Method::kPcaGtls, std::move(reason));
   }
@@ -154,23 +154,31 @@ RegressionComparison compare_with_exact_regressors(RegressionComparison result, 
 
 }  // namespace
 
-Evidence collinearity(const RegressionEstimate& ols) {
+Evidence collinearity(const RegressionEstimate& estimate) {
   Evidence check{.name = "collinearity",
-                 .value = ols.condition_number,
+                 .value = estimate.condition_number,
                  .limit = kConditionLimit,
                  .scale = "condition number",
                  .bears_on = Purpose::kParameters};
-  const auto worst = std::ranges::max_element(ols.parameters, {}, &Parameter::variance_inflation);
-  const bool inflated = worst->variance_inflation > kInflationLimit;
-  check.outcome = passed_or(check.value <= kConditionLimit && !inflated, Outcome::kCare);
-  check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g} ({})", check.value,
-                           worst->variance_inflation, worst->name);
-  if (inflated) {
-    std::vector<std::string> names;
-    for (const Parameter& p : ols.parameters)
-      if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
+  double largest = 1.0;
+  std::vector<std::string> names;
+  for (const Parameter& p : estimate.parameters) {
+    if (p.status == ParameterStatus::kNotExcited || p.status == ParameterStatus::kFixed) continue;
+    largest = std::max(largest, p.variance_inflation);
+    if (p.variance_inflation > kInflationLimit) names.push_back(p.name);
+  }
+  check.text = fmt::format("condition number {:.3g}, largest variance inflation {:.3g}", check.value, largest);
+  if (!estimate.unexcited.empty()) {
+    // The condition number is that of all directions; those that are not excited are held and reported as such.
+    check.value = largest;
+    check.limit = kInflationLimit;
+    check.scale = "variance inflation";
+    check.text = fmt::format("largest variance inflation {:.3g}, with what is not excited held", largest);
+  }
+  check.outcome = passed_or(check.value <= check.limit && names.empty(), Outcome::kCare);
+  if (!names.empty()) {
     check.text = fmt::format("the regressors of {} move together (variance inflation up to {:.3g})",
-                             fmt::join(names, ", "), worst->variance_inflation);
+                             fmt::join(names, ", "), largest);
     check.advice = "excite them separately: move one control at a time, in its own manoeuvre";
   }
   return check;
@@ -185,13 +193,13 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   std::vector<Method> methods = {Method::kOls, Method::kTls};
   if (data.has_error_covariance()) methods.insert(methods.end(), {Method::kGtls, Method::kPcaGtls});
   for (const Method method : methods) result.estimates.push_back(analysis.run(method));
-  result.checks.push_back(collinearity(result.estimates[0]));
   if (!with_errors) return compare_with_exact_regressors(std::move(result), data.has_error_covariance());
 
   const RegressionEstimate ols = result.estimates[0];
   const RegressionEstimate& pca = *result.find(Method::kPcaGtls);
   const RegressionEstimate candidate = pca.usable() && !pca.unexcited.empty() ? pca : *result.find(Method::kGtls);
   const std::string name(to_string(candidate.method));
+  result.checks.push_back(collinearity(candidate.usable() ? candidate : ols));
   result.checks.push_back(residual_autocorrelation(candidate));
   if (!candidate.usable())
     return refuse(std::move(result), fmt::format("none: {} found nothing: {}", name, candidate.message));
@@ -211,7 +219,7 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
       analysis.triangle(), with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows()),
       analysis.rows());
   if (raised.solved) result.theta_with_equation_error = raised.theta;
-  const OtherReading other = read_otherwise(analysis, candidate, raised);
+  const OtherReading other = read_otherwise(analysis, candidate);
   result.checks.push_back(other.check);
 
   if (scale.passed()) {
@@ -225,8 +233,8 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
                                  "estimate moves only {:.1f} sigma by it",
                                  name, candidate.error_scale, other.moved.sigmas));
   }
-  if (ols.usable() && other.estimate.solved) {
-    const Distance apart = distance(ols, ols.theta, other.estimate.theta);
+  if (ols.usable() && other.theta) {
+    const Distance apart = distance(ols, ols.theta, *other.theta);
     if (apart.sigmas <= 1.0) {
       return recommend(std::move(result), Method::kOls,
                        fmt::format("OLS: the residual variance is {:.2g} of what the assumed errors give; with that "
