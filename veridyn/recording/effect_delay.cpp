@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/recording/delays.hpp"
 
 namespace veridyn::recording {
@@ -19,58 +20,75 @@ constexpr double kLeastByCause = 0.05;
 /// Parts of the recording that the jackknife leaves out in turn.
 constexpr std::size_t kParts = 10;
 
-/// Normal equations of one part of the recording.
+/// Products of the columns [1, explanatory ..., effect] with each other, summed over one part of the recording.
 struct PartialSums {
-  Eigen::MatrixXd normal;
-  Eigen::VectorXd right;
-  double squares = 0.0, sum = 0.0, count = 0.0;
+  Eigen::MatrixXd products;
 
-  explicit PartialSums(Eigen::Index columns)
-      : normal(Eigen::MatrixXd::Zero(columns, columns)), right(Eigen::VectorXd::Zero(columns)) {}
-  void add(const Eigen::VectorXd& row, double value) {
-    normal += row * row.transpose();
-    right += value * row;
-    squares += value * value;
-    sum += value;
-    count += 1.0;
-  }
-  void add(const PartialSums& other) {
-    normal += other.normal;
-    right += other.right;
-    squares += other.squares;
-    sum += other.sum;
-    count += other.count;
-  }
+  explicit PartialSums(Eigen::Index columns) : products(Eigen::MatrixXd::Zero(columns, columns)) {}
   /// `noise` are the variances of the columns' noise, which is taken off their power.
   [[nodiscard]] double share_explained(const Eigen::VectorXd& noise) const {
+    const Eigen::Index last = products.cols() - 1;
+    const double count = products(0, 0), sum = products(0, last), squares = products(last, last);
     const double total = squares - sum * sum / std::max(1.0, count);
     if (!(count > 100.0) || !(total > 0.0)) return 0.0;
-    Eigen::MatrixXd signal = normal;
+    Eigen::MatrixXd signal = products.topLeftCorner(last, last);
     // At least half of it is signal, or the noise is not what it was taken for.
-    signal.diagonal() = (normal.diagonal() - count * noise).cwiseMax(0.5 * normal.diagonal());
+    const Eigen::VectorXd power = signal.diagonal();
+    signal.diagonal() = (power - count * noise).cwiseMax(0.5 * power);
+    const Eigen::VectorXd right = products.col(last).head(last);
     return 1.0 - (squares - right.dot(numerics::shortest_least_squares(signal, right))) / total;
   }
 };
 
+/// A column of `sums_at`: the signal `lag` samples before; null: 1.
+struct Column {
+  const std::vector<double>* signal = nullptr;
+  long lag = 0;
+};
+
+std::vector<Column> columns_at(const DelayedEffect& e, long lag, bool with_causes) {
+  std::vector<Column> columns{{}};
+  for (const Explanatory& other : e.others) columns.push_back({&other.value, 0});
+  for (const Explanatory& late : e.late_others) columns.push_back({&late.value, lag});
+  if (with_causes)
+    for (const Explanatory& cause : e.causes) columns.push_back({&cause.value, lag});
+  columns.push_back({&e.effect, 0});
+  return columns;
+}
+
 /// Of a regression of the effect on a constant, the others, and what is late and the causes (or no causes) `lag`
 /// samples before, part by part.
 std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_causes) {
-  const auto n = static_cast<long>(e.effect.size());
+  constexpr long kBlock = 256;
+  const auto n = static_cast<long>(e.effect.size()), parts = static_cast<long>(kParts);
   const long stride = std::max<long>(1, n / static_cast<long>(kMostRows));
-  const std::size_t causes = with_causes ? e.causes.size() : 0;
-  Eigen::VectorXd row(static_cast<Eigen::Index>(1 + e.others.size() + e.late_others.size() + causes));
-  std::vector<PartialSums> parts(kParts, PartialSums(row.size()));
-  for (long k = 0; k < n; k += stride) {
-    if (k - lag < 0 || k - lag >= n) continue;
-    const auto at = static_cast<std::size_t>(k), before = static_cast<std::size_t>(k - lag);
-    Eigen::Index column = 0;
-    row(column++) = 1.0;
-    for (const Explanatory& other : e.others) row(column++) = other.value[at];
-    for (const Explanatory& late : e.late_others) row(column++) = late.value[before];
-    for (std::size_t j = 0; j < causes; ++j) row(column++) = e.causes[j].value[before];
-    if (row.allFinite() && std::isfinite(e.effect[at])) parts[at * kParts / e.effect.size()].add(row, e.effect[at]);
+  const std::vector<Column> columns = columns_at(e, lag, with_causes);
+  const auto width = static_cast<Eigen::Index>(columns.size());
+  std::vector<PartialSums> sums(kParts, PartialSums(width));
+  Eigen::MatrixXd block(kBlock, width);
+  using Strided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
+  for (long part = 0; part < parts; ++part) {
+    const long begin = std::max((part * n + parts - 1) / parts, std::max(0L, lag));
+    const long end = std::min(((part + 1) * n + parts - 1) / parts, n + std::min(0L, lag));
+    for (long k = (begin + stride - 1) / stride * stride; k < end; k += kBlock * stride) {
+      const long rows = std::min(kBlock, (end - k + stride - 1) / stride);
+      auto filled = block.topRows(rows);
+      for (Eigen::Index j = 0; j < width; ++j) {
+        const Column& column = columns[static_cast<std::size_t>(j)];
+        if (column.signal == nullptr)
+          filled.col(j).setOnes();
+        else
+          filled.col(j) = Strided(column.signal->data() + (k - column.lag), rows, Eigen::InnerStride<>(stride));
+      }
+      // A row without one of its values counts nothing.
+      const Eigen::VectorXd total = filled.rowwise().sum();
+      for (long i = 0; i < rows; ++i)
+        if (!std::isfinite(total(i))) filled.row(i).setZero();
+      block.bottomRows(kBlock - rows).setZero();
+      sums[static_cast<std::size_t>(part)].products += numerics::transposed_product(block, block);
+    }
   }
-  return parts;
+  return sums;
 }
 
 /// Variances of the noise of the columns of `sums_at`.
@@ -95,9 +113,9 @@ struct Shares {
       const std::vector<PartialSums> parts = sums_at(effect, lag, true);
       const Eigen::VectorXd noise = noise_of(effect, true);
       for (std::size_t left_out = 0; left_out <= kParts; ++left_out) {
-        PartialSums together(parts[0].right.size());
+        PartialSums together(parts[0].products.cols());
         for (std::size_t i = 0; i < kParts; ++i)
-          if (i != left_out) together.add(parts[i]);
+          if (i != left_out) together.products += parts[i].products;
         (left_out < kParts ? rest[left_out] : all) +=
             together.share_explained(noise) / static_cast<double>(effects.size());
       }
@@ -130,9 +148,10 @@ double jackknife_sigma(const Shares& shares) {
 double share_without_causes(const std::vector<DelayedEffect>& effects, long lag) {
   double mean = 0.0;
   for (const DelayedEffect& effect : effects) {
-    PartialSums together(noise_of(effect, false).size());
-    for (const PartialSums& part : sums_at(effect, lag, false)) together.add(part);
-    mean += together.share_explained(noise_of(effect, false)) / static_cast<double>(effects.size());
+    const Eigen::VectorXd noise = noise_of(effect, false);
+    PartialSums together(noise.size() + 1);
+    for (const PartialSums& part : sums_at(effect, lag, false)) together.products += part.products;
+    mean += together.share_explained(noise) / static_cast<double>(effects.size());
   }
   return mean;
 }
