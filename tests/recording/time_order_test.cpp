@@ -38,5 +38,19 @@ TEST(TimeOrder, NamesWhatIsEarlyOrOpposite) {
   EXPECT_EQ(late_row("gyro", "attitude", 0.1, 0.03).about, "gyro");
 }
 
+TEST(TimeOrder, TellsHowToTakeOffADelayInDoubt) {
+  DelayReport servo = report(0.07, 0.01, 0.7);
+  EXPECT_FALSE(is_doubtful(servo, {})) << "it was taken off";
+  servo.in_doubt = true;
+  EXPECT_TRUE(is_doubtful(servo, {}));
+  EXPECT_FALSE(is_doubtful(servo, {.early_s = 0.08}));
+  const estimation::Evidence row = doubtful_row(servo, {});
+  EXPECT_EQ(row.outcome, estimation::Outcome::kCare);
+  EXPECT_THAT(row.text, HasSubstr("0.070 +- 0.010 s early"));
+  EXPECT_THAT(row.advice, HasSubstr("delays.attitude = \"-70 ms\""));
+  servo.sigma_s = 0.03;
+  EXPECT_FALSE(is_doubtful(servo, {})) << "within three standard errors";
+}
+
 }  // namespace
 }  // namespace veridyn::recording

@@ -43,6 +43,9 @@ struct DelayReport {
   double correlation = 0.0;
   bool applied = false;
   std::string text;  ///< "applied", or why not
+  /// `delay_s` fits best, but more of the effect is unexplained than the cause explains, and that may shift it: not
+  /// applied.
+  bool in_doubt = false;
   /// Groups that move together and were given one delay, this one among them; empty: it was searched alone.
   std::vector<std::string> together = {};
 };

@@ -17,6 +17,8 @@ constexpr std::size_t kMostRows = 30000;
 /// Share of the effect that must be explained, and how much of that by the cause: never less than what is left.
 constexpr double kLeastExplained = 0.3;
 constexpr double kLeastByCause = 0.05;
+/// What the cause must explain for a delay in doubt to be told.
+constexpr double kLeastInDoubt = 0.2;
 /// Parts of the recording that the jackknife leaves out in turn.
 constexpr std::size_t kParts = 10;
 
@@ -177,21 +179,38 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   const auto at = static_cast<std::size_t>(best);
   const double top = explained[at];
   report.correlation = std::sqrt(std::clamp(top, 0.0, 1.0));
-  const bool by_cause = top - share_without_causes(effects, first + best) > std::max(kLeastByCause, 1.0 - top);
-  if (best == 0 && top > kLeastExplained && by_cause) {
+  const double by_cause = top - share_without_causes(effects, first + best);
+  if (!(top > kLeastExplained) || !(by_cause > kLeastByCause)) {
+    report.text = fmt::format("not determined: the {} explains too little", kind);
+    return report;
+  }
+  const bool outweighed = by_cause < 1.0 - top;
+  if (best == 0 && !outweighed) {
     report.delay_s = static_cast<double>(first) * step_s;
     report.text = fmt::format("negative, as far as was searched: a {} cannot follow its effect, left alone", kind);
     return report;
   }
-  if (best == 0 || at + 1 == explained.size() || !(top > kLeastExplained) || !by_cause) {
-    report.text =
-        by_cause ? "not determined: no clear optimum" : fmt::format("not determined: the {} explains too little", kind);
+  if (best == 0 || at + 1 == explained.size()) {
+    report.text = "not determined: no clear optimum";
     return report;
   }
   report.delay_s = (static_cast<double>(first) + top_of(explained)) * step_s;
   // A cause that jumps between two samples, as a servo without lag does, is known to half a sample.
   constexpr double kOfASample = 0.5;
   report.sigma_s = std::hypot(jackknife_sigma(shares), kOfASample) * step_s;
+  if (outweighed && (by_cause < kLeastInDoubt || report.delay_s < 0.0)) {
+    // A cause that reacts to what is left seems to follow its effect.
+    report.delay_s = report.sigma_s = 0.0;
+    report.text = fmt::format("not determined: the {} explains too little", kind);
+    return report;
+  }
+  if (outweighed) {
+    report.in_doubt = true;
+    report.text =
+        fmt::format("not determined: {:.3f} +- {:.3f} s fits best, but the {} explains less than what is left",
+                    report.delay_s, report.sigma_s, kind);
+    return report;
+  }
   const double least = std::max(options.min_delay_s, 3.0 * report.sigma_s);
   if (report.delay_s < -least) {
     report.text = fmt::format("negative: a {} cannot follow its effect, left alone", kind);

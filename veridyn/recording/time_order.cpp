@@ -24,6 +24,10 @@ bool is_early(const DelayReport& report, const TimeOrder& order) {
   return report.delay_s < -limit && report.correlation > 0.0;
 }
 
+bool is_doubtful(const DelayReport& report, const TimeOrder& order) {
+  return report.in_doubt && report.delay_s > std::max(order.early_s, estimation::kBeyondChance * report.sigma_s);
+}
+
 bool is_opposite(const DelayReport& report) {
   return report.correlation < 0.0 && report.text.starts_with("opposite sign");
 }
@@ -35,6 +39,17 @@ estimation::Evidence early_row(const DelayReport& report, const TimeOrder& order
                                             report.reference);
   row.advice = fmt::format("check the stamps of {}, or give its delay: delays.{} = \"{:.0f} ms\"", report.group,
                            report.group, 1000.0 * (order.is_control ? -report.delay_s : report.delay_s));
+  return row;
+}
+
+estimation::Evidence doubtful_row(const DelayReport& report, const TimeOrder& order) {
+  estimation::Evidence row = order_row("order in time", report.group, report.delay_s, order.early_s, "s");
+  row.text = fmt::format(
+      "{} goes best with {} if it is recorded {:.3f} +- {:.3f} s early, as a command before its servo moves; that was "
+      "not taken off, since more of the motion is unexplained than {} explains",
+      report.group, report.reference, report.delay_s, report.sigma_s, report.group);
+  row.advice = fmt::format("measure servo and link on the ground, or take it off: delays.{} = \"{:.0f} ms\"",
+                           report.group, -1000.0 * report.delay_s);
   return row;
 }
 

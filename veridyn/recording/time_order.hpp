@@ -17,11 +17,18 @@ struct TimeOrder {
 /// early beyond chance.
 [[nodiscard]] bool is_early(const DelayReport& report, const TimeOrder& order);
 
+/// Whether a control seems to be recorded too early, by more than `order.early_s` and chance, but what else moves the
+/// vehicle is too much to be sure (`DelayReport::in_doubt`).
+[[nodiscard]] bool is_doubtful(const DelayReport& report, const TimeOrder& order);
+
 /// Whether a report is of a channel that moves against what its reference implies.
 [[nodiscard]] bool is_opposite(const DelayReport& report);
 
 /// Row "order in time" of a report that `is_early`, with care.
 [[nodiscard]] estimation::Evidence early_row(const DelayReport& report, const TimeOrder& order);
+
+/// Row "order in time" of a report that `is_doubtful`, with care.
+[[nodiscard]] estimation::Evidence doubtful_row(const DelayReport& report, const TimeOrder& order);
 
 /// Row "sign against the other sensors" of a report that `is_opposite`, with care.
 [[nodiscard]] estimation::Evidence opposite_row(const DelayReport& report);

@@ -156,6 +156,8 @@ std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
       rows.push_back({recording::opposite_row(report)});
     else if (recording::is_early(report, order) && !gyro_is_late)
       rows.push_back({recording::early_row(report, order)});
+    else if (order.is_control && recording::is_doubtful(report, order))
+      rows.push_back({recording::doubtful_row(report, order)});
   }
   return rows;
 }
