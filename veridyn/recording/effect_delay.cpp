@@ -165,7 +165,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
                                 const Progress& progress, std::string_view kind) {
   DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0, false, ""};
   const auto longest = static_cast<long>(options.max_delay_s / step_s);
-  const long first = -longest / 3;
+  const long first = -longest;
   Shares shares;
   for (long lag = first; lag <= longest; ++lag) {
     if (progress.interrupted()) {
