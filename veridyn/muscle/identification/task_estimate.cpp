@@ -128,7 +128,7 @@ class TaskEstimation {
 
   OutputErrorEstimate fine(const Eigen::VectorXd& from) {
     OutputErrorOptions o = options_of(from);
-    o.tolerance = 0.02;
+    o.tolerance = 0.1;
     if (noise_.size() > 0) {
       o.noise = estimation::OutputNoise::kGiven;
       o.noise_start = noise_;

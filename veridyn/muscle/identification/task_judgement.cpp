@@ -162,7 +162,7 @@ Evidence check_determined(const TaskFindings& f) {
   row.text = fmt::format("the tasks determine {} of {} parameters", identified.size(), identified.size() + open.size());
   if (!open.empty()) row.text += fmt::format("; not {}", fmt::join(open, ", "));
   if (!f.estimate.null_directions.empty())
-    row.text += fmt::format("; only sums are known of {}", f.estimate.null_directions.front());
+    row.text += fmt::format("; least is known of the combination {}", f.estimate.null_directions.front());
   if (!open.empty())
     row.advice =
         "more tasks, in other poses and with other loads; estimate fewer parameters, or one factor for several "
