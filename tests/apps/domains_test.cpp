@@ -26,7 +26,11 @@ class Table : public ProgramTest, public testing::WithParamInterface<Cell> {
       return file("vehicle.toml",
                   "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"bicycle\"\n"
                   "manoeuvre = \"random steer\"\namplitude = \"2 deg\"\nlength = 20\n[scale]\nlength_ratio = 0.2\n");
-    if (domain == "muscle") return file("muscle.toml", "[subject]\nmodel = \"arm\"\n[motion]\nduration = 0.02\n");
+    if (domain == "muscle")
+      return file("muscle.toml",
+                  "[subject]\nmodel = \"arm\"\n[motion]\nduration = 0.02\n[tasks]\nnumbers = [8]\n[person]\n"
+                  "[[parameter]]\nname = \"strength\"\nmuscles = [\"all\"]\nfields = [\"max_isometric_force\"]\n"
+                  "factor = true\n[identify]\nstarts = 1\n");
     return test::source_folder().string() + "/examples/studies/" + domain + "/study.toml";
   }
   /// An estimate of what a validation needs.

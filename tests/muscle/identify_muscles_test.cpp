@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
@@ -140,6 +141,7 @@ TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredAndSearchesEndInTime) {
     }
     fmt::print("{}: {:.1f} s, identified {} covered {}, chi {:.3f}, unseen {:.2g}\n", seed, a.result.seconds,
                identified, covered, a.result.chi_square, a.tasks.back().after.nrmse);
+    std::fflush(stdout);
   }
   std::sort(seconds.begin(), seconds.end());
   fmt::print("median {:.2f} s, longest {:.2f} s; {} identified, {} covered; {} at a bound; {} residuals too large\n",

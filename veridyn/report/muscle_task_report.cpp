@@ -54,27 +54,26 @@ Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
                   "prior where the tasks hardly move with the parameter, not identifiable where they move as much with "
                   "others.",
               .columns = {{.name = "parameter", .align = Align::kLeft},
+                          {.name = ""},
                           {.name = "standard"},
                           {.name = "value"},
                           {.name = "sigma"},
                           {.name = "from", .group = "95 %"},
                           {.name = "to", .group = "95 %"},
                           {.name = "unit", .align = Align::kLeft},
-                          {.name = "learned", .unit = "%", .digits = 3},
-                          {.name = ""}}};
-  if (truth) table.columns.push_back({.name = "truth"});
+                          {.name = "learned", .unit = "%", .digits = 3}}};
+  if (truth) table.columns.insert(table.columns.begin() + 4, {.name = "truth"});
   for (std::size_t i = 0; i < a.estimate.parameters.size(); ++i) {
     const estimation::Parameter& p = a.estimate.parameters[i];
     const auto unknown = std::find_if(study.unknowns.begin(), study.unknowns.end(),
                                       [&](const MuscleUnknown& u) { return u.name == p.name; });
     const double start = unknown != study.unknowns.end() ? unknown->start : kNaN;
-    Row row{.cells = {text_cell(p.name), measured_cell(start, p.sigma)}};
+    Row row{.cells = {text_cell(p.name), verdict_cell(a, i, p), measured_cell(start, p.sigma)}};
     for (Cell& cell : interval_cells(p.value, p.sigma, p.low95, p.high95)) row.cells.push_back(std::move(cell));
+    if (truth) row.cells.insert(row.cells.begin() + 4, measured_cell(a.true_value(p.name), p.sigma));
     row.cells.push_back(text_cell(p.unit == "1" ? "" : p.unit));
     row.cells.push_back(number_cell(i < a.result.verdicts.size() ? 100.0 * a.result.learned(signed_index(i)) : kNaN));
-    row.cells.push_back(verdict_cell(a, i, p));
     row.status = status_of(p.status);
-    if (truth) row.cells.push_back(measured_cell(a.true_value(p.name), p.sigma));
     table.rows.push_back(std::move(row));
   }
   section.blocks.emplace_back(std::move(table));

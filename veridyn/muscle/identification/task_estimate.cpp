@@ -126,13 +126,14 @@ class TaskEstimation {
     return from;
   }
 
-  OutputErrorEstimate fine(const Eigen::VectorXd& from) {
+  /// The fit with the noise as it is; `once`: without a second round, enough to see where a search ends.
+  OutputErrorEstimate fine(const Eigen::VectorXd& from, bool once) {
     OutputErrorOptions o = options_of(from);
-    o.tolerance = 0.1;
+    o.tolerance = 0.2;
     if (noise_.size() > 0) {
       o.noise = estimation::OutputNoise::kGiven;
       o.noise_start = noise_;
-      o.max_relaxations = 3;
+      o.max_relaxations = once ? 1 : 3;
     }
     return estimation::output_error(model_, measured_, o, quiet_);
   }
@@ -174,7 +175,7 @@ class TaskEstimation {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
       const std::size_t i = order[k];
       if (!std::isfinite(rms[i]) || progress_.interrupted()) continue;
-      finished[i] = fine(ends[i]);
+      finished[i] = fine(ends[i], k > 0);
       TaskSearch& s = result_.searches[i];
       s.steps += finished[i]->steps;
       s.message = finished[i]->message;
