@@ -85,7 +85,8 @@ Evidence check_residual(const TaskFindings& f) {
 
 Evidence check_correlation(const TaskFindings& f) {
   const double share = trained_rmse(f.tasks) / std::max(1e-300, trained_range(f.tasks));
-  const bool systematic = f.estimate.lag1 > kSystematic && !(share < kNumerical);
+  const bool numerical = share < kNumerical;
+  const bool systematic = f.estimate.lag1 > kSystematic && !numerical;
   Evidence row{.name = "correlation of the residual",
                .value = f.estimate.lag1,
                .limit = kSystematic,
@@ -97,6 +98,13 @@ Evidence check_correlation(const TaskFindings& f) {
                               "model does not have, or noise that is not white",
                               f.estimate.lag1)
                         : fmt::format("residuals are like noise (correlation of neighbours {:.2f})", f.estimate.lag1);
+  if (numerical && f.estimate.lag1 > kSystematic) {
+    row.outcome = Outcome::kCare;
+    row.text = fmt::format(
+        "the residual is {:.1e} of the motion and alike from sample to sample: that of the integration "
+        "and of the search's end, not of a measurement; intervals made of it are too small",
+        share);
+  }
   return row;
 }
 
