@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "veridyn/muscle/muscle_study_parts.hpp"
@@ -61,21 +62,9 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
 
 void read_control(const StudyTable& table, MuscleStudy& study) {
   ControlOptions& o = study.control;
-  o.window = table.positive_or("window", "s", o.window);
+  o = internal::read_control_options(table);
   if (study.method == MuscleMethod::kComputedMuscleControl && !(o.window <= study.end - study.begin)) {
     table.fail("window", fmt::format("{:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
-  }
-  o.kp = table.number_or("kp", "1/s^2", o.kp);
-  o.kv = table.number_or("kv", "1/s", o.kv);
-  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("{:g} must be >= 0", o.kp));
-  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("{:g} must be >= 0", o.kv));
-  o.min_control = table.number_or("min_control", "1", o.min_control);
-  o.max_control = table.number_or("max_control", "1", o.max_control);
-  if (!(o.min_control >= 0.0 && o.min_control < 1.0))
-    table.fail("min_control", fmt::format("{:g} must be from 0 to below 1", o.min_control));
-  if (!(o.max_control > o.min_control && o.max_control <= 1.0)) {
-    table.fail("max_control",
-               fmt::format("{:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
   }
   o.begin = study.begin;
   o.end = study.end;
@@ -113,6 +102,24 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
 
 }  // namespace
 
+ControlOptions internal::read_control_options(const StudyTable& table) {
+  ControlOptions o;
+  o.window = table.positive_or("window", "s", o.window);
+  o.kp = table.number_or("kp", "1/s^2", o.kp);
+  o.kv = table.number_or("kv", "1/s", o.kv);
+  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("{:g} must be >= 0", o.kp));
+  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("{:g} must be >= 0", o.kv));
+  o.min_control = table.number_or("min_control", "1", o.min_control);
+  o.max_control = table.number_or("max_control", "1", o.max_control);
+  if (!(o.min_control >= 0.0 && o.min_control < 1.0))
+    table.fail("min_control", fmt::format("{:g} must be from 0 to below 1", o.min_control));
+  if (!(o.max_control > o.min_control && o.max_control <= 1.0)) {
+    table.fail("max_control",
+               fmt::format("{:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
+  }
+  return o;
+}
+
 std::string_view method_name(MuscleMethod method) { return kMethods[static_cast<std::size_t>(method)].first; }
 
 bool is_muscle_study(const StudyTable& root) {
@@ -141,6 +148,10 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   read_control(motion.table_or_empty("control"), study);
   read_static(motion.table_or_empty("static_optimization"), study);
   if (study.title.empty()) study.title = study.system->model().name;
+  // Tables of `read_task_study`: one study may say what is simulated and what is estimated.
+  const std::vector<std::string> keys = root.keys();
+  for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify"})
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) root.accept(key);
   root.finish();
   return study;
 }

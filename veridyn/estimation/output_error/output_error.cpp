@@ -210,7 +210,9 @@ class Estimation {
     const bool many = problem_.all_unknowns() > 400 && problem_.shared_count() > 0;
     o.linear_solver_type = many ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
     o.max_num_iterations = options_.max_steps;
-    o.function_tolerance = 1e-10;
+    // Steps in a valley that gain less than what moves parameters by `tolerance` sigma are not worth their simulations.
+    const double coarser = std::max(1.0, options_.tolerance / OutputErrorOptions().tolerance);
+    o.function_tolerance = 1e-10 * coarser * coarser;
     o.gradient_tolerance = 1e-12;
     o.parameter_tolerance = 1e-12;
     // Close to the solution full Gauss-Newton steps are right; damping would only slow them.
