@@ -61,21 +61,9 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
 
 void read_control(const StudyTable& table, MuscleStudy& study) {
   ControlOptions& o = study.control;
-  o.window = table.positive_or("window", "s", o.window);
+  o = internal::read_control_options(table);
   if (study.method == MuscleMethod::kComputedMuscleControl && !(o.window <= study.end - study.begin)) {
     table.fail("window", fmt::format("{:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
-  }
-  o.kp = table.number_or("kp", "1/s^2", o.kp);
-  o.kv = table.number_or("kv", "1/s", o.kv);
-  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("{:g} must be >= 0", o.kp));
-  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("{:g} must be >= 0", o.kv));
-  o.min_control = table.number_or("min_control", "1", o.min_control);
-  o.max_control = table.number_or("max_control", "1", o.max_control);
-  if (!(o.min_control >= 0.0 && o.min_control < 1.0))
-    table.fail("min_control", fmt::format("{:g} must be from 0 to below 1", o.min_control));
-  if (!(o.max_control > o.min_control && o.max_control <= 1.0)) {
-    table.fail("max_control",
-               fmt::format("{:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
   }
   o.begin = study.begin;
   o.end = study.end;
@@ -112,6 +100,24 @@ void refuse_other_methods(const StudyTable& motion, MuscleMethod method) {
 }
 
 }  // namespace
+
+ControlOptions internal::read_control_options(const StudyTable& table) {
+  ControlOptions o;
+  o.window = table.positive_or("window", "s", o.window);
+  o.kp = table.number_or("kp", "1/s^2", o.kp);
+  o.kv = table.number_or("kv", "1/s", o.kv);
+  if (!(o.kp >= 0.0)) table.fail("kp", fmt::format("{:g} must be >= 0", o.kp));
+  if (!(o.kv >= 0.0)) table.fail("kv", fmt::format("{:g} must be >= 0", o.kv));
+  o.min_control = table.number_or("min_control", "1", o.min_control);
+  o.max_control = table.number_or("max_control", "1", o.max_control);
+  if (!(o.min_control >= 0.0 && o.min_control < 1.0))
+    table.fail("min_control", fmt::format("{:g} must be from 0 to below 1", o.min_control));
+  if (!(o.max_control > o.min_control && o.max_control <= 1.0)) {
+    table.fail("max_control",
+               fmt::format("{:g} must be above min_control = {:g} and at most 1", o.max_control, o.min_control));
+  }
+  return o;
+}
 
 std::string_view method_name(MuscleMethod method) { return kMethods[static_cast<std::size_t>(method)].first; }
 

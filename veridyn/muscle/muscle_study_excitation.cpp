@@ -29,24 +29,36 @@ ControlSignals without_repeats(const ControlSignals& signals) {
 }
 
 /// Generalised forces from columns COORDINATE_reserve.
-ControlSignals read_reserves(const SignalTable& table, const MuscleStudy& study, Interpolation interpolation) {
-  const Model& model = study.system->model();
+ControlSignals read_reserves(const SignalTable& table, const MusculoskeletalSystem& system, double reserve_force,
+                             Interpolation interpolation) {
+  const Model& model = system.model();
   const std::size_t n = model.coordinates.size();
   std::vector<double> values(table.time.size() * n, 0.0);
   bool any = false;
-  for (const int c : study.system->reduction().free()) {
+  for (const int c : system.reduction().free()) {
     const auto i = static_cast<std::size_t>(c);
     const int column = table.find(model.coordinates[i].name + "_reserve", "control");
     if (column < 0) continue;
     any = true;
     for (std::size_t k = 0; k < table.time.size(); ++k)
-      values[k * n + i] = study.reserve_force * table.values[static_cast<std::size_t>(column)][k];
+      values[k * n + i] = reserve_force * table.values[static_cast<std::size_t>(column)][k];
   }
   if (!any) return {};
   return without_repeats({table.time, std::move(values), n, interpolation});
 }
 
 }  // namespace
+
+Interpolation read_interpolation(const StudyTable& table) {
+  constexpr Words<Interpolation, 2> kWords{{{"linear", Interpolation::kLinear}, {"hold", Interpolation::kHold}}};
+  return word_or_first(table, "interpolation", kWords);
+}
+
+Drive drive_of(const SignalTable& signals, const MusculoskeletalSystem& system, std::span<const double> otherwise,
+               Interpolation interpolation, double reserve_force) {
+  return {without_repeats(make_excitations(signals, system.model(), otherwise, interpolation)),
+          read_reserves(signals, system, reserve_force, interpolation)};
+}
 
 void read_excitations(const StudyTable& motion, MuscleStudy& study) {
   const Model& model = study.system->model();
@@ -59,13 +71,9 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
   const std::vector<StudyTable> steps = motion.tables("excitation_step");
   if (motion.has("excitation_file")) {
     if (!steps.empty()) motion.fail("excitation_step", "and motion.excitation_file exclude each other");
-    constexpr Words<Interpolation, 2> kWords{{{"linear", Interpolation::kLinear}, {"hold", Interpolation::kHold}}};
-    const Interpolation interpolation = word_or_first(motion, "interpolation", kWords);
     const std::filesystem::path path = motion.file("excitation_file");
-    const SignalTable signals = read_signals(path);
     study.inputs.push_back(path);
-    study.drive.excitation = without_repeats(make_excitations(signals, model, now, interpolation));
-    study.drive.reserve = read_reserves(signals, study, interpolation);
+    study.drive = drive_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force);
     return;
   }
   std::vector<double> times{study.begin}, values = now;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/muscle/model/ramp.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle::internal {
@@ -27,27 +26,13 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
         study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kDriven) {
       table.fail("coordinate", fmt::format("'{}' is locked and cannot follow a ramp; motion.start sets it", name));
     }
-    Ramp ramp;
     const Ramp* before = ramps[c].empty() ? nullptr : &ramps[c].back();
-    ramp.from = before != nullptr ? before->to : study.start.q(static_cast<Eigen::Index>(c));
-    if (table.has("from")) {
-      const double from = coordinate_value(table, "from", coordinate);
-      if ((before != nullptr || pose.has(name)) && std::abs(from - ramp.from) > 1e-9) {
-        table.fail("from", fmt::format("{:.6g} {} jumps: {} it is at {:.6g}", from, coordinate.unit(),
-                                       before != nullptr ? "after the ramp before" : "by motion.start", ramp.from));
-      }
-      ramp.from = from;
-    }
-    ramp.to = coordinate_value(table, "to", coordinate);
-    ramp.start = table.number_or("start", "s", before != nullptr ? before->start + before->duration : study.begin);
-    ramp.duration = table.positive("duration", "s");
-    if (before != nullptr && !(ramp.start >= before->start + before->duration - 1e-12)) {
-      table.fail("start", fmt::format("{:g} s is before the end of the ramp before, {:g} s", ramp.start,
-                                      before->start + before->duration));
-    }
-    if (before != nullptr) ramp.start = std::max(ramp.start, before->start + before->duration);
-    ramp.shape = word_or_first(table, "shape", kShapes);
-    ramps[c].push_back(ramp);
+    const RampOrigin origin{.before = before,
+                            .rest = study.start.q(static_cast<Eigen::Index>(c)),
+                            .rest_is_given = pose.has(name),
+                            .rest_key = "motion.start",
+                            .begin = study.begin};
+    ramps[c].push_back(read_ramp(table, coordinate, origin));
   }
   for (std::size_t c = 0; c < ramps.size(); ++c) {
     if (!ramps[c].empty()) study.motion.coordinate[c] = ramp_spline(ramps[c]);
@@ -55,6 +40,30 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
 }
 
 }  // namespace
+
+Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const RampOrigin& origin) {
+  const Ramp* before = origin.before;
+  Ramp ramp;
+  ramp.from = before != nullptr ? before->to : origin.rest;
+  if (table.has("from")) {
+    const double from = coordinate_value(table, "from", coordinate);
+    if ((before != nullptr || origin.rest_is_given) && std::abs(from - ramp.from) > 1e-9) {
+      const std::string where = before != nullptr ? "after the ramp before" : fmt::format("by {}", origin.rest_key);
+      table.fail("from", fmt::format("{:.6g} {} jumps: {} it is at {:.6g}", from, coordinate.unit(), where, ramp.from));
+    }
+    ramp.from = from;
+  }
+  ramp.to = coordinate_value(table, "to", coordinate);
+  ramp.start = table.number_or("start", "s", before != nullptr ? before->start + before->duration : origin.begin);
+  ramp.duration = table.positive("duration", "s");
+  if (before != nullptr && !(ramp.start >= before->start + before->duration - 1e-12)) {
+    table.fail("start", fmt::format("{:g} s is before the end of the ramp before, {:g} s", ramp.start,
+                                    before->start + before->duration));
+  }
+  if (before != nullptr) ramp.start = std::max(ramp.start, before->start + before->duration);
+  ramp.shape = word_or_first(table, "shape", kShapes);
+  return ramp;
+}
 
 void read_desired_motion(const StudyTable& motion, MuscleStudy& study) {
   const Model& model = study.system->model();

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "veridyn/muscle/model/ramp.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
 
 /// The parts that `read_study` reads one after the other, and what they share. Each throws InputError with file, line
@@ -39,6 +40,25 @@ template <typename Value, std::size_t kWords>
 
 /// `[subject]`: the model, its parameters, loads and paths, as a system.
 void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress);
+/// A load as `[[subject.load]]` has it.
+[[nodiscard]] HeldLoad read_load(const StudyTable& table, const Model& model);
+/// Where the next ramp of a coordinate begins.
+struct RampOrigin {
+  const Ramp* before = nullptr;  ///< of the same coordinate
+  double rest = 0.0;             ///< without one: where the coordinate is [rad] or [m]
+  bool rest_is_given = false;    ///< by the study, under this key:
+  std::string rest_key = {};
+  double begin = 0.0;  ///< of the motion [s]
+};
+/// A ramp as `[[motion.ramp]]` has it.
+[[nodiscard]] Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const RampOrigin& origin);
+/// `interpolation`, "linear" when left out.
+[[nodiscard]] Interpolation read_interpolation(const StudyTable& table);
+/// Excitations and reserves of a file; muscles without a column keep `otherwise`.
+[[nodiscard]] Drive drive_of(const SignalTable& signals, const MusculoskeletalSystem& system,
+                             std::span<const double> otherwise, Interpolation interpolation, double reserve_force);
+/// Options of computed muscle control as `[motion.control]` has them: window, gains, least and greatest control.
+[[nodiscard]] ControlOptions read_control_options(const StudyTable& table);
 /// `[motion.start]`, `[motion.start_speed]`.
 void read_start(const StudyTable& motion, MuscleStudy& study);
 /// `start_file`: states as `simulate` and OpenSim write them.

@@ -55,6 +55,15 @@ void read_parameters(const StudyTable& table, Model& model, std::vector<Paramete
   }
 }
 
+std::vector<std::string> coordinate_list(const StudyTable& table, const std::string& key, const Model& model) {
+  if (!table.has(key)) return {};
+  std::vector<std::string> names = table.texts(key);
+  for (const std::string& name : names) static_cast<void>(coordinate_of(table, key, name, model));
+  return names;
+}
+
+}  // namespace
+
 HeldLoad read_load(const StudyTable& table, const Model& model) {
   HeldLoad load;
   load.body = table.text("body");
@@ -73,15 +82,6 @@ HeldLoad read_load(const StudyTable& table, const Model& model) {
   }
   return load;
 }
-
-std::vector<std::string> coordinate_list(const StudyTable& table, const std::string& key, const Model& model) {
-  if (!table.has(key)) return {};
-  std::vector<std::string> names = table.texts(key);
-  for (const std::string& name : names) static_cast<void>(coordinate_of(table, key, name, model));
-  return names;
-}
-
-}  // namespace
 
 std::size_t muscle_of(const StudyTable& table, const std::string& key, const std::string& name, const Model& model) {
   const int index = model.muscle(name);

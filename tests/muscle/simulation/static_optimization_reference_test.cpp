@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<const char*, 6> kNames{"TRIlong", "TRIlat", "TRImed", "BIClong", "BICshort", "BRA"};
 constexpr std::array<const char*, 2> kReserves{"r_shoulder_elev_reserve_Nm", "r_elbow_flex_reserve_Nm"};
 
-struct Motion {
+struct ReferenceMotion {
   Model model;
   Mechanism mechanism;
   MusclePaths paths;
@@ -29,7 +29,7 @@ struct Motion {
   Eigen::MatrixXd arms = Eigen::MatrixXd::Zero(6, 2);
   Eigen::VectorXd length = Eigen::VectorXd::Zero(6), speed = Eigen::VectorXd::Zero(6), required;
 
-  Motion(Model m, WrapMode mode)
+  ReferenceMotion(Model m, WrapMode mode)
       : model(std::move(m)), mechanism(model), paths(model, mechanism, mode), workspace(paths), kinematics(mechanism) {}
 
   // Shoulder at 0, elbow from 0 to 90 degrees with minimum jerk in a second.
@@ -60,7 +60,7 @@ TEST_P(StaticOptimizationReference, ControlsAreThoseOfOpenSim) {
   const std::filesystem::path osim = veridyn::test::shared_folder() / "data/opensim/arm26.osim";
   const test::ReferenceTable t = test::read_reference(std::string("opensim/") + GetParam().file);
   if (t.rows.empty() || !std::filesystem::exists(osim)) GTEST_SKIP() << "no " << GetParam().file << " or arm26.osim";
-  Motion motion(read_osim(osim), WrapMode::kAsOpenSim), taut(read_osim(osim), WrapMode::kTaut);
+  ReferenceMotion motion(read_osim(osim), WrapMode::kAsOpenSim), taut(read_osim(osim), WrapMode::kTaut);
   const std::vector<MuscleParameters> muscles = muscle_parameters(motion.model);
   StaticOptimizer optimizer(muscles, {.force = GetParam().force, .reserve = {1.0, 1.0}});
   StaticOptimizer with_passive(muscles, {.force = StaticForce::kWithPassive, .reserve = {1.0, 1.0}});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -68,8 +69,19 @@ std::string fit_note(const Model& model, const FittedPaths& fit) {
   return note;
 }
 
-Model with_loads(Model model, std::span<const HeldLoad> loads) {
-  for (const HeldLoad& load : loads) add_load(model, load.body, load.mass, load.location);
+Model with_changes(Model model, const SystemChanges& changes) {
+  for (const HeldLoad& load : changes.loads) add_load(model, load.body, load.mass, load.location);
+  for (const std::string& name : changes.locked) model.coordinates[at(find_coordinate(model, name))].locked = true;
+  if (changes.muscles.empty()) return model;
+  if (changes.muscles.size() != model.muscles.size())
+    throw InputError(model.name, fmt::format("has {} muscles; {} are to take their place", model.muscles.size(),
+                                             changes.muscles.size()));
+  for (std::size_t m = 0; m < model.muscles.size(); ++m) {
+    if (changes.muscles[m].name != model.muscles[m].name())
+      throw InputError(model.name, fmt::format("'{}' is to take the place of muscle '{}'", changes.muscles[m].name,
+                                               model.muscles[m].name()));
+    model.muscles[m].parameters = changes.muscles[m];
+  }
   return model;
 }
 
@@ -89,6 +101,25 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
     fit_ = std::make_shared<const FittedPaths>(model_, mechanism_, paths_, fit_options);
     notes_.push_back(fit_note(model_, *fit_));
   }
+  lay_out_states();
+}
+
+MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other, std::span<const HeldLoad> loads)
+    : MusculoskeletalSystem(other, SystemChanges{.loads = {loads.begin(), loads.end()}}) {}
+
+MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other, const SystemChanges& changes)
+    : notes_(other.notes_),
+      model_(with_changes(other.model_, changes)),
+      mechanism_(model_),
+      reduction_(model_),
+      paths_(other.paths_),
+      fit_(other.fit_),
+      source_(other.source_),
+      muscles_(muscle_parameters(model_)) {
+  lay_out_states();
+}
+
+void MusculoskeletalSystem::lay_out_states() {
   layout_.free = reduction_.free().size();
   scales_.assign(layout_.free, 0.1);
   scales_.insert(scales_.end(), layout_.free, 1.0);
@@ -103,18 +134,6 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       scales_.push_back(0.1 * muscles_.settings(m).musculotendon.optimal_fiber_length);
   }
 }
-
-MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other, std::span<const HeldLoad> loads)
-    : notes_(other.notes_),
-      model_(with_loads(other.model_, loads)),
-      mechanism_(model_),
-      reduction_(other.reduction_),
-      paths_(other.paths_),
-      fit_(other.fit_),
-      source_(other.source_),
-      muscles_(other.muscles_),
-      layout_(other.layout_),
-      scales_(other.scales_) {}
 
 std::string MusculoskeletalSystem::state_name(std::size_t index) const {
   if (index < 2 * layout_.free) {

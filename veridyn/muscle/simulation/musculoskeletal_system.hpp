@@ -39,6 +39,15 @@ struct SystemOptions {
   bool without_unsupported = false;
 };
 
+/// What distinguishes a system from another one with the same paths: a task from the model that all tasks share.
+struct SystemChanges {
+  std::vector<HeldLoad> loads{};      ///< added to bodies
+  std::vector<std::string> locked{};  ///< coordinates held besides
+  /// In place of the model's, in its order and with its names: another person's muscles along the same paths. Empty:
+  /// the same.
+  std::vector<MuscleParameters> muscles{};
+};
+
 /// Positions of a system's states in its state vector: free coordinates [rad or m], their speeds, activations of
 /// the muscles that have one, fibre lengths [m] of the muscles that have one.
 struct StateLayout {
@@ -58,6 +67,9 @@ class MusculoskeletalSystem {
   /// `other` with masses added to bodies: the same paths, fitted ones shared. @throws InputError naming a body that
   /// the model does not have.
   MusculoskeletalSystem(const MusculoskeletalSystem& other, std::span<const HeldLoad> loads);
+  /// `other` with changes: the same paths, fitted ones shared. @throws InputError naming a body or coordinate that the
+  /// model does not have, or muscles that are not the model's.
+  MusculoskeletalSystem(const MusculoskeletalSystem& other, const SystemChanges& changes);
   MusculoskeletalSystem(const MusculoskeletalSystem&) = delete;
   MusculoskeletalSystem& operator=(const MusculoskeletalSystem&) = delete;
 
@@ -82,6 +94,8 @@ class MusculoskeletalSystem {
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
+  void lay_out_states();
+
   std::vector<std::string> notes_;
   Model model_;
   Mechanism mechanism_;

@@ -1,0 +1,36 @@
+#include "veridyn/muscle/identification/task_segments.hpp"
+
+#include <stdexcept>
+
+#include "veridyn/core/index.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::muscle {
+
+MotionSegment segment_of(const PreparedTask& task) {
+  if (!task.usable()) throw std::invalid_argument(task.task.name + ": " + task.trouble);
+  return {
+      .start = task.start, .drive = task.drive, .time = task.time, .system = task.system.get(), .name = task.task.name};
+}
+
+std::vector<MotionSegment> segments_of(std::span<const PreparedTask> tasks) {
+  std::vector<MotionSegment> segments;
+  for (const PreparedTask& task : tasks) segments.push_back(segment_of(task));
+  return segments;
+}
+
+std::vector<estimation::RowMatrix> simulate_tasks(const MuscleParametricModel& model, const Eigen::VectorXd& theta,
+                                                  int threads) {
+  std::vector<estimation::RowMatrix> outputs(model.segments());
+  numerics::parallel_for(model.segments(), threads, [&](std::size_t s) {
+    const auto initial = model.initial_conditions(s);
+    Eigen::VectorXd all(theta.size() + signed_index(initial.size()));
+    all.head(theta.size()) = theta;
+    for (std::size_t i = 0; i < initial.size(); ++i) all(theta.size() + signed_index(i)) = initial[i].start;
+    estimation::ModelResponse response;
+    if (model.respond(s, all, {}, response)) outputs[s] = std::move(response.output);
+  });
+  return outputs;
+}
+
+}  // namespace veridyn::muscle
