@@ -144,14 +144,14 @@ TaskCover choose_tasks(const Eigen::MatrixXd& nrmse, const std::vector<bool>& al
   }
   if (tasks.empty()) return cover;
   const CoverSearch search(std::move(share), muscles, tasks, options.share);
-  BestTwo two;
+  BestTwo two{};
   if (options.tasks > 0) {
     two = search.best(std::min(options.tasks, tasks.size()), cover.exhaustive);
   } else {
     // Each muscle has a task that excites it, so that as many tasks as muscles are enough.
     for (std::size_t count = 1; count <= std::min(tasks.size(), std::max<std::size_t>(1, muscles.size())); ++count) {
       two = search.best(count, cover.exhaustive);
-      if (two.first->excited == muscles.size()) break;
+      if (two.first.has_value() && two.first->excited == muscles.size()) break;
     }
   }
   cover.chosen = two.first;

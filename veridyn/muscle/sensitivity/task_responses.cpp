@@ -1,21 +1,22 @@
 #include "veridyn/muscle/sensitivity/task_responses.hpp"
 
 #include <ctime>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/muscle/tasks/task_error.hpp"
+#include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
-std::vector<MotionSegment> segments_of(std::span<const PreparedTask> tasks) {
-  std::vector<MotionSegment> segments;
-  for (const PreparedTask& t : tasks)
-    segments.push_back(
-        {.start = t.start, .drive = t.drive, .time = t.time, .system = t.system.get(), .name = t.task.name});
-  return segments;
+/// The unknowns with the start of the segment, as the model takes them.
+Eigen::VectorXd theta_of(const MuscleParametricModel& model, std::size_t segment, const Eigen::VectorXd& unknowns) {
+  const std::span<const estimation::ModelParameter> initial = model.initial_conditions(segment);
+  Eigen::VectorXd theta(unknowns.size() + signed_index(initial.size()));
+  theta.head(unknowns.size()) = unknowns;
+  for (std::size_t i = 0; i < initial.size(); ++i) theta(unknowns.size() + signed_index(i)) = initial[i].start;
+  return theta;
 }
 
 /// Processor time of the calling thread [s].
@@ -29,21 +30,30 @@ double thread_seconds() {
 
 TaskResponses::TaskResponses(const MusculoskeletalSystem& subject, std::vector<MuscleUnknown> unknowns,
                              std::span<const PreparedTask> tasks, double accuracy)
-    : targets_(tasks.size()) {
+    : targets_(tasks.size()), segment_(tasks.size(), 0) {
+  std::vector<MotionSegment> segments;
+  for (std::size_t t = 0; t < tasks.size(); ++t) {
+    if (!tasks[t].usable()) continue;
+    segment_[t] = segments.size();
+    segments.push_back(segment_of(tasks[t]));
+  }
   const MuscleModelOptions options{.accuracy = accuracy};
-  const MuscleParametricModel standard(subject, std::vector<MuscleUnknown>(), segments_of(tasks), options);
+  const MuscleParametricModel standard(subject, std::vector<MuscleUnknown>(), segments, options);
   estimation::ModelResponse response;
   for (std::size_t t = 0; t < tasks.size(); ++t) {
-    if (tasks[t].usable() && standard.respond(t, Eigen::VectorXd(), {}, response)) targets_[t] = response.output;
+    if (tasks[t].usable() &&
+        standard.respond(segment_[t], theta_of(standard, segment_[t], Eigen::VectorXd()), {}, response))
+      targets_[t] = response.output;
   }
-  model_ = std::make_unique<MuscleParametricModel>(subject, std::move(unknowns), segments_of(tasks), options);
+  model_ = std::make_unique<MuscleParametricModel>(subject, std::move(unknowns), std::move(segments), options);
 }
 
 double TaskResponses::nrmse(std::size_t task, const Eigen::VectorXd& unknowns) const {
   const estimation::RowMatrix& target = targets_[task];
   estimation::ModelResponse response;
-  if (target.size() == 0 || !model_->respond(task, unknowns, {}, response))
-    return std::numeric_limits<double>::quiet_NaN();
+  if (target.size() == 0) return kNaN;
+  const std::size_t segment = segment_[task];
+  if (!model_->respond(segment, theta_of(*model_, segment, unknowns), {}, response)) return kNaN;
   return task_error(target, response.output).nrmse;
 }
 

@@ -29,6 +29,7 @@ class TaskResponses {
  private:
   std::unique_ptr<MuscleParametricModel> model_;
   std::vector<estimation::RowMatrix> targets_;
+  std::vector<std::size_t> segment_;  ///< of the model, by task; of one that is not usable without meaning
 };
 
 /// NRMSE of many points in several tasks.
