@@ -64,6 +64,7 @@ int validate_aircraft(const StudyRun& run);
 int validate_vehicle(const StudyRun& run);
 int track_aircraft(const StudyRun& run);
 int track_vehicle(const StudyRun& run);
+int sensitivity_muscle(const StudyRun& run);
 int export_aircraft(const StudyRun& run);
 int scale_vehicle(const StudyRun& run);
 

@@ -46,9 +46,11 @@ class CoverSearch {
     std::sort(set.tasks.begin(), set.tasks.end());
     for (const std::size_t m : muscles_) {
       double most = 0.0;
-      for (const std::size_t t : set.tasks) most = std::max(most, share_(signed_index(m), signed_index(t)));
+      for (const std::size_t t : set.tasks) {
+        most = std::max(most, share_(signed_index(m), signed_index(t)));
+        set.mean += share_(signed_index(m), signed_index(t)) / static_cast<double>(muscles_.size() * set.tasks.size());
+      }
       set.excited += most >= excites_ ? 1U : 0U;
-      set.mean += most / static_cast<double>(muscles_.size());
       if (most < set.weakest) {
         set.weakest = most;
         set.weakest_muscle = m;

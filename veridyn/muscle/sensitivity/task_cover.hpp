@@ -23,8 +23,8 @@ struct CoverOptions {
 struct TaskSet {
   std::vector<std::size_t> tasks;  ///< increasing
   std::size_t excited = 0;         ///< muscles
-  /// The NRMSE of a muscle in the task of the set that excites it most, as a share of the greatest in any allowed task:
-  /// of the muscle that has least, and on average.
+  /// NRMSE as shares of the greatest that any allowed task has of the muscle: in the task of the set that excites the
+  /// muscle most, of the muscle that has least; and the mean over all muscles and tasks of the set.
   double weakest = 0.0, mean = 0.0;
   std::size_t weakest_muscle = 0;
 };
