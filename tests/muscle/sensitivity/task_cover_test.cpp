@@ -28,7 +28,8 @@ TEST(TaskCover, TakesAsFewTasksAsExciteEveryMuscle) {
   EXPECT_NEAR(cover.chosen->weakest, 0.75, 1e-12);
   EXPECT_EQ(cover.chosen->weakest_muscle, 2U);
   // Shares of task 1: 0.1, 1, 0; of task 3: 0.8, 0.15, 0.75.
-  EXPECT_NEAR(cover.chosen->mean, 2.8 / 6.0, 1e-12);
+  EXPECT_NEAR(cover.chosen->overall, 2.8 / 6.0, 1e-12);
+  EXPECT_NEAR(cover.chosen->mean, (0.8 + 1.0 + 0.75) / 3.0, 1e-12);
   EXPECT_EQ(cover.missed, 0U);
   EXPECT_EQ(cover.excites[3], (Tasks{0, 2}));
 }

@@ -18,7 +18,8 @@ constexpr double kMostSets = 2e6;
 bool excites_more(const TaskSet& a, const TaskSet& b) {
   if (a.excited != b.excited) return a.excited > b.excited;
   if (a.weakest != b.weakest) return a.weakest > b.weakest;
-  return a.mean > b.mean;
+  if (a.mean != b.mean) return a.mean > b.mean;
+  return a.overall > b.overall;
 }
 
 /// The best two sets that were shown to it.
@@ -48,9 +49,11 @@ class CoverSearch {
       double most = 0.0;
       for (const std::size_t t : set.tasks) {
         most = std::max(most, share_(signed_index(m), signed_index(t)));
-        set.mean += share_(signed_index(m), signed_index(t)) / static_cast<double>(muscles_.size() * set.tasks.size());
+        set.overall +=
+            share_(signed_index(m), signed_index(t)) / static_cast<double>(muscles_.size() * set.tasks.size());
       }
       set.excited += most >= excites_ ? 1U : 0U;
+      set.mean += most / static_cast<double>(muscles_.size());
       if (most < set.weakest) {
         set.weakest = most;
         set.weakest_muscle = m;

@@ -24,8 +24,9 @@ struct TaskSet {
   std::vector<std::size_t> tasks;  ///< increasing
   std::size_t excited = 0;         ///< muscles
   /// NRMSE as shares of the greatest that any allowed task has of the muscle: in the task of the set that excites the
-  /// muscle most, of the muscle that has least; and the mean over all muscles and tasks of the set.
+  /// muscle most, of the muscle that has least and the mean over muscles.
   double weakest = 0.0, mean = 0.0;
+  double overall = 0.0;  ///< mean of the shares over all muscles and tasks of the set
   std::size_t weakest_muscle = 0;
 };
 
@@ -43,7 +44,8 @@ struct TaskCover {
 };
 
 /// Chooses tasks by set cover: of all sets of so many allowed tasks the one that excites most muscles; of several the
-/// one whose weakest muscle is excited most, then the one with the greatest mean; the first in order of several equal.
+/// one whose weakest muscle is excited most, then the one with the greatest mean, then with the greatest overall mean
+/// (where one task of the set has the most of every muscle, the others still count); the first in order of equal ones.
 /// @param nrmse    muscles x tasks: what changed parameters of a muscle do to a task; NaN counts as 0
 /// @param allowed  by task
 [[nodiscard]] TaskCover choose_tasks(const Eigen::MatrixXd& nrmse, const std::vector<bool>& allowed,
