@@ -39,15 +39,9 @@ constexpr std::array kTable = {
     // aircraft, vehicle, muscle, swing test, calibration
     Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt}},
     Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
-    Row{"identify",
-        {identify_aircraft, identify_vehicle,
-         "the parameters of muscles are not estimated yet: `veridyn simulate` runs the study, [subject.parameters] "
-         "sets parameters by hand",
-         identify_swing_test, identify_calibration}},
+    Row{"identify", {identify_aircraft, identify_vehicle, identify_muscles, identify_swing_test, identify_calibration}},
     Row{"validate",
-        {validate_aircraft, validate_vehicle,
-         "there is no estimate of muscles yet: `veridyn simulate` runs the study with the parameters of "
-         "[subject.parameters]",
+        {validate_aircraft, validate_vehicle, validate_muscles,
          "`veridyn identify` says in its report how well each swing is described",
          "`veridyn identify` writes the residuals of each point"}},
     Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},

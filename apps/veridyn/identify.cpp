@@ -3,6 +3,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
+#include "apps/veridyn/muscle_results.hpp"
 
 namespace veridyn::app {
 
@@ -27,17 +28,30 @@ int identify_vehicle(const StudyRun& run) {
   return kDone;
 }
 
+int identify_muscles(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  TerminalProgress progress = progress_of(run.options());
+  const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
+  const muscle::MuscleAnalysis analysis = muscle::identify(study, progress);
+  if (analysis.interrupted) throw Interrupted();
+  progress.stage("writing the results");
+  publish_muscles(run, folder, study, analysis);
+  return kDone;
+}
+
 Command identify_command() {
-  return {.name = "identify",
-          .summary = "from recording to parameters, validation and report",
-          .arguments = {{.name = "STUDY",
-                         .help = "study file (TOML) of an aircraft's flight, a vehicle's drive, a swing test or a "
-                                 "calibration; `veridyn init` writes one to start from. Studies of muscles (`model` in "
-                                 "[subject]) are for `veridyn simulate`: estimating muscle parameters is not there yet",
-                         .required = true}},
-          .default_out = "out/identify",
-          .example = "veridyn identify study.toml --out out/flight7 --set data.from=120",
-          .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); }};
+  return {
+      .name = "identify",
+      .summary = "from recording to parameters, validation and report",
+      .arguments = {{.name = "STUDY",
+                     .help =
+                         "study file (TOML) of an aircraft's flight, a vehicle's drive, a person's tasks ([tasks] in "
+                         "a study of muscles), a swing test or a calibration; `veridyn init` writes one to "
+                         "start from",
+                     .required = true}},
+      .default_out = "out/identify",
+      .example = "veridyn identify study.toml --out out/flight7 --set data.from=120",
+      .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); }};
 }
 
 }  // namespace veridyn::app

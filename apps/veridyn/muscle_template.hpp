@@ -7,6 +7,7 @@ inline constexpr const char* kMuscleStudy =
     R"toml(# A study of a musculoskeletal model: which model, which motion, what to compute.
 #   veridyn inspect arm                 bodies, coordinates, muscles of a model; of your own: veridyn inspect my.osim
 #   veridyn simulate study.toml         motion.csv, muscles.csv, states.sto, controls.sto, model.osim, report.html
+#   veridyn identify study.toml         estimate.json, parameters.csv, tasks.csv, model.osim, report.html
 # Numbers are SI and radians; a text may carry any unit of the same kind: "30 deg", "10 ms". Keys with a leading # show
 # their defaults, or what they look like. Misspelt keys are refused, with the nearest known one. docs/muscle.md explains
 # all of them.
@@ -78,6 +79,34 @@ default = 0.05
 [motion.static_optimization]
 # exponent = 2                   # of the activations in the sum that is made least
 # formulation = "with passive"   # "as opensim": without passive forces; "without physiology": force = activation F0
+
+# --- veridyn identify study.toml: whose muscles are these? ----------------------------------------------------------
+# What it estimates; without this: maximum force, optimal fibre length, tendon slack length of every muscle.
+[[parameter]]
+name = "strength"                # one factor of all muscles' forces
+muscles = ["all"]
+fields = ["max_isometric_force"]
+factor = true
+bounds = "20 %"
+# prior = "10 %"                 # standard deviation of what is known before; else that of a value within the bounds
+
+# Motions that it estimates from: of 42 elbow tasks by number, or of your own.
+[tasks]
+numbers = [8, 29]
+hold_out = [12]                  # kept to validate on
+# load = "1 kg"                  # in the hand
+# [[task]]
+# name = "trial 1"
+# measured = "trial1.mot"        # recorded angles
+# excitation_file = "trial1_controls.sto"   # the controls of that trial
+# hold_out = false
+# [task.held]
+# shoulder_flexion = "0 deg"
+
+# A simulated person, to see what the tasks would determine. Delete it where tasks are measured.
+[person]
+spread = "5 %"                   # hidden parameters, within so much of the model's
+noise = "0.06 deg"               # of the measured angles
 )toml";
 
 }  // namespace veridyn::app

@@ -3,6 +3,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
+#include "apps/veridyn/muscle_results.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
@@ -31,10 +32,22 @@ int validate_vehicle(const StudyRun& run) {
   return kDone;
 }
 
+int validate_muscles(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  const std::string& file = run.arguments.text("--estimate-file");
+  const estimation::Estimate estimate = io::read_estimate(file);
+  TerminalProgress progress = progress_of(run.options());
+  const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
+  const muscle::MuscleAnalysis analysis = muscle::validate(study, estimate, progress);
+  if (analysis.interrupted) throw Interrupted();
+  publish_muscles(run, folder, study, analysis, {file});
+  return kDone;
+}
+
 Command validate_command() {
   return {.name = "validate",
-          .summary = "an estimate validated on held-out data: another flight or drive",
-          .arguments = {{.name = "STUDY", .help = "study file of the other flight or drive", .required = true},
+          .summary = "an estimate validated on held-out data: another flight or drive, other tasks",
+          .arguments = {{.name = "STUDY", .help = "study file of the other flight, drive or tasks", .required = true},
                         {.name = "--estimate-file",
                          .help = "estimate.json of an identification",
                          .type = "FILE",

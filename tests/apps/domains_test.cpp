@@ -38,7 +38,8 @@ class Table : public ProgramTest, public testing::WithParamInterface<Cell> {
     const bool vehicle = domain == "vehicle";
     const std::string parameters =
         vehicle ? parameter("C_f", "1e5") + ", " + parameter("C_r", "1e5") + ", " + parameter("I_z", "2500")
-                : parameter("CL_alpha", "4.5");
+        : domain == "muscle" ? parameter("strength", "1.02")
+                             : parameter("CL_alpha", "4.5");
     return file("estimate.json", "{\"subject\": \"x\", \"method\": \"OLS\", \"parameters\": [" + parameters +
                                      "], \"covariance\": " + (vehicle ? "[[1,0,0],[0,1,0],[0,0,1]]" : "[[1]]") +
                                      ", \"verdict\": \"\", \"warnings\": []}");
@@ -77,15 +78,13 @@ INSTANTIATE_TEST_SUITE_P(
         Cell{"reconstruct", "muscle", " is for aircraft; this study is of a musculoskeletal model; "},
         Cell{"reconstruct", "swing_test", " is for aircraft; this study is of a swing test; "},
         Cell{"reconstruct", "calibration", " is for aircraft; this study is of an air-data calibration; "},
-        Cell{"identify", "aircraft", kWorks}, Cell{"identify", "vehicle", kWorks},
-        Cell{"identify", "muscle",
-             " is for aircraft, vehicles, swing tests and air-data calibrations; this study is of a musculoskeletal "
-             "model; the parameters of muscles are not estimated yet"},
+        Cell{"identify", "aircraft", kWorks}, Cell{"identify", "vehicle", kWorks}, Cell{"identify", "muscle", kWorks},
         Cell{"identify", "swing_test", kWorks}, Cell{"identify", "calibration", kWorks},
-        Cell{"validate", "aircraft", kWorks}, Cell{"validate", "vehicle", kWorks},
-        Cell{"validate", "muscle", " is for aircraft and vehicles; this study is of a musculoskeletal model; "},
-        Cell{"validate", "swing_test", " is for aircraft and vehicles; this study is of a swing test; "},
-        Cell{"validate", "calibration", " is for aircraft and vehicles; this study is of an air-data calibration; "},
+        Cell{"validate", "aircraft", kWorks}, Cell{"validate", "vehicle", kWorks}, Cell{"validate", "muscle", kWorks},
+        Cell{"validate", "swing_test",
+             " is for aircraft, vehicles and musculoskeletal models; this study is of a swing test; "},
+        Cell{"validate", "calibration",
+             " is for aircraft, vehicles and musculoskeletal models; this study is of an air-data calibration; "},
         Cell{"track", "aircraft", kWorks}, Cell{"track", "vehicle", kWorks},
         Cell{"track", "muscle", " is for aircraft and vehicles; this study is of a musculoskeletal model; "},
         Cell{"track", "swing_test", " is for aircraft and vehicles; this study is of a swing test; "},

@@ -138,12 +138,29 @@ TEST_F(MuscleProgram, RecordsTheSeedOfTheStudy) {
   EXPECT_EQ(nlohmann::json::parse(read_file(in_out("run.json")))["seed"], 7);
 }
 
-TEST_F(MuscleProgram, DoesNotIdentifyMusclesYetAndSaysSo) {
+TEST_F(MuscleProgram, IdentifiesAndValidatesTheTasksOfItsTemplate) {
+  ASSERT_EQ(run("init muscle --quiet --out " + folder_.string()).exit_code, 0);
+  const std::string study = (folder_ / "study.toml").string();
+  const Outcome done = run("identify " + study + " --json" + out());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  for (const char* name : {"estimate.json", "parameters.csv", "tasks.csv", "model.osim", "report.html", "run.json"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  const auto summary = nlohmann::json::parse(done.text);
+  EXPECT_EQ(summary["words"]["strength"], "identified");
+  EXPECT_EQ(summary["grades"]["prediction"]["grade"], "yes");
+  EXPECT_THAT(read_file(in_out("tasks.csv")), HasSubstr("\"task 12: flexion 90-130 deg, shoulder 45 deg\",unseen"));
+  EXPECT_EQ(run("inspect " + in_out("model.osim").string()).exit_code, 0);
+  const Outcome again = run("validate " + study + " --set tasks.numbers=[15] --estimate-file " +
+                            in_out("estimate.json").string() + " --out " + (folder_ / "other").string());
+  ASSERT_EQ(again.exit_code, 0) << again.text;
+  EXPECT_THAT(again.text, HasSubstr("task 15"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other/model.osim"));
+}
+
+TEST_F(MuscleProgram, SaysWhatIsMissingForAnEstimate) {
   expect_refusal("identify " + file("s.toml", std::string(kSubject) + "[motion]\n") + out(),
-                 "identify is for aircraft, vehicles, swing tests and air-data calibrations; this study is of a "
-                 "musculoskeletal model; the parameters of muscles are not estimated yet: `veridyn simulate` runs the "
-                 "study");
-  EXPECT_THAT(run("identify --help").text, HasSubstr("not there yet"));
+                 "tasks: is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");
+  EXPECT_THAT(run("identify --help").text, HasSubstr("a person's tasks"));
   EXPECT_THAT(run("simulate --help").text, AllOf(HasSubstr("Aircraft"), HasSubstr("Muscles")));
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "veridyn/muscle/muscle_study_parts.hpp"
@@ -147,6 +148,10 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   read_control(motion.table_or_empty("control"), study);
   read_static(motion.table_or_empty("static_optimization"), study);
   if (study.title.empty()) study.title = study.system->model().name;
+  // Tables of `read_task_study`: one study may say what is simulated and what is estimated.
+  const std::vector<std::string> keys = root.keys();
+  for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify", "sensitivity"})
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) root.accept(key);
   root.finish();
   return study;
 }

@@ -411,6 +411,26 @@ TEST(OutputError, HoldsWhatTheDataDoNotDetermine) {
   EXPECT_TRUE(std::isfinite(held.parameters[2].sigma));
 }
 
+TEST(OutputError, SearchesFromElsewhereAndHoldsAtTheStartAllTheSame) {
+  const Static model = valley();
+  RowMatrix z(200, 1);
+  ModelResponse response;
+  ASSERT_TRUE(model.respond(0, Eigen::Vector3d(1.1, 1.1, 0.9), {}, response));
+  z = response.output;
+  OutputErrorOptions options{
+      .noise = OutputNoise::kGiven, .noise_start = Eigen::VectorXd::Constant(1, 1e-2), .hold_undetermined = true};
+  const OutputErrorEstimate here = output_error(model, {z}, options);
+  options.search_start = Eigen::Vector3d(1.4, 0.8, 1.2);
+  const OutputErrorEstimate there = output_error(model, {z}, options);
+  ASSERT_TRUE(here.usable() && there.usable()) << there.message;
+  EXPECT_LT((here.theta - there.theta).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_EQ(there.held.size(), 1u);
+  options.search_start = Eigen::Vector3d(1.4, 0.8, 1e3);
+  EXPECT_THROW((void)output_error(model, {z}, options), InputError);
+  options.search_start = Eigen::Vector2d(1.4, 0.8);
+  EXPECT_THROW((void)output_error(model, {z}, options), InputError);
+}
+
 TEST(OutputError, HoldsNothingThatTheDataDetermine) {
   Static model = valley();
   RowMatrix z(200, 1);

@@ -54,6 +54,9 @@ struct OutputErrorOptions {
   /// in each relaxation again; they are reported as `held` and not identifiable. Without it such a search ends wherever
   /// noise drives it along its valley. Needs finite bounds of every free parameter.
   bool hold_undetermined = false;
+  /// Where the search begins instead of at the parameters' `start`, one value a parameter, within the bounds: for
+  /// searches from several points. Priors and `hold_undetermined` keep to `start`, fixed parameters stay there.
+  Eigen::VectorXd search_start = {};
   Eigen::Index max_lag = 500;  ///< longest lag of residual correlation that is looked for [samples]
   int threads = 0;             ///< 0: those of the progress; any number gives identical bits
 

@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
@@ -35,6 +36,19 @@ void check_parameters(std::span<const ModelParameter> parameters, const char* wh
   }
 }
 
+void check_search_start(std::span<const ModelParameter> parameters, const Eigen::VectorXd& from) {
+  if (from.size() == 0) return;
+  if (from.size() != static_cast<Index>(parameters.size()))
+    throw InputError("output_error.search_start",
+                     fmt::format("has {} values for {} parameters", from.size(), parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = from(static_cast<Index>(i));
+    if (!(value >= parameters[i].low && value <= parameters[i].high))
+      throw InputError("output_error.search_start", fmt::format("{} is {}; must be in [{}, {}]", parameters[i].name,
+                                                                value, parameters[i].low, parameters[i].high));
+  }
+}
+
 }  // namespace
 
 OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::vector<RowMatrix>& measured,
@@ -47,10 +61,13 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
   }
   const auto parameters = model.parameters();
   check_parameters(parameters, "parameters");
+  check_search_start(parameters, options.search_start);
   all_shared_.resize(static_cast<Index>(parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     all_shared_(static_cast<Index>(i)) = parameters[i].start;
-    if (!parameters[i].fixed) free_shared_.push_back(static_cast<Index>(i));
+    if (parameters[i].fixed) continue;
+    free_shared_.push_back(static_cast<Index>(i));
+    if (options.search_start.size() > 0) all_shared_(signed_index(i)) = options.search_start(signed_index(i));
   }
   shared_.resize(static_cast<Index>(free_shared_.size()));
   for (std::size_t i = 0; i < free_shared_.size(); ++i) shared_(static_cast<Index>(i)) = all_shared_(free_shared_[i]);

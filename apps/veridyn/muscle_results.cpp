@@ -1,0 +1,87 @@
+// What the commands on a person's tasks share: writing and printing their analysis.
+#include "apps/veridyn/muscle_results.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/veridyn/analysis_results.hpp"
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/muscle_task_report.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::muscle;
+
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string(); }
+
+/// A name with a comma, as those of the elbow tasks, in quotes.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string tasks_csv(const MuscleAnalysis& analysis) {
+  std::string text = "task,use,nrmse_before,nrmse_after,rmse_before,rmse_after,range,reserve_share\n";
+  for (const TaskOutcome& t : analysis.tasks) {
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(t.name), t.hold_out ? "unseen" : "trained",
+                        number_text(t.before.nrmse), number_text(t.after.nrmse), number_text(t.before.rmse),
+                        number_text(t.after.rmse), number_text(t.before.range), number_text(t.reserve_share));
+  }
+  return text;
+}
+
+Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::path& folder) {
+  Summary s;
+  s["folder"] = folder.string();
+  s["verdict"] = to_string(analysis.groups.front().verdict);
+  s["grades"] = grades_summary(analysis.estimate.judgement);
+  s["reason"] = analysis.groups.front().reason;
+  s["seconds"] = analysis.result.seconds;
+  s["words"] = Summary::object();
+  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i)
+    s["words"][analysis.estimate.parameters[i].name] = to_string(analysis.result.verdicts[i]);
+  s["null_directions"] = analysis.result.null_directions;
+  s["estimate"] = Summary::json(io::to_json(analysis.estimate));
+  return s;
+}
+
+}  // namespace
+
+void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy& study, const MuscleAnalysis& analysis,
+                     const std::vector<std::filesystem::path>& more_inputs) {
+  const CommonOptions& options = run.options();
+  const bool validation_only = run.command == "validate";
+  folder.write("estimate.json", io::to_json(analysis.estimate));
+  folder.write("parameters.csv", parameters_csv(analysis.estimate));
+  folder.write("tasks.csv", tasks_csv(analysis));
+  if (!validation_only && estimation::usable(analysis.groups.front().verdict))
+    folder.write("model.osim", study.subject.file->text_with(analysis.identified));
+  folder.write("report.html",
+               report::to_html(report::muscle_task_report(study, analysis, program_name(), validation_only)));
+  RunRecord record = run.record(study.seed, study.inputs);
+  record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
+  folder.publish(record, options, summary_of_tasks(analysis, folder.path()));
+
+  print_judgement(options, analysis.estimate);
+  for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i) {
+    const estimation::Parameter& p = analysis.estimate.parameters[i];
+    print_line(options, fmt::format("  {:<40} {:>10.5g} +- {:<9.2g} {:<5} {}", p.name, p.value, p.sigma, p.unit,
+                                    to_string(analysis.result.verdicts[i])));
+  }
+  for (const std::string& direction : analysis.result.null_directions)
+    print_line(options, "  left to the priors: " + direction);
+  for (const TaskOutcome& t : analysis.tasks)
+    print_line(options, fmt::format("  {:<9} {:<48} NRMSE {:.3g} -> {:.3g}", t.hold_out ? "unseen" : "trained", t.name,
+                                    t.before.nrmse, t.after.nrmse));
+  for (const std::string& warning : analysis.estimate.warnings) print_line(options, "warning: " + warning);
+  print_line(options, analysis.estimate.verdict);
+  print_line(options, fmt::format("report: {}", (folder.path() / "report.html").string()));
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,140 @@
+#include "veridyn/muscle/identify_muscles.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+using ::testing::HasSubstr;
+
+TaskStudy person_study(int seed, const std::string& text) {
+  Progress progress;
+  return read_task_study(
+      Study::parse(fmt::format("seed = {}\n[subject]\nmodel = \"arm\"\npaths = \"fitted\"\n", seed) + text, "s.toml"),
+      progress);
+}
+
+MuscleAnalysis recovered(int seed, const std::string& text) {
+  Progress progress;
+  return identify(person_study(seed, text), progress);
+}
+
+const estimation::Evidence& row_of(const MuscleAnalysis& a, const std::string& name) {
+  const auto found = std::find_if(a.estimate.evidence.begin(), a.estimate.evidence.end(),
+                                  [&](const estimation::Evidence& row) { return row.name == name; });
+  if (found == a.estimate.evidence.end()) throw std::runtime_error("no row " + name);
+  return *found;
+}
+
+const std::string kFour = "[tasks]\nnumbers = [8, 12, 29, 33]\nhold_out = [11]\n";
+/// Few enough unknowns that one search takes a second.
+const std::string kForces =
+    "[[parameter]]\nname = \"flexors\"\nmuscles = [\"biceps_long\", \"biceps_short\", \"brachialis\"]\n"
+    "fields = [\"max_isometric_force\"]\nfactor = true\nbounds = \"20 %\"\n"
+    "[[parameter]]\nmuscles = [\"triceps_long\"]\nfields = [\"tendon_slack_length\"]\nbounds = \"20 %\"\n";
+
+TEST(IdentifyMuscles, FindsWhatIsHiddenAndPredictsUnseenTasks) {
+  const MuscleAnalysis a = recovered(1, kFour + kForces + "[person]\nspread = \"5 %\"\n[identify]\nstarts = 2\n");
+  ASSERT_EQ(a.estimate.parameters.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const estimation::Parameter& p = a.estimate.parameters[i];
+    EXPECT_EQ(a.result.verdicts[i], TaskVerdict::kIdentified);
+    EXPECT_LT(std::abs(p.value - a.true_value(p.name)), 4.0 * p.sigma) << p.name;
+    EXPECT_LT(p.sigma, 0.01 * p.value);
+  }
+  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kPassed);
+  EXPECT_NEAR(a.result.chi_square, 1.0, 0.25);
+  EXPECT_EQ(row_of(a, "hold-out").outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(a.groups.front().verdict, estimation::GroupVerdict::kIdentified);
+  ASSERT_EQ(a.tasks.size(), 5u);
+  EXPECT_TRUE(a.tasks.back().hold_out);
+  EXPECT_LT(a.tasks.back().after.nrmse, 0.1 * a.tasks.back().before.nrmse);
+  // What is written differs in the estimated numbers only.
+  const Model own = load_model("arm").model();
+  int changed = 0;
+  for (std::size_t m = 0; m < own.muscles.size(); ++m) {
+    const auto& before = own.muscles[m].parameters.musculotendon;
+    const auto& after = a.identified.muscles[m].parameters.musculotendon;
+    for (std::size_t f = 0; f < kEstimableFields; ++f) changed += field_of(before, f) != field_of(after, f) ? 1 : 0;
+  }
+  EXPECT_EQ(changed, 4);
+}
+
+TEST(IdentifyMuscles, AWrongModelIsSaidToBeWrong) {
+  const MuscleAnalysis a = recovered(2, kFour + kForces + "[person]\nmuscles = \"millard\"\n[identify]\nstarts = 1\n");
+  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(a.estimate.judgement.parameters.grade, estimation::Grade::kNo);
+  for (const estimation::Parameter& p : a.estimate.parameters)
+    EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified);
+}
+
+TEST(IdentifyMuscles, OneTaskIsFlaggedAndLeavesCombinationsOpen) {
+  const MuscleAnalysis a = recovered(
+      3,
+      "[tasks]\nnumbers = [8]\n[person]\n[identify]\nstarts = 1\n"
+      "[[parameter]]\nmuscles = [\"triceps_lateral\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n"
+      "[[parameter]]\nmuscles = [\"triceps_medial\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n");
+  EXPECT_THAT(row_of(a, "tasks").text, HasSubstr("one task"));
+  EXPECT_EQ(row_of(a, "hold-out").outcome, estimation::Outcome::kMissing);
+  EXPECT_EQ(a.estimate.judgement.prediction.grade, estimation::Grade::kNotJudged);
+  // Both heads pull alike in flexion: neither is known alone.
+  ASSERT_EQ(a.result.null_directions.size(), 1u);
+  EXPECT_THAT(a.result.null_directions[0], HasSubstr(" against "));
+  for (const TaskVerdict v : a.result.verdicts) EXPECT_NE(v, TaskVerdict::kIdentified);
+}
+
+TEST(IdentifyMuscles, AnEstimateIsValidatedOnOtherTasks) {
+  Progress progress;
+  const std::string person = kForces + "[person]\n[identify]\nstarts = 1\n";
+  const MuscleAnalysis a = recovered(1, kFour + person);
+  const MuscleAnalysis v = validate(person_study(1, "[tasks]\nnumbers = [15, 26]\n" + person), a.estimate, progress);
+  ASSERT_EQ(v.tasks.size(), 2u);
+  EXPECT_EQ(v.estimate.judgement.prediction.grade, estimation::Grade::kYes);
+  estimation::Estimate wrong = a.estimate;
+  for (estimation::Parameter& p : wrong.parameters) p.value *= 1.1;
+  const MuscleAnalysis w = validate(person_study(1, "[tasks]\nnumbers = [15, 26]\n" + person), wrong, progress);
+  EXPECT_EQ(w.estimate.judgement.prediction.grade, estimation::Grade::kNo);
+  for (estimation::Parameter& p : wrong.parameters) p.name += "?";
+  EXPECT_THROW(static_cast<void>(validate(person_study(1, kFour + person), wrong, progress)), InputError);
+}
+
+/// 18 parameters, four tasks, hidden within 5 %, angle noise 1e-3 rad: about 5 to 20 s each.
+TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredAndSearchesEndInTime) {
+  std::vector<double> seconds;
+  std::size_t identified = 0, covered = 0, at_bound = 0, failed = 0;
+  double worst_unseen = 0.0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const MuscleAnalysis a = recovered(seed, kFour + "[person]\nspread = \"5 %\"\nnoise = 0.001\n");
+    seconds.push_back(a.result.seconds);
+    failed += row_of(a, "residual against the noise").passed() ? 0 : 1;
+    worst_unseen = std::max(worst_unseen, a.tasks.back().after.nrmse);
+    for (std::size_t i = 0; i < a.result.verdicts.size(); ++i) {
+      const estimation::Parameter& p = a.estimate.parameters[i];
+      const double truth = a.true_value(p.name);
+      if (a.result.verdicts[i] == TaskVerdict::kAtBound) ++at_bound;
+      if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
+      ++identified;
+      covered += truth >= p.low95 && truth <= p.high95 ? 1 : 0;
+    }
+    fmt::print("{}: {:.1f} s, identified {} covered {}, chi {:.3f}, unseen {:.2g}\n", seed, a.result.seconds,
+               identified, covered, a.result.chi_square, a.tasks.back().after.nrmse);
+  }
+  std::sort(seconds.begin(), seconds.end());
+  fmt::print("median {:.2f} s, longest {:.2f} s; {} identified, {} covered; {} at a bound; {} residuals too large\n",
+             seconds[seconds.size() / 2], seconds.back(), identified, covered, at_bound, failed);
+  EXPECT_EQ(at_bound, 0u);
+  EXPECT_LE(failed, 1u);
+  const double share = static_cast<double>(covered) / static_cast<double>(identified);
+  EXPECT_GE(share, 0.90);
+}
+
+}  // namespace
+}  // namespace veridyn::muscle

@@ -1,0 +1,409 @@
+#include "veridyn/muscle/identification/task_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/task_segments.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
+#include "veridyn/numerics/sensitivity_indices.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+using estimation::OutputErrorEstimate;
+using estimation::OutputErrorOptions;
+using estimation::ParameterStatus;
+using estimation::RowMatrix;
+
+/// The noise is first taken for this share of the residual.
+constexpr double kCoarse = 0.05;
+constexpr int kCoarseSteps = 8, kCoarseRounds = 4;
+/// Shares of the prior's variance that the data have to remove.
+constexpr double kIdentifiedShare = 0.75, kWeakShareOfPrior = 0.25;
+/// Difference of two negative log posteriors up to which fits are as good.
+constexpr double kAsGood = 6.0;
+/// Correlation of neighbouring residuals from which error bars are corrected for it.
+constexpr double kCorrelated = 0.15;
+
+/// View of one estimation.
+class TaskEstimation {
+ public:
+  TaskEstimation(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+                 const Eigen::VectorXd& noise, const TaskEstimateOptions& options, Progress& progress)
+      : model_(model), measured_(measured), noise_(noise), options_(options), progress_(progress) {
+    for (const RowMatrix& z : measured) values_ += (z.array() == z.array()).count();
+  }
+
+  TaskEstimate run() {
+    const auto begun = std::chrono::steady_clock::now();
+    search();
+    if (result_.usable()) describe();
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    return std::move(result_);
+  }
+
+ private:
+  /// Root mean square of the residual, each output in units of its noise (or of its own size); NaN: diverged.
+  [[nodiscard]] double residual(const Eigen::VectorXd& theta) const {
+    const std::vector<RowMatrix> y = simulate_tasks(model_, theta, progress_.threads());
+    double sum = 0.0;
+    for (std::size_t s = 0; s < y.size(); ++s) {
+      if (y[s].size() == 0) return kNaN;
+      for (Eigen::Index k = 0; k < y[s].rows(); ++k) {
+        for (Eigen::Index j = 0; j < y[s].cols(); ++j) {
+          const double e = (y[s](k, j) - measured_[s](k, j)) / scale()(j);
+          if (!std::isnan(e)) sum += e * e;
+        }
+      }
+    }
+    return std::sqrt(sum / static_cast<double>(values_));
+  }
+
+  [[nodiscard]] Eigen::VectorXd scale() const {
+    return noise_.size() > 0 ? noise_ : Eigen::VectorXd::Constant(signed_index(model_.outputs().size()), 1.0);
+  }
+
+  [[nodiscard]] Eigen::VectorXd own_values() const {
+    Eigen::VectorXd start(signed_index(model_.parameters().size()));
+    for (Eigen::Index i = 0; i < start.size(); ++i) start(i) = model_.parameters()[at(i)].start;
+    return start;
+  }
+
+  /// The model's values, then points of the screening, the best fits first; all that can be simulated.
+  std::vector<std::pair<double, Eigen::VectorXd>> starting_points() {
+    const Eigen::VectorXd start = own_values();
+    std::vector<std::pair<double, Eigen::VectorXd>> points{{residual(start), start}};
+    if (options_.starts < 2) return points;
+    const Eigen::MatrixXd sobol =
+        numerics::sobol_points(static_cast<std::size_t>(options_.screened), at(start.size()), options_.seed);
+    for (Eigen::Index k = 0; k < sobol.rows() && !progress_.interrupted(); ++k) {
+      Eigen::VectorXd theta = start;
+      for (Eigen::Index i = 0; i < start.size(); ++i) {
+        const estimation::ModelParameter& p = model_.parameters()[at(i)];
+        if (!p.fixed) theta(i) = p.low + sobol(k, i) * (p.high - p.low);
+      }
+      const double fit = residual(theta);
+      if (std::isfinite(fit)) points.emplace_back(fit, theta);
+    }
+    std::stable_sort(points.begin() + 1, points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (points.size() > at(options_.starts)) points.resize(at(options_.starts));
+    return points;
+  }
+
+  [[nodiscard]] OutputErrorOptions options_of(const Eigen::VectorXd& from) const {
+    OutputErrorOptions o;
+    o.free_initial_conditions = !model_.initial_conditions(0).empty() && !model_.initial_conditions(0).front().fixed;
+    o.search_start = from;
+    return o;
+  }
+
+  /// A coarse fit from there; where it ends.
+  Eigen::VectorXd coarse(Eigen::VectorXd from, double rms, TaskSearch& search) {
+    for (int round = 0; round < kCoarseRounds && !progress_.interrupted(); ++round) {
+      const double level = kCoarse * rms;
+      if (!(level > 1.0) && noise_.size() > 0) break;
+      OutputErrorOptions o = options_of(from);
+      o.noise = estimation::OutputNoise::kGiven;
+      o.noise_start = level * scale();
+      o.max_steps = kCoarseSteps;
+      o.max_relaxations = 1;
+      const OutputErrorEstimate e = estimation::output_error(model_, measured_, o, quiet_);
+      search.steps += e.steps;
+      if (!e.usable()) break;
+      from = e.theta;
+      const double now = residual(from);
+      if (!(now < 0.7 * rms)) break;
+      rms = now;
+    }
+    return from;
+  }
+
+  OutputErrorEstimate fine(const Eigen::VectorXd& from) {
+    OutputErrorOptions o = options_of(from);
+    o.tolerance = 0.02;
+    if (noise_.size() > 0) {
+      o.noise = estimation::OutputNoise::kGiven;
+      o.noise_start = noise_;
+      o.max_relaxations = 3;
+    }
+    return estimation::output_error(model_, measured_, o, quiet_);
+  }
+
+  /// Negative logarithm of likelihood and prior.
+  [[nodiscard]] double cost(const OutputErrorEstimate& e) const {
+    double sum = e.negative_log_likelihood;
+    for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
+      const estimation::ModelParameter& p = model_.parameters()[i];
+      if (!p.fixed && std::isfinite(p.prior_sigma))
+        sum += 0.5 * std::pow((e.theta(signed_index(i)) - p.start) / p.prior_sigma, 2);
+    }
+    return sum;
+  }
+
+  void search() {
+    const auto points = starting_points();
+    std::vector<Eigen::VectorXd> ends(points.size());
+    std::vector<double> rms(points.size(), kInfinity);
+    result_.searches.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      TaskSearch& s = result_.searches[i];
+      s.rms_start = points[i].first;
+      s.cost = kNaN;
+      if (!std::isfinite(s.rms_start)) {
+        s.message = "the simulation diverges where it begins";
+        continue;
+      }
+      ends[i] = coarse(points[i].second, points[i].first, s);
+      const double end = residual(ends[i]);
+      if (std::isfinite(end)) rms[i] = end;
+      if (!progress_.update(static_cast<double>(i + 1) / static_cast<double>(points.size() + 2))) break;
+    }
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rms[a] < rms[b]; });
+    std::vector<std::optional<OutputErrorEstimate>> finished(points.size());
+    double best = kInfinity;
+    for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
+      const std::size_t i = order[k];
+      if (!std::isfinite(rms[i]) || progress_.interrupted()) continue;
+      finished[i] = fine(ends[i]);
+      TaskSearch& s = result_.searches[i];
+      s.steps += finished[i]->steps;
+      s.message = finished[i]->message;
+      if (!finished[i]->usable()) continue;
+      s.cost = cost(*finished[i]);
+      if (s.cost < best) {
+        best = s.cost;
+        result_.chosen = i;
+      }
+      if (!progress_.update(static_cast<double>(points.size() + k + 1) / static_cast<double>(points.size() + 2))) break;
+    }
+    if (!std::isfinite(best)) {
+      result_.best = why_nothing(finished, order.empty() ? 0 : order.front());
+      return;
+    }
+    result_.best = *finished[result_.chosen];
+    for (std::size_t i = 0; i < finished.size(); ++i) {
+      if (!finished[i] || !finished[i]->usable()) {
+        if (result_.searches[i].message.empty())
+          result_.searches[i].message = "left after the coarse fit: others were better";
+        continue;
+      }
+      result_.searches[i].agrees = same_place(*finished[i]);
+      result_.ambiguous =
+          result_.ambiguous || (!result_.searches[i].agrees && result_.searches[i].cost - best < kAsGood);
+    }
+  }
+
+  [[nodiscard]] OutputErrorEstimate why_nothing(const std::vector<std::optional<OutputErrorEstimate>>& finished,
+                                                std::size_t first) const {
+    if (first < finished.size() && finished[first]) return *finished[first];
+    OutputErrorOptions o = options_of(own_values());
+    if (noise_.size() > 0) o.noise_start = noise_;
+    o.max_relaxations = 1;
+    o.max_steps = 1;
+    Progress silent;
+    return estimation::output_error(model_, measured_, o, silent);
+  }
+
+  [[nodiscard]] bool same_place(const OutputErrorEstimate& e) const {
+    for (std::size_t i = 0; i < model_.parameters().size(); ++i) {
+      const double sigma = result_.best.parameters[i].sigma;
+      if (std::abs(e.theta(signed_index(i)) - result_.best.theta(signed_index(i))) > std::max(sigma, 1e-12))
+        return false;
+    }
+    return true;
+  }
+
+  void residual_statistics() {
+    const std::vector<RowMatrix>& y = result_.best.predicted;
+    double sum = 0.0;
+    result_.lag1 = 0.0;
+    for (Eigen::Index j = 0; j < signed_index(model_.outputs().size()); ++j) {
+      double cross = 0.0, squares = 0.0;
+      for (std::size_t s = 0; s < y.size(); ++s) {
+        for (Eigen::Index k = 0; k < y[s].rows(); ++k) {
+          const double e = y[s](k, j) - measured_[s](k, j);
+          if (std::isnan(e)) continue;
+          squares += e * e;
+          sum += e * e / (scale()(j) * scale()(j));
+          const double before = k > 0 ? y[s](k - 1, j) - measured_[s](k - 1, j) : kNaN;
+          if (!std::isnan(before)) cross += e * before;
+        }
+      }
+      if (squares > 0.0) result_.lag1 = std::max(result_.lag1, cross / squares);
+    }
+    result_.freedom = std::max(1.0, static_cast<double>(values_) - std::max(0.0, result_.learned.sum()));
+    result_.chi_square = noise_.size() > 0 ? sum / result_.freedom : kNaN;
+  }
+
+  void describe() {
+    OutputErrorEstimate& e = result_.best;
+    const std::size_t n = model_.parameters().size();
+    result_.learned = Eigen::VectorXd::Zero(signed_index(n));
+    for (std::size_t i = 0; i < n; ++i) {
+      const estimation::ModelParameter& p = model_.parameters()[i];
+      if (!p.fixed)
+        result_.learned(signed_index(i)) =
+            std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
+    }
+    residual_statistics();
+    // Correcting white residuals for chance correlations would only add the correction's own error.
+    const bool white = result_.lag1 < kCorrelated;
+    if (white) e.covariance = e.covariance_white;
+    for (std::size_t i = 0; i < n; ++i) {
+      estimation::Parameter& p = e.parameters[i];
+      if (model_.parameters()[i].fixed) {
+        result_.verdicts.push_back(TaskVerdict::kFixed);
+        continue;
+      }
+      if (white || p.sigma < p.sigma_white) p.sigma = p.sigma_white;
+      set_interval(p, std::max(1.0, e.degrees_of_freedom));
+      result_.verdicts.push_back(verdict_of(i));
+      p.status = status_of(result_.verdicts.back());
+    }
+    find_null_directions();
+  }
+
+  [[nodiscard]] TaskVerdict verdict_of(std::size_t i) const {
+    const estimation::Parameter& p = result_.best.parameters[i];
+    if (p.status == ParameterStatus::kAtBound) return TaskVerdict::kAtBound;
+    const double learned = result_.learned(signed_index(i));
+    if (learned >= kIdentifiedShare) return TaskVerdict::kIdentified;
+    if (learned >= kWeakShareOfPrior) return TaskVerdict::kWeak;
+    // Were all others known: the variance inflation says by how much they spread it.
+    const double prior = model_.parameters()[i].prior_sigma;
+    const double alone = p.sigma_white / std::sqrt(std::max(1.0, p.variance_inflation));
+    return alone < 0.5 * prior ? TaskVerdict::kNotIdentifiable : TaskVerdict::kHeldByPrior;
+  }
+
+  static ParameterStatus status_of(TaskVerdict verdict) {
+    switch (verdict) {
+      case TaskVerdict::kIdentified:
+        return ParameterStatus::kIdentified;
+      case TaskVerdict::kWeak:
+        return ParameterStatus::kWeak;
+      case TaskVerdict::kAtBound:
+        return ParameterStatus::kAtBound;
+      case TaskVerdict::kFixed:
+        return ParameterStatus::kFixed;
+      case TaskVerdict::kHeldByPrior:
+      case TaskVerdict::kNotIdentifiable:
+        break;
+    }
+    return ParameterStatus::kNotExcited;
+  }
+
+  /// Eigenvectors of the posterior covariance in units of the priors: one is what the prior says, zero is known.
+  void find_null_directions() {
+    std::vector<std::size_t> free;
+    for (std::size_t i = 0; i < model_.parameters().size(); ++i)
+      if (!model_.parameters()[i].fixed) free.push_back(i);
+    const auto n = signed_index(free.size());
+    Eigen::MatrixXd scaled(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const std::size_t a = free[at(i)], b = free[at(j)];
+        scaled(i, j) = result_.best.covariance_white(signed_index(a), signed_index(b)) /
+                       (model_.parameters()[a].prior_sigma * model_.parameters()[b].prior_sigma);
+      }
+    }
+    if (!scaled.allFinite()) return;
+    const auto eigen = numerics::symmetric_eigen(scaled);
+    std::vector<Eigen::VectorXd> found;
+    for (Eigen::Index j = n - 1; j >= 0; --j) {
+      if (!(eigen.values(j) > 1.0 - kWeakShareOfPrior)) continue;
+      const Eigen::VectorXd v = eigen.vectors.col(j);
+      result_.null_directions.push_back(words_of(v, free));
+      Eigen::VectorXd all = Eigen::VectorXd::Zero(signed_index(model_.parameters().size()));
+      for (Eigen::Index i = 0; i < n; ++i) all(signed_index(free[at(i)])) = v(i);
+      found.push_back(all);
+    }
+    result_.null_vectors.resize(signed_index(model_.parameters().size()), signed_index(found.size()));
+    for (std::size_t j = 0; j < found.size(); ++j) result_.null_vectors.col(signed_index(j)) = found[j];
+  }
+
+  /// The parameters that a direction raises against those that it lowers; those with a third of the largest part.
+  [[nodiscard]] std::string words_of(const Eigen::VectorXd& v, const std::vector<std::size_t>& free) const {
+    Eigen::Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    const double sign = v(largest) < 0.0 ? -1.0 : 1.0;
+    std::string raised, lowered;
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      if (std::abs(v(i)) < std::abs(v(largest)) / 3.0) continue;
+      std::string& side = sign * v(i) > 0.0 ? raised : lowered;
+      side += (side.empty() ? "" : ", ") + model_.parameters()[free[at(i)]].name;
+    }
+    return lowered.empty() ? raised : fmt::format("{} against {}", raised, lowered);
+  }
+
+  /// Searches within a stage show no progress of their own.
+  class Watched : public Progress {
+   public:
+    explicit Watched(const Progress& outer) : outer_(outer) {}
+    [[nodiscard]] bool update(double) override { return !outer_.interrupted(); }
+    [[nodiscard]] bool interrupted() const override { return outer_.interrupted(); }
+    [[nodiscard]] int threads() const override { return outer_.threads(); }
+
+   private:
+    const Progress& outer_;
+  };
+
+  const MuscleParametricModel& model_;
+  const std::vector<RowMatrix>& measured_;
+  const Eigen::VectorXd& noise_;
+  const TaskEstimateOptions& options_;
+  Progress& progress_;
+  Watched quiet_{progress_};
+  Eigen::Index values_ = 0;
+  TaskEstimate result_;
+};
+
+}  // namespace
+
+void TaskEstimateOptions::validate() const {
+  if (starts < 1 || starts > 1000)
+    throw InputError("identify.starts", fmt::format("is {}; must be from 1 to 1000", starts));
+  if (screened < starts || screened > 100000)
+    throw InputError("identify.screened", fmt::format("is {}; must be from starts = {} to 100000", screened, starts));
+}
+
+std::string_view to_string(TaskVerdict verdict) {
+  switch (verdict) {
+    case TaskVerdict::kIdentified:
+      return "identified";
+    case TaskVerdict::kWeak:
+      return "weak";
+    case TaskVerdict::kHeldByPrior:
+      return "held by the prior";
+    case TaskVerdict::kNotIdentifiable:
+      return "not identifiable from these tasks";
+    case TaskVerdict::kAtBound:
+      return "at its bound";
+    case TaskVerdict::kFixed:
+      return "fixed";
+  }
+  return "";
+}
+
+std::vector<MuscleUnknown> with_bound_priors(std::vector<MuscleUnknown> unknowns) {
+  for (MuscleUnknown& u : unknowns)
+    if (!std::isfinite(u.prior_sigma)) u.prior_sigma = (u.high - u.low) / std::sqrt(12.0);
+  return unknowns;
+}
+
+TaskEstimate estimate_from_tasks(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+                                 const Eigen::VectorXd& noise, const TaskEstimateOptions& options, Progress& progress) {
+  options.validate();
+  return TaskEstimation(model, measured, noise, options, progress).run();
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/output_error/output_error.hpp"
+#include "veridyn/muscle/identification/muscle_parametric_model.hpp"
+
+namespace veridyn::muscle {
+
+/// How `estimate_from_tasks` searches.
+struct TaskEstimateOptions {
+  int starts = 3;     ///< searches: from the model's own values, and from the best points of the screening
+  int screened = 16;  ///< points of a Sobol sequence within the bounds whose fit is looked at first
+  std::uint64_t seed = 1;
+  /// @throws InputError naming the option and its rule.
+  void validate() const;
+};
+
+/// One search.
+struct TaskSearch {
+  double rms_start = 0.0;  ///< of the residual in standard deviations of the noise, where it began; NaN: diverged
+  double cost = 0.0;       ///< negative logarithm of the posterior at its end; NaN: it did not finish
+  int steps = 0;
+  bool agrees = false;  ///< it ends where the best one does, within a standard deviation of every parameter
+  std::string message;
+};
+
+/// What the tasks say of a parameter, in a word of the report.
+enum class TaskVerdict {
+  kIdentified,       ///< the data removed three quarters of the variance that the prior leaves, or more
+  kWeak,             ///< a quarter or more
+  kHeldByPrior,      ///< the tasks hardly move with it: even alone it would not be determined
+  kNotIdentifiable,  ///< the tasks move with it, but as much with others: only combinations are determined
+  kAtBound,
+  kFixed,
+};
+/// "identified", "weak", "held by the prior", "not identifiable from these tasks", "at its bound", "fixed".
+[[nodiscard]] std::string_view to_string(TaskVerdict verdict);
+
+/// An estimate from all tasks at once.
+struct TaskEstimate {
+  estimation::OutputErrorEstimate best;
+  std::vector<TaskSearch> searches;  ///< the first is from the model's values
+  std::size_t chosen = 0;            ///< of them
+  /// Whether another search ends with as good a fit at other values.
+  bool ambiguous = false;
+  std::vector<TaskVerdict> verdicts;  ///< by parameter
+  Eigen::VectorXd learned;            ///< by parameter: share of the prior's variance that the data removed
+  /// Combinations that the tasks leave to the prior, in words: "A max_isometric_force against B max_isometric_force".
+  std::vector<std::string> null_directions;
+  Eigen::MatrixXd null_vectors;  ///< parameters x directions, in units of the priors' standard deviations, unit length
+  double chi_square = 0.0;       ///< of the residual over its freedom; NaN where the noise is not known
+  double freedom = 0.0;          ///< measured values less what the parameters took
+  double lag1 = 0.0;             ///< autocorrelation of the residual at one sample, the largest of any output
+  double seconds = 0.0;
+
+  [[nodiscard]] bool usable() const { return best.usable(); }
+};
+
+/// Priors for unknowns that have none: the standard deviation of a value known only to lie within the bounds, their
+/// width over sqrt(12), about the start. Without them noise moves what the tasks do not determine.
+[[nodiscard]] std::vector<MuscleUnknown> with_bound_priors(std::vector<MuscleUnknown> unknowns);
+
+/// Output error over all tasks at once with exact sensitivities (`estimation::output_error`), from several starts.
+/// Valleys of these fits are long and curved, so each search first fits coarsely (the noise taken for a twentieth of
+/// the residual) and the best two go on with the noise as it is. Error bars are those of the posterior: with priors,
+/// and corrected for autocorrelated residuals.
+/// @param measured by segment: samples x outputs, NaN where nothing was measured
+/// @param noise standard deviation by output; empty: estimated
+[[nodiscard]] TaskEstimate estimate_from_tasks(const MuscleParametricModel& model,
+                                               const std::vector<estimation::RowMatrix>& measured,
+                                               const Eigen::VectorXd& noise, const TaskEstimateOptions& options,
+                                               Progress& progress);
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,149 @@
+#include "veridyn/muscle/task_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/muscle_study_parts.hpp"
+#include "veridyn/muscle/muscle_study_unknowns.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+std::vector<MuscleUnknown> default_unknowns(const Model& model) {
+  std::vector<MuscleUnknown> unknowns;
+  for (const Muscle& muscle : model.muscles) {
+    for (const char* field : {"max_isometric_force", "optimal_fiber_length", "tendon_slack_length"})
+      unknowns.push_back(make_unknown(
+          model,
+          {.muscles = {muscle.name()}, .fields = {field}, .low = Extent{-20.0, true}, .high = Extent{20.0, true}},
+          model.name));
+  }
+  return unknowns;
+}
+
+std::vector<MuscleOutput> default_outputs(const MusculoskeletalSystem& system) {
+  std::vector<MuscleOutput> outputs;
+  for (const int c : system.reduction().free()) outputs.push_back({MuscleOutputKind::kValue, c, 0.0});
+  return outputs;
+}
+
+/// Leaves out the outputs of coordinates that every task holds.
+void drop_resting_outputs(TaskStudy& study) {
+  std::vector<Eigen::Index> kept;
+  for (std::size_t j = 0; j < study.outputs.size(); ++j) {
+    const bool moves = std::any_of(study.tasks.begin(), study.tasks.end(), [&](const Task& task) {
+      return std::none_of(task.held.begin(), task.held.end(),
+                          [&](const HeldCoordinate& h) { return h.coordinate == study.outputs[j].index; });
+    });
+    if (moves) kept.push_back(signed_index(j));
+  }
+  std::vector<MuscleOutput> outputs;
+  for (const Eigen::Index j : kept) outputs.push_back(study.outputs[at(j)]);
+  study.outputs = outputs;
+  for (Task& task : study.tasks)
+    if (task.measured) task.measured->values = estimation::RowMatrix(task.measured->values(Eigen::all, kept));
+}
+
+SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
+  SimulatedPerson person;
+  person.spread = table.number_or("spread", "1", person.spread);
+  if (!(person.spread >= 0.0 && person.spread < 1.0))
+    table.fail("spread", fmt::format("{:g} must be from 0 to below 1", person.spread));
+  person.noise = table.number_or("noise", "rad", person.noise);
+  if (!(person.noise >= 0.0)) table.fail("noise", fmt::format("{:g} must be >= 0", person.noise));
+  constexpr internal::Words<bool, 2> kMuscles{{{"as the model", false}, {"millard", true}}};
+  person.millard = internal::word_or_first(table, "muscles", kMuscles);
+  person.load_factor = table.positive_or("load_factor", "1", person.load_factor);
+  const StudyTable values = table.table_or_empty("parameters");
+  std::vector<std::string> names;
+  for (const MuscleUnknown& u : study.unknowns) names.push_back(u.name);
+  for (const std::string& key : values.keys()) {
+    const auto found = std::find(names.begin(), names.end(), key);
+    if (found == names.end()) values.fail(key, fmt::format("is no unknown of this study{}", suggestion(key, names)));
+    const MuscleUnknown& u = study.unknowns[at(found - names.begin())];
+    const double value = values.number(key, u.unit);
+    if (!(value >= u.low && value <= u.high))
+      values.fail(key, fmt::format("{:g} is outside the bounds {:g} .. {:g}, where no search would find it", value,
+                                   u.low, u.high));
+    person.values[key] = value;
+  }
+  for (std::size_t i = 0; i < study.tasks.size(); ++i) {
+    if (study.tasks[i].measured)
+      table.fail("", fmt::format("and task '{}' with a recording exclude each other", study.tasks[i].name));
+  }
+  return person;
+}
+
+void read_search(const StudyTable& table, TaskStudy& study) {
+  study.search.starts = static_cast<int>(std::clamp(table.integer_or("starts", study.search.starts), 0LL, 1000000LL));
+  study.search.screened = static_cast<int>(
+      std::clamp(table.integer_or("screened", std::max(study.search.screened, study.search.starts)), 0LL, 1000000LL));
+  try {
+    study.search.validate();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    table.fail(what.starts_with("identify.starts") ? "starts" : "screened",
+               what.substr(std::min(what.size(), error.place().size() + 2)));
+  }
+  study.search.seed = study.seed;
+  study.estimate_start = table.flag_or("estimate_start", !study.person);
+}
+
+}  // namespace
+
+bool has_tasks(const StudyTable& root) {
+  const std::vector<std::string> keys = root.keys();
+  return std::any_of(keys.begin(), keys.end(), [](const std::string& k) { return k == "task" || k == "tasks"; });
+}
+
+TaskStudy read_task_study(const Study& source, Progress& progress) {
+  const StudyTable& root = source.root();
+  TaskStudy study;
+  study.subject.title = root.text_or("title", "");
+  study.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
+  if (!has_tasks(root))
+    root.fail("tasks", "is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");
+  internal::read_subject(root.table("subject"), study.subject, progress);
+  const MusculoskeletalSystem& system = *study.subject.system;
+  if (system.path_source() == PathSource::kAsOpenSim)
+    root.table("subject").fail("paths", "= \"opensim\" has no derivatives; take \"exact\" or \"fitted\"");
+  if (study.subject.title.empty()) study.subject.title = system.model().name;
+  study.unknowns = read_unknowns(root, system.model());
+  if (study.unknowns.empty()) study.unknowns = default_unknowns(system.model());
+  study.unknowns = with_bound_priors(std::move(study.unknowns));
+  if (std::all_of(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return u.fixed; }))
+    root.fail("parameter", "leaves nothing to estimate: all are fixed");
+  study.outputs = read_outputs(root, system.model());
+  const bool chosen = !study.outputs.empty();
+  if (!chosen) study.outputs = default_outputs(system);
+  StudyTasks tasks = read_tasks(root, study.subject, study.outputs);
+  study.tasks = std::move(tasks.tasks);
+  study.accuracy = tasks.accuracy;
+  study.notes = std::move(tasks.notes);
+  study.inputs = study.subject.inputs;
+  study.inputs.insert(study.inputs.end(), tasks.inputs.begin(), tasks.inputs.end());
+  if (!chosen) drop_resting_outputs(study);
+  if (root.is_table("person")) {
+    study.person = read_person(root.table("person"), study);
+    for (MuscleOutput& output : study.outputs)
+      if (!chosen && output.noise_sd == 0.0) output.noise_sd = study.person->noise;
+  }
+  for (const Task& task : study.tasks) {
+    if (!study.person && !task.measured)
+      root.fail("task", fmt::format("'{}' has no recording (measured = \"trial.mot\"), and there is no [person] to "
+                                    "simulate one",
+                                    task.name));
+  }
+  read_search(root.table_or_empty("identify"), study);
+  for (const char* other : {"motion", "sensitivity"})
+    if (root.is_table(other)) root.accept(other);
+  root.finish();
+  return study;
+}
+
+}  // namespace veridyn::muscle

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/muscle/identification/muscle_outputs.hpp"
+#include "veridyn/muscle/identification/muscle_unknowns.hpp"
+#include "veridyn/muscle/identification/task_estimate.hpp"
+#include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/muscle_study_tasks.hpp"
+
+namespace veridyn::muscle {
+
+/// A person whose recording is simulated, to see what a study would find: what is hidden is known.
+struct SimulatedPerson {
+  double spread = 0.05;  ///< hidden parameters: the model's times 1 +- at most this, uniform
+  std::map<std::string, double, std::less<>> values;  ///< unknowns that are set instead, by name
+  bool millard = false;      ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
+  double load_factor = 1.0;  ///< the loads of the tasks are this much heavier than the study says
+  double noise = 1e-3;       ///< standard deviation of measured angles and positions [rad or m]
+};
+
+/// A study that estimates a person's muscles from tasks, read and checked.
+struct TaskStudy {
+  MuscleStudy subject;  ///< title, model, loads, system; without a motion
+  std::vector<Task> tasks;
+  double accuracy = 1e-6;
+  std::vector<MuscleUnknown> unknowns;  ///< each with a prior: its own, or that of its bounds
+  std::vector<MuscleOutput> outputs;
+  std::optional<SimulatedPerson> person;
+  TaskEstimateOptions search;
+  bool estimate_start = false;  ///< pose and speed where each task begins are unknown too
+  std::uint64_t seed = 1;
+  std::vector<std::string> notes;
+  std::vector<std::filesystem::path> inputs;
+};
+
+/// Whether a muscle study has tasks.
+[[nodiscard]] bool has_tasks(const StudyTable& root);
+
+/// Reads a study: `[subject]` as `read_study`, `[tasks]` and `[[task]]` as `read_tasks`, `[[parameter]]` and
+/// `[[output]]` as `read_unknowns` and `read_outputs`, and
+///
+///     seed = 1
+///     [person]                       # simulated: its motions are what a recording would be
+///     spread = "5 %"                 # hidden parameters, within so much of the model's; drawn by the seed
+///     noise = "0.06 deg"             # of the measured angles; of other outputs that of [[output]]
+///     muscles = "millard"            # of another class than the model's, to see what is said of a wrong model
+///     load_factor = 1.0              # true load over the stated one, likewise
+///     [person.parameters]            # hidden values of single unknowns, by the unknown's name
+///     "BRA.max_isometric_force" = 1000
+///     [identify]
+///     starts = 3                     # searches
+///     screened = 16                  # points whose fit is looked at to choose where they begin
+///     estimate_start = true          # pose and speed at the beginning too; true when left out with recordings
+///
+/// Without `[[parameter]]`: max_isometric_force, optimal_fiber_length and tendon_slack_length of every muscle, within
+/// 20 %. Without `[[output]]`: the values of all coordinates that move in some task. `[motion]`, of `veridyn simulate`,
+/// may stay in the study.
+/// @throws InputError with file, line and key.
+[[nodiscard]] TaskStudy read_task_study(const Study& study, Progress& progress);
+
+}  // namespace veridyn::muscle

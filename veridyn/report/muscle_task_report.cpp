@@ -1,0 +1,213 @@
+#include "veridyn/report/muscle_task_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/report/document/number_format.hpp"
+#include "veridyn/report/parts/analysis_sections.hpp"
+#include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/remarks.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using namespace veridyn::muscle;
+
+/// Tasks in a figure; more would be slivers.
+constexpr std::size_t kMostPanels = 12;
+
+std::size_t count_tasks(const MuscleAnalysis& a, bool hold_out) {
+  return static_cast<std::size_t>(
+      std::count_if(a.tasks.begin(), a.tasks.end(), [&](const TaskOutcome& t) { return t.hold_out == hold_out; }));
+}
+
+std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
+  std::vector<Fact> list{{"Model", study.subject.model_name},
+                         {"Recording", study.person ? "a simulated person" : "measured motion"},
+                         {"Estimated from", fmt::format("{} tasks", count_tasks(a, false))},
+                         {"Held out", fmt::format("{} tasks", count_tasks(a, true))}};
+  if (!a.result.searches.empty()) list.push_back({"Method", a.estimate.method});
+  return list;
+}
+
+/// The word of the report for a parameter whose estimate may be used, else that of its status.
+Cell verdict_cell(const MuscleAnalysis& a, std::size_t i, const estimation::Parameter& p) {
+  using estimation::ParameterStatus;
+  const bool open = p.status == ParameterStatus::kNotExcited || p.status == ParameterStatus::kWeak;
+  if (open && i < a.result.verdicts.size())
+    return status_cell(status_of(p.status), std::string(to_string(a.result.verdicts[i])));
+  return status_cell(status_of(p.status));
+}
+
+Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
+  Section section{.title = "Parameters", .id = "parameters"};
+  const bool truth = !a.truth.empty();
+  Table table{.title = "Parameters",
+              .caption =
+                  "95 % intervals, priors included. Learned: the share of the prior's variance that the tasks removed. "
+                  "Identified from three quarters on, weak from a quarter on; what is less is the prior's: held by the "
+                  "prior where the tasks hardly move with the parameter, not identifiable where they move as much with "
+                  "others.",
+              .columns = {{.name = "parameter", .align = Align::kLeft},
+                          {.name = "standard"},
+                          {.name = "value"},
+                          {.name = "sigma"},
+                          {.name = "from", .group = "95 %"},
+                          {.name = "to", .group = "95 %"},
+                          {.name = "unit", .align = Align::kLeft},
+                          {.name = "learned", .unit = "%", .digits = 3},
+                          {.name = ""}}};
+  if (truth) table.columns.push_back({.name = "truth"});
+  for (std::size_t i = 0; i < a.estimate.parameters.size(); ++i) {
+    const estimation::Parameter& p = a.estimate.parameters[i];
+    const auto unknown = std::find_if(study.unknowns.begin(), study.unknowns.end(),
+                                      [&](const MuscleUnknown& u) { return u.name == p.name; });
+    const double start = unknown != study.unknowns.end() ? unknown->start : kNaN;
+    Row row{.cells = {text_cell(p.name), measured_cell(start, p.sigma)}};
+    for (Cell& cell : interval_cells(p.value, p.sigma, p.low95, p.high95)) row.cells.push_back(std::move(cell));
+    row.cells.push_back(text_cell(p.unit == "1" ? "" : p.unit));
+    row.cells.push_back(number_cell(i < a.result.verdicts.size() ? 100.0 * a.result.learned(signed_index(i)) : kNaN));
+    row.cells.push_back(verdict_cell(a, i, p));
+    row.status = status_of(p.status);
+    if (truth) row.cells.push_back(measured_cell(a.true_value(p.name), p.sigma));
+    table.rows.push_back(std::move(row));
+  }
+  section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
+Section directions_section(const MuscleAnalysis& a) {
+  Section section{.title = "What only combinations are known of", .id = "directions"};
+  if (a.result.null_directions.empty()) return section;
+  section.blocks.emplace_back(Paragraph{
+      "Along these combinations the tasks say less than the priors: raising what stands before \"against\" and "
+      "lowering what stands after it, in proportion to the priors' widths, leaves the motion nearly as it is. "
+      "The least known first."});
+  section.blocks.emplace_back(List{.items = a.result.null_directions});
+  return section;
+}
+
+Cell share_cell(double value) { return std::isfinite(value) ? number_cell(100.0 * value) : text_cell("-"); }
+
+Table task_table(const MuscleAnalysis& a) {
+  const bool angle = !a.outputs.empty() && a.outputs.front().unit == "rad";
+  const double unit = angle ? 1.0 / kDegree : 1.0;
+  const std::string name = a.outputs.empty() ? "" : angle ? "deg" : a.outputs.front().unit;
+  Table table{.title = "Tasks",
+              .caption =
+                  "Before: with the standard model's parameters; after: with the estimate. RMSE of the motion, NRMSE "
+                  "as its share of the target's range. A dash: the simulation cannot finish, or the target moves "
+                  "less than a degree.",
+              .columns = {{.name = "task", .align = Align::kLeft},
+                          {.name = "", .align = Align::kLeft},
+                          {.name = "before", .unit = "%", .digits = 3, .group = "NRMSE"},
+                          {.name = "after", .unit = "%", .digits = 3, .group = "NRMSE"},
+                          {.name = "before", .unit = name, .digits = 3, .group = "RMSE"},
+                          {.name = "after", .unit = name, .digits = 3, .group = "RMSE"},
+                          {.name = "reserves", .unit = "%", .digits = 2}}};
+  for (const TaskOutcome& t : a.tasks) {
+    table.rows.push_back(
+        {.cells = {text_cell(t.name), text_cell(t.hold_out ? "unseen" : "trained"), share_cell(t.before.nrmse),
+                   share_cell(t.after.nrmse), number_cell(unit * t.before.rmse), number_cell(unit * t.after.rmse),
+                   number_cell(100.0 * t.reserve_share)},
+         .status = std::isfinite(t.after.rmse) ? Status::kNone : Status::kBad});
+  }
+  return table;
+}
+
+std::vector<double> output_column(const estimation::RowMatrix& values, std::size_t output, double unit) {
+  std::vector<double> column;
+  for (Eigen::Index k = 0; k < values.rows(); ++k) column.push_back(unit * values(k, signed_index(output)));
+  return column;
+}
+
+TimeSeries task_figure(const MuscleAnalysis& a, bool hold_out) {
+  TimeSeries figure{.title = hold_out ? "Unseen tasks" : "Tasks that the estimate is from",
+                    .caption = "Measured, with the standard model's parameters (dashed), with the estimate.",
+                    .axis = hold_out ? "unseen" : "trained"};
+  for (const TaskOutcome& t : a.tasks) {
+    if (t.hold_out != hold_out) continue;
+    if (t.time.size() > figure.samples.size()) figure.samples = t.time;
+    for (std::size_t j = 0; j < a.outputs.size() && figure.panels.size() < kMostPanels; ++j) {
+      const ReadableNumber unit = readable(1.0, a.outputs[j].unit);
+      Panel panel{.label = fmt::format("{}: {}", t.name, a.outputs[j].name), .unit = unit.unit, .height = 130};
+      panel.lines.push_back(
+          {.name = "measured", .y = output_column(t.measured, j, unit.value), .x = t.time, .role = Role::kMeasured});
+      if (t.standard.size() > 0)
+        panel.lines.push_back({.name = "standard model",
+                               .y = output_column(t.standard, j, unit.value),
+                               .x = t.time,
+                               .role = Role::kReference});
+      if (t.estimated.size() > 0)
+        panel.lines.push_back({.name = "estimate", .y = output_column(t.estimated, j, unit.value), .x = t.time});
+      figure.panels.push_back(std::move(panel));
+    }
+  }
+  return figure;
+}
+
+Section cost_section(const MuscleAnalysis& a) {
+  Section section{.title = "Searches and their cost", .id = "searches", .folded = true};
+  if (a.result.searches.empty()) return section;
+  section.blocks.emplace_back(Paragraph{fmt::format("Controls of the tasks took {:.2g} s, the estimate {:.2g} s. {}",
+                                                    a.preparing_s, a.result.seconds, a.result.best.message)});
+  Table table{.title = "Searches",
+              .caption = "The first begins at the standard model, the others at the best points of a Sobol sequence.",
+              .columns = {{.name = "search"},
+                          {.name = "residual where it began", .unit = "sigma", .digits = 3},
+                          {.name = "steps"},
+                          {.name = "-log posterior", .digits = 6},
+                          {.name = "ends", .align = Align::kLeft},
+                          {.name = "message", .align = Align::kLeft}}};
+  for (std::size_t i = 0; i < a.result.searches.size(); ++i) {
+    const TaskSearch& s = a.result.searches[i];
+    const char* where = !std::isfinite(s.cost) ? ""
+                        : i == a.result.chosen ? "best"
+                        : s.agrees             ? "at the best"
+                                               : "elsewhere";
+    table.rows.push_back(
+        {.cells = {number_cell(static_cast<double>(i + 1), 0), number_cell(s.rms_start), number_cell(s.steps, 0),
+                   number_cell(s.cost), text_cell(where), text_cell(s.message)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
+}  // namespace
+
+Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, const std::string& program,
+                            bool validation_only) {
+  Document document = started_document(
+      study.subject.title, validation_only ? "An estimate validated on unseen tasks" : "A person's muscles from tasks",
+      program);
+  document.verdict = verdict_of(a.estimate);
+  document.verdict.lines.insert(document.verdict.lines.begin(), a.estimate.verdict);
+  document.facts = task_facts(study, a);
+  const auto add = [&](Section section) {
+    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+  };
+  add(muscle_parameters(study, a));
+  add(directions_section(a));
+  Section tasks{.title = "Tasks before and after", .id = "tasks"};
+  tasks.blocks.emplace_back(task_table(a));
+  for (const bool hold_out : {true, false}) {
+    TimeSeries figure = task_figure(a, hold_out);
+    if (!figure.panels.empty()) tasks.blocks.emplace_back(std::move(figure));
+  }
+  if (!a.predictions.empty()) tasks.blocks.emplace_back(prediction_table(a.predictions, "Prediction of unseen tasks"));
+  add(std::move(tasks));
+  add(evidence_section(a.estimate));
+  add(cost_section(a));
+  add_warnings(document, a.estimate.warnings);
+  std::vector<std::string> notes = study.notes;
+  for (const std::string& note : study.subject.system->notes()) notes.push_back(note);
+  add_notes(document, notes);
+  return document;
+}
+
+}  // namespace veridyn::report
