@@ -46,6 +46,7 @@ struct TaskIndices {
 
 /// Intervals wider than this share of their index are warned of.
 inline constexpr double kWideInterval = 0.1;
+/// Whether the interval of an index is so wide; also where one of them is not finite.
 [[nodiscard]] bool wide_interval(double index, double low, double high);
 
 /// Which share of the variance of a task's NRMSE each unknown causes when all of them vary between their bounds,
