@@ -6,9 +6,9 @@
 
 int main(int argc, char** argv) {
   using namespace veridyn::app;
-  const std::array commands = {demo_command(),        init_command(),      inspect_command(), simulate_command(),
-                               reconstruct_command(), identify_command(),  track_command(),   validate_command(),
-                               scale_command(),       reproduce_command(), export_command()};
+  const std::array commands = {demo_command(),        init_command(),        inspect_command(),   simulate_command(),
+                               reconstruct_command(), identify_command(),    track_command(),     validate_command(),
+                               scale_command(),       sensitivity_command(), reproduce_command(), export_command()};
   const veridyn::Interruption interruption;
   veridyn::request_on_signals(interruption);
   return run_program(commands, interruption, argc, argv);

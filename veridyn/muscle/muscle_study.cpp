@@ -150,7 +150,7 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   if (study.title.empty()) study.title = study.system->model().name;
   // Tables of `read_task_study`: one study may say what is simulated and what is estimated.
   const std::vector<std::string> keys = root.keys();
-  for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify"})
+  for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify", "sensitivity"})
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) root.accept(key);
   root.finish();
   return study;

@@ -140,7 +140,8 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
                                     task.name));
   }
   read_search(root.table_or_empty("identify"), study);
-  if (root.is_table("motion")) root.accept("motion");
+  for (const char* other : {"motion", "sensitivity"})
+    if (root.is_table(other)) root.accept(other);
   root.finish();
   return study;
 }

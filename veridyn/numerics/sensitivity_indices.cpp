@@ -84,6 +84,24 @@ void set_intervals(SensitivityIndices& result, const Rows& rows, const Sensitivi
   }
 }
 
+/// Points whose bits are exchanged where those of `shift` are set, by dimension.
+Eigen::MatrixXd shifted_sobol_points(std::size_t points, const std::vector<std::uint64_t>& shift) {
+  constexpr std::size_t kMostDimensions = 1000;
+  if (shift.empty() || shift.size() > kMostDimensions)
+    throw InputError("sobol sequence", fmt::format("{} dimensions; must be 1 to {}", shift.size(), kMostDimensions));
+  boost::random::sobol sequence(shift.size());
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(shift.size()));
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    for (Eigen::Index j = 0; j < x.cols(); ++j) {
+      // The sequence's first point, the origin, which Boost leaves out: without it 2^m points are not balanced.
+      const std::uint64_t point = i == 0 ? 0 : sequence();
+      const std::uint64_t bits = point ^ shift[static_cast<std::size_t>(j)];
+      x(i, j) = static_cast<double>(bits >> 11) * 0x1.0p-53;
+    }
+  }
+  return x;
+}
+
 }  // namespace
 
 void SensitivityOptions::validate() const {
@@ -94,23 +112,14 @@ void SensitivityOptions::validate() const {
 }
 
 Eigen::MatrixXd sobol_points(std::size_t points, std::size_t dimensions, std::uint64_t seed) {
-  constexpr std::size_t kMostDimensions = 1000;
-  if (dimensions < 1 || dimensions > kMostDimensions)
-    throw InputError("sobol sequence", fmt::format("{} dimensions; must be 1 to {}", dimensions, kMostDimensions));
-  boost::random::sobol sequence(dimensions);
   RandomStream random(seed, "digital shift of a Sobol sequence");
   std::vector<std::uint64_t> shift(dimensions);
   for (std::uint64_t& s : shift) s = random.index(std::uint64_t{1} << 32) << 32 | random.index(std::uint64_t{1} << 32);
-  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(dimensions));
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    for (Eigen::Index j = 0; j < x.cols(); ++j) {
-      // The sequence's first point, the origin, which Boost leaves out: without it 2^m points are not balanced.
-      const std::uint64_t point = i == 0 ? 0 : sequence();
-      const std::uint64_t bits = point ^ shift[static_cast<std::size_t>(j)];
-      x(i, j) = static_cast<double>(bits >> 11) * 0x1.0p-53;
-    }
-  }
-  return x;
+  return shifted_sobol_points(points, shift);
+}
+
+Eigen::MatrixXd plain_sobol_points(std::size_t points, std::size_t dimensions) {
+  return shifted_sobol_points(points, std::vector<std::uint64_t>(dimensions, 0));
 }
 
 Eigen::MatrixXd variance_design(std::size_t inputs, const SensitivityOptions& options) {

@@ -39,6 +39,8 @@ struct SensitivityOptions {
 /// same seed. Directions of Joe & Kuo (2008), up to 1000
 /// dimensions. @throws InputError for more.
 [[nodiscard]] Eigen::MatrixXd sobol_points(std::size_t points, std::size_t dimensions, std::uint64_t seed);
+/// The sequence as it is, from the origin on. @throws InputError for more than 1000 dimensions.
+[[nodiscard]] Eigen::MatrixXd plain_sobol_points(std::size_t points, std::size_t dimensions);
 
 /// The points at which `variance_indices` needs results: rows of `samples (inputs + 2)` x inputs; first all of A, then
 /// all of B, then A with column 0 of B, and so on. Evaluate them in any order, on any number of threads or machines.

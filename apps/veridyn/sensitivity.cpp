@@ -1,0 +1,130 @@
+// veridyn sensitivity STUDY: which muscle moves which task, which tasks excite every muscle, first and total indices.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/muscle_study_sensitivity.hpp"
+#include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
+#include "veridyn/report/document/html.hpp"
+#include "veridyn/report/sensitivity_report.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::muscle;
+
+Summary summary_of(const TaskSet& set, const MuscleSensitivity& s) {
+  Summary names = Summary::array();
+  for (const std::size_t t : set.tasks) names.push_back(s.tasks[t].name);
+  return Summary::object({{"tasks", std::move(names)},
+                          {"muscles_excited", set.excited},
+                          {"weakest_muscle", s.muscles[set.weakest_muscle]},
+                          {"weakest_share", set.weakest},
+                          {"mean_share", set.mean}});
+}
+
+Summary summary_of(const ResultIndices& r, const std::vector<std::string>& inputs) {
+  Summary s;
+  s["result"] = r.result;
+  s["failed"] = r.failed;
+  s["inputs"] = Summary::object();
+  for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
+    const numerics::SensitivityIndex& x = r.variance.inputs[i];
+    s["inputs"][inputs[i]] = Summary::object({{"first", x.first},
+                                              {"first_low", x.first_low},
+                                              {"first_high", x.first_high},
+                                              {"total", x.total},
+                                              {"total_low", x.total_low},
+                                              {"total_high", x.total_high}});
+  }
+  for (std::size_t i = 0; i < r.morris.size(); ++i)
+    s["inputs"][inputs[i]] =
+        Summary::object({{"mu", r.morris[i].mean}, {"mu_star", r.morris[i].absolute}, {"sigma", r.morris[i].sd}});
+  return s;
+}
+
+Summary summary_of(const std::filesystem::path& folder, const SensitivityStudy& study, const MuscleSensitivity& r) {
+  Summary s;
+  s["folder"] = folder.string();
+  s["model"] = study.subject.model_name;
+  s["samples"] = r.sampling.samples;
+  s["simulations"] = r.sampling.simulations;
+  s["index_simulations"] = r.indices.simulations;
+  if (r.cover.chosen) s["chosen"] = summary_of(*r.cover.chosen, r);
+  if (r.cover.runner_up) s["runner_up"] = summary_of(*r.cover.runner_up, r);
+  s["tasks"] = Summary::array();
+  for (std::size_t t = 0; t < r.tasks.size(); ++t) {
+    Summary task;
+    task["name"] = r.tasks[t].name;
+    task["obstacle"] = r.tasks[t].obstacle;
+    task["wrap_bands"] = r.tasks[t].wrap_bands;
+    task["failed"] = r.tasks[t].failed;
+    task["mean_nrmse"] = Summary::object();
+    for (std::size_t m = 0; m < r.muscles.size(); ++m)
+      task["mean_nrmse"][r.muscles[m]] = r.sampling.mean(signed_index(m), signed_index(t));
+    s["tasks"].push_back(std::move(task));
+  }
+  s["indices"] = Summary::array();
+  for (const ResultIndices& i : r.indices.results) s["indices"].push_back(summary_of(i, r.indices.inputs));
+  s["warnings"] = r.warnings;
+  s["notes"] = study.notes;
+  return s;
+}
+
+void print_result(const CommonOptions& options, const MuscleSensitivity& r) {
+  const auto set = [&](const char* name, const TaskSet& s) {
+    print_line(
+        options,
+        fmt::format("{}: tasks {}: {} of {} muscles, the weakest ({}) has {:.0f} % of its greatest NRMSE", name,
+                    task_list(r, s), s.excited, r.muscles.size(), r.muscles[s.weakest_muscle], 100.0 * s.weakest));
+  };
+  set("chosen", *r.cover.chosen);
+  if (r.cover.runner_up) set("runner-up", *r.cover.runner_up);
+}
+
+}  // namespace
+
+int sensitivity_muscle(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  TerminalProgress progress = progress_of(run.options());
+  const SensitivityStudy study = read_sensitivity_study(run.study, progress);
+  progress.stage(fmt::format("computed muscle control of {} tasks", study.tasks.size()));
+  const std::vector<PreparedTask> tasks = prepare_tasks(*study.subject.system, study.tasks, progress);
+  if (progress.interrupted()) throw Interrupted();
+  const MuscleSensitivity result = analyse_sensitivity(*study.subject.system, tasks, study.options, progress);
+  if (!result.completed) throw Interrupted();
+  progress.stage("writing the results");
+  folder.write("sensitivity.csv", sensitivity_csv(result));
+  folder.write("tasks.csv", task_choice_csv(result, tasks));
+  if (!result.indices.results.empty()) folder.write("indices.csv", indices_csv(result, study.options.indices.method));
+  folder.write("report.html", report::to_html(report::sensitivity_report(study, tasks, result, program_name())));
+  const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
+  folder.publish(run.record(study.seed, study.inputs), run.options(), summary_of(folder.path(), study, result));
+  for (const std::string& warning : result.warnings) print_line(run.options(), "warning: " + warning);
+  if (!result.usable())
+    throw std::runtime_error(
+        fmt::format("none of {} tasks may be chosen; why is in {}: {}", tasks.size(), folder.path().string(), files));
+  print_result(run.options(), result);
+  print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
+  return kDone;
+}
+
+Command sensitivity_command() {
+  return {.name = "sensitivity",
+          .summary = "which muscle moves which task, and which tasks excite every muscle",
+          .arguments = {{.name = "STUDY",
+                         .help = "study file (TOML) of a musculoskeletal model; [tasks] says which tasks, "
+                                 "[sensitivity] how they are sampled and chosen",
+                         .required = true}},
+          .default_out = "out/sensitivity",
+          .example = "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm",
+          .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
+}
+
+}  // namespace veridyn::app

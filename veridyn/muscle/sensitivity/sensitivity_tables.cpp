@@ -1,0 +1,95 @@
+#include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/index.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+/// A text as a cell.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
+  return cell + "\"";
+}
+
+/// A number as a cell; empty where there is none.
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : ""; }
+
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : between) + text;
+  return all;
+}
+
+bool contains(const std::optional<TaskSet>& set, std::size_t task) {
+  return set && std::binary_search(set->tasks.begin(), set->tasks.end(), task);
+}
+
+}  // namespace
+
+std::string sensitivity_csv(const MuscleSensitivity& s) {
+  std::string text = "task,muscle,mean_nrmse,sd_nrmse,greatest_nrmse,samples,failed\n";
+  for (std::size_t t = 0; t < s.tasks.size(); ++t) {
+    for (std::size_t m = 0; m < s.muscles.size(); ++m) {
+      const auto i = signed_index(m), j = signed_index(t);
+      text += fmt::format("{},{},{},{},{},{},{}\n", quoted(s.tasks[t].name), quoted(s.muscles[m]),
+                          cell(s.sampling.mean(i, j)), cell(s.sampling.sd(i, j)), cell(s.sampling.greatest(i, j)),
+                          s.sampling.samples, s.sampling.failed(i, j));
+    }
+  }
+  return text;
+}
+
+std::string task_choice_csv(const MuscleSensitivity& s, std::span<const PreparedTask> tasks) {
+  std::string text =
+      "task,chosen,runner_up,excites,obstacle,wrap_bands,failed,tracking_error[rad],reserve_share,overloaded_windows\n";
+  for (std::size_t t = 0; t < s.tasks.size(); ++t) {
+    const TaskFinding& f = s.tasks[t];
+    std::vector<std::string> excited;
+    for (const std::size_t m : s.cover.excites[t]) excited.push_back(s.muscles[m]);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quoted(f.name), contains(s.cover.chosen, t) ? "yes" : "no",
+                        contains(s.cover.runner_up, t) ? "yes" : "no", joined(excited, " "), quoted(f.obstacle),
+                        quoted(joined(f.wrap_bands, "; ")), f.failed, cell(tasks[t].tracking_error),
+                        cell(tasks[t].reserve_share), tasks[t].overloaded);
+  }
+  return text;
+}
+
+std::string indices_csv(const MuscleSensitivity& s, IndexMethod method) {
+  const bool morris = method == IndexMethod::kMorris;
+  std::string text = morris ? "result,input,mu,mu_star,sigma\n"
+                            : "result,input,first,first_low,first_high,first_wide,total,total_low,total_high,"
+                              "total_wide\n";
+  for (const ResultIndices& r : s.indices.results) {
+    for (std::size_t i = 0; i < r.morris.size(); ++i) {
+      const numerics::MorrisEffect& e = r.morris[i];
+      text += fmt::format("{},{},{},{},{}\n", quoted(r.result), quoted(s.indices.inputs[i]), cell(e.mean),
+                          cell(e.absolute), cell(e.sd));
+    }
+    for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
+      const numerics::SensitivityIndex& x = r.variance.inputs[i];
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quoted(r.result), quoted(s.indices.inputs[i]),
+                          cell(x.first), cell(x.first_low), cell(x.first_high),
+                          wide_interval(x.first, x.first_low, x.first_high) ? "yes" : "no", cell(x.total),
+                          cell(x.total_low), cell(x.total_high),
+                          wide_interval(x.total, x.total_low, x.total_high) ? "yes" : "no");
+    }
+  }
+  return text;
+}
+
+std::string task_list(const MuscleSensitivity& s, const TaskSet& set) {
+  std::vector<std::string> names;
+  for (const std::size_t t : set.tasks)
+    names.push_back(s.tasks[t].number > 0 ? fmt::format("{}", s.tasks[t].number)
+                                          : fmt::format("\"{}\"", s.tasks[t].name));
+  return joined(names, ", ");
+}
+
+}  // namespace veridyn::muscle
