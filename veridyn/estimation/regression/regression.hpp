@@ -36,7 +36,7 @@ enum class EstimateTermination {
 /// Which covariance the error bars come from.
 enum class CovarianceKind {
   kWhite,          ///< errors uncorrelated in time; 1.6 to 3 times too small on real flight
-  kAutocorrelated  ///< OLS: Morelli & Klein (1997), residual autocorrelation; TLS family: lag-window sandwich. The
+  kAutocorrelated  ///< OLS: Morelli & Klein (1997), residual autocorrelation; TLS family: `score_covariance`. The
                    ///< default
 };
 
