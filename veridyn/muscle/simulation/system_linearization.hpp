@@ -72,6 +72,7 @@ class SystemLinearization {
   /// Derivatives that a muscle's jets give, in this order.
   enum Slot : std::size_t { kActivation, kFiber, kPath, kSpeed, kField };
   static constexpr std::size_t kSlots = kField + kEstimableFields + 1;
+  /// By slot, of one muscle.
   struct MuscleSlots {
     double activation_rate[kSlots] = {}, fiber_velocity[kSlots] = {}, force[kSlots] = {};
   };

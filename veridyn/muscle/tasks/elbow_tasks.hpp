@@ -22,6 +22,7 @@ struct ElbowTaskOptions {
   ControlOptions control = {};
 };
 
+/// How many there are.
 inline constexpr int kElbowTasks = 42;
 
 /// Movement and pose of a task by its number, 1 to 42: direction outermost (flexion 1-21, extension 22-42), then the
