@@ -70,6 +70,25 @@ TEST(IdentifyMuscles, FindsWhatIsHiddenAndPredictsUnseenTasks) {
   EXPECT_EQ(changed, 4);
 }
 
+// Swarm and pattern search against least squares on the same recording: the same person, within the noise.
+TEST(IdentifyMuscles, ThePublishedRouteEndsWhereTheGradientDoes) {
+  const std::string study = "[tasks]\nnumbers = [8, 33]\n" + kForces + "[person]\nspread = \"5 %\"\n[identify]\n";
+  const MuscleAnalysis published = recovered(1, study + "route = \"published\"\ntolerance = \"2 %\"\n");
+  const MuscleAnalysis gradient = recovered(1, study + "starts = 1\n");
+  ASSERT_EQ(published.estimate.parameters.size(), 2u);
+  EXPECT_THAT(published.estimate.method, HasSubstr("swarm"));
+  ASSERT_EQ(published.result.searches.size(), 1u);
+  EXPECT_GT(published.result.searches[0].steps, 10 * gradient.result.searches[0].steps);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const estimation::Parameter &p = published.estimate.parameters[i], &g = gradient.estimate.parameters[i];
+    EXPECT_EQ(p.status, estimation::ParameterStatus::kIdentified);
+    EXPECT_NEAR(p.sigma, g.sigma, 0.1 * g.sigma) << p.name;
+    // Another measure of fit than the likelihood, on the same noise.
+    EXPECT_LT(std::abs(p.value - g.value), 2.0 * g.sigma) << p.name;
+    EXPECT_NE(p.value, g.value);
+  }
+}
+
 TEST(IdentifyMuscles, AWrongModelIsSaidToBeWrong) {
   const MuscleAnalysis a = recovered(2, kFour + kForces + "[person]\nmuscles = \"millard\"\n[identify]\nstarts = 1\n");
   EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);

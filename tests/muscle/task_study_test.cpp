@@ -66,6 +66,12 @@ TEST(TaskStudy, MistakesAreNamedWithFileLineAndKey) {
               HasSubstr("outside the bounds"));
   EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\nstarts = 0\n"), HasSubstr("identify.starts"));
   EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\nstart = 3\n"), HasSubstr("starts"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\nroute = \"publshed\"\n"), HasSubstr("published"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\ntolerance = 0.01\n"), HasSubstr("tolerance"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\nroute = \"published\"\nevaluations = 0\n"),
+              HasSubstr("evaluations"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\n[identify]\nroute = \"published\"\nestimate_start = true\n"),
+              HasSubstr("estimate_start = false"));
   EXPECT_THAT(task_study_error("paths = \"opensim\"\n" + kTasks + "[person]\n"), HasSubstr("no derivatives"));
 }
 

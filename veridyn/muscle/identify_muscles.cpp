@@ -210,7 +210,8 @@ void fill_analysis(const TaskStudy& study, std::vector<estimation::Evidence> row
   group.judgement = estimation::judge(rows);
   group.verdict = estimation::verdict_of(group.judgement);
   a.estimate.subject = study.subject.title;
-  a.estimate.method = "output error over all tasks";
+  a.estimate.method =
+      study.published ? "particle swarm, then pattern search over all tasks" : "output error over all tasks";
   a.estimate.evidence = std::move(rows);
   a.estimate.judgement = group.judgement;
   a.predictions = predictions_of(a);
@@ -271,6 +272,22 @@ void judge_parameters(const TaskStudy& study, MuscleAnalysis& a) {
   a.identified = estimation::usable(group.verdict) ? with_values(study, a.estimate.parameters) : study.subject.written;
 }
 
+/// By the route that the study asks for.
+TaskEstimate estimated(const TaskStudy& study, const MuscleParametricModel& model,
+                       const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise, Progress& progress) {
+  if (!study.published) return estimate_from_tasks(model, measured, noise, study.search, progress);
+  const PublishedRouteResult found = published_route(model, measured, *study.published, progress);
+  if (found.theta.size() == 0 || progress.interrupted()) {
+    TaskEstimate none;
+    none.best.message = found.message();
+    return none;
+  }
+  TaskSearch search{.steps = static_cast<int>(found.evaluations), .message = found.message()};
+  TaskEstimate estimate = describe_estimate(model, measured, noise, found.theta, std::move(search), progress);
+  estimate.seconds = found.seconds;
+  return estimate;
+}
+
 /// Why no search came to an end, with the first task's time and state.
 std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEstimate& e) {
   std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
@@ -304,7 +321,7 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
   a.outputs.assign(model.outputs().begin(), model.outputs().end());
   const Eigen::VectorXd noise = model.output_noise();
   progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
-  a.result = estimate_from_tasks(model, trained.measured, noise, study.search, progress);
+  a.result = estimated(study, model, trained.measured, noise, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));

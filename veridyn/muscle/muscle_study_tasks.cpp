@@ -230,7 +230,7 @@ Task read_task(const StudyTable& table, const MuscleStudy& subject, const Shared
   const Model& model = subject.system->model();
   read_desired_file(table, model, task, out);
   read_held(table.table_or_empty("held"), subject, task);
-  if (task.held.size() > 0) {
+  if (!task.held.empty()) {
     std::vector<int> free(subject.system->reduction().free().begin(), subject.system->reduction().free().end());
     for (const HeldCoordinate& held : task.held) std::erase(free, held.coordinate);
     if (free.empty()) table.fail("held", "holds every coordinate that could move");

@@ -79,6 +79,19 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
   return person;
 }
 
+void read_published_route(const StudyTable& table, TaskStudy& study) {
+  PublishedRouteOptions route{.tolerance = table.positive_or("tolerance", "1", 0.01)};
+  route.swarm.seed = route.pattern.seed = study.seed;
+  const long long most = table.integer_or("evaluations", 20000);
+  if (most < 1) table.fail("evaluations", fmt::format("= {} must be at least 1", most));
+  route.evaluation.max_evaluations = static_cast<std::size_t>(most);
+  if (table.has("log")) route.evaluation.log = table.file("log");
+  if (study.estimate_start)
+    table.fail("route",
+               "= \"published\" does not find where motions begin: estimate_start = false, or the gradient route");
+  study.published = std::move(route);
+}
+
 void read_search(const StudyTable& table, TaskStudy& study) {
   study.search.starts = static_cast<int>(std::clamp(table.integer_or("starts", study.search.starts), 0LL, 1000000LL));
   study.search.screened = static_cast<int>(
@@ -92,6 +105,8 @@ void read_search(const StudyTable& table, TaskStudy& study) {
   }
   study.search.seed = study.seed;
   study.estimate_start = table.flag_or("estimate_start", !study.person);
+  const std::vector<std::string> routes = {"gradient", "published"};
+  if (table.choice_or("route", routes, "gradient") == "published") read_published_route(table, study);
 }
 
 }  // namespace

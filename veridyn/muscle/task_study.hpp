@@ -8,6 +8,7 @@
 
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/identification/muscle_unknowns.hpp"
+#include "veridyn/muscle/identification/published_route.hpp"
 #include "veridyn/muscle/identification/task_estimate.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/muscle/muscle_study_tasks.hpp"
@@ -31,6 +32,7 @@ struct TaskStudy {
   std::vector<MuscleUnknown> unknowns;  ///< each with a prior: its own, or that of its bounds
   std::vector<MuscleOutput> outputs;
   std::optional<SimulatedPerson> person;
+  std::optional<PublishedRouteOptions> published;  ///< the published search in place of `search`
   TaskEstimateOptions search;
   bool estimate_start = false;  ///< pose and speed where each task begins are unknown too
   std::uint64_t seed = 1;
@@ -53,7 +55,12 @@ struct TaskStudy {
 ///     [person.parameters]            # hidden values of single unknowns, by the unknown's name
 ///     "BRA.max_isometric_force" = 1000
 ///     [identify]
-///     starts = 3                     # searches
+///     route = "gradient"             # least squares with exact sensitivities; "published": particle swarm until every
+///                                    # task holds the tolerance, then pattern search, values only
+///     tolerance = "1 %"              # published: greatest NRMSE of a task
+///     evaluations = 20000            # published: at most, each of all tasks
+///     log = "search.csv"             # published: every evaluation; a log that is there is continued
+///     starts = 3                     # gradient: searches
 ///     screened = 16                  # points whose fit is looked at to choose where they begin
 ///     estimate_start = true          # pose and speed at the beginning too; true when left out with recordings
 ///

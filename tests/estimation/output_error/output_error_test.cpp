@@ -60,6 +60,24 @@ TEST(OutputError, IsOrdinaryLeastSquaresOnAStaticModel) {
   EXPECT_NEAR(oe.degrees_of_freedom, ols.degrees_of_freedom, 1e-9);
 }
 
+// Without a step: the information at a place that another search found.
+TEST(OutputError, WithoutStepsSaysWhatTheDataSayWhereItBegins) {
+  std::mt19937_64 generator(4);
+  RowMatrix X(200, 2);
+  X.col(0).setOnes();
+  X.col(1) = coloured_noise(generator, 200, 0.5);
+  const VectorXd z = X * Eigen::Vector2d(0.3, -1.2) + 0.1 * coloured_noise(generator, 200, 0.0);
+  const Static model({{X}});
+  OutputErrorOptions options{
+      .noise = OutputNoise::kGiven, .noise_start = VectorXd::Constant(1, 0.1), .max_relaxations = 1, .max_steps = 0};
+  options.search_start = Eigen::Vector2d(0.4, -1.0);
+  const OutputErrorEstimate there = output_error(model, {z}, options);
+  ASSERT_TRUE(there.usable()) << there.message;
+  EXPECT_EQ(there.theta, options.search_start);
+  const Eigen::MatrixXd expected = 0.01 * Eigen::MatrixXd(X.transpose() * X).inverse();
+  EXPECT_LT((there.covariance_white - expected).norm(), 1e-9 * expected.norm());
+}
+
 TEST(OutputError, UnknownsOfASegmentAreEliminatedAsTheirColumnsWouldBe) {
   // A bias per segment is a column of ones there: OLS with those columns, coloured error bars included.
   std::mt19937_64 generator(14);

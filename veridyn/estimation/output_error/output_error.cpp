@@ -446,7 +446,7 @@ void OutputErrorOptions::validate(const ParametricModel& model) const {
   };
   require(significance > 0.0 && significance < 1.0, "significance", significance, "in (0, 1)");
   require(max_relaxations >= 1, "max_relaxations", max_relaxations, ">= 1");
-  require(max_steps >= 1, "max_steps", max_steps, ">= 1");
+  require(max_steps >= 0, "max_steps", max_steps, ">= 0");
   require(tolerance > 0.0, "tolerance", tolerance, "> 0");
   require(identifiable > 0.0 && identifiable < 1.0, "identifiable", identifiable, "in (0, 1)");
   require(max_lag >= 0, "max_lag", static_cast<double>(max_lag), ">= 0");

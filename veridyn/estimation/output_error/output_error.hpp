@@ -44,8 +44,8 @@ struct OutputErrorOptions {
   std::vector<std::string> output_biases = {};  ///< outputs with a constant bias per segment, estimated
   double significance = 0.05;                   ///< two-sided level of the t-tests
   int max_relaxations = 30;                     ///< alternations between parameters and R
-  int max_steps = 50;                           ///< Levenberg-Marquardt steps per relaxation
-  double tolerance = 1e-3;                      ///< of a relaxation's parameter change [sigma]
+  int max_steps = 50;       ///< Levenberg-Marquardt steps per relaxation; 0: what the data say where the search begins
+  double tolerance = 1e-3;  ///< of a relaxation's parameter change [sigma]
   /// A combination of parameters whose sensitivity is below this share of the largest one's (columns of the information
   /// matrix's root scaled to unit length) is reported as not identifiable.
   double identifiable = 1e-6;

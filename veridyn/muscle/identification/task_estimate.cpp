@@ -50,6 +50,23 @@ class TaskEstimation {
     return std::move(result_);
   }
 
+  TaskEstimate describe_at(const Eigen::VectorXd& theta, TaskSearch search) {
+    search.rms_start = residual(own_values());
+    search.agrees = true;
+    OutputErrorOptions o = options_of(theta);
+    if (noise_.size() > 0) {
+      o.noise = estimation::OutputNoise::kGiven;
+      o.noise_start = noise_;
+    }
+    o.max_relaxations = 1;
+    o.max_steps = 0;
+    result_.best = estimation::output_error(model_, measured_, o, quiet_);
+    search.cost = result_.usable() ? cost(result_.best) : kNaN;
+    if (result_.usable()) describe();
+    result_.searches = {std::move(search)};
+    return std::move(result_);
+  }
+
  private:
   /// Root mean square of the residual, each output in units of its noise (or of its own size); NaN: diverged.
   [[nodiscard]] double residual(const Eigen::VectorXd& theta) const {
@@ -405,6 +422,13 @@ TaskEstimate estimate_from_tasks(const MuscleParametricModel& model, const std::
                                  const Eigen::VectorXd& noise, const TaskEstimateOptions& options, Progress& progress) {
   options.validate();
   return TaskEstimation(model, measured, noise, options, progress).run();
+}
+
+TaskEstimate describe_estimate(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+                               const Eigen::VectorXd& noise, const Eigen::VectorXd& theta, TaskSearch search,
+                               Progress& progress) {
+  const TaskEstimateOptions options;
+  return TaskEstimation(model, measured, noise, options, progress).describe_at(theta, std::move(search));
 }
 
 }  // namespace veridyn::muscle

@@ -75,4 +75,11 @@ struct TaskEstimate {
                                                const Eigen::VectorXd& noise, const TaskEstimateOptions& options,
                                                Progress& progress);
 
+/// What the tasks say where another search ended: `theta` with its intervals, words and null directions. `search` says
+/// how it was found.
+[[nodiscard]] TaskEstimate describe_estimate(const MuscleParametricModel& model,
+                                             const std::vector<estimation::RowMatrix>& measured,
+                                             const Eigen::VectorXd& noise, const Eigen::VectorXd& theta,
+                                             TaskSearch search, Progress& progress);
+
 }  // namespace veridyn::muscle

@@ -141,7 +141,7 @@ Evidence check_searches(const TaskFindings& f) {
   if (finished < 2) {
     row.outcome = Outcome::kNotVerified;
     row.text = "one search finished, so that another minimum was not looked for";
-    row.advice = "identify.starts = 3";
+    row.advice = "identify.route = \"gradient\" with identify.starts = 3";
   } else if (f.estimate.ambiguous) {
     row.outcome = Outcome::kCare;
     row.text = "another search ends at other values with as good a fit: the data have more than one explanation";
