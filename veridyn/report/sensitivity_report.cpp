@@ -163,9 +163,12 @@ Table morris_table(const MuscleSensitivity& s, const ResultIndices& r) {
 
 Section index_section(const SensitivityStudy& study, const MuscleSensitivity& s) {
   Section section{.title = "Indices of the chosen tasks", .id = "indices"};
+  const bool shares = std::ranges::any_of(s.indices.results, [](const auto& r) { return !r.variance.inputs.empty(); });
   section.blocks.emplace_back(Paragraph{
-      .text = "All inputs vary between their bounds at once. First order: what is gone of the variance when the input "
-              "is known. Total order: what is left when only it is not. What lies between is interaction.",
+      .text = shares
+                  ? "All inputs vary between their bounds at once. First order: what is gone of the variance when the "
+                    "input is known. Total order: what is left when only it is not. What lies between is interaction."
+                  : "Inputs vary between their bounds, one after the other, from points all over them (Morris).",
       .tone = Tone::kNote});
   for (const ResultIndices& r : s.indices.results) {
     if (!r.variance.inputs.empty()) section.blocks.emplace_back(index_plot(s, r, study.options.indices.variance.level));
