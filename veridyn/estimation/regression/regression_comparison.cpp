@@ -96,13 +96,15 @@ struct OtherReading {
   Evidence check;                        ///< whether that matters
 };
 
-OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate) {
+/// `raised` is W with equation error.
+OtherReading read_otherwise(const internal::RegressionAnalysis& analysis, const RegressionEstimate& candidate,
+                            const Eigen::MatrixXd& raised) {
   const Eigen::MatrixXd& W = analysis.data().error_covariance;
   OtherReading out;
   out.too_large = candidate.error_scale > 1.0;
   out.theta = analysis.theta_under(
-      candidate.method, out.too_large ? with_equation_error(analysis.triangle(), W, analysis.rows())
-                                      : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
+      candidate.method,
+      out.too_large ? raised : with_smaller_regressor_errors(analysis.triangle(), W, analysis.rows()));
   out.moved = out.theta ? distance(candidate, candidate.theta, *out.theta) : Distance{kInfinity, ""};
   const Distance& moved = out.moved;
   out.check = {.name = "sensitivity to the error ratio",
@@ -215,11 +217,9 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
   if (!data.regressand_error_known && candidate.error_scale > 1.0)
     scale.outcome = Outcome::kPassed;  // only rounding above 1: the excess is in W already
   result.checks.push_back(scale);
-  const TotalLeastSquares raised = total_least_squares(
-      analysis.triangle(), with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows()),
-      analysis.rows());
-  if (raised.solved) result.theta_with_equation_error = raised.theta;
-  const OtherReading other = read_otherwise(analysis, candidate);
+  const Eigen::MatrixXd raised = with_equation_error(analysis.triangle(), data.error_covariance, analysis.rows());
+  if (const auto theta = analysis.theta_under(Method::kGtls, raised)) result.theta_with_equation_error = *theta;
+  const OtherReading other = read_otherwise(analysis, candidate, raised);
   result.checks.push_back(other.check);
 
   if (scale.passed()) {
