@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
+#include "veridyn/io/tables/csv_text.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_task_report.hpp"
 
@@ -17,21 +16,12 @@ namespace {
 
 using namespace veridyn::muscle;
 
-std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : std::string(); }
-
-/// A name with a comma, as those of the elbow tasks, in quotes.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
-
 std::string tasks_csv(const MuscleAnalysis& analysis) {
   std::string text = "task,use,nrmse_before,nrmse_after,rmse_before,rmse_after,range,reserve_share\n";
   for (const TaskOutcome& t : analysis.tasks) {
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(t.name), t.hold_out ? "unseen" : "trained",
-                        number_text(t.before.nrmse), number_text(t.after.nrmse), number_text(t.before.rmse),
-                        number_text(t.after.rmse), number_text(t.before.range), number_text(t.reserve_share));
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", io::csv_text(t.name), t.hold_out ? "unseen" : "trained",
+                        io::csv_number(t.before.nrmse), io::csv_number(t.after.nrmse), io::csv_number(t.before.rmse),
+                        io::csv_number(t.after.rmse), io::csv_number(t.before.range), io::csv_number(t.reserve_share));
   }
   return text;
 }

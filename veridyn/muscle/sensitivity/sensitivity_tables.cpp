@@ -6,20 +6,10 @@
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/io/tables/csv_text.hpp"
 
 namespace veridyn::muscle {
 namespace {
-
-/// A text as a cell.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
-  return cell + "\"";
-}
-
-/// A number as a cell; empty where there is none.
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : ""; }
 
 std::string joined(const std::vector<std::string>& texts, const char* between) {
   std::string all;
@@ -38,9 +28,9 @@ std::string sensitivity_csv(const MuscleSensitivity& s) {
   for (std::size_t t = 0; t < s.tasks.size(); ++t) {
     for (std::size_t m = 0; m < s.muscles.size(); ++m) {
       const auto i = signed_index(m), j = signed_index(t);
-      text += fmt::format("{},{},{},{},{},{},{}\n", quoted(s.tasks[t].name), quoted(s.muscles[m]),
-                          cell(s.sampling.mean(i, j)), cell(s.sampling.sd(i, j)), cell(s.sampling.greatest(i, j)),
-                          s.sampling.samples, s.sampling.failed(i, j));
+      text += fmt::format("{},{},{},{},{},{},{}\n", io::csv_text(s.tasks[t].name), io::csv_text(s.muscles[m]),
+                          io::csv_number(s.sampling.mean(i, j)), io::csv_number(s.sampling.sd(i, j)),
+                          io::csv_number(s.sampling.greatest(i, j)), s.sampling.samples, s.sampling.failed(i, j));
     }
   }
   return text;
@@ -53,10 +43,11 @@ std::string task_choice_csv(const MuscleSensitivity& s, std::span<const Prepared
     const TaskFinding& f = s.tasks[t];
     std::vector<std::string> excited;
     for (const std::size_t m : s.cover.excites[t]) excited.push_back(s.muscles[m]);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quoted(f.name), contains(s.cover.chosen, t) ? "yes" : "no",
-                        contains(s.cover.runner_up, t) ? "yes" : "no", joined(excited, " "), quoted(f.obstacle),
-                        quoted(joined(f.wrap_bands, "; ")), f.failed, cell(tasks[t].tracking_error),
-                        cell(tasks[t].reserve_share), tasks[t].overloaded);
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", io::csv_text(f.name), contains(s.cover.chosen, t) ? "yes" : "no",
+                    contains(s.cover.runner_up, t) ? "yes" : "no", joined(excited, " "), io::csv_text(f.obstacle),
+                    io::csv_text(joined(f.wrap_bands, "; ")), f.failed, io::csv_number(tasks[t].tracking_error),
+                    io::csv_number(tasks[t].reserve_share), tasks[t].overloaded);
   }
   return text;
 }
@@ -69,15 +60,15 @@ std::string indices_csv(const MuscleSensitivity& s, IndexMethod method) {
   for (const ResultIndices& r : s.indices.results) {
     for (std::size_t i = 0; i < r.morris.size(); ++i) {
       const numerics::MorrisEffect& e = r.morris[i];
-      text += fmt::format("{},{},{},{},{}\n", quoted(r.result), quoted(s.indices.inputs[i]), cell(e.mean),
-                          cell(e.absolute), cell(e.sd));
+      text += fmt::format("{},{},{},{},{}\n", io::csv_text(r.result), io::csv_text(s.indices.inputs[i]),
+                          io::csv_number(e.mean), io::csv_number(e.absolute), io::csv_number(e.sd));
     }
     for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
       const numerics::SensitivityIndex& x = r.variance.inputs[i];
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quoted(r.result), quoted(s.indices.inputs[i]),
-                          cell(x.first), cell(x.first_low), cell(x.first_high),
-                          wide_interval(x.first, x.first_low, x.first_high) ? "yes" : "no", cell(x.total),
-                          cell(x.total_low), cell(x.total_high),
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", io::csv_text(r.result), io::csv_text(s.indices.inputs[i]),
+                          io::csv_number(x.first), io::csv_number(x.first_low), io::csv_number(x.first_high),
+                          wide_interval(x.first, x.first_low, x.first_high) ? "yes" : "no", io::csv_number(x.total),
+                          io::csv_number(x.total_low), io::csv_number(x.total_high),
                           wide_interval(x.total, x.total_low, x.total_high) ? "yes" : "no");
     }
   }
