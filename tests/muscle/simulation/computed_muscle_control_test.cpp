@@ -16,7 +16,7 @@
 namespace veridyn::muscle {
 namespace {
 
-#define SKIP_WITHOUT_REFERENCE()                                                      \
+#define SKIP_WITHOUT_OPENSIMS_CONTROLS()                                              \
   if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
   GTEST_SKIP() << "OpenSim's results of ../shared/reference are not here"
 
@@ -72,7 +72,7 @@ TEST(ComputedMuscleControl, MissingCoordinatesAndSenselessOptionsAreNamed) {
 }
 
 TEST(ComputedMuscleControl, FindsOpenSimsActivationsAndTracksCloser) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_OPENSIMS_CONTROLS();
   const test::ReferenceTable table = test::read_reference("opensim/d_arm26_cmc.csv");
   const MusculoskeletalSystem system(read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"));
   const Motion motion =

@@ -42,13 +42,12 @@ class DrivenIntegration : public ::testing::Test {
     const Drive drive = step_at_33_ms();
     DriveState signals(drive, 6, 2);
     signals.begin_piece(0.0);
-    numerics::DormandPrince<double> stepper(x.size());
+    SystemStepper stepper(system, {.tolerance = 1e-6});
     double t = 0.0;
-    end = integrate_driven(evaluator, system.scales(), signals, stepper, t, x.data(), 0.1, {.tolerance = 1e-6},
-                           [&](double, double to) {
-                             ends.push_back(to);
-                             return to < stop;
-                           });
+    end = integrate_driven(evaluator, signals, stepper, t, x.data(), 0.1, [&](double, double to) {
+      ends.push_back(to);
+      return to < stop;
+    });
     reached = t;
     return ends;
   }

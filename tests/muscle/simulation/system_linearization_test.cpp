@@ -56,7 +56,7 @@ void expect_those_of_jets(const MusculoskeletalSystem& system, double tolerance)
   std::vector<double> rate(n), expected_rate(n), S(n * columns, 0.0), S_rate(n * columns, 0.0);
   for (std::size_t i = 0; i < n; ++i) S[i * columns + i] = 1.0;
   ASSERT_TRUE(linearization.derivative(x.data(), {u, {}}, rate.data()));
-  linearization.tangent_rate(S.data(), S_rate.data());
+  linearization.tangent_rate(0.0, S.data(), S_rate.data());
   ASSERT_TRUE(plain.derivative(x.data(), {u, {}}, expected_rate.data()));
   for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(rate[i], expected_rate[i], 1e-8 * (1.0 + std::abs(expected_rate[i])));
 

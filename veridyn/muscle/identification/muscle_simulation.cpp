@@ -8,12 +8,10 @@
 #include "veridyn/muscle/identification/shaped_drive.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/muscle/simulation/system_linearization.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/muscle/simulation/system_stepper.hpp"
 
 namespace veridyn::muscle::internal {
 namespace {
-
-using DoubleStepper = numerics::DormandPrince<double>;
 
 /// Muscles and excitations at theta.
 struct TaskParameters {
@@ -77,9 +75,8 @@ const double* start_activation(const MuscleTask& task, ShapedDrive& drive) {
 
 /// Integrates from the first sample to the last; `on_jump(t)` is called where held signals have jumped.
 template <typename Derivative, typename OnStep, typename OnJump>
-bool integrate(const MuscleTask& task, ShapedDrive& drive, DoubleStepper& stepper, const Derivative& derivative,
+bool integrate(const MuscleTask& task, ShapedDrive& drive, SystemStepper& stepper, const Derivative& derivative,
                double* x, const OnStep& on_step, const OnJump& on_jump) {
-  const numerics::StepControl control = step_control(task.accuracy);
   double t = task.segment->time.front();
   const double end = task.segment->time.back();
   while (t < end) {
@@ -87,7 +84,7 @@ bool integrate(const MuscleTask& task, ShapedDrive& drive, DoubleStepper& steppe
       on_step(to);
       return true;
     };
-    if (stepper.advance(derivative, t, x, std::min(end, drive.piece_end(t)), task.system->scales(), control, step) !=
+    if (stepper.advance(derivative, t, x, std::min(end, drive.piece_end(t)), step) !=
         numerics::IntegrationEnd::kReached)
       return false;
     if (!(t < end)) break;
@@ -161,13 +158,16 @@ class TangentSimulation {
         forcings_(forcings_of(task, active)),
         linearization_(system_, parameters.muscles, forcings_.list, columns_),
         drive_(task.segment->drive, system_.coordinates(), std::move(parameters.gain), std::move(parameters.delay)),
-        stepper_(size_, columns_),
+        stepper_(system_, step_control(task.accuracy), columns_),
         x_(size_ * (1 + columns_), 0.0),
         between_(x_.size()),
         rate_(size_),
         simple_outputs_(states_suffice(task.outputs)),
         response_(response) {
     set_start(task, theta, x_);
+    for (const MuscleParameterName& name : forcings_.of) {
+      if (name.field == MuscleParameterName::kDelay) drive_.split_at_samples(at(name.muscle));
+    }
     for (std::size_t j = 0; j < columns_; ++j) {
       const std::size_t i = at(active[j]);
       if (i >= task.unknowns.size()) x_[size_ + (i - task.unknowns.size()) * columns_ + j] = 1.0;
@@ -183,9 +183,9 @@ class TangentSimulation {
                                  x_.data(), x_.data() + size_);
     if (!write(begin, x_.data())) return false;
     bool good = true;
-    const auto derivative = [&](double t, const double* x, double* rate) {
-      if (!linearization_.derivative(x, inputs(t), rate)) return false;
-      linearization_.tangent_rate(x + size_, rate + size_);
+    const auto derivative = [&](double t, double step, double* x, double* rate) {
+      if (!linearization_.stage(step, x, inputs(t), rate)) return false;
+      linearization_.tangent_rate(step, x + size_, rate + size_);
       return true;
     };
     const auto on_step = [&](double to) {
@@ -283,7 +283,7 @@ class TangentSimulation {
   Forcings forcings_;
   SystemLinearization linearization_;
   ShapedDrive drive_;
-  DoubleStepper stepper_;
+  SystemStepper stepper_;
   std::vector<double> x_, between_, rate_, last_excitation_;
   bool simple_outputs_;
   estimation::ModelResponse& response_;
@@ -338,9 +338,9 @@ bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estim
     ++row;
   };
   write(time.front(), x.data());
-  DoubleStepper stepper(layout.size);
-  const auto derivative = [&](double t, const double* state, double* out) {
-    return evaluator.derivative(state, drive.at(t), out);
+  SystemStepper stepper(system, step_control(task.accuracy));
+  const auto derivative = [&](double t, double step, double* state, double* out) {
+    return evaluator.stage(step, state, drive.at(t), out);
   };
   const auto on_step = [&](double to) {
     while (row < time.size() && time[row] <= to) {

@@ -22,11 +22,15 @@ class ShapedDrive {
         delay_(std::move(delay)),
         sample_(gain_.size(), 0),
         changed_(gain_.size(), 0),
+        split_(gain_.size(), 0),
         excitation_(gain_.size()),
         raw_(gain_.size()),
         slope_(gain_.size()),
         reserve_(drive.reserve.size() > 0 ? coordinates : 0) {}
 
+  /// Pieces end at the samples of this muscle's excitation also when it is not held: its derivative by the delay jumps
+  /// there.
+  void split_at_samples(std::size_t muscle) { split_[muscle] = 1; }
   /// A piece begins at `time`: held signals take their values there. Times must not decrease.
   void begin_piece(double time) {
     const std::span<const double> times = drive_->excitation.times();
@@ -38,12 +42,16 @@ class ShapedDrive {
     }
     if (!reserve_.empty()) drive_->reserve.evaluate(time, reserve_.data());
   }
-  /// The first instant after the piece's beginning at which a held signal jumps; infinite when there is none.
+  /// The first instant after the piece's beginning at which a held signal jumps, or another is to be split; infinite
+  /// when there is none.
   [[nodiscard]] double piece_end(double begin) const {
     double end = kInfinity;
     const std::span<const double> times = drive_->excitation.times();
-    for (std::size_t m = 0; m < gain_.size() && held(); ++m) {
-      if (sample_[m] + 1 < times.size()) end = std::min(end, times[sample_[m] + 1] + delay_[m]);
+    for (std::size_t m = 0; m < gain_.size(); ++m) {
+      if (!held() && split_[m] == 0) continue;
+      std::size_t next = sample_[m] + 1;
+      while (next < times.size() && times[next] + delay_[m] <= begin) ++next;
+      if (next < times.size()) end = std::min(end, times[next] + delay_[m]);
     }
     if (!reserve_.empty() && drive_->reserve.interpolation() == Interpolation::kHold)
       end = std::min(end, drive_->reserve.next_break(begin));
@@ -83,7 +91,7 @@ class ShapedDrive {
   const Drive* drive_;
   std::vector<double> gain_, delay_;
   std::vector<std::size_t> sample_;
-  std::vector<char> changed_;
+  std::vector<char> changed_, split_;
   std::vector<double> excitation_, raw_, slope_, reserve_;
 };
 

@@ -10,7 +10,7 @@
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/simulation/muscle_window.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/muscle/simulation/system_stepper.hpp"
 #include "veridyn/numerics/separable_qp.hpp"
 
 namespace veridyn::muscle {
@@ -41,7 +41,7 @@ class Controller {
         evaluator_(system),
         ahead_(system),
         window_(system.muscles()),
-        stepper_(system.layout().size),
+        stepper_(system, {.tolerance = options.accuracy, .smallest_step = 1e-12 * (options.end - options.begin)}),
         qp_(signed_index(desired_.size()), signed_index(system.muscles().size() + desired_.size())),
         muscles_(system.muscles().size()),
         low_(muscles_, options.min_control),
@@ -135,7 +135,7 @@ class Controller {
   ControlOptions options_;
   SystemEvaluator<double> evaluator_, ahead_;
   MuscleWindow window_;
-  numerics::DormandPrince<double> stepper_;
+  SystemStepper stepper_;
   numerics::SeparableQp qp_;
   std::size_t muscles_;
   double reserve_optimal_ = 1.0;
@@ -236,8 +236,6 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
 
   const auto windows = static_cast<std::size_t>(std::ceil((options_.end - options_.begin) / options_.window - 1e-9));
   std::vector<double> times, excitations, reserves;
-  const numerics::StepControl control{.tolerance = options_.accuracy,
-                                      .smallest_step = 1e-12 * (options_.end - options_.begin)};
   double t = options_.begin;
   for (std::size_t w = 0; w < windows; ++w) {
     const double end = std::min(options_.end, options_.begin + static_cast<double>(w + 1) * options_.window);
@@ -253,12 +251,12 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
     times.push_back(t);
     excitations.insert(excitations.end(), excitation_.begin(), excitation_.end());
     reserves.insert(reserves.end(), reserve_.begin(), reserve_.end());
-    const auto derivative = [&](double, const double* state, double* rate) {
-      return evaluator_.derivative(state, {excitation_, reserve_}, rate);
+    const auto derivative = [&](double, double step, double* state, double* rate) {
+      return evaluator_.stage(step, state, {excitation_, reserve_}, rate);
     };
     stepper_.restart(true);
-    if (stepper_.advance(derivative, t, x.data(), end, system_.scales(), control,
-                         [](double, double) { return true; }) != numerics::IntegrationEnd::kReached) {
+    if (stepper_.advance(derivative, t, x.data(), end, [](double, double) { return true; }) !=
+        numerics::IntegrationEnd::kReached) {
       break;
     }
     if (!progress.update(static_cast<double>(w + 1) / static_cast<double>(windows))) {

@@ -6,7 +6,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/muscle/simulation/system_stepper.hpp"
 
 namespace veridyn::muscle {
 
@@ -47,24 +47,8 @@ class DriveState {
 /// signals jump; `signals.begin_piece(t)` was called before. After each step `on_step(begin, end)` is called, which may
 /// interpolate states by the stepper and returns false to stop.
 /// @returns kReached also when `on_step` stopped it; then t < end.
-template <typename Scalar, typename OnStep>
-numerics::IntegrationEnd integrate_driven(SystemEvaluator<Scalar>& evaluator, std::span<const double> scales,
-                                          DriveState& signals, numerics::DormandPrince<Scalar>& stepper, double& t,
-                                          Scalar* x, double end, const numerics::StepControl& control,
-                                          const OnStep& on_step) {
-  const auto derivative = [&](double time, const Scalar* state, Scalar* rate) {
-    return evaluator.derivative(state, signals.at(time), rate);
-  };
-  bool go_on = true;
-  while (t < end && go_on) {
-    const numerics::IntegrationEnd piece =
-        stepper.advance(derivative, t, x, std::min(end, signals.piece_end(t)), scales, control,
-                        [&](double from, double to) { return go_on = on_step(from, to); });
-    if (piece != numerics::IntegrationEnd::kReached) return piece;
-    signals.begin_piece(t);
-    stepper.restart(true);
-  }
-  return numerics::IntegrationEnd::kReached;
-}
+numerics::IntegrationEnd integrate_driven(SystemEvaluator<double>& evaluator, DriveState& signals,
+                                          SystemStepper& stepper, double& t, double* x, double end,
+                                          const SystemStepper::OnStep& on_step);
 
 }  // namespace veridyn::muscle

@@ -12,8 +12,6 @@
 namespace veridyn::muscle {
 namespace {
 
-using Stepper = numerics::DormandPrince<double>;
-
 /// View of a system, which must outlive it: collects rows and events of its trajectory while the integrator advances.
 class Recorder {
  public:
@@ -40,7 +38,7 @@ class Recorder {
   }
 
   /// After an accepted step, at whose end `evaluator` was evaluated last.
-  void step(const Stepper& stepper, const SystemEvaluator<double>& evaluator, DriveState& drive, double begin,
+  void step(const SystemStepper& stepper, const SystemEvaluator<double>& evaluator, DriveState& drive, double begin,
             double end) {
     if (rate_Hz_ > 0.0) {
       while (t_.time.size() <= last_row_) {
@@ -81,7 +79,7 @@ class Recorder {
   }
 
  private:
-  void evaluate_between(const Stepper& stepper, double time, const SystemInputs& inputs) {
+  void evaluate_between(const SystemStepper& stepper, double time, const SystemInputs& inputs) {
     stepper.interpolate(time, state_.data());
     static_cast<void>(between_.derivative(state_.data(), inputs, rate_.data()));
   }
@@ -123,7 +121,7 @@ class Recorder {
   }
 
   /// Bisection on the integrator's interpolant.
-  void locate(const Stepper& stepper, DriveState& drive, std::size_t k, double begin, double end) {
+  void locate(const SystemStepper& stepper, DriveState& drive, std::size_t k, double begin, double end) {
     constexpr std::size_t kMostEvents = 10000;
     if (t_.events.size() >= kMostEvents) return;
     double a = begin, b = end;
@@ -265,9 +263,9 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   SimulationEnd stopped = SimulationEnd::kCompleted;
   double shown = options.begin;
   double t = options.begin;
-  Stepper stepper(layout.size);
-  const numerics::IntegrationEnd end = integrate_driven(
-      evaluator, system.scales(), signals, stepper, t, x.data(), options.end, control, [&](double from, double to) {
+  SystemStepper stepper(system, control);
+  const numerics::IntegrationEnd end =
+      integrate_driven(evaluator, signals, stepper, t, x.data(), options.end, [&](double from, double to) {
         recorder.step(stepper, evaluator, signals, from, to);
         for (std::size_t i = 0; i < layout.free; ++i) {
           if (std::abs(evaluator.q()[system.reduction().free()[i]]) > kFarAway) stopped = SimulationEnd::kDiverged;

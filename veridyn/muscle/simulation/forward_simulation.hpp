@@ -72,7 +72,7 @@ struct Drive {
   ControlSignals reserve;
 };
 
-/// Integrates the system from `start`, with the error-controlled Dormand-Prince method. Instants at which held signals
+/// Integrates the system from `start`, with error control (`SystemStepper`). Instants at which held signals
 /// jump are ends of steps. Slack tendons and shortest fibres are located as events. Never throws on a
 /// diverging simulation and always ends: the result says how.
 /// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.

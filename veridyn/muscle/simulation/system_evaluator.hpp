@@ -1,8 +1,10 @@
 #pragma once
 
+#include <concepts>
 #include <span>
 #include <vector>
 
+#include "veridyn/muscle/actuator/fiber_solver.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
@@ -30,6 +32,11 @@ class SystemEvaluator {
 
   /// x' for the state x. False when the mass matrix is singular.
   [[nodiscard]] bool derivative(const Scalar* x, const SystemInputs& inputs, Scalar* rate);
+  /// The same for a stage of a step that is implicit in the fibre lengths: in x they hold their base and become the
+  /// solutions of l = base + step l'(x), to which `rate` belongs. False also when there is none. With `step` 0 as
+  /// `derivative`.
+  [[nodiscard]] bool stage(double step, double* x, const SystemInputs& inputs,
+                           double* rate) requires std::same_as<Scalar, double>;
 
   /// Positions and speeds, path lengths, speeds and gradients for free coordinates z; muscles are not evaluated.
   void set_motion(const Scalar* z, const Scalar* zdot);
@@ -59,6 +66,10 @@ class SystemEvaluator {
  private:
   static MuscleGroup<Scalar> same_muscles(const MusculoskeletalSystem& system);
   void update_paths();
+  /// Inputs and states of the muscles from x, whose motion is set.
+  void read_muscles(const Scalar* x, const SystemInputs& inputs);
+  /// x' from the muscles' rates and forces.
+  [[nodiscard]] bool write_rates(const Scalar* x, const SystemInputs& inputs, Scalar* rate);
 
   const MusculoskeletalSystem* system_;
   MuscleGroup<Scalar> muscles_;
@@ -70,6 +81,7 @@ class SystemEvaluator {
   std::vector<Scalar> tau_;
   std::vector<Scalar> length_, speed_, gradient_;
   std::vector<Scalar> excitation_, activation_, fiber_, activation_rate_, fiber_velocity_, force_;
+  FiberSolver fiber_solver_;
   long evaluations_ = 0;
   bool beyond_fit_ = false;
 };

@@ -40,7 +40,8 @@ SystemEvaluator<Scalar>::SystemEvaluator(const MusculoskeletalSystem& system, Mu
       fiber_(muscles_.size()),
       activation_rate_(muscles_.size()),
       fiber_velocity_(muscles_.size()),
-      force_(muscles_.size()) {
+      force_(muscles_.size()),
+      fiber_solver_(muscles_.size()) {
   for (const DrivenMotion<double>& motion : system.reduction().default_motion()) {
     driven_.push_back({Scalar(motion.value), Scalar(0.0), Scalar(0.0)});
   }
@@ -86,17 +87,18 @@ void SystemEvaluator<Scalar>::set_all(const Scalar* q, const Scalar* qdot) {
 }
 
 template <typename Scalar>
-bool SystemEvaluator<Scalar>::derivative(const Scalar* x, const SystemInputs& inputs, Scalar* rate) {
-  ++evaluations_;
+void SystemEvaluator<Scalar>::read_muscles(const Scalar* x, const SystemInputs& inputs) {
   const StateLayout& layout = system_->layout();
-  set_motion(x, x + layout.free);
-  const std::size_t muscles = muscles_.size();
-  for (std::size_t m = 0; m < muscles; ++m) {
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
     excitation_[m] = Scalar(inputs.excitation[m]);
     activation_[m] = layout.activation[m] >= 0 ? x[layout.activation[m]] : excitation_[m];
     if (layout.fiber_length[m] >= 0) fiber_[m] = x[layout.fiber_length[m]];
   }
-  muscles_.rates({excitation_, activation_, fiber_, length_, speed_}, {activation_rate_, fiber_velocity_, force_});
+}
+
+template <typename Scalar>
+bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& inputs, Scalar* rate) {
+  const StateLayout& layout = system_->layout();
   if (inputs.coordinate_force.empty()) {
     std::fill(tau_.begin(), tau_.end(), Scalar(0.0));
   } else {
@@ -110,11 +112,41 @@ bool SystemEvaluator<Scalar>::derivative(const Scalar* x, const SystemInputs& in
   add_limit_forces<Scalar>(system_->model().limit_forces, q_, qdot_, tau_.data());
   for (std::size_t i = 0; i < layout.free; ++i) rate[i] = x[layout.free + i];
   if (!reduced_.forward_dynamics(tau_.data(), nullptr, rate + layout.free).usable()) return false;
-  for (std::size_t m = 0; m < muscles; ++m) {
+  for (std::size_t m = 0; m < muscles_.size(); ++m) {
     if (layout.activation[m] >= 0) rate[layout.activation[m]] = activation_rate_[m];
     if (layout.fiber_length[m] >= 0) rate[layout.fiber_length[m]] = fiber_velocity_[m];
   }
   return true;
+}
+
+template <typename Scalar>
+bool SystemEvaluator<Scalar>::derivative(const Scalar* x, const SystemInputs& inputs, Scalar* rate) {
+  ++evaluations_;
+  set_motion(x, x + system_->layout().free);
+  read_muscles(x, inputs);
+  muscles_.rates({excitation_, activation_, fiber_, length_, speed_}, {activation_rate_, fiber_velocity_, force_});
+  return write_rates(x, inputs, rate);
+}
+
+template <typename Scalar>
+bool SystemEvaluator<Scalar>::stage(double step, double* x, const SystemInputs& inputs,
+                                    double* rate) requires std::same_as<Scalar, double> {
+  // clang 14 compiles constrained members of explicit instantiations too.
+  if constexpr (std::same_as<Scalar, double>) {
+    if (step == 0.0) return derivative(x, inputs, rate);
+    ++evaluations_;
+    const StateLayout& layout = system_->layout();
+    set_motion(x, x + layout.free);
+    read_muscles(x, inputs);
+    if (!fiber_solver_.solve(muscles_, step, {excitation_, activation_, fiber_, length_, speed_}, fiber_,
+                             {activation_rate_, fiber_velocity_, force_}))
+      return false;
+    for (std::size_t m = 0; m < muscles_.size(); ++m) {
+      if (layout.fiber_length[m] >= 0) x[layout.fiber_length[m]] = fiber_[m];
+    }
+    return write_rates(x, inputs, rate);
+  }
+  return false;
 }
 
 template <typename Scalar>

@@ -39,7 +39,9 @@ SystemLinearization::SystemLinearization(const MusculoskeletalSystem& system,
       reduced_(system.mechanism(), system.reduction()),
       unit_speed_(static_cast<int>(system.coordinates())),
       driven_(system.reduction().default_motion()),
-      paths_(make_path_derivatives(system)) {
+      paths_(make_path_derivatives(system)),
+      muscles_(system.muscles().with<double>(parameters)),
+      fiber_solver_(muscles_.size()) {
   const std::size_t muscles = system.muscles().size();
   if (InverseDynamicsDerivatives::available(system.mechanism()) && system.reduction().free_are_uncoupled()) {
     closed_form_.emplace(system.mechanism(), system.reduction().free());
@@ -57,7 +59,9 @@ SystemLinearization::SystemLinearization(const MusculoskeletalSystem& system,
     jets->resize(muscles);
   }
   slots_.resize(muscles);
-  for (auto* values : {&activation_rate_, &fiber_velocity_, &force_, &path_speed_}) values->resize(muscles);
+  for (auto* values :
+       {&activation_rate_, &fiber_velocity_, &force_, &path_speed_, &activation_, &fiber_, &solved_velocity_})
+    values->resize(muscles);
   const auto n = static_cast<Eigen::Index>(free_), m = static_cast<Eigen::Index>(muscles);
   for (Matrix* matrix : {&arm_, &force_z_, &force_zd_, &speed_z_, &velocity_z_}) matrix->setZero(m, n);
   for (Matrix* matrix : {&mass_, &mass_inverse_, &r_z_, &r_zd_, &acc_z_, &acc_zd_}) matrix->setZero(n, n);
@@ -345,13 +349,48 @@ void SystemLinearization::assemble() {
   }
 }
 
-bool SystemLinearization::derivative(const double* x, const SystemInputs& inputs, double* rate) {
-  const StateLayout& layout = system_->layout();
-  if (jets_) {
-    expand(system_->reduction(), x, jets_->ones.data(), driven_.data(), unit_speed_);
-  }
+void SystemLinearization::set_motion(const double* x) {
+  if (jets_) expand(system_->reduction(), x, jets_->ones.data(), driven_.data(), unit_speed_);
   reduced_.set_state(x, x + free_, driven_.data());
   set_paths();
+}
+
+bool SystemLinearization::derivative(const double* x, const SystemInputs& inputs, double* rate) {
+  set_motion(x);
+  return linearise(x, inputs, rate);
+}
+
+bool SystemLinearization::stage(double step, double* x, const SystemInputs& inputs, double* rate) {
+  if (step == 0.0) return derivative(x, inputs, rate);
+  set_motion(x);
+  if (!solve_fibers(step, x, inputs)) return false;
+  if (!linearise(x, inputs, rate)) return false;
+  // The velocities of the solution itself: those at its lengths have its rounding many times over.
+  const StateLayout& layout = system_->layout();
+  for (std::size_t m = 0; m < force_.size(); ++m) {
+    if (layout.fiber_length[m] >= 0) rate[layout.fiber_length[m]] = solved_velocity_[m];
+  }
+  return true;
+}
+
+/// Fibre lengths in x, and their velocities at them.
+bool SystemLinearization::solve_fibers(double step, double* x, const SystemInputs& inputs) {
+  const StateLayout& layout = system_->layout();
+  for (std::size_t m = 0; m < force_.size(); ++m) {
+    activation_[m] = layout.activation[m] >= 0 ? x[layout.activation[m]] : inputs.excitation[m];
+    if (layout.fiber_length[m] >= 0) fiber_[m] = x[layout.fiber_length[m]];
+  }
+  if (!fiber_solver_.solve(muscles_, step, {inputs.excitation, activation_, fiber_, paths_->length(), path_speed_},
+                           fiber_, {activation_rate_, solved_velocity_, force_}))
+    return false;
+  for (std::size_t m = 0; m < force_.size(); ++m) {
+    if (layout.fiber_length[m] >= 0) x[layout.fiber_length[m]] = fiber_[m];
+  }
+  return true;
+}
+
+bool SystemLinearization::linearise(const double* x, const SystemInputs& inputs, double* rate) {
+  const StateLayout& layout = system_->layout();
   evaluate_muscles(x, inputs);
   for (std::size_t i = 0; i < free_; ++i) rate[i] = x[free_ + i];
   if (!evaluate_skeleton(inputs, rate + free_)) return false;
@@ -373,29 +412,15 @@ void add_row(double factor, const double* from, std::size_t count, double* to) {
 
 }  // namespace
 
-void SystemLinearization::tangent_rate(const double* S, double* rate) const {
+void SystemLinearization::tangent_rate(double step, double* S, double* rate) const {
   const StateLayout& layout = system_->layout();
   const std::size_t p = columns_;
   const auto row = [&](std::size_t state) { return S + state * p; };
-  std::copy(row(free_), row(2 * free_), rate);
-  double* const accelerations = rate + free_ * p;
-  std::fill(accelerations, accelerations + free_ * p, 0.0);
-  for (std::size_t i = 0; i < free_; ++i) {
-    for (std::size_t k = 0; k < free_; ++k) {
-      const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(k);
-      add_row(acc_z_(a, b), row(k), p, accelerations + i * p);
-      add_row(acc_zd_(a, b), row(free_ + k), p, accelerations + i * p);
-    }
-  }
+  // Muscles first: the skeleton sees the fibres at the end of the stage.
   for (std::size_t m = 0; m < force_.size(); ++m) {
     const auto index = static_cast<Eigen::Index>(m);
     const MuscleSlots& slots = slots_[m];
     const int a = layout.activation[m], l = layout.fiber_length[m];
-    for (std::size_t i = 0; i < free_; ++i) {
-      const double factor = acc_force_(static_cast<Eigen::Index>(i), index);
-      if (live(m)) add_row(factor * slots.force[kActivation], row(at(a)), p, accelerations + i * p);
-      if (l >= 0) add_row(factor * slots.force[kFiber], row(at(l)), p, accelerations + i * p);
-    }
     if (live(m)) {
       double* const to = rate + at(a) * p;
       for (std::size_t j = 0; j < p; ++j) to[j] = slots.activation_rate[kActivation] * row(at(a))[j];
@@ -407,26 +432,49 @@ void SystemLinearization::tangent_rate(const double* S, double* rate) const {
     if (live(m)) add_row(slots.fiber_velocity[kActivation], row(at(a)), p, to);
   }
   for (const TangentForcing& f : forcings_) {
-    const MuscleSlots& slots = slots_[f.muscle];
     const std::size_t slot = kField + f.field;
     const int a = layout.activation[f.muscle], l = layout.fiber_length[f.muscle];
-    if (a >= 0 && live(f.muscle)) rate[at(a) * p + f.column] += f.weight * slots.activation_rate[slot];
-    if (l >= 0) rate[at(l) * p + f.column] += f.weight * slots.fiber_velocity[slot];
-    const double force = f.weight * slots.force[slot];
-    for (std::size_t i = 0; i < free_; ++i)
-      accelerations[i * p + f.column] +=
-          acc_force_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(f.muscle)) * force;
+    if (a >= 0 && live(f.muscle)) rate[at(a) * p + f.column] += f.weight * slots_[f.muscle].activation_rate[slot];
+    if (l >= 0) rate[at(l) * p + f.column] += f.weight * slots_[f.muscle].fiber_velocity[slot];
+  }
+  // S_l = base + step (l'_l S_l + what does not depend on it).
+  for (std::size_t m = 0; m < force_.size() && step > 0.0; ++m) {
+    const int l = layout.fiber_length[m];
+    if (l < 0) continue;
+    const double share = 1.0 / (1.0 - step * slots_[m].fiber_velocity[kFiber]);
+    double *const to = rate + at(l) * p, *const S_l = row(at(l));
+    for (std::size_t j = 0; j < p; ++j) {
+      to[j] *= share;
+      S_l[j] += step * to[j];
+    }
+  }
+  std::copy(row(free_), row(2 * free_), rate);
+  double* const accelerations = rate + free_ * p;
+  std::fill(accelerations, accelerations + free_ * p, 0.0);
+  for (std::size_t i = 0; i < free_; ++i) {
+    const auto a = static_cast<Eigen::Index>(i);
+    double* const to = accelerations + i * p;
+    for (std::size_t k = 0; k < free_; ++k) {
+      const auto b = static_cast<Eigen::Index>(k);
+      add_row(acc_z_(a, b), row(k), p, to);
+      add_row(acc_zd_(a, b), row(free_ + k), p, to);
+    }
+    for (std::size_t m = 0; m < force_.size(); ++m) {
+      const double factor = acc_force_(a, static_cast<Eigen::Index>(m));
+      if (live(m)) add_row(factor * slots_[m].force[kActivation], row(at(layout.activation[m])), p, to);
+      const int l = layout.fiber_length[m];
+      if (l >= 0) add_row(factor * slots_[m].force[kFiber], row(at(l)), p, to);
+    }
+    for (const TangentForcing& f : forcings_)
+      to[f.column] +=
+          acc_force_(a, static_cast<Eigen::Index>(f.muscle)) * f.weight * slots_[f.muscle].force[kField + f.field];
   }
 }
 
 void SystemLinearization::start_muscles(const double* start, bool follows_excitation, double* x, double* S) {
   const StateLayout& layout = system_->layout();
   const std::size_t muscles = force_.size(), p = columns_;
-  if (jets_) {
-    expand(system_->reduction(), x, jets_->ones.data(), driven_.data(), unit_speed_);
-  }
-  reduced_.set_state(x, x + free_, driven_.data());
-  set_paths();
+  set_motion(x);
   std::vector<char> limited(muscles);
   for (std::size_t m = 0; m < muscles; ++m) {
     const double least = system_->muscles().settings(m).minimum_activation;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "veridyn/muscle/actuator/fiber_solver.hpp"
 #include "veridyn/muscle/actuator/muscle_group.hpp"
 #include "veridyn/muscle/dynamics/coordinate_reduction.hpp"
 #include "veridyn/muscle/dynamics/inverse_dynamics_derivatives.hpp"
@@ -51,8 +52,11 @@ class SystemLinearization {
 
   /// x' for the state x, and the linearisation there. False when the mass matrix is singular.
   [[nodiscard]] bool derivative(const double* x, const SystemInputs& inputs, double* rate);
-  /// S' after `derivative`; S and S' have a row of `columns` numbers for each state.
-  void tangent_rate(const double* S, double* rate) const;
+  /// The same for a stage of a step that is implicit in the fibre lengths, as `SystemEvaluator::stage`.
+  [[nodiscard]] bool stage(double step, double* x, const SystemInputs& inputs, double* rate);
+  /// S' after `derivative` or after `stage` with the same step: then rows of fibre lengths in S hold their base and
+  /// become the solution too. S and S' have a row of `columns` numbers for each state.
+  void tangent_rate(double step, double* S, double* rate) const;
 
   /// Sets activations and fibre lengths in equilibrium with their tendons for the pose and speeds in x, and their rows
   /// of S from those of the pose. `start`: activations by muscle. `follows_excitation`: they are the excitations, so
@@ -88,7 +92,10 @@ class SystemLinearization {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
   void make_passes(std::span<const MusculotendonParameters<double>> parameters);
+  void set_motion(const double* x);
   void set_paths();
+  [[nodiscard]] bool solve_fibers(double step, double* x, const SystemInputs& inputs);
+  [[nodiscard]] bool linearise(const double* x, const SystemInputs& inputs, double* rate);
   void evaluate_muscles(const double* x, const SystemInputs& inputs);
   [[nodiscard]] bool evaluate_skeleton(const SystemInputs& inputs, double* acceleration);
   void differentiate_residual();
@@ -118,6 +125,9 @@ class SystemLinearization {
   std::vector<MuscleSlots> slots_;
   std::vector<double> activation_rate_, fiber_velocity_, force_;
   std::vector<double> path_speed_;
+  MuscleGroup<double> muscles_;  ///< with the parameters
+  FiberSolver fiber_solver_;
+  std::vector<double> activation_, fiber_, solved_velocity_;
   Matrix arm_;                           ///< muscles x free: dL/dz
   Matrix force_z_, force_zd_, speed_z_;  ///< muscles x free
   Matrix velocity_z_;                    ///< muscles x free
