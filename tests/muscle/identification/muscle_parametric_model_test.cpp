@@ -153,7 +153,8 @@ Model millard_arm() {
 }
 
 /// Largest difference of any output's derivative from central differences, of the largest one of that output.
-void expect_central_differences(const MuscleParametricModel& model, const MuscleParametricModel& finer) {
+void expect_central_differences(const MuscleParametricModel& model, const MuscleParametricModel& finer,
+                                double tolerance) {
   const auto n = static_cast<Eigen::Index>(model.parameters().size());
   const auto initial = model.initial_conditions(0);
   Eigen::VectorXd theta(n + static_cast<Eigen::Index>(initial.size()));
@@ -167,7 +168,8 @@ void expect_central_differences(const MuscleParametricModel& model, const Muscle
   const Eigen::Index rows = exact.output.rows(), columns = exact.output.cols();
   for (Eigen::Index c = 0; c < columns; ++c) {
     const double size = values.output.col(c).cwiseAbs().maxCoeff();
-    EXPECT_LT((values.output.col(c) - exact.output.col(c)).cwiseAbs().maxCoeff(), 1e-6 * size);
+    EXPECT_LT((values.output.col(c) - exact.output.col(c)).cwiseAbs().maxCoeff(),
+              std::max(1e-6, 100.0 * model.accuracy()) * size);
   }
   for (Eigen::Index j = 0; j < theta.size(); ++j) {
     const double h = 2e-4 * std::max(std::abs(theta(j)), 0.1);
@@ -183,9 +185,8 @@ void expect_central_differences(const MuscleParametricModel& model, const Muscle
         largest = std::max(largest, std::abs(central));
         difference = std::max(difference, std::abs(central - exact.sensitivity(k * columns + c, j)));
       }
-      // Measured: up to 1.6e-3 of the largest, at single instants (Thelen, forces), whatever the step of the
-      // differences; a term left out would be of the order of the derivative itself.
-      EXPECT_LE(difference, 2e-3 * largest + 1e-9)
+      // A term left out would be of the order of the derivative itself.
+      EXPECT_LE(difference, tolerance * largest + 1e-9)
           << model.outputs()[static_cast<std::size_t>(c)].name << " by "
           << (j < n ? model.parameters()[static_cast<std::size_t>(j)].name : "start");
     }
@@ -226,7 +227,12 @@ TEST_P(OutputSensitivities, OfAllUnknownsAreThoseOfCentralDifferences) {
   segment.drive.excitation = ControlSignals({-0.02, 0.033, 0.071, 0.2}, u, 6, interpolation);
   const MuscleParametricModel model(system, unknowns, {segment}, {.accuracy = 1e-9, .outputs = outputs});
   const MuscleParametricModel finer(system, unknowns, {segment}, {.accuracy = 1e-12, .outputs = outputs});
-  expect_central_differences(model, finer);
+  // Measured: up to 1.6e-3 of the largest, at single instants (Thelen, forces), whatever the step of the differences.
+  expect_central_differences(model, finer, 2e-3);
+  // At the accuracy of estimates fibres are stepped implicitly, with steps so long that the corner of Thelen's
+  // force-velocity curve lies within them: up to 1.4e-2, at single instants of the moment.
+  const MuscleParametricModel coarse(system, unknowns, {segment}, {.accuracy = 1e-6, .outputs = outputs});
+  expect_central_differences(coarse, finer, millard ? 2e-3 : 2e-2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Muscles, OutputSensitivities,

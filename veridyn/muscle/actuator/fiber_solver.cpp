@@ -17,7 +17,7 @@ void FiberSolver::begin(Search& s, double step, double path, double& fiber) cons
   if (s.known) fiber = (s.base + step * (s.velocity - s.slope * (s.length + path - s.path))) / (1.0 - step * s.slope);
 }
 
-double FiberSolver::next(Search& s, double step, double length, double residual, int iteration) {
+double FiberSolver::next(Search& s, double step, double length, double residual, double reach, int iteration) {
   (residual < 0.0 ? s.low : s.high) = length;
   double slope = 1.0 - step * s.slope;
   if (iteration > 0 && length != s.last) {
@@ -31,7 +31,7 @@ double FiberSolver::next(Search& s, double step, double length, double residual,
   s.last = length;
   s.last_residual = residual;
   constexpr int kSecants = 8;
-  const double to = length - residual / slope;
+  const double to = length + std::clamp(-residual / slope, -reach, reach);
   if (!std::isfinite(s.low) || !std::isfinite(s.high)) return to;
   if (to >= s.low && to <= s.high && iteration <= kSecants) return to;
   return 0.5 * (s.low + s.high);
@@ -60,10 +60,10 @@ bool FiberSolver::solve(const MuscleGroup<double>& muscles, double step, const M
       s.length = length;
       s.velocity = velocity;
       s.path = in.path_length[m];
-      fiber[m] = next(s, step, length, residual, iteration);
+      const double optimal = muscles.settings(m).musculotendon.optimal_fiber_length;
+      fiber[m] = next(s, step, length, residual, 0.2 * optimal, iteration);
       // A secant's error is far below its step; a bracket closes around the least length, where the velocity jumps.
-      const double negligible = 1e-7 * muscles.settings(m).musculotendon.optimal_fiber_length;
-      s.done = std::abs(fiber[m] - length) <= negligible;
+      s.done = std::abs(fiber[m] - length) <= 1e-7 * optimal;
       searching = searching || !s.done;
     }
   }

@@ -34,7 +34,7 @@ class FiberSolver {
     double length = 0.0, velocity = 0.0, path = 0.0, slope = 0.0;
   };
   void begin(Search& s, double step, double path, double& fiber) const;
-  [[nodiscard]] static double next(Search& s, double step, double length, double residual, int iteration);
+  [[nodiscard]] static double next(Search& s, double step, double length, double residual, double reach, int iteration);
 
   std::vector<Search> muscle_;
 };

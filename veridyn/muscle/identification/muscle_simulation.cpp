@@ -74,16 +74,16 @@ const double* start_activation(const MuscleTask& task, ShapedDrive& drive) {
 }
 
 /// Integrates from the first sample to the last; `on_jump(t)` is called where held signals have jumped.
-template <typename Derivative, typename OnStep, typename OnJump>
-bool integrate(const MuscleTask& task, ShapedDrive& drive, SystemStepper& stepper, const Derivative& derivative,
-               double* x, const OnStep& on_step, const OnJump& on_jump) {
+template <typename OnStep, typename OnJump>
+bool integrate(const MuscleTask& task, ShapedDrive& drive, SystemStepper& stepper,
+               const SystemStepper::Derivative& derivative, double* x, const OnStep& on_step, const OnJump& on_jump) {
   double t = task.segment->time.front();
   const double end = task.segment->time.back();
+  const SystemStepper::OnStep step = [&](double, double to) {
+    on_step(to);
+    return true;
+  };
   while (t < end) {
-    const auto step = [&](double, double to) {
-      on_step(to);
-      return true;
-    };
     if (stepper.advance(derivative, t, x, std::min(end, drive.piece_end(t)), step) !=
         numerics::IntegrationEnd::kReached)
       return false;

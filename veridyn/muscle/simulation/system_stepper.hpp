@@ -34,7 +34,7 @@ class SystemStepper {
   [[nodiscard]] long steps() const;
 
  private:
-  std::span<const double> scales_;
+  std::vector<double> scales_;
   numerics::StepControl control_;
   std::variant<numerics::DormandPrince<double>, numerics::AdditiveRungeKutta> method_;
 };
