@@ -16,32 +16,35 @@ GuardedFilter::GuardedFilter(bool imu_errors, const ModelBasedMotion& motion, st
   based_->set_forces(subject_.get(), motion.error);
   free_monitors_.fill(estimation::InnovationMonitor(gate));
   restart_model_based();
-  guard_.restart(t, true);
+  guard_.restart(t, subject_ != nullptr);
 }
 
 void GuardedFilter::set_model(std::shared_ptr<const Subject> subject, const ModelError& error) {
+  const bool another = subject_ != nullptr && subject != nullptr;
   subject_ = std::move(subject);
   based_->set_forces(subject_.get(), error);
   restart_model_based();
-  guard_.restart(t_, guard_.trusted());
+  // With one model after the other the guard goes on: refinements must not begin its waiting time again and again.
+  if (!another) guard_.restart(t_, false);
 }
 
 void GuardedFilter::propagate(const AirDataInput& u, double dt) {
   t_ += dt;
-  based_->propagate(u, dt);
+  if (subject_) based_->propagate(u, dt);
   free_->propagate(u, dt);
 }
 
 void GuardedFilter::measure(const internal::MeasurementContext& context, internal::Sensor which, double z,
                             double sigma) {
   static_cast<void>(free_->measure(context, which, z, sigma, free_monitors_[which], nullptr));
+  if (!subject_) return;
   estimation::Innovation seen;
   const bool offered = based_->measure(context, which, z, sigma, based_monitors_[which], &seen);
   if (offered && which >= internal::kPitot) guard_.add(static_cast<std::size_t>(which), seen.nis());
 }
 
 void GuardedFilter::judge() {
-  if (guard_.advance(t_) && guard_.alarm()) restart_model_based();
+  if (subject_ && guard_.advance(t_) && guard_.alarm()) restart_model_based();
 }
 
 void GuardedFilter::restart_model_based() {
