@@ -255,6 +255,8 @@ TEST(TrackGuardedSoak, ErrorsWithFaultsOfVaneAndPitotTube) {
       fault.apply(study.mapped.recording);
       const std::array<Recording, 4> results = filtered_in_four_ways(study);
       for (std::size_t w = 0; w < results.size(); ++w) {
+        for (const char* name : {"airspeed", "alpha", "beta"})
+          for (const double v : results[w].at(name).value) ASSERT_TRUE(std::isfinite(v)) << fault.name << ' ' << name;
         for (std::size_t k = 0; k < kSpans.size(); ++k) {
           square[k][w][0] += std::pow(rms_within(results[w], *study.truth, "alpha", kSpans[k]), 2);
           square[k][w][1] += std::pow(rms_within(results[w], *study.truth, "beta", kSpans[k]), 2);

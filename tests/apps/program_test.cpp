@@ -154,7 +154,7 @@ TEST_F(Program, TracksWithAGuardedFilterThatLearnsTheModel) {
   fs::remove_all(folder_ / "out");
   expect_refusal("track " + study + " --set track.air_data=sensors" + out(), "contradicts air_data = \"sensors\"");
   expect_refusal("track " + study + " --set reconstruct.filter=model-based" + out(), "contradicts tracking");
-  expect_refusal("track " + study + " --set track.coefficients=['Cm']" + out(), "coefficients lists none of them");
+  expect_refusal("track " + study + " --set track.coefficients=Cm" + out(), "coefficients lists none of them");
 }
 
 TEST_F(Program, ReproducesAPublishedResult) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/aircraft/simulated_flight.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -54,6 +56,24 @@ TEST(GuardedReplay, AFirstModelEarnsItsTrustAndALostOneEndsIt) {
     if (t > 32.1 && t < 49.95) {
       EXPECT_EQ(used.value[k], 1.0) << t;
     }
+  }
+}
+
+TEST(GuardedReplay, AnAbsurdModelLeavesNumbersAndSoonNoTrace) {
+  const Flown f = fly({.duration = 30.0});
+  Progress quiet;
+  const ReconstructOptions o = reference_options();
+  const Reconstruction free = reconstruct(f.measured, o, quiet);
+  for (const double factor : {-1e3, 1e6}) {
+    TimedModel absurd{.from_s = -kInfinity, .aero = f.subject.model, .error = {}};
+    for (const Coefficient c : {Coefficient::kCL, Coefficient::kCY})
+      for (double& value : absurd.aero->at(c).values) value *= factor;
+    const Recording r = replay_guarded(f.measured, o, f.subject, {&absurd, 1}, o.turbulence->spectrum, quiet);
+    for (const char* name : {"airspeed", "alpha", "beta", "sigma_alpha", "wind_north"})
+      for (const double v : column(r, name)) ASSERT_TRUE(std::isfinite(v)) << name;
+    const std::size_t last = column(r, "alpha").size() - 1;
+    EXPECT_EQ(column(r, "model_based")[last], 0.0);
+    EXPECT_EQ(column(r, "alpha")[last], column(free.filtered, "alpha")[last]);
   }
 }
 

@@ -3,6 +3,15 @@
 #include <utility>
 
 namespace veridyn::aircraft {
+namespace {
+
+bool is_finite(const internal::AirDataEstimator& filter) {
+  const AirDataState<double>& x = filter.state();
+  return x.attitude.coeffs().allFinite() && x.velocity.allFinite() && x.gust.allFinite() && x.wind.allFinite() &&
+         x.coefficient_error.allFinite() && filter.covariance().matrix.diagonal().allFinite();
+}
+
+}  // namespace
 
 GuardedFilter::GuardedFilter(bool imu_errors, const ModelBasedMotion& motion, std::shared_ptr<const Subject> subject,
                              const internal::Start& start, double t, const estimation::GuardOptions& guard,
@@ -44,7 +53,14 @@ void GuardedFilter::measure(const internal::MeasurementContext& context, interna
 }
 
 void GuardedFilter::judge() {
-  if (subject_ && guard_.advance(t_) && guard_.alarm()) restart_model_based();
+  if (!subject_) return;
+  // An absurd model drives its filter out of numbers, where no innovation is left to judge.
+  if (!is_finite(*based_)) {
+    restart_model_based();
+    guard_.restart(t_, false);
+    return;
+  }
+  if (guard_.advance(t_) && guard_.alarm()) restart_model_based();
 }
 
 void GuardedFilter::restart_model_based() {

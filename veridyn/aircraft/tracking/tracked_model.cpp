@@ -76,7 +76,8 @@ FilterModel TrackedModel::start() const {
   return model_at(-kInfinity, any ? "values of the study" : "CL is not known");
 }
 
-std::string TrackedModel::look_at(const TrackedCoefficient& c, const Subject& subject, double time, Known& known) {
+std::string TrackedModel::look_at(const TrackedCoefficient& c, const Subject& subject, double time, std::size_t index) {
+  Known& known = known_[index];
   const std::string_view name = name_of(c.model.coefficient);
   if (const std::vector<estimation::Change>& changes = c.tracker->changes(); changes.size() > known.changes) {
     known.changes = changes.size();
@@ -88,7 +89,9 @@ std::string TrackedModel::look_at(const TrackedCoefficient& c, const Subject& su
   if (time < known.not_before || !is_identified(c, subject)) return {};
   const Eigen::VectorXd theta = c.tracker->regression().theta();
   const Eigen::MatrixXd P = c.tracker->regression().covariance();
-  const double sigma = std::sqrt(std::max(0.0, (P * c.regressor_moment).trace()));
+  const double sigma = std::sqrt((P * c.regressor_moment).trace());
+  // Not measured well enough to be worth more than the accelerometer; NaN is no measure at all.
+  if (!(sigma <= std::max(model_error_[index], ModelError{}.initial[index]))) return {};
   std::string reason = fmt::format("{} identified", name);
   if (known.source == ModelSource::kTracked) {
     const Eigen::VectorXd moved = theta - Eigen::Map<const Eigen::VectorXd>(known.model.values.data(), theta.size());
@@ -113,7 +116,7 @@ std::optional<FilterModel> TrackedModel::look(const FlightTracker& tracker, doub
   for (std::size_t i = 0; i < known_.size(); ++i) {
     for (const TrackedCoefficient& c : tracker.coefficients()) {
       if (c.model.coefficient != kForceCoefficients[i] || !c.tracker) continue;
-      std::string reason = look_at(c, tracker.subject(), time, known_[i]);
+      std::string reason = look_at(c, tracker.subject(), time, i);
       if (!reason.empty()) reasons.push_back(std::move(reason));
     }
   }

@@ -31,12 +31,14 @@ struct FilterModel : TimedModel {
 
 /// Decides which of the coefficients that are followed a model-based filter is given, and when.
 ///
-/// A coefficient is taken when its own rows of evidence let it be used (see tracked_evidence: identified) with every
-/// combination of parameters excited; what is held was not measured. It is given again when it has moved by more than
-/// its error bar, or when that has halved: every new model starts the model-based filter again from the model-free one.
-/// Both are seen through the flown regressors: rms of x' d(theta), and sigma^2 = trace(P mean(x x')). That sigma adds
-/// to `model_error`. A change that the tracker finds withdraws the coefficient, also that of the study, until it is
-/// identified again from rows after `detection_settling`: the aircraft is no longer the one that was known.
+/// A coefficient is taken when its own rows of evidence let it be used (see tracked_evidence: identified), with every
+/// combination of parameters excited (what is held was not measured) and an error bar within `model_error` (or its
+/// default, where that is larger): with 30 s of a frozen vane in memory CY passes all rows with an error bar of 4000.
+/// It is given again when it has moved by more than its error bar, or when that has halved: every new model starts the
+/// model-based filter again from the model-free one. Both are seen through the flown regressors: rms of x' d(theta),
+/// and sigma^2 = trace(P mean(x x')). That sigma adds to `model_error`. A change that the tracker finds withdraws the
+/// coefficient, also that of the study, until it is identified again from rows after `detection_settling`: the aircraft
+/// is no longer the one that was known.
 ///
 /// No model confirms itself: the tracker's rows are made of sensors and of the model-free filter, which never sees the
 /// model. Rows filtered with the model would show its lift curve in place of the aircraft's wherever the vane is the
@@ -60,7 +62,9 @@ class TrackedModel {
     std::size_t changes = 0;     ///< that were found when it was last looked at
     double not_before = -1e300;  ///< rows before say nothing [s]
   };
-  [[nodiscard]] std::string look_at(const TrackedCoefficient& c, const Subject& subject, double time, Known& known);
+  /// Of the coefficient of that index in `kForceCoefficients`: why a new model is due, or nothing.
+  [[nodiscard]] std::string look_at(const TrackedCoefficient& c, const Subject& subject, double time,
+                                    std::size_t index);
   [[nodiscard]] FilterModel model_at(double time, std::string reason) const;
 
   std::array<Known, 3> known_;
