@@ -33,7 +33,7 @@ std::vector<std::string> results_before_lists(const std::string& command) {
       {"demo", identification},
       {"reconstruct",
        {"report.html", "flight.csv", "filter.csv", "sensor_errors.csv", "filter_errors.csv", "run.json"}},
-      {"track", {"report.html", "track.csv", "changes.csv", "estimate.json", "run.json"}},
+      {"track", {"report.html", "track.csv", "changes.csv", "filter.csv", "models.csv", "estimate.json", "run.json"}},
       {"export", {"model.json", "subject.toml", "model.csv", "jsbsim.xml", "run.json"}},
       {"scale", {"report.html", "groups.csv", "scaled.toml", "prototype.csv", "model.csv", "run.json"}},
       {"reproduce", {"report.html", "reproduction.json", "run.json"}},

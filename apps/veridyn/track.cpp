@@ -75,6 +75,25 @@ class LiveView {
   Clock::time_point shown_ = Clock::time_point::min() + std::chrono::hours(1);
 };
 
+/// What the guarded filter did, where there is one: files, summary and console.
+void publish_filter(const StudyRun& run, OutputFolder& folder, const FlightStudy& study, const FilterHistory& filter,
+                    Summary& summary) {
+  folder.write("filter.csv", io::to_csv(filter.recording()));
+  folder.write("models.csv", models_csv(filter.models()));
+  Summary& entry = summary["filter"];
+  entry["model_based_share"] = filter.model_based_share();
+  entry["falls"] = filter.falls();
+  entry["models"] = filter.models().size();
+  print_line(run.options(), filter.statement());
+  if (!study.truth) return;
+  for (const TrackedFilterError& e : filter.errors(*study.truth)) {
+    entry["rms_error"][e.quantity] = Summary::object({{"model_free", e.model_free}, {"guarded", e.guarded}});
+    const auto text = [&](double v) { return fmt::format("{:.3g}{}", display_value(v, e.unit), display_unit(e.unit)); };
+    print_line(run.options(), fmt::format("  {:<9} RMS error: model-free {}, guarded {}", e.quantity,
+                                          text(e.model_free), text(e.guarded)));
+  }
+}
+
 void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
                       const TrackedFlight& flight) {
   const FlightTracker& tracker = flight.tracker();
@@ -97,6 +116,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
   folder.write("changes.csv", changes);
   folder.write("estimate.json", io::to_json(estimate));
   folder.write("report.html", report::to_html(report::tracking_report(study, flight, program_name())));
+  if (!flight.filter().empty()) publish_filter(run, folder, study, flight.filter(), summary);
   RunRecord record = run.record(study.seed, study.inputs);
   if (!study.track.estimate_file.empty()) record.inputs.push_back(study.track.estimate_file);
   folder.publish(record, run.options(), summary);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
@@ -137,6 +138,23 @@ TEST_F(Program, FollowsALogThatIsStillBeingWritten) {
     EXPECT_NEAR(streamed.find(name)->value, replayed.find(name)->value, replayed.find(name)->sigma) << name;
   for (const char* name : {"track.csv", "changes.csv", "report.html", "run.json"})
     EXPECT_TRUE(fs::exists(folder_ / "out" / name)) << name;
+}
+
+TEST_F(Program, TracksWithAGuardedFilterThatLearnsTheModel) {
+  const std::string study = (test::source_folder() / "examples/studies/iced_aircraft.toml").string();
+  const Outcome tracked = run("track " + study + " --json" + out());
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
+  const auto filter = nlohmann::json::parse(tracked.text)["filter"];
+  EXPECT_GT(filter["model_based_share"], 0.7);
+  EXPECT_GE(filter["falls"], 1) << "it had to notice the ice";
+  EXPECT_LT(filter["rms_error"]["alpha"]["guarded"], filter["rms_error"]["alpha"]["model_free"]);
+  EXPECT_THAT(read_file(in_out("models.csv")), HasSubstr("CL changed at"));
+  EXPECT_THAT(read_file(in_out("filter.csv")), HasSubstr("model_based"));
+  EXPECT_THAT(read_file(in_out("report.html")), HasSubstr("Models that the filter was given"));
+  fs::remove_all(folder_ / "out");
+  expect_refusal("track " + study + " --set track.air_data=sensors" + out(), "contradicts air_data = \"sensors\"");
+  expect_refusal("track " + study + " --set reconstruct.filter=model-based" + out(), "contradicts tracking");
+  expect_refusal("track " + study + " --set track.coefficients=Cm" + out(), "coefficients lists none of them");
 }
 
 TEST_F(Program, ReproducesAPublishedResult) {

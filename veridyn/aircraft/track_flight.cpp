@@ -30,9 +30,63 @@ FlightTracker make_tracker(const FlightStudy& study) {
   return FlightTracker(study.subject, study.track, study.segments.min_airspeed_mps, start ? &*start : nullptr);
 }
 
+/// The model-free filter's options: no model may have a say in the rows that models are estimated from.
+ReconstructOptions rows_options(const FlightStudy& study) {
+  ReconstructOptions options = study.reconstruct;
+  options.filter = FilterKind::kModelFree;
+  return options;
+}
+
+void check_filters(const FlightStudy& study) {
+  const ReconstructOptions& o = study.reconstruct;
+  if (o.filter != FilterKind::kModelFree) {
+    throw InputError(study.name,
+                     fmt::format("reconstruct.filter = \"{}\" contradicts tracking: rows that were filtered "
+                                 "with a model would confirm that model; leave it out; track.filter = "
+                                 "\"guarded\" runs a model-based filter beside the tracker",
+                                 to_string(o.filter)));
+  }
+  if (study.track.filter == TrackFilter::kGuarded && o.estimates_air_data_errors()) {
+    throw InputError(study.name,
+                     "track.filter = \"guarded\" contradicts errors of vanes and pitot tube in "
+                     "reconstruct.estimate, which need the whole flight");
+  }
+}
+
 }  // namespace
 
-TrackedFlight::TrackedFlight(const FlightStudy& study) : tracker_(make_tracker(study)) {}
+TrackedFlight::TrackedFlight(const FlightStudy& study) : tracker_(make_tracker(study)) {
+  check_filters(study);
+  if (study.track.filter != TrackFilter::kGuarded) return;
+  model_.emplace(study.filter_subject ? *study.filter_subject : study.subject, study.track, study.reconstruct);
+  filter_.add_model(model_->start());
+}
+
+std::vector<FlightChange> TrackedFlight::feed(const FlightSignals& signals, double from, double until) {
+  if (!model_) return tracker_.feed(signals, from, until);
+  // The tracker takes its rows in windows by the clock: a stop at the end of each changes nothing for it.
+  constexpr double kWindow = FlightTracker::kWindowSeconds;
+  std::vector<FlightChange> found;
+  double begin = std::max(from, signals.grid.begin);
+  if (std::isfinite(tracker_.last_time())) begin = std::max(begin, tracker_.last_time());
+  const double last = std::min(until, signals.grid.at(signals.size() - 1));
+  for (double end = (std::floor(begin / kWindow) + 1.0) * kWindow; end <= last; end += kWindow) {
+    const std::vector<FlightChange> some = tracker_.feed(signals, from, std::nextafter(end, 0.0));
+    found.insert(found.end(), some.begin(), some.end());
+    // The last row of the window needs what comes half a filter's width later.
+    if (auto model = model_->look(tracker_, end + filter_margin(signals))) filter_.add_model(std::move(*model));
+  }
+  const std::vector<FlightChange> rest = tracker_.feed(signals, from, until);
+  found.insert(found.end(), rest.begin(), rest.end());
+  return found;
+}
+
+void TrackedFlight::run_filter(const Recording& part, const FlightStudy& study, const Recording& model_free,
+                               const DrydenSettings& turbulence, Progress& progress) {
+  const std::vector<FilterModel>& given = filter_.models();
+  const std::vector<TimedModel> models(given.begin(), given.end());
+  filter_.append(replay_guarded(part, study.reconstruct, study.subject, models, turbulence, progress), model_free);
+}
 
 std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
                                                  Progress& progress, std::span<const DelayReport> delays) {
@@ -55,7 +109,7 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
   if (by_sensors) {
     air = direct_air_data(part.recording, study.reconstruct, study.signals);
   } else {
-    ReconstructOptions options = study.reconstruct;
+    ReconstructOptions options = rows_options(study);
     options.keep_filter = true;
     reconstruction = reconstruct(part.recording, options, progress);
     if (reconstruction->interrupted) return {};
@@ -72,7 +126,10 @@ std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, 
   if (tracker_.rows() == 0 && notes_.empty()) notes_ = signals.notes;
   if (whole && finished && reconstruction) judge_recording(part, study, *reconstruction, signals, delays);
   const double margin = filter_margin(signals);
-  return tracker_.feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);
+  std::vector<FlightChange> found =
+      feed(signals, whole ? -kInfinity : begin + margin, finished ? kInfinity : span.end - margin);
+  if (model_) run_filter(part.recording, study, air, reconstruction->turbulence, progress);
+  return found;
 }
 
 void TrackedFlight::judge_recording(const MappedRecording& mapped, const FlightStudy& study,

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "veridyn/aircraft/aircraft_study.hpp"
+#include "veridyn/aircraft/tracking/filter_history.hpp"
 #include "veridyn/aircraft/tracking/flight_tracker.hpp"
+#include "veridyn/aircraft/tracking/tracked_model.hpp"
 
 namespace veridyn::aircraft {
 
@@ -15,10 +17,14 @@ namespace veridyn::aircraft {
 /// smoothing filters (0.3 s at 10 Hz): airspeed and flow angles by `TrackOptions::air_data`, flight signals as in batch
 /// identification, recursive regression. A growing recording is read again and its last seconds are processed, so a
 /// truncated record at its end is met again, whole, at the next reading; a gap leaves a hole without rows.
+///
+/// With `track.filter = "guarded"` every window of the tracker (10 s) may end in a new model (TrackedModel), which a
+/// guarded filter has from the moment that the window's smoothing filters could have been ready, and not before: it
+/// goes over the same samples as the model-free filter, whose estimate alone the tracker reads.
 class TrackedFlight {
  public:
   /// Reads the study's estimate to start from, where there is one.
-  /// @throws InputError for a file that cannot be read
+  /// @throws InputError for a file that cannot be read, and where `[reconstruct]` and `[track]` contradict each other
   explicit TrackedFlight(const FlightStudy& study);
 
   /// Takes what the recording has beyond what was taken before. `finished`: nothing will follow, so that the end is
@@ -35,6 +41,8 @@ class TrackedFlight {
   [[nodiscard]] const FlightTracker& tracker() const { return tracker_; }
   /// The estimates as they stand, with evidence and grades; see judged_estimate.
   [[nodiscard]] estimation::Estimate estimate() const;
+  /// Of the guarded filter; empty with any other.
+  [[nodiscard]] const FilterHistory& filter() const { return filter_; }
   [[nodiscard]] AirDataSource air_data() const { return air_data_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] double end_time() const { return end_; }  ///< last stamp seen [s]
@@ -43,7 +51,13 @@ class TrackedFlight {
   void judge_recording(const MappedRecording& mapped, const FlightStudy& study, const Reconstruction& reconstruction,
                        const FlightSignals& signals, std::span<const DelayReport> delays);
 
+  std::vector<FlightChange> feed(const FlightSignals& signals, double from, double until);
+  void run_filter(const Recording& part, const FlightStudy& study, const Recording& model_free,
+                  const DrydenSettings& turbulence, Progress& progress);
+
   FlightTracker tracker_;
+  std::optional<TrackedModel> model_;  ///< with a guarded filter
+  FilterHistory filter_;
   std::vector<FlightEvidence> recording_evidence_;
   AirDataSource air_data_ = AirDataSource::kFilter;
   std::vector<std::string> notes_;

@@ -100,6 +100,88 @@ Table change_table(const FlightTracker& tracker) {
   return table;
 }
 
+Table model_table(const FilterHistory& filter) {
+  Table table{.title = "Models that the filter was given",
+              .caption = "A coefficient without a source is not known: without CL the model-free filter is alone.",
+              .columns = {{.name = "From", .unit = "s", .digits = 4},
+                          {.name = "CL"},
+                          {.name = "CD"},
+                          {.name = "CY"},
+                          {.name = "sigma CL", .digits = 2},
+                          {.name = "sigma CD", .digits = 2},
+                          {.name = "sigma CY", .digits = 2},
+                          {.name = "Why"}}};
+  for (const FilterModel& m : filter.models()) {
+    Row row;
+    row.cells.push_back(std::isfinite(m.from_s) ? number_cell(m.from_s) : text_cell("the start"));
+    for (const ModelSource source : m.source)
+      row.cells.push_back(text_cell(source == ModelSource::kNone ? "" : std::string(to_string(source))));
+    for (std::size_t i = 0; i < m.source.size(); ++i)
+      row.cells.push_back(number_cell(m.source[i] == ModelSource::kNone ? kNaN : m.error.initial[i]));
+    row.cells.push_back(text_cell(m.reason));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table filter_error_table(const std::vector<TrackedFilterError>& errors) {
+  Table table{.title = "Errors against the truth",
+              .caption = "Root mean square over the flight, without its first 10 s.",
+              .columns = {{.name = "Quantity"},
+                          {.name = "Unit"},
+                          {.name = "Model-free", .digits = 3},
+                          {.name = "Guarded", .digits = 3}}};
+  for (const TrackedFilterError& e : errors) {
+    const std::string unit = display_unit(e.unit);
+    table.rows.push_back(
+        {.cells = {text_cell(e.quantity), text_cell(unit.substr(unit.empty() ? 0 : 1)),
+                   number_cell(display_value(e.model_free, e.unit)), number_cell(display_value(e.guarded, e.unit))}});
+  }
+  return table;
+}
+
+/// Angle of attack by both filters, and how far the model's innovations were from their limit; at 10 Hz.
+TimeSeries filter_figure(const FlightStudy& study, const FilterHistory& filter) {
+  const Recording all = filter.recording();
+  const std::size_t step = std::max<std::size_t>(1, static_cast<std::size_t>(all.at("alpha").rate_Hz() / 10.0));
+  const auto thin = [&](const char* name, double factor) {
+    std::vector<double> values;
+    const std::vector<double>& from = all.at(name).value;
+    for (std::size_t k = 0; k < from.size(); k += step) values.push_back(factor * from[k]);
+    return values;
+  };
+  TimeSeries figure;
+  figure.title = "The guarded filter over time";
+  figure.caption = "Grey: the model-free filter is in use, because there is no model or its innovations contradict it.";
+  for (std::size_t k = 0; k < filter.time().size(); k += step) figure.samples.push_back(filter.time()[k]);
+  Panel alpha{.label = "alpha", .unit = "deg"};
+  alpha.lines.push_back({.name = "guarded", .y = thin("alpha", 1.0 / kDegree)});
+  alpha.lines.push_back({.name = "model-free", .y = thin("alpha_model_free", 1.0 / kDegree), .role = Role::kMeasured});
+  if (const Channel* truth = study.truth ? study.truth->find("alpha") : nullptr)
+    alpha.lines.push_back({.name = "truth",
+                           .y = scaled(truth->value, 1.0 / kDegree),
+                           .x = {truth->times().begin(), truth->times().end()},
+                           .role = Role::kReference});
+  figure.panels.push_back(std::move(alpha));
+  figure.panels.push_back({.label = "innovations / limit",
+                           .unit = "1",
+                           .lines = {{.name = "ratio", .y = thin("guard_ratio", 1.0), .role = Role::kMeasured}},
+                           .height = 90});
+  std::vector<bool> alone;
+  for (const double used : thin("model_based", 1.0)) alone.push_back(used == 0.0);
+  figure.spans = spans_where(figure.samples, alone, "model-free", SpanTone::kMuted);
+  return figure;
+}
+
+Section filter_section(const FlightStudy& study, const FilterHistory& filter) {
+  Section section{.title = "Guarded filter", .id = "filter"};
+  section.blocks.push_back(Paragraph{.text = filter.statement()});
+  section.blocks.push_back(model_table(filter));
+  section.blocks.push_back(filter_figure(study, filter));
+  if (study.truth) section.blocks.push_back(filter_error_table(filter.errors(*study.truth)));
+  return section;
+}
+
 }  // namespace
 
 Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, const std::string& program) {
@@ -141,6 +223,7 @@ Document tracking_report(const FlightStudy& study, const TrackedFlight& flight, 
   }
   document.sections.push_back({.title = "Parameters", .blocks = {parameter_table(study, tracker, estimate)}});
   if (changes > 0) document.sections.push_back({.title = "Changes", .blocks = {change_table(tracker)}});
+  if (!flight.filter().empty()) document.sections.push_back(filter_section(study, flight.filter()));
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     // Where something changed, one looks first.
     Section section{.title = std::string(name_of(c.model.coefficient)),

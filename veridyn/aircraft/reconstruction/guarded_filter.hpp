@@ -17,6 +17,9 @@ namespace veridyn::aircraft {
 /// every window with an alarm, so that what a wrong model did to it is forgotten, and it is trusted again after
 /// `return_after` of sound windows.
 ///
+/// Without a model (`subject` null) the estimate is the model-free filter's. A first model, like one after that, has to
+/// earn the trust: `return_after` of sound windows.
+///
 /// A change of the aircraft is noticed within two windows (2 s by default); until then the estimate is the wrong
 /// model's. `propagate`, `measure` and `judge` do not allocate. Not thread-safe.
 class GuardedFilter {
@@ -24,14 +27,15 @@ class GuardedFilter {
   using State = AirDataState<double>;
   using Monitors = internal::Monitors;
 
-  /// `motion.subject` is ignored: `subject` is the force model (see internal::load_model_streams). `imu_errors`: both
-  /// filters estimate errors of the inertial sensors. `t`: time of `start` [s].
+  /// `motion.subject` is ignored: `subject` is the force model (see internal::load_model_streams), null where none is
+  /// known yet. `imu_errors`: both filters estimate errors of the inertial sensors. `t`: time of `start` [s].
   GuardedFilter(bool imu_errors, const ModelBasedMotion& motion, std::shared_ptr<const Subject> subject,
                 const internal::Start& start, double t, const estimation::GuardOptions& guard = {},
                 const estimation::InnovationGate& gate = {});
 
   /// Derivatives and their uncertainty from outside, from now on. The model-based filter starts again from the
-  /// model-free one; whether it is trusted stays as it was, and the next window judges the new model.
+  /// model-free one. In place of another model the trust stays as it was and the running window judges both; a first
+  /// one is not trusted yet. Null: nothing is known any more.
   void set_model(std::shared_ptr<const Subject> subject, const ModelError& error);
 
   /// Over `dt` > 0 [s] with inertial measurements and controls `u`; its airspeed is filled in.
@@ -57,7 +61,7 @@ class GuardedFilter {
  private:
   void restart_model_based();
 
-  std::shared_ptr<const Subject> subject_;
+  std::shared_ptr<const Subject> subject_;  ///< null: no model
   std::unique_ptr<internal::AirDataEstimator> free_, based_;
   Monitors free_monitors_, based_monitors_;
   estimation::InnovationGuard guard_;

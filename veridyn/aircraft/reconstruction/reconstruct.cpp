@@ -29,28 +29,6 @@ using internal::RunSetting;
 using internal::Segment;
 using internal::Solution;
 
-/// Stamps of the results.
-struct OutputStamps {
-  std::vector<double> time;
-  std::vector<std::size_t> first;  ///< index of the first of each segment
-};
-
-OutputStamps output_stamps(const FlightStreams& s, std::span<const Segment> segments, double rate_Hz) {
-  OutputStamps stamps;
-  for (const Segment& segment : segments) {
-    stamps.first.push_back(stamps.time.size());
-    if (rate_Hz > 0.0) {
-      for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k)
-        stamps.time.push_back(k / rate_Hz);
-      continue;
-    }
-    const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
-    const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
-    stamps.time.insert(stamps.time.end(), first, last);
-  }
-  return stamps;
-}
-
 // --- Turbulence -----------------------------------------------------------------------------------------------------
 
 /// A stretch of at most `length` seconds in the fastest part of the longest segment: where the aircraft surely flies.
@@ -339,15 +317,6 @@ GuardReport guard_report(const internal::GuardTrace& trace, const std::vector<do
   return report;
 }
 
-void add_guard_channels(const internal::GuardTrace& trace, const TimeBase& time, std::size_t count,
-                        Recording& filtered) {
-  const std::vector<double> used(trace.model_based.begin(),
-                                 trace.model_based.begin() + static_cast<std::ptrdiff_t>(count));
-  filtered.add(make_channel("model_based", "1", time, used));
-  filtered.add(make_channel("guard_ratio", "1", time,
-                            {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));
-}
-
 Solution solved(FilterKind kind, const internal::SolveTask& task, Progress& progress) {
   switch (kind) {
     case FilterKind::kGuarded:
@@ -385,7 +354,7 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
                     "a gap longer than {:g} s",
                     options.max_gap));
   }
-  OutputStamps stamps = output_stamps(streams, segments, options.rate_Hz);
+  internal::OutputStamps stamps = internal::output_stamps(streams, segments, options.rate_Hz);
   if (stamps.time.empty())
     throw InputError(mapped.source, "reconstruct.rate is too low: no result falls into the record");
 
@@ -440,7 +409,8 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   };
   finish(out.smoothed, *solution.smoothed);
   if (solution.filtered) finish(out.filtered, *solution.filtered);
-  if (solution.filtered && solution.guard) add_guard_channels(*solution.guard, time, solution.count, out.filtered);
+  if (solution.filtered && solution.guard)
+    internal::add_guard_channels(*solution.guard, time, solution.count, out.filtered);
   return out;
 }
 

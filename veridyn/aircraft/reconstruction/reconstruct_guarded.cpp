@@ -1,41 +1,41 @@
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "veridyn/aircraft/reconstruction/guarded_filter.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_solve.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft::internal {
-namespace {
 
-/// What the guard did, and the estimate of the filter that was active.
-struct GuardedPass {
-  GuardTrace trace;
-  std::optional<ResultColumns> filtered;
-};
-
-/// Goes through the recording with the guarded filter; its estimate is written over `filtered`, where that is kept.
 GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error,
-                        std::optional<ResultColumns> filtered, Progress& progress) {
+                        std::span<const ModelInUse> models, std::optional<ResultColumns> filtered, Progress& progress) {
   const FlightStreams& s = *task.streams;
   const ReconstructOptions& o = *task.options;
   const std::vector<double>& stamps = *task.stamps;
-  GuardedPass pass{{}, std::move(filtered)};
+  GuardedPass pass{.trace = {}, .filtered = std::move(filtered)};
   GuardTrace& trace = pass.trace;
   trace.model_based.assign(stamps.size(), 0);
   trace.nis_ratio.assign(stamps.size(), 0.0);
-  const auto subject = std::make_shared<const Subject>(*task.subject);
   RunSetting setting{.streams = &s, .options = &o, .motion = motion_of(task), .output_t = &stamps};
   setting.air_error = air_error;
   constexpr std::size_t kReport = 4096;
-  std::size_t done = 0, density = 0;
+  std::size_t density = 0;
   for (std::size_t i = 0; i < task.segments.size(); ++i) {
     const Segment& segment = task.segments[i];
     EventCursor cursor(s, stamps, segment, task.first_stamp[i]);
-    GuardedFilter filter(o.estimates_imu_biases(), setting.motion, subject, start_of(setting, segment), segment.begin,
-                         o.guard, o.gate);
+    auto model = std::upper_bound(models.begin(), models.end(), segment.begin,
+                                  [](double t, const ModelInUse& m) { return t < m.from_s; });
+    const bool begun = model != models.begin();
+    if (begun) setting.motion.error = std::prev(model)->error;
+    GuardedFilter filter(o.estimates_imu_biases(), setting.motion, begun ? std::prev(model)->subject : nullptr,
+                         start_of(setting, segment), segment.begin, o.guard, o.gate);
     for (double time = cursor.next_time(); std::isfinite(time); time = cursor.next_time()) {
+      for (; model != models.end() && model->from_s <= cursor.time(); ++model)
+        filter.set_model(model->subject, model->error);
       const double dt = time - cursor.time();
       if (dt > 0.0) {
         AirDataInput u;
@@ -58,7 +58,9 @@ GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>
         const AirDataEstimator& active = filter.active();
         pass.filtered->write(k, active.motion(), active.state(), active.covariance(), s.density_at(time, density));
       }
-      if (++done % kReport == 0 && !progress.update(static_cast<double>(done) / static_cast<double>(stamps.size())))
+      pass.count = k + 1;
+      if (pass.count % kReport == 0 &&
+          !progress.update(static_cast<double>(pass.count) / static_cast<double>(stamps.size())))
         return pass;
     }
     trace.reverts += filter.guard().falls();
@@ -66,7 +68,13 @@ GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>
   return pass;
 }
 
-}  // namespace
+void add_guard_channels(const GuardTrace& trace, const TimeBase& time, std::size_t count, Recording& filtered) {
+  const std::vector<double> used(trace.model_based.begin(),
+                                 trace.model_based.begin() + static_cast<std::ptrdiff_t>(count));
+  filtered.add(make_channel("model_based", "1", time, used));
+  filtered.add(make_channel("guard_ratio", "1", time,
+                            {trace.nis_ratio.begin(), trace.nis_ratio.begin() + static_cast<std::ptrdiff_t>(count)}));
+}
 
 Solution solve_guarded(const SolveTask& task, Progress& progress) {
   // A wrong model, too, has the model-based filter refuse sensors: only the other tells a contradiction among them.
@@ -75,7 +83,9 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   SolveTask whole = task;
   whole.ends_at_contradiction = false;
   Solution based = solve_model_based(whole, progress);
-  GuardedPass guarded = run_guarded(task, free.air_error, std::move(based.filtered), progress);
+  const ModelInUse known{
+      .from_s = -kInfinity, .subject = std::make_shared<const Subject>(*task.subject), .error = motion_of(task).error};
+  GuardedPass guarded = run_guarded(task, free.air_error, {&known, 1}, std::move(based.filtered), progress);
   const GuardTrace& trace = guarded.trace;
   based.filtered = std::move(guarded.filtered);
   based.count = std::min(based.count, free.count);

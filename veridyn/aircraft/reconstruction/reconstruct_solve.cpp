@@ -11,24 +11,6 @@
 namespace veridyn::aircraft::internal {
 namespace {
 
-using ColumnSet = std::array<bool, kColumns.size()>;
-
-/// The columns that the options estimate.
-ColumnSet estimated_columns(const ReconstructOptions& o, bool aerodynamics) {
-  ColumnSet columns{};
-  std::fill_n(columns.begin(), kFirstImuBias, true);
-  for (std::size_t k = 0; k < 3; ++k) {
-    columns[kFirstImuBias + k] = o.gyro_bias;
-    columns[kFirstImuBias + 3 + k] = o.accel_bias;
-    columns[kFirstImuScale + k] = o.gyro_scale;
-    columns[kFirstImuScale + 3 + k] = o.accel_scale;
-    columns[kFirstCoefficientError + k] = aerodynamics;
-  }
-  const std::array<bool, 5> errors{o.alpha_bias, o.beta_bias, o.alpha_scale, o.pitot_scale, o.pitot_bias};
-  std::copy(errors.begin(), errors.end(), columns.begin() + kFirstAirDataError);
-  return columns;
-}
-
 std::vector<std::size_t> error_columns_of(const ColumnSet& columns) {
   std::vector<std::size_t> errors;
   for (std::size_t c = kFirstImuBias; c < kColumns.size(); ++c) {
@@ -162,6 +144,37 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
 }
 
 }  // namespace
+
+ColumnSet estimated_columns(const ReconstructOptions& o, bool aerodynamics) {
+  ColumnSet columns{};
+  std::fill_n(columns.begin(), kFirstImuBias, true);
+  for (std::size_t k = 0; k < 3; ++k) {
+    columns[kFirstImuBias + k] = o.gyro_bias;
+    columns[kFirstImuBias + 3 + k] = o.accel_bias;
+    columns[kFirstImuScale + k] = o.gyro_scale;
+    columns[kFirstImuScale + 3 + k] = o.accel_scale;
+    columns[kFirstCoefficientError + k] = aerodynamics;
+  }
+  const std::array<bool, 5> errors{o.alpha_bias, o.beta_bias, o.alpha_scale, o.pitot_scale, o.pitot_bias};
+  std::copy(errors.begin(), errors.end(), columns.begin() + kFirstAirDataError);
+  return columns;
+}
+
+OutputStamps output_stamps(const FlightStreams& s, std::span<const Segment> segments, double rate_Hz) {
+  OutputStamps stamps;
+  for (const Segment& segment : segments) {
+    stamps.first.push_back(stamps.time.size());
+    if (rate_Hz > 0.0) {
+      for (double k = std::ceil(segment.begin * rate_Hz); k / rate_Hz <= segment.end; ++k)
+        stamps.time.push_back(k / rate_Hz);
+      continue;
+    }
+    const auto first = std::lower_bound(s.gyro.t.begin(), s.gyro.t.end(), segment.begin);
+    const auto last = std::upper_bound(first, s.gyro.t.end(), segment.end);
+    stamps.time.insert(stamps.time.end(), first, last);
+  }
+  return stamps;
+}
 
 Monitors monitors_with(const estimation::InnovationGate& gate) {
   Monitors monitors;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,20 @@ struct GuardTrace {
   std::vector<char> model_based;  ///< whether the estimate is the model-based filter's
   std::vector<double> nis_ratio;  ///< of the last judged window: largest sum of squared innovations over its limit
   std::size_t reverts = 0;        ///< from model-based to model-free
+};
+
+/// The force model that the model-based filter of a guarded one has from a time on.
+struct ModelInUse {
+  double from_s = 0.0;
+  std::shared_ptr<const Subject> subject;  ///< null: none
+  ModelError error;
+};
+
+/// What the guard did, and the estimate of the filter that was active.
+struct GuardedPass {
+  GuardTrace trace;
+  std::optional<ResultColumns> filtered;
+  std::size_t count = 0;  ///< samples that hold results
 };
 
 /// Estimates of filter and smoother over all segments.
@@ -76,5 +91,26 @@ struct Solution {
 /// `kGuardMargin_s` of where the model was not trusted, there the model-free smoother's.
 [[nodiscard]] Solution solve_guarded(const SolveTask& task, Progress& progress);
 inline constexpr double kGuardMargin_s = 3.0;
+/// Goes through the recording with the guarded filter; its estimate is written over `filtered`, where that is kept.
+/// @param models in the order of their times; before the first of them there is none
+[[nodiscard]] GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error,
+                                      std::span<const ModelInUse> models, std::optional<ResultColumns> filtered,
+                                      Progress& progress);
+
+/// `model_based` and `guard_ratio` on the first `count` stamps.
+void add_guard_channels(const GuardTrace& trace, const TimeBase& time, std::size_t count, Recording& filtered);
+
+/// The columns that the options estimate; `aerodynamics`: the filter knows a force model.
+using ColumnSet = std::array<bool, kColumns.size()>;
+[[nodiscard]] ColumnSet estimated_columns(const ReconstructOptions& options, bool aerodynamics);
+
+/// Stamps of the results.
+struct OutputStamps {
+  std::vector<double> time;
+  std::vector<std::size_t> first;  ///< index of the first of each segment
+};
+/// At `rate_Hz`, or where that is 0 those of the gyro.
+[[nodiscard]] OutputStamps output_stamps(const FlightStreams& streams, std::span<const Segment> segments,
+                                         double rate_Hz);
 
 }  // namespace veridyn::aircraft::internal

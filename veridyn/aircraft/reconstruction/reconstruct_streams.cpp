@@ -292,8 +292,8 @@ void move_to_centre_of_gravity(FlightStreams& s, const std::array<double, 3>& po
 
 }  // namespace
 
-ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams s) {
-  const std::string needing = "reconstruct.filter = \"model-based\"";
+ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams s,
+                                const std::string& needing) {
   for (const Coefficient c : {Coefficient::kCl, Coefficient::kCm, Coefficient::kCn}) {
     subject.model.coefficients[static_cast<std::size_t>(c)].reset();
   }

@@ -79,8 +79,10 @@ struct ModelStreams {
 /// Adds what the model-based filter needs beyond `load_streams`: the accelerometer's axes as measurements at the centre
 /// of gravity, deflections, thrust. The force model is the subject without moments, and with a propulsion that turns
 /// recorded thrust into thrust where there is a channel `thrust`.
+/// @param needing the key that asks for it, in messages
 /// @throws InputError naming a channel or a parameter that the model of CL, CD and CY needs and that is missing.
-[[nodiscard]] ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams streams);
+[[nodiscard]] ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams streams,
+                                              const std::string& needing = "reconstruct.filter = \"model-based\"");
 
 /// A stretch over which gyro and accelerometer have no gap longer than `max_gap`, from where attitude and ground
 /// velocity are known.

@@ -19,12 +19,24 @@ enum class AirDataSource {
 };
 [[nodiscard]] std::string_view to_string(AirDataSource source);
 
+/// Which filter estimates the motion through the air of a tracked flight.
+enum class TrackFilter {
+  kModelFree,  ///< no aerodynamics
+  kGuarded     ///< a model-based filter with the tracked coefficients beside it, as long as its innovations allow
+};
+/// "model-free", "guarded".
+[[nodiscard]] std::string_view to_string(TrackFilter filter);
+
 /// How a coefficient is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these;
 /// every one is optional. Rows come at the rate of `FlightSignals::stride`.
 struct TrackOptions : estimation::TrackerOptions {
   std::vector<Coefficient> coefficients = {};       ///< `coefficients`; empty: all that the subject models
   std::string estimate_file;                        ///< `estimate`: estimate.json to start from (hybrid start)
   AirDataSource air_data = AirDataSource::kFilter;  ///< `air_data`: "filter", "sensors"
+  TrackFilter filter = TrackFilter::kModelFree;     ///< `filter`: "model-free", "guarded"
+  /// `start_model`: what the guarded filter knows before anything is tracked: "study" (the subject's values, or
+  /// those of `reconstruct.estimate_file`) or "none".
+  bool starts_from_study = true;
 
   /// @throws InputError naming file, line and key.
   [[nodiscard]] static TrackOptions read(const StudyTable& table);

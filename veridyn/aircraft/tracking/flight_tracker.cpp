@@ -18,8 +18,13 @@ using estimation::RegressionEstimate;
 
 namespace {
 
-/// Rows are prepared together, and the equation error is fitted, over windows of this length by the clock.
-constexpr double kWindowSeconds = 10.0;
+/// Mean of x x' over the rows so far, and after `memory` of them with a weight that falls off over as many.
+void add_to_moment(std::span<const double> x, double memory, double& rows, Eigen::MatrixXd& moment) {
+  const Eigen::Map<const Eigen::VectorXd> row(x.data(), static_cast<Eigen::Index>(x.size()));
+  if (moment.size() == 0) moment = Eigen::MatrixXd::Zero(row.size(), row.size());
+  rows = std::min(rows + 1.0, memory);
+  moment += (row * row.transpose() - moment) / rows;
+}
 
 }  // namespace
 
@@ -49,6 +54,7 @@ FlightTracker::FlightTracker(Subject subject, TrackOptions options, double min_a
   }
   if (coefficients_.empty()) throw InputError(subject_.name, "its model has none of the coefficients to track");
   learning_.resize(coefficients_.size());
+  moment_rows_.resize(coefficients_.size());
 }
 
 std::vector<FlightChange> FlightTracker::feed(const FlightSignals& signals, double from, double until) {
@@ -132,6 +138,7 @@ void FlightTracker::take(std::size_t index, const FlightSignals& signals, const 
 void FlightTracker::take_row(std::size_t index, double time, std::span<const double> x, double z, Eigen::MatrixXd W,
                              std::vector<FlightChange>& found) {
   TrackedCoefficient& c = coefficients_[index];
+  add_to_moment(x, std::max(1.0, rate_ * options_.memory_s), moment_rows_[index], c.regressor_moment);
   if (c.tracker) {
     W(W.rows() - 1, W.cols() - 1) += c.tracker->equation_error();
     if (const auto change = c.tracker->update(time, x, z, &W)) found.push_back({c.model.coefficient, *change});

@@ -17,6 +17,7 @@ struct TrackedCoefficient {
   std::string obstacle = {};                       ///< why it cannot be followed at all, or empty
   std::string start = {};                          ///< where it began: "batch estimate", "no estimate"
   std::optional<CoefficientTracker> tracker = {};  ///< from the moment its noise is known
+  Eigen::MatrixXd regressor_moment = {};           ///< mean of x x' over the rows of about a memory
 };
 
 /// A change that one of the coefficients revealed.
@@ -35,6 +36,8 @@ struct FlightChange {
 class FlightTracker {
  public:
   static constexpr double kLearnSeconds = 20.0;
+  /// Rows are prepared together, and the equation error is fitted, over windows of this length by the clock.
+  static constexpr double kWindowSeconds = 10.0;
 
   /// @param start a batch estimate to begin with, or null
   /// @throws InputError when nothing of the subject's model is among `options.coefficients`
@@ -76,6 +79,7 @@ class FlightTracker {
   std::optional<estimation::Estimate> start_;
   std::vector<TrackedCoefficient> coefficients_;
   std::vector<Learning> learning_;
+  std::vector<double> moment_rows_;  ///< behind `regressor_moment`
   std::vector<FlightChange> changes_;
   std::size_t rows_ = 0;
   double last_;

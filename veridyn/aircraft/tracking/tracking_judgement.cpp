@@ -24,22 +24,21 @@ FlightEvidence unchecked_row() {
            .advice = "run veridyn identify on the finished log"}};
 }
 
-/// Rows of one coefficient that is followed.
-std::vector<Evidence> coefficient_rows(const TrackedCoefficient& c, const Subject& subject,
-                                       std::span<const estimation::Parameter> parameters) {
+}  // namespace
+
+std::vector<Evidence> tracked_evidence(const TrackedCoefficient& c, const Subject& subject) {
   const std::string name = regressed_name(c.model.coefficient, subject);
-  std::vector<Evidence> rows = estimation::tracking_evidence(name, *c.tracker, c.tracker->estimate());
+  const estimation::RegressionEstimate estimate = c.tracker->estimate();
+  std::vector<Evidence> rows = estimation::tracking_evidence(name, *c.tracker, estimate);
   // Held values were not measured, and what the subject's model is not of has no signs to expect.
   if (name != name_of(c.model.coefficient)) return rows;
-  std::vector<estimation::Parameter> known(parameters.begin(), parameters.end());
+  std::vector<estimation::Parameter> known = estimate.parameters;
   std::erase_if(known, [](const estimation::Parameter& p) {
     return p.status == estimation::ParameterStatus::kNotExcited || p.status == estimation::ParameterStatus::kRejected;
   });
   for (Evidence& row : plausibility(c.model.coefficient, known, subject)) rows.push_back(std::move(row));
   return rows;
 }
-
-}  // namespace
 
 estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<const FlightEvidence> recording) {
   estimation::Estimate estimate = tracker.estimate();
@@ -55,7 +54,7 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
     const auto first = estimate.parameters.begin() + static_cast<std::ptrdiff_t>(at);
     const auto last = first + static_cast<std::ptrdiff_t>(c.model.size());
     at += c.model.size();
-    const std::vector<Evidence> own = coefficient_rows(c, tracker.subject(), {first, last});
+    const std::vector<Evidence> own = tracked_evidence(c, tracker.subject());
     std::vector<Evidence> all = own;
     for (const FlightEvidence& e : of_flight)
       if (e.bears_on(c.model.coefficient)) all.push_back(e.row);

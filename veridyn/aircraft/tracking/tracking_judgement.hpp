@@ -7,6 +7,10 @@
 
 namespace veridyn::aircraft {
 
+/// What one coefficient that is followed is judged by at this moment: its tracker's rows and the plausibility of its
+/// values. `c` must have a tracker.
+[[nodiscard]] std::vector<estimation::Evidence> tracked_evidence(const TrackedCoefficient& c, const Subject& subject);
+
 /// The tracker's estimate with its evidence and grades: rows of the recording, of every coefficient that is followed,
 /// and of the plausibility of its values. What must not be taken for physical constants is marked as `identify` marks
 /// it: effective or rejected.
