@@ -86,14 +86,16 @@ std::vector<PreparedTask> candidate_tasks(const MusculoskeletalSystem& subject, 
                                           Progress& progress) {
   const Model& model = subject.model();
   std::vector<Task> tasks;
+  int beyond = 0;
   for (int n = 1; n <= kElbowTasks; ++n) {
     if (std::find(used.begin(), used.end(), n) != used.end()) continue;
-    if (const std::string why = obstacle(model, options, n); !why.empty()) {
-      left_out.push_back(fmt::format("{}: {}", elbow_task_name(n), why));
-    } else {
+    if (obstacle(model, options, n).empty())
       tasks.push_back(make_elbow_task(model, options, n));
-    }
+    else
+      ++beyond;
   }
+  if (beyond > 0)
+    left_out.push_back(fmt::format("{} of the {} elbow tasks are outside the model's ranges", beyond, kElbowTasks));
   std::vector<PreparedTask> candidates;
   for (PreparedTask& task : prepare_tasks(subject, std::move(tasks), progress)) {
     if (!task.usable()) {

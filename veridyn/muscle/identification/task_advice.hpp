@@ -35,8 +35,8 @@ struct TaskAdvice {
 };
 
 /// The elbow tasks that `used` (numbers) does not name and that the model can perform, with the controls with which the
-/// standard model follows them; what is left out is named in `left_out`: an angle outside the model's range, a control
-/// that does not finish, reserves beyond `kMostReserveShare`.
+/// standard model follows them; what is left out is named in `left_out`: how many are outside the model's ranges, a
+/// control that does not finish, reserves beyond `kMostReserveShare`.
 [[nodiscard]] std::vector<PreparedTask> candidate_tasks(const MusculoskeletalSystem& subject,
                                                         const ElbowTaskOptions& options, std::span<const int> used,
                                                         std::vector<std::string>& left_out, Progress& progress);
