@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing_support::FirstOrder;
 
-std::vector<VectorXd> inputs(int segments) {
+std::vector<VectorXd> random_inputs(int segments) {
   std::mt19937_64 engine(4);
   std::normal_distribution<double> normal;
   std::vector<VectorXd> u;
@@ -28,7 +28,7 @@ std::vector<VectorXd> inputs(int segments) {
 
 // What an estimate of three segments says of its intervals, from two of them and what the third would add.
 TEST(Information, OfAFurtherSegmentForetellsTheCovarianceWithIt) {
-  const std::vector<VectorXd> u = inputs(3);
+  const std::vector<VectorXd> u = random_inputs(3);
   FirstOrder all(u, 0.1), two({u[0], u[1]}, 0.1), third({u[2]}, 0.1);
   for (FirstOrder* model : {&all, &two, &third}) model->unknowns[1].prior_sigma = 0.01;
   OutputErrorOptions o;
@@ -51,7 +51,7 @@ TEST(Information, OfAFurtherSegmentForetellsTheCovarianceWithIt) {
 }
 
 TEST(Information, LeavesWhatIsKnownAndSaysWhenASimulationDiverges) {
-  FirstOrder model(inputs(1), 0.1);
+  FirstOrder model(random_inputs(1), 0.1);
   OutputErrorOptions o;
   o.noise_start = Eigen::Vector2d(0.05, 0.2);
   const std::optional<RowMatrix> root = information_root(model, o);

@@ -30,7 +30,7 @@ TaskStudy advice_study(int seed, const std::string& tasks, const std::string& pa
 }
 
 /// F0 and LS of a flexor and an extensor.
-const std::string kFour =
+const std::string kFourUnknowns =
     "[[parameter]]\nmuscles = [\"triceps_long\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n"
     "[[parameter]]\nmuscles = [\"triceps_long\"]\nfields = [\"tendon_slack_length\"]\nbounds = \"20 %\"\n"
     "[[parameter]]\nmuscles = [\"biceps_long\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n"
@@ -71,7 +71,7 @@ Foretold taken(int seed, std::vector<int> tasks, const std::string& parameters) 
 }
 
 void check_forecast(int seed) {
-  const Foretold f = taken(seed, {8, 12, 29}, kFour);
+  const Foretold f = taken(seed, {8, 12, 29}, kFourUnknowns);
   const AdvisedTask& best = f.advice.tasks.front();
   EXPECT_LT(best.then.share, 0.9 * f.advice.now.share);
   EXPECT_NEAR(f.ratio(), 1.0, 0.2) << best.name << ": " << f.advice.now.share << " -> " << best.then.share << ", was "
@@ -88,8 +88,8 @@ TEST(TaskAdvice, ATaskLessensTheWidestIntervalByWhatWasForetold) { check_forecas
 TEST(TaskAdvice, ItDoesSoOfAnotherPerson) { check_forecast(2); }
 
 TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
-  EXPECT_TRUE(advice_study(1, "[8]", kFour).advice);
-  EXPECT_FALSE(advice_study(1, "[8]", kFour, "advice = false\n").advice);
+  EXPECT_TRUE(advice_study(1, "[8]", kFourUnknowns).advice);
+  EXPECT_FALSE(advice_study(1, "[8]", kFourUnknowns, "advice = false\n").advice);
   Progress progress;
   const std::string own =
       "[subject]\nmodel = \"arm\"\n[person]\n[[task]]\nname = \"curl\"\n[[task.ramp]]\ncoordinate = \"elbow_flexion\"\n"
@@ -101,7 +101,7 @@ TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
     EXPECT_THAT(error.what(), HasSubstr("needs the elbow tasks: load_body: 'hand' is no body"));
   }
   EXPECT_FALSE(read_task_study(Study::parse(own + "false\n", "s.toml"), progress).advice);
-  TaskStudy wrong = advice_study(1, "[8, 29]", kFour);
+  TaskStudy wrong = advice_study(1, "[8, 29]", kFourUnknowns);
   wrong.person->noise *= 5.0;
   const MuscleAnalysis a = identify(wrong, progress);
   EXPECT_THAT(a.advice.withheld, HasSubstr("noise"));
@@ -113,7 +113,7 @@ TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
 TEST(TaskAdviceSoak, OfManyPersons) {
   std::vector<double> few, all;
   for (int seed = 1; seed <= 10; ++seed) {
-    const Foretold f = taken(seed, {8, 12, 29}, kFour), g = taken(seed, {8, 12, 29, 33}, "");
+    const Foretold f = taken(seed, {8, 12, 29}, kFourUnknowns), g = taken(seed, {8, 12, 29, 33}, "");
     few.push_back(f.ratio());
     all.push_back(g.then / g.advice.tasks.front().then.share);
     fmt::print("{}: 4 unknowns {:.3g} -> {:.3g}, was {:.3g}; 18 unknowns {:.3g} -> {:.3g}, was {:.3g}\n", seed,
