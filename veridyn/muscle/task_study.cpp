@@ -85,7 +85,7 @@ std::vector<std::string> read_profiles(const StudyTable& table, const std::vecto
   for (const MuscleUnknown& u : unknowns)
     if (!u.fixed) free.push_back(u.name);
   if (!table.is_array("profiles")) return table.flag_or("profiles", false) ? free : std::vector<std::string>();
-  const std::vector<std::string> names = table.texts("profiles");
+  std::vector<std::string> names = table.texts("profiles");
   for (const std::string& name : names) {
     if (std::find(free.begin(), free.end(), name) == free.end())
       table.fail("profiles", fmt::format("'{}' is no free unknown of this study{}", name, suggestion(name, free)));
