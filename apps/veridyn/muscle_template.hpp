@@ -103,6 +103,10 @@ hold_out = [12]                  # kept to validate on
 # [task.held]
 # shoulder_flexion = "0 deg"
 
+# [identify]
+# advice = true                  # name the further elbow task that would narrow the widest interval most
+# profiles = false               # profile likelihood of all parameters, or of those in a list
+
 # A simulated person, to see what the tasks would determine. Delete it where tasks are measured.
 [person]
 spread = "5 %"                   # hidden parameters, within so much of the model's

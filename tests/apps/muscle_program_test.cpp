@@ -157,6 +157,21 @@ TEST_F(MuscleProgram, IdentifiesAndValidatesTheTasksOfItsTemplate) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other/model.osim"));
 }
 
+TEST_F(MuscleProgram, SaysWhichTaskWouldTellMostAndFollowsProfiles) {
+  ASSERT_EQ(run("init muscle --quiet --out " + folder_.string()).exit_code, 0);
+  const Outcome done = run("identify " + (folder_ / "study.toml").string() +
+                           " --set identify.starts=1 --set identify.profiles=true --json" + out());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  const auto summary = nlohmann::json::parse(done.text);
+  EXPECT_EQ(summary["profiles"]["strength"]["low_end"], "closed");
+  EXPECT_LT(summary["profiles"]["strength"]["low95"], summary["profiles"]["strength"]["high95"]);
+  ASSERT_EQ(summary["estimate"]["next_measurements"].size(), 3u);
+  EXPECT_EQ(summary["estimate"]["next_measurements"][0]["widest_now"], "strength");
+  EXPECT_THAT(read_file(in_out("profiles.csv")), HasSubstr("parameter,unit,value,likelihood_ratio,strength\n"));
+  EXPECT_THAT(read_file(in_out("profile_intervals.csv")), HasSubstr(",closed,closed\n"));
+  EXPECT_THAT(read_file(in_out("report.html")), AllOf(HasSubstr("Which task next"), HasSubstr("Profile likelihood")));
+}
+
 TEST_F(MuscleProgram, SaysWhatIsMissingForAnEstimate) {
   expect_refusal("identify " + file("s.toml", std::string(kSubject) + "[motion]\n") + out(),
                  "tasks: is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");

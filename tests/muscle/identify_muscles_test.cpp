@@ -19,9 +19,10 @@ using ::testing::HasSubstr;
 
 TaskStudy person_study(int seed, const std::string& text) {
   Progress progress;
-  return read_task_study(
-      Study::parse(fmt::format("seed = {}\n[subject]\nmodel = \"arm\"\npaths = \"fitted\"\n", seed) + text, "s.toml"),
-      progress);
+  const std::string subject = fmt::format("seed = {}\n[subject]\nmodel = \"arm\"\npaths = \"fitted\"\n", seed);
+  TaskStudy study = read_task_study(Study::parse(subject + text, "s.toml"), progress);
+  study.advice = text.find("advice") != std::string::npos;
+  return study;
 }
 
 MuscleAnalysis recovered(int seed, const std::string& text) {

@@ -26,6 +26,16 @@ struct ValidationMeasure {
   std::string unit = "1";
 };
 
+/// A measurement that was not made, and how wide the widest interval of 95 % would be with it (half of it over the
+/// value known before).
+struct NextMeasurement {
+  std::string name;
+  std::string widest_now;  ///< parameter
+  double share_now = 0.0;
+  std::string widest_then;  ///< parameter
+  double share_then = 0.0;
+};
+
 /// What identification delivers, whatever the domain: the content of `estimate.json`.
 struct Estimate {
   std::string subject;
@@ -39,6 +49,7 @@ struct Estimate {
   Judgement judgement;             ///< of the whole; "not judged" where an estimate was read from an older file
   std::vector<Evidence> evidence;  ///< every check behind it
   std::vector<std::string> warnings;
+  std::vector<NextMeasurement> next_measurements;  ///< the best first; empty: not asked for, or none to advise
 
   [[nodiscard]] const Parameter* find(std::string_view name) const;
 };

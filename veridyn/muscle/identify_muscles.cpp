@@ -11,6 +11,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/task_profiles.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/identification/task_warnings.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -272,6 +273,40 @@ void judge_parameters(const TaskStudy& study, MuscleAnalysis& a) {
   a.identified = estimation::usable(group.verdict) ? with_values(study, a.estimate.parameters) : study.subject.written;
 }
 
+/// What to perform next, unless something other than too few tasks speaks against the parameters; said in the row about
+/// what is determined and in the estimate.
+void advise_next(const TaskStudy& study, const MuscleParametricModel& model, const MuscleModelOptions& options,
+                 std::vector<estimation::Evidence>& rows, MuscleAnalysis& a, Progress& progress) {
+  const auto begun = std::chrono::steady_clock::now();
+  const auto determined = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.name == kDetermined; });
+  for (const estimation::Evidence& row : rows) {
+    if (row.name == kDetermined || row.outcome != estimation::Outcome::kFailed) continue;
+    if (row.bears_on.contains(estimation::Purpose::kParameters)) a.advice.withheld = row.text;
+  }
+  if (!a.advice.withheld.empty()) return;
+  std::vector<int> used;
+  for (const Task& task : study.tasks) used.push_back(task.number);
+  std::vector<std::string> left_out;
+  progress.stage("which further task would tell most");
+  const std::vector<PreparedTask> candidates =
+      candidate_tasks(*study.subject.system, *study.elbow, used, left_out, progress);
+  if (progress.interrupted()) return;
+  a.advice = advise_task(*study.subject.system, model, options, a.result, candidates, progress);
+  a.advice.left_out.insert(a.advice.left_out.begin(), left_out.begin(), left_out.end());
+  a.advice.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  constexpr std::size_t kNamed = 3;
+  for (std::size_t i = 0; i < std::min(kNamed, a.advice.tasks.size()); ++i) {
+    const AdvisedTask& task = a.advice.tasks[i];
+    a.estimate.next_measurements.push_back(
+        {task.name, a.advice.now.parameter, a.advice.now.share, task.then.parameter, task.then.share});
+  }
+  if (a.advice.tasks.empty() || determined == rows.end() || determined->passed()) return;
+  const AdvisedTask& best = a.advice.tasks.front();
+  determined->advice =
+      fmt::format("perform {} next: the widest interval, {}'s, would go from +-{:.2g} to {:.2g} %; or {}", best.name,
+                  a.advice.now.parameter, 100.0 * a.advice.now.share, 100.0 * best.then.share, determined->advice);
+}
+
 /// By the route that the study asks for.
 TaskEstimate estimated(const TaskStudy& study, const MuscleParametricModel& model,
                        const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise, Progress& progress) {
@@ -334,16 +369,22 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
   }
   a.unused = std::move(all.unused);
   const std::vector<std::string> wraps = task_warnings(model, theta);
-  fill_analysis(study,
-                judge_tasks({.model = model,
-                             .estimate = a.result,
-                             .tasks = a.tasks,
-                             .unused = a.unused,
-                             .wrap_warnings = wraps,
-                             .noise_known = noise.size() > 0,
-                             .noise = noise.size() > 0 ? noise(0) : 0.0,
-                             .simulated = study.person.has_value()}),
-                a);
+  std::vector<estimation::Evidence> rows = judge_tasks({.model = model,
+                                                        .estimate = a.result,
+                                                        .tasks = a.tasks,
+                                                        .unused = a.unused,
+                                                        .wrap_warnings = wraps,
+                                                        .noise_known = noise.size() > 0,
+                                                        .noise = noise.size() > 0 ? noise(0) : 0.0,
+                                                        .simulated = study.person.has_value()});
+  if (!study.profiles.empty()) {
+    progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
+    a.profiles = profile_tasks(model, trained.measured, noise, a.result, study.profiles, progress);
+  }
+  if (study.advice && !progress.interrupted()) advise_next(study, model, options, rows, a, progress);
+  a.interrupted = progress.interrupted();
+  if (a.interrupted) return a;
+  fill_analysis(study, std::move(rows), a);
   judge_parameters(study, a);
   for (const std::string& wrap : wraps) a.estimate.warnings.push_back(wrap);
   for (const std::string& warning : study.subject.warnings) a.estimate.warnings.push_back(warning);

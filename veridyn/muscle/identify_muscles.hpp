@@ -5,6 +5,8 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
+#include "veridyn/muscle/identification/task_advice.hpp"
 #include "veridyn/muscle/identification/task_judgement.hpp"
 #include "veridyn/muscle/task_study.hpp"
 
@@ -17,7 +19,9 @@ struct MuscleAnalysis : estimation::Analysis {
   std::vector<std::string> unused;  ///< tasks that could not be set up, with why
   std::vector<estimation::ModelOutput> outputs;
   Model identified;  ///< the file's model with what was estimated; the file's own where the estimate is rejected
-  double preparing_s = 0.0;  ///< computed muscle control of the tasks
+  estimation::ProfileResult profiles;  ///< those that the study asks for
+  TaskAdvice advice;                   ///< empty where the study asks for none
+  double preparing_s = 0.0;            ///< computed muscle control of the tasks
 };
 
 /// The full pipeline: tasks prepared, measured (or a person simulated), estimate from those that are not held out,

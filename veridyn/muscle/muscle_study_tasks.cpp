@@ -259,6 +259,11 @@ StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject, std::s
   StudyTasks out;
   const StudyTable table = root.table_or_empty("tasks");
   const SharedSettings settings = read_shared(table, subject, out);
+  try {
+    out.elbow = resolved(subject.system->model(), settings.elbow);
+  } catch (const InputError& error) {
+    out.no_elbow = error.what();
+  }
   add_elbow_tasks(table, settings, subject, out);
   for (const StudyTable& own : root.tables("task")) {
     Task task = read_task(own, subject, settings, outputs, out);

@@ -6,6 +6,7 @@
 
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/tasks/elbow_tasks.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
 
 namespace veridyn::muscle {
@@ -16,6 +17,9 @@ struct StudyTasks {
   double accuracy = 1e-6;          ///< of their simulations, as `[motion] accuracy`
   std::vector<std::string> notes;  ///< elbow tasks that the model cannot perform
   std::vector<std::filesystem::path> inputs;
+  /// What the elbow tasks share, used or not; none where the model has no such tasks, for which `no_elbow` says why.
+  std::optional<ElbowTaskOptions> elbow;
+  std::string no_elbow;
 };
 
 /// Motions from which muscles are estimated:

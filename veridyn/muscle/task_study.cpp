@@ -79,6 +79,21 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
   return person;
 }
 
+/// Names, or all that are free.
+std::vector<std::string> read_profiles(const StudyTable& table, const std::vector<MuscleUnknown>& unknowns) {
+  std::vector<std::string> free;
+  for (const MuscleUnknown& u : unknowns)
+    if (!u.fixed) free.push_back(u.name);
+  if (!table.is_array("profiles")) return table.flag_or("profiles", false) ? free : std::vector<std::string>();
+  std::vector<std::string> names = table.texts("profiles");
+  for (const std::string& name : names) {
+    if (std::find(free.begin(), free.end(), name) == free.end())
+      table.fail("profiles", fmt::format("'{}' is no free unknown of this study{}", name, suggestion(name, free)));
+    if (std::count(names.begin(), names.end(), name) > 1) table.fail("profiles", fmt::format("has '{}' twice", name));
+  }
+  return names;
+}
+
 void read_published_route(const StudyTable& table, TaskStudy& study) {
   PublishedRouteOptions route{.tolerance = table.positive_or("tolerance", "1", 0.01)};
   route.swarm.seed = route.pattern.seed = study.seed;
@@ -92,7 +107,7 @@ void read_published_route(const StudyTable& table, TaskStudy& study) {
   study.published = std::move(route);
 }
 
-void read_search(const StudyTable& table, TaskStudy& study) {
+void read_search(const StudyTable& table, const std::string& no_elbow, TaskStudy& study) {
   study.search.starts = static_cast<int>(std::clamp(table.integer_or("starts", study.search.starts), 0LL, 1000000LL));
   study.search.screened = static_cast<int>(
       std::clamp(table.integer_or("screened", std::max(study.search.screened, study.search.starts)), 0LL, 1000000LL));
@@ -105,6 +120,10 @@ void read_search(const StudyTable& table, TaskStudy& study) {
   }
   study.search.seed = study.seed;
   study.estimate_start = table.flag_or("estimate_start", !study.person);
+  study.profiles = read_profiles(table, study.unknowns);
+  const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.drive; });
+  study.advice = table.flag_or("advice", study.elbow && !recorded);
+  if (study.advice && !study.elbow) table.fail("advice", fmt::format("needs the elbow tasks: {}", no_elbow));
   const std::vector<std::string> routes = {"gradient", "published"};
   if (table.choice_or("route", routes, "gradient") == "published") read_published_route(table, study);
 }
@@ -140,6 +159,7 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
   study.tasks = std::move(tasks.tasks);
   study.accuracy = tasks.accuracy;
   study.notes = std::move(tasks.notes);
+  study.elbow = tasks.elbow;
   study.inputs = study.subject.inputs;
   study.inputs.insert(study.inputs.end(), tasks.inputs.begin(), tasks.inputs.end());
   if (!chosen) drop_resting_outputs(study);
@@ -154,7 +174,7 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
                                     "simulate one",
                                     task.name));
   }
-  read_search(root.table_or_empty("identify"), study);
+  read_search(root.table_or_empty("identify"), tasks.no_elbow, study);
   for (const char* other : {"motion", "sensitivity"})
     if (root.is_table(other)) root.accept(other);
   root.finish();

@@ -34,7 +34,10 @@ struct TaskStudy {
   std::optional<SimulatedPerson> person;
   std::optional<PublishedRouteOptions> published;  ///< the published search in place of `search`
   TaskEstimateOptions search;
-  bool estimate_start = false;  ///< pose and speed where each task begins are unknown too
+  std::optional<ElbowTaskOptions> elbow;  ///< as `StudyTasks`
+  bool advice = false;                    ///< say which further elbow task would lessen the widest interval most
+  std::vector<std::string> profiles;      ///< parameters whose profile likelihood is followed
+  bool estimate_start = false;            ///< pose and speed where each task begins are unknown too
   std::uint64_t seed = 1;
   std::vector<std::string> notes;
   std::vector<std::filesystem::path> inputs;
@@ -62,6 +65,9 @@ struct TaskStudy {
 ///     log = "search.csv"             # published: every evaluation; a log that is there is continued
 ///     starts = 3                     # gradient: searches
 ///     screened = 16                  # points whose fit is looked at to choose where they begin
+///     advice = true                  # which further elbow task would lessen the widest interval most; false when left
+///                                    # out where controls are recorded: those of a task to come are not known
+///     profiles = ["BRA.tendon_slack_length"]  # profile likelihood of these; true: of all that are not fixed
 ///     estimate_start = true          # pose and speed at the beginning too; true when left out with recordings
 ///
 /// Without `[[parameter]]`: max_isometric_force, optimal_fiber_length and tendon_slack_length of every muscle, within

@@ -11,6 +11,7 @@
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/profile_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
@@ -88,6 +89,36 @@ Section directions_section(const MuscleAnalysis& a) {
       "lowering what stands after it, in proportion to the priors' widths, leaves the motion nearly as it is. "
       "The least known first."});
   section.blocks.emplace_back(List{.items = a.result.null_directions});
+  return section;
+}
+
+/// What to perform next: the best candidates.
+Section advice_section(const MuscleAnalysis& a) {
+  Section section{.title = "Which task next", .id = "next-task"};
+  if (!a.advice.withheld.empty())
+    section.blocks.emplace_back(Paragraph{"No task is advised: " + a.advice.withheld + "."});
+  if (a.advice.tasks.empty()) return section;
+  constexpr std::size_t kShown = 3;
+  section.blocks.emplace_back(Paragraph{fmt::format(
+      "The widest interval is that of {}: 95 % within +-{:.2g} % of the standard model's value. Foretold from the "
+      "exact sensitivities of "
+      "{} tasks that were not performed, at the estimate and with the controls with which the standard model follows "
+      "them: what the widest interval would be with one of them added.",
+      a.advice.now.parameter, 100.0 * a.advice.now.share, a.advice.tasks.size())});
+  Table table{.title = "Which task next",
+              .columns = {{.name = "task", .align = Align::kLeft},
+                          {.name = "now", .unit = "%", .digits = 3, .group = "widest interval, +-"},
+                          {.name = "then", .unit = "%", .digits = 3, .group = "widest interval, +-"},
+                          {.name = "then that of", .align = Align::kLeft}}};
+  for (std::size_t i = 0; i < std::min(kShown, a.advice.tasks.size()); ++i) {
+    const AdvisedTask& task = a.advice.tasks[i];
+    table.rows.push_back({.cells = {text_cell(task.name), number_cell(100.0 * a.advice.now.share),
+                                    number_cell(100.0 * task.then.share), text_cell(task.then.parameter)}});
+  }
+  section.blocks.emplace_back(std::move(table));
+  if (!a.advice.left_out.empty())
+    section.blocks.emplace_back(
+        Paragraph{fmt::format("Not to be advised: {}.", fmt::join(a.advice.left_out, "; ")), Tone::kNote});
   return section;
 }
 
@@ -192,6 +223,8 @@ Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, con
   };
   add(muscle_parameters(study, a));
   add(directions_section(a));
+  add(profile_section(a.profiles, a.estimate.parameters));
+  add(advice_section(a));
   Section tasks{.title = "Tasks before and after", .id = "tasks"};
   tasks.blocks.emplace_back(task_table(a));
   for (const bool hold_out : {true, false}) {

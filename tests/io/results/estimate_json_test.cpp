@@ -69,6 +69,19 @@ TEST(EstimateJson, KeepsGradesAndEvidence) {
   EXPECT_FALSE(read.evidence[0].bears_on.contains(estimation::Purpose::kParameters));
 }
 
+TEST(EstimateJson, KeepsWhatToMeasureNext) {
+  estimation::Estimate e = two_parameters();
+  EXPECT_EQ(to_json(e).find("next_measurements"), std::string::npos);
+  e.next_measurements = {{"task 5", "a", 0.2, "b", 0.125}, {"task 7", "a", 0.2, "a", 0.15}};
+  const testing::TemporaryFolder folder;
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", to_json(e)));
+  ASSERT_EQ(read.next_measurements.size(), 2u);
+  EXPECT_EQ(read.next_measurements[0].name, "task 5");
+  EXPECT_EQ(read.next_measurements[0].widest_then, "b");
+  EXPECT_EQ(read.next_measurements[0].share_now, 0.2);
+  EXPECT_EQ(read.next_measurements[1].share_then, 0.15);
+}
+
 TEST(EstimateJson, RefusesAGradeThatIsNone) {
   std::string text = to_json(two_parameters());
   const std::size_t at = text.find("not judged");

@@ -20,7 +20,7 @@
 namespace veridyn::muscle {
 namespace {
 
-#define SKIP_WITHOUT_REFERENCE()                                                      \
+#define SKIP_WITHOUT_PATH_REFERENCE()                                                 \
   if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
   GTEST_SKIP() << "the reference of ../shared is not "                                \
                   "here"
@@ -100,7 +100,7 @@ bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
 }
 
 TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   Arm arm(arm26());
   const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   int compared = 0, left_out = 0;
@@ -129,7 +129,7 @@ TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
 }
 
 TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   Arm arm(arm26());
   // The trapezoidal rule with dL/dq at both ends of a step leaves a jump whole, and of a kink at most a quarter of the
   // change of dL/dq times the step: 2.8e-5 m here.
@@ -157,7 +157,7 @@ TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
 }
 
 TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   Arm arm(arm26());
   std::vector<Eigen::VectorXd> poses;
   for (double s = -90.0; s < 180.0; s += 3.1)
@@ -166,7 +166,7 @@ TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
 }
 
 TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   Arm arm(arm26(), WrapMode::kAsOpenSim);
   const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -222,12 +222,12 @@ void compare_random_poses(const std::string& file, const std::string& prefix) {
 }
 
 TEST(MusclePaths, OfTheLegWithMovingPointsAreOpenSims) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   compare_random_poses("leg6dof9musc.osim", "f_leg6dof9musc_range0p5");
 }
 
 TEST(MusclePaths, OfTheGaitModelAreOpenSims) {
-  SKIP_WITHOUT_REFERENCE();
+  SKIP_WITHOUT_PATH_REFERENCE();
   compare_random_poses("gait10dof18musc.osim", "f_gait10dof18musc_range0p5");
 }
 

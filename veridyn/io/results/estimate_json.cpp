@@ -151,6 +151,21 @@ std::vector<Evidence> read_evidence(const ordered_json& root, const std::string&
   return rows;
 }
 
+/// Where an estimate has some.
+void read_next_measurements(const ordered_json& root, const std::string& file, Estimate& estimate) {
+  if (!root.contains("next_measurements")) return;
+  if (!root["next_measurements"].is_array()) throw InputError(file, "'next_measurements' is not an array");
+  for (const ordered_json& next : root["next_measurements"]) {
+    const std::string place = fmt::format("{}: next_measurements[{}]", file, estimate.next_measurements.size());
+    estimate.next_measurements.push_back(
+        {.name = read_text(next, "name", place),
+         .widest_now = read_text(next, "widest_now", place),
+         .share_now = read_number(require(next, "share_now", place), place + ".share_now"),
+         .widest_then = read_text(next, "widest_then", place),
+         .share_then = read_number(require(next, "share_then", place), place + ".share_then")});
+  }
+}
+
 }  // namespace
 
 std::string to_json(const Estimate& estimate) {
@@ -201,6 +216,13 @@ std::string to_json(const Estimate& estimate) {
   root["evidence"] = ordered_json::array();
   for (const Evidence& row : estimate.evidence) root["evidence"].push_back(evidence_of(row));
   root["warnings"] = estimate.warnings;
+  for (const estimation::NextMeasurement& next : estimate.next_measurements) {
+    root["next_measurements"].push_back({{"name", next.name},
+                                         {"widest_now", next.widest_now},
+                                         {"share_now", number(next.share_now)},
+                                         {"widest_then", next.widest_then},
+                                         {"share_then", number(next.share_then)}});
+  }
   return root.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -265,6 +287,7 @@ Estimate read_estimate(const std::filesystem::path& path) {
       if (warning.is_string()) estimate.warnings.push_back(warning.get<std::string>());
     }
   }
+  read_next_measurements(root, name, estimate);
   return estimate;
 }
 

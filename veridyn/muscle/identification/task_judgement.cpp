@@ -161,7 +161,7 @@ Evidence check_determined(const TaskFindings& f) {
     if (v == TaskVerdict::kFixed) continue;
     (v == TaskVerdict::kIdentified ? identified : open).push_back(f.estimate.best.parameters[i].name);
   }
-  Evidence row{.name = "what the tasks determine",
+  Evidence row{.name = kDetermined,
                .value = static_cast<double>(identified.size()),
                .limit = static_cast<double>(identified.size() + open.size()),
                .scale = "parameters",

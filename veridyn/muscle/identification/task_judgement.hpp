@@ -32,6 +32,9 @@ struct TaskFindings {
   bool simulated = false;  ///< the recording is a simulated person's
 };
 
+/// Name of the row that says how many parameters the tasks determine.
+inline constexpr const char* kDetermined = "what the tasks determine";
+
 /// The rows, one function a check: residual against the noise, its correlation, hold-out against the standard model and
 /// the noise, bounds, searches that agree, what is determined at all, tasks, wraps, reserves, what is taken as given.
 [[nodiscard]] std::vector<estimation::Evidence> judge_tasks(const TaskFindings& findings);

@@ -14,9 +14,6 @@
 namespace veridyn::muscle {
 namespace {
 
-/// Share of the muscles' moment that reserves may add: beyond, it is not the muscles that move the task.
-constexpr double kMostReserve = 0.2;
-
 /// Sentences on the wraps' fading bands that the standard model's motion of a task enters.
 std::vector<std::string> bands_of(const PreparedTask& task, double accuracy) {
   Progress alone;
@@ -36,7 +33,7 @@ std::vector<TaskFinding> find_bands(std::span<const PreparedTask> tasks, double 
     findings[t].name = tasks[t].task.name;
     findings[t].number = tasks[t].task.number;
     findings[t].obstacle = tasks[t].trouble;
-    if (findings[t].obstacle.empty() && !(tasks[t].reserve_share <= kMostReserve))
+    if (findings[t].obstacle.empty() && !(tasks[t].reserve_share <= kMostReserveShare))
       findings[t].obstacle = fmt::format(
           "the standard model's muscles cannot perform it: reserves add up to {:.2g} % of "
           "their moment",

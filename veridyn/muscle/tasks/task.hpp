@@ -59,6 +59,9 @@ struct PreparedTask {
   [[nodiscard]] bool usable() const { return trouble.empty(); }
 };
 
+/// Share of the muscles' moment that reserves may add: beyond, it is not the muscles that move the task.
+inline constexpr double kMostReserveShare = 0.2;
+
 /// Gives each task its system (`subject` with the task's load and locks), its controls and its start. Controls are
 /// those of computed muscle control of the subject's muscles where the task brings none. On the progress' threads; the
 /// same bits on any number of them. A task whose control does not finish is returned with its trouble.

@@ -1,0 +1,152 @@
+#include "veridyn/muscle/identification/task_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "veridyn/core/index.hpp"
+#include "veridyn/estimation/output_error/information.hpp"
+#include "veridyn/muscle/identification/task_segments.hpp"
+#include "veridyn/muscle/identification/task_warnings.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+using estimation::OutputErrorOptions;
+using estimation::RowMatrix;
+
+/// View of an estimate whose intervals are foretold.
+class Foretelling {
+ public:
+  Foretelling(const MuscleParametricModel& model, const TaskEstimate& estimate, bool free_starts)
+      : model_(model), estimate_(estimate) {
+    for (Eigen::Index i = 0; i < signed_index(model.parameters().size()); ++i)
+      if (!model.parameters()[at(i)].fixed) free_.push_back(i);
+    P_ = estimate.best.covariance_white(free_, free_);
+    // Where the noise is estimated, intervals are widened by the freedom that the fit took: so is the noise to come.
+    const auto values = static_cast<double>(estimate.best.values);
+    const double unknowns = static_cast<double>(free_.size() + estimate.best.segment_parameters.size());
+    const bool known = model.output_noise().size() > 0;
+    options_.noise_start = estimate.best.noise_covariance.diagonal().cwiseSqrt() *
+                           (known ? 1.0 : std::sqrt(values / std::max(1.0, values - unknowns)));
+    options_.search_start = estimate.best.theta;
+    options_.free_initial_conditions = free_starts;
+    options_.threads = 1;
+  }
+
+  [[nodiscard]] bool possible() const { return !free_.empty() && P_.allFinite(); }
+
+  /// With the candidate's information; none where it cannot be simulated with the estimate.
+  [[nodiscard]] std::optional<WidestInterval> after(const MuscleParametricModel& candidate) const {
+    const std::optional<RowMatrix> root = estimation::information_root(candidate, options_);
+    if (!root) return std::nullopt;
+    return widest(estimation::covariance_after(P_, *root));
+  }
+
+  [[nodiscard]] WidestInterval now() const { return widest(P_); }
+
+ private:
+  /// Intervals shrink as the inverse information does.
+  [[nodiscard]] WidestInterval widest(const Eigen::MatrixXd& then) const {
+    WidestInterval widest;
+    for (Eigen::Index k = 0; k < P_.rows(); ++k) {
+      const std::size_t i = at(free_[at(k)]);
+      const estimation::Parameter& p = estimate_.best.parameters[i];
+      if (estimate_.verdicts[i] == TaskVerdict::kAtBound) continue;
+      const double half = 0.5 * (p.high95 - p.low95) * std::sqrt(std::max(0.0, then(k, k)) / P_(k, k)) *
+                          std::sqrt(estimate_.chi_square > 1.0 ? estimate_.chi_square : 1.0);
+      const estimation::ModelParameter& own = model_.parameters()[i];
+      const bool may_be_zero = own.low <= 0.0 && own.high >= 0.0;
+      const double share = half / (may_be_zero ? 0.5 * (own.high - own.low) : std::abs(own.start));
+      if (share > widest.share) widest = {p.name, share};
+    }
+    return widest;
+  }
+
+  const MuscleParametricModel& model_;
+  const TaskEstimate& estimate_;
+  std::vector<Eigen::Index> free_;
+  Eigen::MatrixXd P_;
+  OutputErrorOptions options_;
+};
+
+Eigen::VectorXd standard_values(const MuscleParametricModel& model) {
+  Eigen::VectorXd theta(signed_index(model.parameters().size()));
+  for (Eigen::Index i = 0; i < theta.size(); ++i) theta(i) = model.parameters()[at(i)].start;
+  return theta;
+}
+
+}  // namespace
+
+std::vector<PreparedTask> candidate_tasks(const MusculoskeletalSystem& subject, const ElbowTaskOptions& options,
+                                          std::span<const int> used, std::vector<std::string>& left_out,
+                                          Progress& progress) {
+  const Model& model = subject.model();
+  std::vector<Task> tasks;
+  int beyond = 0;
+  for (int n = 1; n <= kElbowTasks; ++n) {
+    if (std::find(used.begin(), used.end(), n) != used.end()) continue;
+    if (obstacle(model, options, n).empty())
+      tasks.push_back(make_elbow_task(model, options, n));
+    else
+      ++beyond;
+  }
+  if (beyond > 0)
+    left_out.push_back(fmt::format("{} of the {} elbow tasks are outside the model's ranges", beyond, kElbowTasks));
+  std::vector<PreparedTask> candidates;
+  for (PreparedTask& task : prepare_tasks(subject, std::move(tasks), progress)) {
+    if (!task.usable()) {
+      left_out.push_back(fmt::format("{}: {}", task.task.name, task.trouble));
+    } else if (!(task.reserve_share <= kMostReserveShare)) {
+      left_out.push_back(fmt::format("{}: reserves add up to {:.2g} % of the muscles' moment", task.task.name,
+                                     100.0 * task.reserve_share));
+    } else {
+      candidates.push_back(std::move(task));
+    }
+  }
+  return candidates;
+}
+
+TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParametricModel& model,
+                       const MuscleModelOptions& options, const TaskEstimate& estimate,
+                       std::span<const PreparedTask> candidates, Progress& progress) {
+  TaskAdvice advice;
+  const Foretelling foretelling(model, estimate, options.estimate_start);
+  if (!foretelling.possible()) {
+    advice.withheld = "the estimate has parameters without an interval";
+    return advice;
+  }
+  advice.now = foretelling.now();
+  const std::vector<MuscleUnknown> unknowns(model.unknowns().begin(), model.unknowns().end());
+  const Eigen::VectorXd standard = standard_values(model);
+  std::vector<std::optional<WidestInterval>> then(candidates.size());
+  std::vector<std::string> why(candidates.size());
+  const auto one = [&](std::size_t c) {
+    const MuscleParametricModel alone(subject, unknowns, {segment_of(candidates[c])}, options);
+    for (const Eigen::VectorXd& theta : {standard, estimate.best.theta}) {
+      const std::vector<std::string> warnings = task_warnings(alone, theta);
+      if (!warnings.empty()) why[c] = warnings.front();
+    }
+    if (why[c].empty()) then[c] = foretelling.after(alone);
+    if (why[c].empty() && !then[c]) why[c] = fmt::format("{}: the simulation cannot finish", candidates[c].task.name);
+  };
+  const auto proceed = [&](std::size_t done) {
+    return progress.update(static_cast<double>(done) / static_cast<double>(candidates.size()));
+  };
+  if (!numerics::parallel_for(candidates.size(), progress.threads(), one, proceed)) return {};
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (then[c])
+      advice.tasks.push_back({candidates[c].task.number, candidates[c].task.name, *then[c]});
+    else
+      advice.left_out.push_back(why[c]);
+  }
+  std::stable_sort(advice.tasks.begin(), advice.tasks.end(),
+                   [](const AdvisedTask& a, const AdvisedTask& b) { return a.then.share < b.then.share; });
+  if (advice.tasks.empty()) advice.withheld = "no further task can be advised";
+  return advice;
+}
+
+}  // namespace veridyn::muscle

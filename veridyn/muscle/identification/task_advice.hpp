@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/muscle/identification/task_estimate.hpp"
+#include "veridyn/muscle/tasks/elbow_tasks.hpp"
+
+namespace veridyn::muscle {
+
+/// The widest interval among the parameters of an estimate.
+struct WidestInterval {
+  std::string parameter;
+  /// Half the width of the interval of 95 % over the standard model's value; of a parameter that may be zero (a delay),
+  /// over half the width of its bounds.
+  double share = 0.0;
+};
+
+/// A task that was not performed, and what it would leave of the widest interval.
+struct AdvisedTask {
+  int number = 0;  ///< of the 42 elbow tasks
+  std::string name;
+  WidestInterval then;
+};
+
+/// Which task to perform next.
+struct TaskAdvice {
+  WidestInterval now;
+  std::vector<AdvisedTask> tasks;     ///< all that could be performed, the best first
+  std::vector<std::string> left_out;  ///< tasks that may not be advised, with why
+  std::string withheld;               ///< why nothing is advised; empty: something is, or nobody asked
+  double seconds = 0.0;
+};
+
+/// The elbow tasks that `used` (numbers) does not name and that the model can perform, with the controls with which the
+/// standard model follows them; what is left out is named in `left_out`: how many are outside the model's ranges, a
+/// control that does not finish, reserves beyond `kMostReserveShare`.
+[[nodiscard]] std::vector<PreparedTask> candidate_tasks(const MusculoskeletalSystem& subject,
+                                                        const ElbowTaskOptions& options, std::span<const int> used,
+                                                        std::vector<std::string>& left_out, Progress& progress);
+
+/// What each candidate would add to an estimate: the information of its exact sensitivities at the estimate, under the
+/// outputs, the noise and the unknown starts of the estimate, on top of that behind the estimate's intervals
+/// (`estimation::covariance_after`). Corrections of the intervals for correlation and size of the residual are taken to
+/// stay as they are, parameters at their bound are left out. Candidates that enter a band where a wrap fades out, with
+/// the standard model's parameters or the estimate's, are not advised. On the progress' threads, the same bits on any
+/// number of them.
+/// @param options of `model`
+[[nodiscard]] TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParametricModel& model,
+                                     const MuscleModelOptions& options, const TaskEstimate& estimate,
+                                     std::span<const PreparedTask> candidates, Progress& progress);
+
+}  // namespace veridyn::muscle
