@@ -104,6 +104,26 @@ TEST(SampleEvidence, NamesStepsThatHideTheSignal) {
   expect(after("gyro", [](double, double v) { return std::round(v + 0.3); }), "gyro", Outcome::kCare, "steps of 1");
 }
 
+TEST(SampleEvidence, NamesSpikes) {
+  int sample = 0;
+  expect(after("gyro", [&](double, double v) { return ++sample % 500 == 250 ? v + 0.4 : v; }), "gyro", Outcome::kCare,
+         "12 samples of gyro stand alone, far from both neighbours, the first at 2.49 s");
+}
+
+// Two are an accident, vibration that comes and goes and bumps of some samples are motion.
+TEST(SampleEvidence, LetsAccidentsBumpsAndVibrationPass) {
+  int sample = 0;
+  const auto pass = [](const std::vector<Evidence>& rows) {
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_TRUE(rows.front().passed()) << rows.front().text;
+  };
+  pass(after("gyro", [&](double, double v) { return ++sample % 2500 == 1250 ? v + 1.0 : v; }));
+  sample = 0;
+  pass(after("gyro", [&](double, double v) { return ++sample % 500 < 3 ? v + 1.0 : v; }));
+  numerics::RandomStream random(5, "vibration");
+  pass(after("gyro", [&](double t, double v) { return std::fmod(t, 10.0) < 1.0 ? v + 0.5 * random.normal() : v; }));
+}
+
 // An aircraft in trim without noise stands still on all channels.
 TEST(SampleEvidence, LetsAllSensorsRestTogether) {
   Recording recording = moving(1);

@@ -26,6 +26,13 @@ constexpr double kClippedShare = 0.003;
 /// Steps in a standard deviation below which a signal is lost in its resolution.
 constexpr double kFewestSteps = 2.0;
 
+/// A spike stands out of both its neighbours by so many times what samples around it do.
+constexpr double kSpike = 12.0;
+/// Less of the channel's range than this does no harm.
+constexpr double kSpikeOfRange = 0.05;
+constexpr std::size_t kFewestSpikes = 3;
+constexpr double kSpikeShare = 0.0005;
+
 /// Samples in a row with one value.
 struct Run {
   double value, begin, end;
@@ -81,6 +88,7 @@ struct Flaw {
 /// The runs of a channel with what is known of them.
 struct Sampled {
   const SampledChannel* which = nullptr;
+  const Channel* channel = nullptr;
   double rate_Hz = 0.0;
   std::vector<Run> runs;
   std::size_t samples = 0;
@@ -127,7 +135,7 @@ std::optional<Flaw> stands_still(const Sampled& channel, const std::vector<Sampl
 
 std::optional<Flaw> is_held(const Sampled& channel) {
   constexpr std::size_t kFewestRuns = 10;
-  const auto& [which, rate_Hz, runs, samples, typical] = channel;
+  const auto& [which, recorded, rate_Hz, runs, samples, typical] = channel;
   if (typical < kHeld || runs.size() < kFewestRuns) return std::nullopt;
   std::size_t alike = 0;
   for (const Run& run : runs)
@@ -145,7 +153,7 @@ std::optional<Flaw> is_held(const Sampled& channel) {
 }
 
 std::optional<Flaw> is_clipped(const Sampled& channel) {
-  const auto& [which, rate_Hz, runs, samples, typical] = channel;
+  const auto& [which, recorded, rate_Hz, runs, samples, typical] = channel;
   if (which->may_rest || typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(runs, {}, &Run::value);
   double share = 0.0, end = kNaN;
@@ -170,22 +178,28 @@ std::optional<Flaw> is_clipped(const Sampled& channel) {
               "use a sensor with a larger range, or gentler manoeuvres"};
 }
 
-std::optional<Flaw> is_coarse(const Sampled& channel) {
-  const std::vector<Run>& runs = channel.runs;
-  if (channel.which->may_rest) return std::nullopt;
+/// Between any two values; infinite when there is only one.
+double smallest_step(const std::vector<Run>& runs) {
   std::vector<double> values;
-  double sum = 0.0, squares = 0.0;
-  for (const Run& run : runs) {
-    values.push_back(run.value);
-    sum += run.value;
-    squares += run.value * run.value;
-  }
-  const auto n = static_cast<double>(values.size());
-  const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
+  for (const Run& run : runs) values.push_back(run.value);
   std::ranges::sort(values);
   double step = kInfinity;
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] > values[i - 1]) step = std::min(step, values[i] - values[i - 1]);
+  return step;
+}
+
+std::optional<Flaw> is_coarse(const Sampled& channel) {
+  const std::vector<Run>& runs = channel.runs;
+  if (channel.which->may_rest) return std::nullopt;
+  double sum = 0.0, squares = 0.0;
+  for (const Run& run : runs) {
+    sum += run.value;
+    squares += run.value * run.value;
+  }
+  const auto n = static_cast<double>(runs.size());
+  const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
+  const double step = smallest_step(runs);
   if (!std::isfinite(step) || !(deviation < kFewestSteps * step)) return std::nullopt;
   return Flaw{
       "coarse samples",
@@ -198,6 +212,61 @@ std::optional<Flaw> is_coarse(const Sampled& channel) {
       "log the channel with its full resolution"};
 }
 
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Indices of samples that stand alone: by more than `least` from the middle between their neighbours, which are near
+/// each other, and by many times what samples there and everywhere are.
+std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
+  constexpr std::ptrdiff_t kAround = 50;
+  std::vector<double> deviation(x.size(), 0.0);
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    const double d = std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1]));
+    deviation[i] = std::isfinite(d) ? d : 0.0;
+  }
+  const double limit = std::max(least, kSpike * median_of(deviation));
+  std::vector<std::size_t> found;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    if (!(deviation[i] > limit) || std::abs(x[i + 1] - x[i - 1]) > 0.5 * deviation[i]) continue;
+    // Vibration comes and goes: what samples do before or after counts too.
+    const auto here = deviation.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto before = std::min<std::ptrdiff_t>(kAround, here - deviation.begin());
+    const auto after = std::min<std::ptrdiff_t>(kAround, deviation.end() - here);
+    const double nearby = std::max(median_of({here - before, here}), median_of({here, here + after}));
+    if (deviation[i] > kSpike * nearby) found.push_back(i);
+  }
+  return found;
+}
+
+std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
+  if (sampled.typical >= kHeld) return std::nullopt;
+  const auto [low, high] = std::ranges::minmax(sampled.runs, {}, &Run::value);
+  const double least = std::max(kSpikeOfRange * (high.value - low.value), 3.0 * smallest_step(sampled.runs));
+  const std::span<const double> times = sampled.channel->times();
+  std::vector<double> at;
+  for (const TimeSpan& span : spans) {
+    const auto first = std::ranges::lower_bound(times, span.begin) - times.begin();
+    const auto last = std::ranges::upper_bound(times, span.end) - times.begin();
+    if (last <= first) continue;
+    const std::span<const double> x(sampled.channel->value.data() + first, static_cast<std::size_t>(last - first));
+    for (const std::size_t i : spikes_in(x, least)) at.push_back(times[static_cast<std::size_t>(first) + i]);
+  }
+  const double share = static_cast<double>(at.size()) / static_cast<double>(sampled.samples);
+  if (at.size() < kFewestSpikes || share < kSpikeShare) return std::nullopt;
+  return Flaw{"spikes",
+              share,
+              kSpikeShare,
+              "share of the samples",
+              Outcome::kCare,
+              fmt::format("{} samples of {} stand alone, far from both neighbours, the first at {:.2f} s", at.size(),
+                          sampled.which->channel, at.front()),
+              "replace them in the recording by what their neighbours say"};
+}
+
 }  // namespace
 
 std::vector<Evidence> sample_evidence(const Recording& recording, std::span<const SampledChannel> channels,
@@ -206,7 +275,8 @@ std::vector<Evidence> sample_evidence(const Recording& recording, std::span<cons
   for (const SampledChannel& which : channels) {
     const Channel* channel = recording.find(which.channel);
     if (channel == nullptr) continue;
-    Sampled sampled{.which = &which, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
+    Sampled sampled{
+        .which = &which, .channel = channel, .rate_Hz = channel->rate_Hz(), .runs = runs_of(*channel, spans)};
     for (const Run& run : sampled.runs) sampled.samples += run.samples;
     if (sampled.samples < kFewestSamples) continue;
     sampled.typical = typical_length(sampled.runs);
@@ -214,8 +284,8 @@ std::vector<Evidence> sample_evidence(const Recording& recording, std::span<cons
   }
   std::vector<Evidence> rows;
   for (const Sampled& sampled : all) {
-    for (const std::optional<Flaw>& flaw :
-         {stands_still(sampled, all), is_held(sampled), is_clipped(sampled), is_coarse(sampled)}) {
+    for (const std::optional<Flaw>& flaw : {stands_still(sampled, all), is_held(sampled), is_clipped(sampled),
+                                            is_coarse(sampled), has_spikes(sampled, spans)}) {
       if (!flaw) continue;
       rows.push_back({.name = flaw->name,
                       .about = sampled.which->about,
@@ -229,13 +299,14 @@ std::vector<Evidence> sample_evidence(const Recording& recording, std::span<cons
     }
   }
   if (rows.empty() && !all.empty())
-    rows.push_back({.name = "samples",
-                    .about = "recording",
-                    .value = 0.0,
-                    .limit = 0.0,
-                    .scale = "channels",
-                    .text = fmt::format("none of {} channels stands still, is held, clipped or coarse", all.size()),
-                    .bears_on = estimation::kAllPurposes});
+    rows.push_back(
+        {.name = "samples",
+         .about = "recording",
+         .value = 0.0,
+         .limit = 0.0,
+         .scale = "channels",
+         .text = fmt::format("none of {} channels stands still, is held, clipped or coarse, or has spikes", all.size()),
+         .bears_on = estimation::kAllPurposes});
   return rows;
 }
 

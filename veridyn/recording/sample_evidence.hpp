@@ -18,7 +18,8 @@ struct SampledChannel {
 
 /// What is wrong with the samples themselves inside `spans`, one row for each that is: a value that stands still while
 /// the sensor is moved, one value held over several stamps (one measurement, not many), a reading that sits at the end
-/// of its range, steps so coarse that little of the signal is left. One row "samples" where nothing is.
+/// of its range, steps so coarse that little of the signal is left, single samples far from both neighbours. One row
+/// "samples" where nothing is.
 [[nodiscard]] std::vector<estimation::Evidence> sample_evidence(const Recording& recording,
                                                                 std::span<const SampledChannel> channels,
                                                                 std::span<const TimeSpan> spans);
