@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
-#include "veridyn/numerics/dormand_prince.hpp"
+#include "veridyn/numerics/step_control.hpp"
 
 namespace veridyn::numerics {
 
@@ -32,68 +33,26 @@ class AdditiveRungeKutta {
         column_(2 * tangents) {}
 
   /// The derivative jumps here: forget the derivative at the end of the last step.
-  void restart(bool keep_step = false) {
-    fresh_ = true;
-    if (!keep_step) step_ = 0.0;
-    last_error_ = 1e-4;
-  }
+  void restart(bool keep_step = false) { sizes_.restart(keep_step); }
 
   /// As `DormandPrince::advance`.
   template <typename F, typename OnStep>
   IntegrationEnd advance(F&& f, double& t, double* x, double end, std::span<const double> scale,
                          const StepControl& control, OnStep&& on_step) {
     VERIDYN_ASSERT(scale.size() == stiff_.size() && end >= t);
-    const double interval = end - t;
-    if (interval == 0.0) return IntegrationEnd::kReached;
-    const double smallest = control.smallest_step > 0.0 ? control.smallest_step : 1e-13 * interval;
-    const double largest = control.largest_step > 0.0 ? control.largest_step : interval;
-    if (fresh_) {
-      if (!f(t, 0.0, x, stage(0)) || !finite(stage(0))) return IntegrationEnd::kNotFinite;
-      fresh_ = false;
-      if (step_ <= 0.0)
-        step_ = control.first_step > 0.0 ? control.first_step : guess(x, scale, control.tolerance, interval);
-    }
-    while (t < end) {
-      if (steps_++ >= control.max_steps) return IntegrationEnd::kStepLimit;
-      double h = std::min(step_, largest);
-      const bool last = t + 1.0001 * h >= end;
-      if (last) h = end - t;
-      if (!try_step(f, t, x, h)) {
-        if (h <= smallest) return IntegrationEnd::kNotFinite;
-        step_ = 0.25 * h;
-        continue;
-      }
-      const double error = error_of(scale, control);
-      // PI control (Gustafsson 1991) for a third-order estimate.
-      constexpr double kBeta = 0.06;
-      const double power = std::pow(std::max(error, 1e-10), 0.25 - 0.75 * kBeta);
-      if (!(error <= 1.0)) {
-        if (h <= smallest) return IntegrationEnd::kStepSize;
-        step_ = h / std::min(5.0, std::isfinite(power) ? power / 0.9 : 5.0);
-        continue;
-      }
-      // The derivative at the end is the first stage of the next step, and the slope that the interpolant needs.
-      double* const reached_state = stage(kEnd);
-      const double reached = last ? end : t + h;
-      if (!f(reached, 0.0, reached_state, stage(kEndRate)) || !finite(stage(kEndRate))) {
-        if (h <= smallest) return IntegrationEnd::kNotFinite;
-        step_ = 0.25 * h;
-        continue;
-      }
-      const double factor = std::clamp(power / std::pow(last_error_, kBeta) / 0.9, 0.1, 5.0);
-      last_error_ = std::max(error, 1e-4);
-      const double next = h / factor;
-      step_ = last ? std::max(step_, next) : next;
-      begin_ = t;
-      h_ = h;
-      start_ = x;
-      const bool go_on = on_step(t, reached);
-      std::copy(reached_state, reached_state + n_, x);
-      std::copy(stage(kEndRate), stage(kEndRate) + n_, stage(0));
-      t = reached;
-      if (!go_on) return IntegrationEnd::kReached;
-    }
-    return IntegrationEnd::kReached;
+    return sizes_.advance(
+        t, end, control, [&] { return f(t, 0.0, x, stage(0)) && finite(stage(0)); },
+        [&](double interval) { return guess(x, scale, control.tolerance, interval); },
+        [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
+        [&](double reached) {
+          begin_ = t;
+          start_ = x;
+          const bool go_on = on_step(t, reached);
+          std::copy(stage(kEnd), stage(kEnd) + n_, x);
+          std::copy(stage(kEndRate), stage(kEndRate) + n_, stage(0));
+          t = reached;
+          return go_on;
+        });
   }
 
   /// The state at `time` within the step that `on_step` was told of; call it there only. Third order.
@@ -106,7 +65,8 @@ class AdditiveRungeKutta {
     }
   }
 
-  [[nodiscard]] long steps() const { return steps_; }
+  /// Accepted and rejected steps so far.
+  [[nodiscard]] long steps() const { return sizes_.steps(); }
 
  private:
   static constexpr std::size_t kStages = 6, kEnd = 6, kEndRate = 7, kScratch = 8, kArrays = 9;
@@ -183,7 +143,8 @@ class AdditiveRungeKutta {
     }
     combine(x, h, kWeight, kWeight, kStages, stage(kEnd));
     h_ = h;
-    return finite(stage(kEnd));
+    // The derivative at the end is the first stage of the next step, and the slope that the interpolant needs.
+    return finite(stage(kEnd)) && f(t + h, 0.0, stage(kEnd), stage(kEndRate)) && finite(stage(kEndRate));
   }
 
   double error_of(std::span<const double> scale, const StepControl& control) {
@@ -221,9 +182,8 @@ class AdditiveRungeKutta {
   std::vector<double> work_;
   std::vector<double> column_;
   const double* start_ = nullptr;
-  double begin_ = 0.0, h_ = 0.0, step_ = 0.0, last_error_ = 1e-4;
-  long steps_ = 0;
-  bool fresh_ = true;
+  double begin_ = 0.0, h_ = 0.0;
+  StepSizes sizes_{0.25, 0.06};
 };
 
 }  // namespace veridyn::numerics

@@ -9,22 +9,9 @@
 #include <vector>
 
 #include "veridyn/core/assert.hpp"
-#include "veridyn/numerics/ode.hpp"
+#include "veridyn/numerics/step_control.hpp"
 
 namespace veridyn::numerics {
-
-/// How an error-controlled integration chooses its steps.
-struct StepControl {
-  double tolerance = 1e-6;  ///< largest error of a step in any component, as a part of the component's scale
-  /// With Jets or tangents: the same of their derivatives, as a part of the largest of each (scaled). They need it:
-  /// where a stiff solution rests, steps grow until its errors show, and those of a derivative would have grown unseen
-  /// meanwhile.
-  double derivative_tolerance = 1e-4;
-  double first_step = 0.0;     ///< 0: chosen from the first derivative
-  double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
-  double largest_step = 0.0;   ///< 0: the interval
-  long max_steps = 1000000;    ///< accepted and rejected, of this object
-};
 
 namespace internal {
 inline double value_of(double x) { return x; }
@@ -50,11 +37,7 @@ class DormandPrince {
 
   /// The derivative jumps here (an input steps, the state was set): forget the last stage. `keep_step` keeps the size
   /// of the next step.
-  void restart(bool keep_step = false) {
-    fresh_ = true;
-    if (!keep_step) step_ = 0.0;
-    last_error_ = 1e-4;
-  }
+  void restart(bool keep_step = false) { sizes_.restart(keep_step); }
 
   /// Integrates x' = f(t, x) from `t` to `end` > t, changing `t` and `x`.
   ///
@@ -67,51 +50,19 @@ class DormandPrince {
   IntegrationEnd advance(F&& f, double& t, Scalar* x, double end, std::span<const double> scale,
                          const StepControl& control, OnStep&& on_step) {
     VERIDYN_ASSERT(scale.size() == values_ && end >= t);
-    const double interval = end - t;
-    if (interval == 0.0) return IntegrationEnd::kReached;
-    const double smallest = control.smallest_step > 0.0 ? control.smallest_step : 1e-13 * interval;
-    const double largest = control.largest_step > 0.0 ? control.largest_step : interval;
-    if (fresh_) {
-      if (!f(t, x, stage(0)) || !finite(stage(0))) return IntegrationEnd::kNotFinite;
-      fresh_ = false;
-      if (step_ <= 0.0)
-        step_ = control.first_step > 0.0 ? control.first_step : guess(x, scale, control.tolerance, interval);
-    }
-    while (t < end) {
-      if (steps_++ >= control.max_steps) return IntegrationEnd::kStepLimit;
-      double h = std::min(step_, largest);
-      const bool last = t + 1.0001 * h >= end;  // a hair too short makes a useless last step
-      if (last) h = end - t;
-      if (!try_step(f, t, x, h)) {
-        if (h <= smallest) return IntegrationEnd::kNotFinite;
-        step_ = 0.25 * h;
-        continue;
-      }
-      const double error = error_of(scale, control);
-      // PI control (Gustafsson 1991) with Hairer's constants for this method.
-      constexpr double kBeta = 0.04;
-      const double power = std::pow(std::max(error, 1e-10), 0.2 - 0.75 * kBeta);
-      if (!(error <= 1.0)) {
-        if (h <= smallest) return IntegrationEnd::kStepSize;
-        step_ = h / std::min(5.0, std::isfinite(power) ? power / 0.9 : 5.0);
-        continue;
-      }
-      const double factor = std::clamp(power / std::pow(last_error_, kBeta) / 0.9, 0.1, 5.0);
-      last_error_ = std::max(error, 1e-4);
-      const double next = h / factor;
-      // A step cut short by the end says little about the next one.
-      step_ = last ? std::max(step_, next) : next;
-      begin_ = t;
-      h_ = h;
-      start_ = x;
-      const double reached = last ? end : t + h;
-      const bool go_on = on_step(t, reached);
-      std::copy(stage(kEnd), stage(kEnd) + n_, x);
-      std::copy(stage(6), stage(6) + n_, stage(0));
-      t = reached;
-      if (!go_on) return IntegrationEnd::kReached;
-    }
-    return IntegrationEnd::kReached;
+    return sizes_.advance(
+        t, end, control, [&] { return f(t, x, stage(0)) && finite(stage(0)); },
+        [&](double interval) { return guess(x, scale, control.tolerance, interval); },
+        [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
+        [&](double reached) {
+          begin_ = t;
+          start_ = x;
+          const bool go_on = on_step(t, reached);
+          std::copy(stage(kEnd), stage(kEnd) + n_, x);
+          std::copy(stage(6), stage(6) + n_, stage(0));
+          t = reached;
+          return go_on;
+        });
   }
 
   /// The state at `time` within the step that `on_step` was told of; call it there only. Fourth order.
@@ -132,9 +83,9 @@ class DormandPrince {
   }
 
   /// Accepted and rejected steps so far.
-  [[nodiscard]] long steps() const { return steps_; }
+  [[nodiscard]] long steps() const { return sizes_.steps(); }
   /// Of the next step.
-  [[nodiscard]] double step_size() const { return step_; }
+  [[nodiscard]] double step_size() const { return sizes_.step_size(); }
 
  private:
   static constexpr std::size_t kEnd = 7, kArrays = 9;
@@ -256,10 +207,7 @@ class DormandPrince {
   const Scalar* start_ = nullptr;
   double begin_ = 0.0;
   double h_ = 0.0;
-  double step_ = 0.0;
-  double last_error_ = 1e-4;
-  long steps_ = 0;
-  bool fresh_ = true;
+  StepSizes sizes_{0.2, 0.04};  ///< Hairer's constants for this method
 };
 
 }  // namespace veridyn::numerics

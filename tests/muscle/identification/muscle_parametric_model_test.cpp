@@ -230,9 +230,9 @@ TEST_P(OutputSensitivities, OfAllUnknownsAreThoseOfCentralDifferences) {
   // Measured: up to 1.6e-3 of the largest, at single instants (Thelen, forces), whatever the step of the differences.
   expect_central_differences(model, finer, 2e-3);
   // At the accuracy of estimates fibres are stepped implicitly, with steps so long that the corner of Thelen's
-  // force-velocity curve lies within them: up to 1.4e-2, at single instants of the moment.
+  // force-velocity curve lies within them: up to 1.4e-2, at single instants of the moment; Millard's 2.3e-3.
   const MuscleParametricModel coarse(system, unknowns, {segment}, {.accuracy = 1e-6, .outputs = outputs});
-  expect_central_differences(coarse, finer, millard ? 2e-3 : 2e-2);
+  expect_central_differences(coarse, finer, millard ? 4e-3 : 2e-2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Muscles, OutputSensitivities,
