@@ -83,6 +83,18 @@ TEST(MuscleStudy, ReadsAForwardStudy) {
   EXPECT_EQ(study.changes[0].muscle, "biceps_long");
 }
 
+TEST(MuscleStudy, TakesFiberLengthsFromAReferenceBeforeItsOwnParameters) {
+  const MuscleStudy study = read_muscle_study(
+      kArm +
+      "fiber_lengths_from = \"arm\"\n[subject.parameters]\n\"brachialis.optimal_fiber_length\" = 0.09\n"
+      "[motion.excitation]\ndefault = 0.05\n");
+  ASSERT_EQ(study.changes.size(), 13U);  // L0 and LS of six muscles from itself, and the study's own
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(study.changes[i].after / study.changes[i].before, 1.0, 1e-6);
+  EXPECT_EQ(study.changes.back().after, 0.09);
+  EXPECT_TRUE(study.warnings.empty());
+  EXPECT_THAT(error_of(kArm + "fiber_lengths_from = \"arms\"\n[motion]\n"), HasSubstr("did you mean 'arm'"));
+}
+
 TEST(MuscleStudy, RampsAreTheFunctionsTheySay) {
   const MuscleStudy study = read_muscle_study(
       kFollow +

@@ -74,6 +74,8 @@ struct MuscleStudy {
 ///     locked = ["r_shoulder_elev"]   # held where they start
 ///     unlocked = []                  # move although the model locks them
 ///     without_unsupported = false    # continue without forces and constraints that are not understood
+///     fiber_lengths_from = "ref.osim"  # L0 and LS with which fibres are, at the same joint angles, what those of this
+///                                    # reference are (`match_fiber_lengths`): a first guess for a scaled model
 ///     [subject.parameters]
 ///     "BIClong.optimal_fiber_length" = 0.12  # also max_isometric_force, tendon_slack_length,
 ///                                    # pennation_angle_at_optimal, max_contraction_velocity,

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/muscle/identification/normalised_fiber_lengths.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 
@@ -62,6 +64,57 @@ std::vector<std::string> coordinate_list(const StudyTable& table, const std::str
   return names;
 }
 
+/// A file, or a built-in model by its name.
+OsimFile read_model(const StudyTable& subject, const std::string& key, std::vector<std::filesystem::path>& inputs) {
+  const std::string name = subject.text(key);
+  if (name.find('.') != std::string::npos || name.find('/') != std::string::npos) {
+    inputs.push_back(subject.file(key));
+    return OsimFile::load(inputs.back());
+  }
+  std::vector<std::string> names;
+  for (const EmbeddedText& model : builtin_models()) names.emplace_back(model.name);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    subject.fail(key,
+                 fmt::format("= '{}' is no built-in model{}; a file ends in .osim", name, suggestion(name, names)));
+  }
+  return load_model(name);
+}
+
+/// L0 and LS of the muscles from those of a reference with the same names; what has no match keeps its own and is
+/// named.
+void match_to_reference(const StudyTable& subject, MuscleStudy& study, Progress& progress) {
+  constexpr double kPoorMatch = 0.05;
+  const std::string key = "fiber_lengths_from";
+  const OsimFile file = read_model(subject, key, study.inputs);
+  progress.stage("matching normalised fibre lengths to the reference");
+  const SystemOptions paths_only{.without_unsupported = true};
+  const MusculoskeletalSystem reference(file.model(), paths_only), own(study.written, paths_only);
+  std::size_t matched = 0;
+  for (const MatchedFiber& fiber : match_fiber_lengths(reference, own)) {
+    const std::string& name = own.model().muscles[at(fiber.muscle)].name();
+    if (!fiber.usable()) {
+      study.warnings.push_back(fmt::format("{} keeps its own fibre and tendon lengths: {}", name, fiber.obstacle));
+      continue;
+    }
+    ++matched;
+    if (fiber.error > kPoorMatch)
+      study.warnings.push_back(fmt::format(
+          "{}: normalised fibre lengths differ from the reference's by {:.2g} (root mean square): its path changes "
+          "otherwise than the reference's",
+          name, fiber.error));
+    MusculotendonParameters<double>& own_values =
+        study.written.muscles[at(study.written.muscle(name))].parameters.musculotendon;
+    for (const auto& [parameter, value] : {std::pair{"optimal_fiber_length", fiber.optimal_fiber_length},
+                                           std::pair{"tendon_slack_length", fiber.tendon_slack_length}}) {
+      double& target = std::string_view(parameter) == "optimal_fiber_length" ? own_values.optimal_fiber_length
+                                                                             : own_values.tendon_slack_length;
+      study.changes.push_back({name, parameter, target, value});
+      target = value;
+    }
+  }
+  if (matched == 0) subject.fail(key, fmt::format("has no muscle that matches one of '{}'", study.model_name));
+}
+
 }  // namespace
 
 HeldLoad read_load(const StudyTable& table, const Model& model) {
@@ -111,21 +164,9 @@ void check_not_coupled(const StudyTable& table, const std::string& key, std::siz
 
 void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress) {
   study.model_name = subject.text("model");
-  const bool file = study.model_name.find('.') != std::string::npos || study.model_name.find('/') != std::string::npos;
-  if (file) {
-    const std::filesystem::path path = subject.file("model");
-    study.file.emplace(OsimFile::load(path));
-    study.inputs.push_back(path);
-  } else {
-    std::vector<std::string> names;
-    for (const EmbeddedText& model : builtin_models()) names.emplace_back(model.name);
-    if (std::find(names.begin(), names.end(), study.model_name) == names.end()) {
-      subject.fail("model", fmt::format("= '{}' is no built-in model{}; a file ends in .osim", study.model_name,
-                                        suggestion(study.model_name, names)));
-    }
-    study.file.emplace(load_model(study.model_name));
-  }
+  study.file.emplace(read_model(subject, "model", study.inputs));
   study.written = study.file->model();
+  if (subject.has("fiber_lengths_from")) match_to_reference(subject, study, progress);
   read_parameters(subject.table_or_empty("parameters"), study.written, study.changes);
   Model model = study.written;
   for (const StudyTable& table : subject.tables("load")) {
