@@ -98,10 +98,11 @@ void match_to_reference(const StudyTable& subject, MuscleStudy& study, Progress&
     }
     ++matched;
     if (fiber.error > kPoorMatch)
-      study.warnings.push_back(fmt::format(
-          "{}: normalised fibre lengths differ from the reference's by {:.2g} (root mean square): its path changes "
-          "otherwise than the reference's",
-          name, fiber.error));
+      study.warnings.push_back(
+          fmt::format("{}: normalised fibre lengths still differ from the reference's by {:.2g} (root mean square): "
+                      "another path, or "
+                      "other curves",
+                      name, fiber.error));
     MusculotendonParameters<double>& own_values =
         study.written.muscles[at(study.written.muscle(name))].parameters.musculotendon;
     for (const auto& [parameter, value] : {std::pair{"optimal_fiber_length", fiber.optimal_fiber_length},
