@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::recording {
@@ -108,6 +109,20 @@ TEST(SampleEvidence, NamesSpikes) {
   int sample = 0;
   expect(after("gyro", [&](double, double v) { return ++sample % 500 == 250 ? v + 0.4 : v; }), "gyro", Outcome::kCare,
          "12 samples of gyro stand alone, far from both neighbours, the first at 2.49 s");
+}
+
+TEST(SampleEvidence, AHeadingThatPassesSouthHasNoSpikes) {
+  numerics::RandomStream random(9, "heading");
+  std::vector<double> t, heading;
+  for (int i = 0; i < 6000; ++i) {
+    t.push_back(0.01 * i);
+    const double turned = kPi + 0.05 * std::sin(0.2 * t.back()) + 0.01 * random.normal();
+    heading.push_back(turned > kPi ? turned - 2.0 * kPi : turned);
+  }
+  Recording recording;
+  recording.add(make_channel("yaw", "rad", make_time_base(std::move(t)), std::move(heading)));
+  const std::vector<SampledChannel> yaw{{"yaw", "attitude"}};
+  for (const Evidence& row : sample_evidence(recording, yaw, kMinute)) EXPECT_TRUE(row.passed()) << row.text;
 }
 
 // Two are an accident, vibration that comes and goes and bumps of some samples are motion.

@@ -242,6 +242,17 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
   return found;
 }
 
+/// Samples of a channel; a heading that passes +-180 deg does not jump.
+std::vector<double> continuous(std::span<const double> x, const Unit& unit) {
+  std::vector<double> values(x.begin(), x.end());
+  if (unit.si_name() != "rad") return values;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double turns = std::round((values[i] - values[i - 1]) / (2.0 * kPi));
+    if (std::isfinite(turns)) values[i] -= 2.0 * kPi * turns;
+  }
+  return values;
+}
+
 std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
   if (sampled.typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(sampled.runs, {}, &Run::value);
@@ -253,7 +264,8 @@ std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan>
     const auto last = std::ranges::upper_bound(times, span.end) - times.begin();
     if (last <= first) continue;
     const std::span<const double> x(sampled.channel->value.data() + first, static_cast<std::size_t>(last - first));
-    for (const std::size_t i : spikes_in(x, least)) at.push_back(times[static_cast<std::size_t>(first) + i]);
+    for (const std::size_t i : spikes_in(continuous(x, sampled.channel->unit), least))
+      at.push_back(times[static_cast<std::size_t>(first) + i]);
   }
   const double share = static_cast<double>(at.size()) / static_cast<double>(sampled.samples);
   if (at.size() < kFewestSpikes || share < kSpikeShare) return std::nullopt;
