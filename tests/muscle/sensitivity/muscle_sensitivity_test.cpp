@@ -8,6 +8,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/tasks/elbow_tasks.hpp"
+#include "veridyn/numerics/batches/block_store.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -154,7 +155,8 @@ TEST(TaskIndices, OfMorrisAreTheChangeAcrossTheRange) {
   TaskIndexOptions options{.method = IndexMethod::kMorris, .morris_trajectories = 1};
   Progress progress;
   const std::vector<std::string> names = {"a", "b", "c", "d"};
-  const TaskIndices found = task_indices(responses, std::vector<std::size_t>{2}, names, options, progress);
+  numerics::BlockStore nothing;
+  const TaskIndices found = task_indices(responses, std::vector<std::size_t>{2}, names, options, nothing, progress);
   ASSERT_EQ(found.results.size(), 1U);
   EXPECT_EQ(found.simulations, 2U);
   std::vector<double> candidates;

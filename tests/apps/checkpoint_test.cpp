@@ -1,0 +1,157 @@
+// Long work that is killed, resumed, cut into shards and run under a launcher gives the same files.
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "tests/apps/program.hpp"
+#include "tests/support/folders.hpp"
+
+namespace veridyn {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kKilled = 137;  // by the shell
+
+class CheckpointProgram : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    // What a launcher that started this test says is not for the programs that it starts.
+    for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"}) ::unsetenv(name);
+  }
+
+  /// 960 simulations and 152 more of the tasks that are chosen: eight blocks and two.
+  [[nodiscard]] std::string sensitivity(const std::string& out = "out", const std::string& more = "--threads 1") const {
+    return "sensitivity " + (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string() +
+           " --out " + (folder_ / out).string() + " --checkpoint " + checkpoint() + " " + more;
+  }
+  [[nodiscard]] std::string checkpoint() const { return (folder_ / "blocks").string(); }
+  [[nodiscard]] std::size_t blocks() const {
+    std::size_t count = 0;
+    if (!std::filesystem::exists(checkpoint())) return 0;
+    for (const auto& entry : std::filesystem::directory_iterator(checkpoint()))
+      count += entry.path().extension() == ".block" ? 1U : 0U;
+    return count;
+  }
+  [[nodiscard]] std::map<std::string, std::string> tables(const std::string& out = "out") const {
+    std::map<std::string, std::string> found;
+    for (const char* name : {"sensitivity.csv", "tasks.csv", "indices.csv"})
+      found[name] = read_file(folder_ / out / name);
+    return found;
+  }
+  /// Of a run without a checkpoint.
+  [[nodiscard]] const std::map<std::string, std::string>& undisturbed() const {
+    static const std::map<std::string, std::string> all = [this] {
+      const Outcome done =
+          run("sensitivity " + (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string() +
+              " --out " + (folder_ / "undisturbed").string());
+      EXPECT_EQ(done.exit_code, 0) << done.text;
+      return tables("undisturbed");
+    }();
+    return all;
+  }
+  void forget() const { std::filesystem::remove_all(checkpoint()); }
+};
+
+TEST_F(CheckpointProgram, ResumesBitForBitWhenItIsKilled) {
+  std::mt19937 random(std::random_device{}());
+  std::uniform_real_distribution<double> seconds(0.3, 1.0);
+  int killed = 0;
+  std::size_t before = 0;
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    const Outcome outcome = run_under("timeout -s KILL " + std::to_string(seconds(random)), sensitivity());
+    ASSERT_TRUE(outcome.exit_code == kKilled || outcome.exit_code == 0) << outcome.exit_code << outcome.text;
+    killed += outcome.exit_code == kKilled ? 1 : 0;
+    EXPECT_GE(blocks(), before);
+    before = blocks();
+  }
+  EXPECT_GT(killed, 0);
+  const Outcome done = run(sensitivity());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  EXPECT_THAT(done.text, HasSubstr(std::to_string(before) + " of 10 blocks were in " + checkpoint()));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, ShardsMergeToTheSameBytes) {
+  const Outcome first = run(sensitivity("out", "--shard 1/2"));
+  ASSERT_EQ(first.exit_code, 0) << first.text;
+  EXPECT_THAT(first.text, HasSubstr("shard 1 of 2 is done; 4 of 8 blocks are missing in " + checkpoint()));
+  EXPECT_TRUE(results().empty());
+  const Outcome early = run(sensitivity("out", "--merge"));
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.text, HasSubstr("blocks: 4 of 8 blocks are missing"));
+  // Nothing of the sampling is missing any more: the second shard goes on with the indices.
+  const Outcome second = run(sensitivity("out", "--shard 2/2"));
+  EXPECT_THAT(second.text, HasSubstr("shard 2 of 2 is done; 1 of 2 blocks are missing"));
+  const Outcome last = run(sensitivity("out", "--shard 1/2"));
+  ASSERT_EQ(last.exit_code, 0) << last.text;
+  EXPECT_EQ(tables(), undisturbed());
+  std::filesystem::remove_all(folder_ / "out");
+  const Outcome merge = run(sensitivity("out", "--merge"));
+  EXPECT_THAT(merge.text, HasSubstr("10 of 10 blocks were in"));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, ProcessesOfALauncherMeetInTheFolder) {
+  // What srun tells two processes, without srun.
+  std::vector<Outcome> outcomes(2);
+  std::vector<std::thread> processes;
+  for (std::size_t rank = 0; rank < 2; ++rank)
+    processes.emplace_back([&, rank] {
+      outcomes[rank] = run_under("SLURM_PROCID=" + std::to_string(rank) + " SLURM_STEP_NUM_TASKS=2", sensitivity());
+    });
+  for (std::thread& p : processes) p.join();
+  EXPECT_EQ(outcomes[0].exit_code, 0) << outcomes[0].text;
+  EXPECT_EQ(outcomes[1].exit_code, 0) << outcomes[1].text;
+  EXPECT_EQ(outcomes[1].text, "");
+  EXPECT_THAT(outcomes[0].text, HasSubstr("wrote sensitivity.csv"));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, MpirunGivesTheSameBytes) {
+  if (std::system("command -v mpirun >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "there is no mpirun here; ProcessesOfALauncherMeetInTheFolder runs the same code";
+  const std::string mpirun = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n ";
+  for (const char* size : {"1", "2", "3"}) {
+    forget();
+    const Outcome done = run_under(mpirun + size, sensitivity(size, ""));
+    ASSERT_EQ(done.exit_code, 0) << done.text;
+    EXPECT_EQ(tables(size), undisturbed()) << size;
+  }
+  const Outcome alone = run_under(mpirun + "2", "sensitivity study.toml" + out());
+  EXPECT_NE(alone.exit_code, 0);
+}
+
+TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
+  const std::string study = (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string();
+  const auto refused = [&](const std::string& more, const std::string& message) {
+    expect_refusal("sensitivity " + study + " " + more + out(), message);
+  };
+  refused("--shard 1/2", "--shard: needs --checkpoint");
+  refused("--merge", "--merge: needs --checkpoint");
+  const std::string kept = " --checkpoint " + checkpoint();
+  refused("--merge --shard 1/2" + kept, "choose one of them");
+  for (const char* wrong : {"0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"})
+    refused(std::string("--shard ") + wrong + kept, "must be I/N with I from 1 to N");
+  const Outcome many = run_under("OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2", "sensitivity " + study + out());
+  EXPECT_EQ(many.exit_code, 2);
+  EXPECT_THAT(many.text, HasSubstr("--checkpoint: is missing: 2 processes under mpirun"));
+  const Outcome rank = run_under("PMI_RANK=2 PMI_SIZE=2", "sensitivity " + study + out());
+  EXPECT_EQ(rank.exit_code, 2);
+  EXPECT_THAT(rank.text, HasSubstr("PMI_RANK: is 2; must be below PMI_SIZE = 2"));
+  // A batch script has these without srun, and is alone.
+  const Outcome script =
+      run_under("SLURM_PROCID=0 SLURM_NTASKS=4", "sensitivity " + study +
+                                                     " --set tasks.numbers=[8] --set sensitivity.samples=1 "
+                                                     "--set sensitivity.choose=1 --set sensitivity.method=none" +
+                                                     kept + out());
+  EXPECT_EQ(script.exit_code, 0) << script.text;
+  refused("--set sensitivity.samples=8" + kept, "is of another study or version: ");
+  EXPECT_THAT(results(), Not(::testing::Contains("indices.csv")));
+}
+
+}  // namespace
+}  // namespace veridyn
