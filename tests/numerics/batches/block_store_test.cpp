@@ -217,9 +217,14 @@ TEST_F(BlockStoreTest, NamesTheProcessThatShowsNoLife) {
 }
 
 TEST_F(BlockStoreTest, WaitingEndsWithTheProgress) {
-  StoreProgress stopping(40);
+  struct StopsWaiting : StoreProgress {
+    void stage(std::string_view name) override { waits = name == "waiting for 5 blocks of other processes"; }
+    [[nodiscard]] bool update(double) override { return !waits; }
+    bool waits = false;
+  } stopping;
   BlockStore s = store({.index = 0, .count = 2, .wait = true});
   EXPECT_FALSE(s.compute(batch(), stopping).completed);
+  EXPECT_TRUE(stopping.waits);
   EXPECT_EQ(s.missing(), 0u);
 }
 
