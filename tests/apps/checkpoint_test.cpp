@@ -1,7 +1,10 @@
 // Long work that is killed, resumed, cut into shards and run under a launcher gives the same files.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <random>
 #include <thread>
@@ -133,13 +136,20 @@ TEST_F(CheckpointProgram, MpirunGivesTheSameBytes) {
 TEST_F(CheckpointProgram, MpirunEndsWithAProcessAndIsResumed) {
   if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
   Outcome ended;
-  std::thread running([&] { ended = run_under(mpirun("2"), sensitivity()); });
+  std::jthread running([&] { ended = run_under(mpirun("2"), sensitivity()); });
+  // "node7, process 4711" and a count, each with the end of its line: else the file is being written.
+  const auto process_of_second = [&] {
+    std::ifstream alive(std::filesystem::path(checkpoint()) / "process-2.alive");
+    const std::string text{std::istreambuf_iterator<char>(alive), std::istreambuf_iterator<char>()};
+    const std::size_t at = text.find("process ");
+    return std::count(text.begin(), text.end(), '\n') == 2 && at < text.size() ? std::stoi(text.substr(at + 8)) : 0;
+  };
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (blocks() == 0 && std::chrono::steady_clock::now() < deadline)
+  int process = 0;
+  while ((blocks() == 0 || process == 0) && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  // "node7, process 4711" and a count.
-  const std::string alive = read_file(std::filesystem::path(checkpoint()) / "process-2.alive");
-  const int process = std::stoi(alive.substr(alive.find("process ") + 8));
+    process = process_of_second();
+  }
   ASSERT_GT(process, 1);
   ASSERT_EQ(::kill(process, SIGKILL), 0);
   running.join();
