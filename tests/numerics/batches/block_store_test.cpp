@@ -57,7 +57,7 @@ class BlockStoreTest : public ::testing::Test {
     return all;
   }
   [[nodiscard]] std::vector<std::uint64_t> undisturbed() {
-    const std::vector<std::uint64_t> all = bits(BlockStore().compute(batch(), progress_));
+    std::vector<std::uint64_t> all = bits(BlockStore().compute(batch(), progress_));
     computed_ = 0;
     return all;
   }
