@@ -33,6 +33,16 @@ numerics::BlockShare parse_shard(const std::string& text) {
   throw InputError("--shard", fmt::format("is '{}'; must be I/N with I from 1 to N, such as 2/8", text));
 }
 
+/// One thread for each processor that this process may use, unless the user says how many.
+void choose_threads(const LaunchedProcess& process, bool talks, CommonOptions& options) {
+  const int fair = threads_of(process);
+  const auto machine = static_cast<int>(std::thread::hardware_concurrency());
+  if (talks && process.size > 1 && options.threads > fair)
+    print_line(options, fmt::format("note: {} threads for each of {} processes on this machine, of {} processors",
+                                    options.threads, process.on_machine, machine));
+  if (options.threads == 0 && fair < machine) options.threads = fair;
+}
+
 void share_among(const LaunchedProcess& process, Checkpoint& checkpoint) {
   if (checkpoint.folder.empty() && checkpoint.first)
     throw InputError("--checkpoint",
@@ -40,12 +50,7 @@ void share_among(const LaunchedProcess& process, Checkpoint& checkpoint) {
                                  "of them see",
                                  process.size, process.launcher));
   checkpoint.share = {.index = process.rank, .count = process.size, .wait = true};
-  const int fair = threads_of(process);
   CommonOptions& options = checkpoint.options;
-  if (checkpoint.first && options.threads > fair)
-    print_line(options, fmt::format("note: {} threads for each of {} processes on this machine, of {} processors",
-                                    options.threads, process.on_machine, std::thread::hardware_concurrency()));
-  if (options.threads == 0) options.threads = fair;
   if (checkpoint.first) return;
   options.quiet = true;
   options.json = false;
@@ -80,6 +85,7 @@ Checkpoint checkpoint_of(const Arguments& arguments) {
   } else if (process.size > 1) {
     share_among(process, checkpoint);
   }
+  choose_threads(process, checkpoint.first, checkpoint.options);
   return checkpoint;
 }
 

@@ -1,4 +1,6 @@
 // Long work that is killed, resumed, cut into shards and run under a launcher gives the same files.
+#include <sched.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -158,6 +160,26 @@ TEST_F(CheckpointProgram, MpirunEndsWithAProcessAndIsResumed) {
   const Outcome done = run_under(mpirun("3"), sensitivity("out", ""));
   ASSERT_EQ(done.exit_code, 0) << done.text;
   EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, TakesTheProcessorsThatItMayUse) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one processor";
+  cpu_set_t allowed;
+  ASSERT_EQ(::sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  int first = 0;
+  while (!CPU_ISSET(first, &allowed)) ++first;
+  const std::string bound = "taskset -c " + std::to_string(first);
+  const std::string study = (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string();
+  const std::string small = "sensitivity " + study + " --set tasks.numbers=[8] --set sensitivity.samples=1 " +
+                            "--set sensitivity.choose=1 --set sensitivity.method=none" + out();
+  const auto threads = [&](const std::string& under, const std::string& more) {
+    const Outcome done = run_under(under, small + more);
+    EXPECT_EQ(done.exit_code, 0) << done.text;
+    const std::string record = read_file(in_out("run.json"));
+    return record.substr(record.find("\"threads\": "), 12);
+  };
+  EXPECT_EQ(threads(bound, ""), "\"threads\": 1");
+  EXPECT_EQ(threads(bound, " --threads 2"), "\"threads\": 2");
 }
 
 TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
