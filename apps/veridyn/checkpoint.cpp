@@ -59,13 +59,14 @@ void share_among(const LaunchedProcess& process, Checkpoint& checkpoint) {
 }  // namespace
 
 std::vector<Argument> checkpoint_arguments() {
-  return {{.name = "--checkpoint",
-           .help = "keep finished work in this folder, go on from what is there, share it between processes",
-           .type = "FOLDER"},
-          {.name = "--shard", .help = "do only the I-th of N parts of the work that is left", .type = "I/N"},
-          {.name = "--merge",
-           .help = "compute nothing: results from a complete checkpoint, or what it lacks",
-           .value = false}};
+  return {
+      {.name = "--checkpoint",
+       .help = "keep finished work in this folder, go on from what is there, share it between processes",
+       .type = "FOLDER"},
+      {.name = "--shard", .help = "compute only every N-th block from the I-th on, where it is missing", .type = "I/N"},
+      {.name = "--merge",
+       .help = "compute nothing: results from a complete checkpoint, or what it lacks",
+       .value = false}};
 }
 
 Checkpoint checkpoint_of(const Arguments& arguments) {
