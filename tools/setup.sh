@@ -7,7 +7,7 @@ packages=(
   libeigen3-dev libboost-dev libceres-dev libtbb-dev libmatio-dev zlib1g-dev libtomlplusplus-dev nlohmann-json3-dev
   libcli11-dev libfmt-dev libpugixml-dev libgtest-dev libgmock-dev libbenchmark-dev libsimbody-dev
   clang-14 clang-format-14 clang-format clang-tidy-14 clang-tidy libclang-rt-14-dev
-  chromium doxygen
+  chromium doxygen openmpi-bin
 )
 # The report's plots need Node 20.19 or later, wherever it comes from; Debian's 18 gives a report without them.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages+=(nodejs npm); fi

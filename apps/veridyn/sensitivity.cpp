@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <optional>
 #include <stdexcept>
 
+#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
@@ -91,40 +93,53 @@ void print_result(const CommonOptions& options, const MuscleSensitivity& r) {
 }  // namespace
 
 int sensitivity_muscle(const StudyRun& run) {
-  OutputFolder folder(run.options().out);
-  TerminalProgress progress = progress_of(run.options());
+  const Checkpoint checkpoint = checkpoint_of(run.arguments);
+  // Of several processes without a folder the first says what is missing, in one line.
+  if (!checkpoint.first && checkpoint.folder.empty()) return kDone;
+  const CommonOptions& options = checkpoint.options;
+  std::optional<OutputFolder> folder;
+  if (checkpoint.first) folder.emplace(options.out);
+  TerminalProgress progress = progress_of(options);
   const SensitivityStudy study = read_sensitivity_study(run.study, progress);
+  numerics::BlockStore store = open_store(checkpoint, run, study.inputs);
   progress.stage(fmt::format("computed muscle control of {} tasks", study.tasks.size()));
   const std::vector<PreparedTask> tasks = prepare_tasks(*study.subject.system, study.tasks, progress);
   if (progress.interrupted()) throw Interrupted();
-  const MuscleSensitivity result = analyse_sensitivity(*study.subject.system, tasks, study.options, progress);
-  if (!result.completed) throw Interrupted();
+  const MuscleSensitivity result = analyse_sensitivity(*study.subject.system, tasks, study.options, store, progress);
+  if (!result.completed) return checkpoint.stopped(store);
+  if (!checkpoint.first) return kDone;
   progress.stage("writing the results");
-  folder.write("sensitivity.csv", sensitivity_csv(result));
-  folder.write("tasks.csv", task_choice_csv(result, tasks));
-  if (!result.indices.results.empty()) folder.write("indices.csv", indices_csv(result, study.options.indices.method));
-  folder.write("report.html", report::to_html(report::sensitivity_report(study, tasks, result, program_name())));
-  const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
-  folder.publish(run.record(study.seed, study.inputs), run.options(), summary_of(folder.path(), study, result));
-  for (const std::string& warning : result.warnings) print_line(run.options(), "warning: " + warning);
+  folder->write("sensitivity.csv", sensitivity_csv(result));
+  folder->write("tasks.csv", task_choice_csv(result, tasks));
+  if (!result.indices.results.empty()) folder->write("indices.csv", indices_csv(result, study.options.indices.method));
+  folder->write("report.html", report::to_html(report::sensitivity_report(study, tasks, result, program_name())));
+  const std::string files = fmt::format("{}", fmt::join(folder->files(), ", "));
+  folder->publish(run.record(study.seed, study.inputs), options, summary_of(folder->path(), study, result));
+  for (const std::string& warning : store.warnings()) print_line(options, "warning: " + warning);
+  for (const std::string& warning : result.warnings) print_line(options, "warning: " + warning);
   if (!result.usable())
     throw std::runtime_error(
-        fmt::format("none of {} tasks may be chosen; why is in {}: {}", tasks.size(), folder.path().string(), files));
-  print_result(run.options(), result);
-  print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
+        fmt::format("none of {} tasks may be chosen; why is in {}: {}", tasks.size(), folder->path().string(), files));
+  print_result(options, result);
+  if (!checkpoint.folder.empty())
+    print_line(options,
+               fmt::format("{} of {} blocks were in {}", store.found(), store.blocks(), checkpoint.folder.string()));
+  print_line(options, fmt::format("wrote {} in {}", files, folder->path().string()));
   return kDone;
 }
 
 Command sensitivity_command() {
-  return {.name = "sensitivity",
-          .summary = "which muscle moves which task, and which tasks excite every muscle",
-          .arguments = {{.name = "STUDY",
-                         .help = "study file (TOML) of a musculoskeletal model; [tasks] says which tasks, "
-                                 "[sensitivity] how they are sampled and chosen",
-                         .required = true}},
-          .default_out = "out/sensitivity",
-          .example = "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm",
-          .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
+  Command command = {.name = "sensitivity",
+                     .summary = "which muscle moves which task, and which tasks excite every muscle",
+                     .arguments = {{.name = "STUDY",
+                                    .help = "study file (TOML) of a musculoskeletal model; [tasks] says which tasks, "
+                                            "[sensitivity] how they are sampled and chosen",
+                                    .required = true}},
+                     .default_out = "out/sensitivity",
+                     .example = "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm",
+                     .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
+  for (Argument& argument : checkpoint_arguments()) command.arguments.push_back(std::move(argument));
+  return command;
 }
 
 }  // namespace veridyn::app

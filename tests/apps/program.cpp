@@ -28,6 +28,10 @@ Outcome run_in_shell(const std::string& before, const std::string& arguments) {
   return shell("(" + before + "; " + std::string(VERIDYN_PROGRAM) + " " + arguments + ") 2>&1");
 }
 
+Outcome run_under(const std::string& before, const std::string& arguments) {
+  return shell(before + " " + std::string(VERIDYN_PROGRAM) + " " + arguments + " 2>&1");
+}
+
 Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch) {
   const std::string said = (scratch / "stderr.txt").string();
   std::filesystem::remove(said);  // of the run before

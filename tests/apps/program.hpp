@@ -24,6 +24,9 @@ struct Outcome {
 /// The same after `before` ("ulimit -f 8") in the same shell.
 [[nodiscard]] Outcome run_in_shell(const std::string& before, const std::string& arguments);
 
+/// The same as the last words of `before` ("timeout -s KILL 0.5", "mpirun -n 2", "NAME=value").
+[[nodiscard]] Outcome run_under(const std::string& before, const std::string& arguments);
+
 /// Runs the program, presses Ctrl-C as soon as it says on stderr what it is doing, and waits for its end. The text is
 /// what it said on stderr.
 [[nodiscard]] Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch);

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/tasks/elbow_tasks.hpp"
+#include "veridyn/numerics/batches/block_store.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -154,7 +157,8 @@ TEST(TaskIndices, OfMorrisAreTheChangeAcrossTheRange) {
   TaskIndexOptions options{.method = IndexMethod::kMorris, .morris_trajectories = 1};
   Progress progress;
   const std::vector<std::string> names = {"a", "b", "c", "d"};
-  const TaskIndices found = task_indices(responses, std::vector<std::size_t>{2}, names, options, progress);
+  numerics::BlockStore nothing;
+  const TaskIndices found = task_indices(responses, std::vector<std::size_t>{2}, names, options, nothing, progress);
   ASSERT_EQ(found.results.size(), 1U);
   EXPECT_EQ(found.simulations, 2U);
   std::vector<double> candidates;
@@ -172,6 +176,46 @@ TEST(TaskIndices, WarnWhereAnIntervalExceedsATenthOfItsIndex) {
   EXPECT_TRUE(wide_interval(0.5, 0.46, 0.52));
   EXPECT_TRUE(wide_interval(0.0, -0.01, 0.01));
   EXPECT_TRUE(wide_interval(0.5, std::nan(""), 0.5));
+}
+
+TEST(MuscleSensitivity, GoesOnFromAStore) {
+  const SampledArm& s = four_tasks();
+  Progress progress;
+  const MuscleSensitivity expected = analyse_sensitivity(s.arm, s.tasks, small_study(), progress);
+  const auto folder = std::filesystem::temp_directory_path() / ("veridyn_muscle_blocks_" + std::to_string(::getpid()));
+  std::filesystem::remove_all(folder);
+  for (std::size_t shard = 0; shard < 2; ++shard) {
+    numerics::BlockStore part(folder, {}, {.index = shard, .count = 2});
+    const MuscleSensitivity found = analyse_sensitivity(s.arm, s.tasks, small_study(), part, progress);
+    EXPECT_FALSE(found.completed);
+    EXPECT_EQ(part.missing(), 1u);  // 192 simulations; 2 x 19 of each of two tasks are one block, of the first shard
+    if (shard == 1) {
+      EXPECT_EQ(found.sampling.mean, expected.sampling.mean);
+    }
+  }
+  numerics::BlockStore rest(folder, {});
+  const MuscleSensitivity found = analyse_sensitivity(s.arm, s.tasks, small_study(), rest, progress);
+  EXPECT_TRUE(found.usable());
+  EXPECT_EQ(rest.found(), 2u);
+  EXPECT_EQ(found.sampling.mean, expected.sampling.mean);
+  EXPECT_EQ(found.indices.results[0].morris[0].mean, expected.indices.results[0].morris[0].mean);
+  // Blocks of the same name of another accuracy: what a library user's identity does not say.
+  SensitivityStudyOptions other = small_study();
+  other.sampling.accuracy = 1e-4;
+  EXPECT_THROW((void)analyse_sensitivity(s.arm, s.tasks, other, rest, progress), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(MuscleSensitivity, FingerprintsFollowTheMotionsAndTheUnknowns) {
+  const SampledArm& s = four_tasks();
+  const auto print = [&](std::size_t muscle, std::size_t tasks, double accuracy) {
+    const std::vector<MuscleUnknown> unknowns = muscle_factors(s.arm.model(), muscle, 0.05);
+    return TaskResponses(s.arm, unknowns, std::span(s.tasks).first(tasks), accuracy).fingerprint();
+  };
+  EXPECT_EQ(print(0, 2, 1e-5), print(0, 2, 1e-5));
+  EXPECT_NE(print(0, 2, 1e-5), print(1, 2, 1e-5));
+  EXPECT_NE(print(0, 2, 1e-5), print(0, 1, 1e-5));
+  EXPECT_NE(print(0, 2, 1e-5), print(0, 2, 1.1e-5));
 }
 
 }  // namespace

@@ -54,14 +54,14 @@ std::vector<MuscleUnknown> muscle_factors(const Model& model, double range) {
 }
 
 MuscleSampling sample_muscles(const TaskResponses& responses, const MuscleSamplingOptions& options,
-                              Progress& progress) {
+                              numerics::BlockStore& store, Progress& progress) {
   const Eigen::Index muscles = signed_index(responses.unknowns().size()) / kFieldCount;
   VERIDYN_ASSERT(muscles * kFieldCount == signed_index(responses.unknowns().size()));
   const Eigen::Index n = signed_index(options.samples), tasks = signed_index(responses.tasks());
   std::vector<std::size_t> all(responses.tasks());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const auto begun = std::chrono::steady_clock::now();
-  const ResponseTable table = respond(responses, sampled_points(muscles, options), all, progress);
+  const ResponseTable table = respond(responses, sampled_points(muscles, options), all, store, "sampling", progress);
   MuscleSampling sampling{.mean = Eigen::MatrixXd::Constant(muscles, tasks, kNaN),
                           .sd = Eigen::MatrixXd::Constant(muscles, tasks, kNaN),
                           .greatest = Eigen::MatrixXd::Constant(muscles, tasks, kNaN),

@@ -27,7 +27,7 @@ struct MuscleSampling {
   std::size_t samples = 0;
   std::size_t simulations = 0;
   double seconds = 0.0, processor_seconds = 0.0;
-  bool completed = true;  ///< false: the progress asked to stop
+  bool completed = true;  ///< false: the progress asked to stop, or blocks of other processes are missing
 };
 
 /// F0, L0 and LS of a muscle as factors of the model's values, from 1 - range to 1 + range.
@@ -38,7 +38,8 @@ struct MuscleSampling {
 /// The published sampling: points of a Sobol sequence in the F0, L0 and LS of one muscle, the same for each, while all
 /// other muscles are as the model has them; in every task, under the controls of the standard model.
 /// @param responses  of `muscle_factors` of all muscles
+/// @param store      its batch is called "sampling"
 [[nodiscard]] MuscleSampling sample_muscles(const TaskResponses& responses, const MuscleSamplingOptions& options,
-                                            Progress& progress);
+                                            numerics::BlockStore& store, Progress& progress);
 
 }  // namespace veridyn::muscle

@@ -9,6 +9,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 #include "veridyn/muscle/tasks/task_error.hpp"
+#include "veridyn/numerics/batches/block_store.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::muscle {
@@ -125,7 +126,8 @@ void SensitivityStudyOptions::validate() const {
 }
 
 MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject, std::span<const PreparedTask> tasks,
-                                      const SensitivityStudyOptions& options, Progress& progress) {
+                                      const SensitivityStudyOptions& options, numerics::BlockStore& store,
+                                      Progress& progress) {
   options.validate();
   MuscleSensitivity s;
   const Model& model = subject.model();
@@ -136,7 +138,7 @@ MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject, std:
   const TaskResponses responses(subject, factors, tasks, accuracy);
   progress.stage(
       fmt::format("{} samples of {} muscles in {} tasks", options.sampling.samples, s.muscles.size(), tasks.size()));
-  s.sampling = sample_muscles(responses, options.sampling, progress);
+  s.sampling = sample_muscles(responses, options.sampling, store, progress);
   s.completed = s.sampling.completed;
   if (!s.completed) return s;
   judge_tasks(responses, s.sampling, s.tasks);
@@ -147,10 +149,16 @@ MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject, std:
   std::vector<std::string> names;
   for (const TaskFinding& f : s.tasks) names.push_back(f.name);
   const TaskResponses varied(subject, options.inputs.empty() ? factors : options.inputs, tasks, accuracy);
-  s.indices = task_indices(varied, s.cover.chosen->tasks, names, options.indices, progress);
+  s.indices = task_indices(varied, s.cover.chosen->tasks, names, options.indices, store, progress);
   s.completed = s.indices.completed;
   s.warnings.insert(s.warnings.end(), s.indices.warnings.begin(), s.indices.warnings.end());
   return s;
+}
+
+MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject, std::span<const PreparedTask> tasks,
+                                      const SensitivityStudyOptions& options, Progress& progress) {
+  numerics::BlockStore nothing;
+  return analyse_sensitivity(subject, tasks, options, nothing, progress);
 }
 
 }  // namespace veridyn::muscle

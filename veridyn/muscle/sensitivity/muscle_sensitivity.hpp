@@ -43,14 +43,21 @@ struct MuscleSensitivity {
   bool bands_allowed = false;
   TaskIndices indices;
   std::vector<std::string> warnings;
-  bool completed = true;  ///< false: interrupted; what is here is not complete
+  bool completed = true;  ///< false: interrupted, or the store lacks blocks; what is here is not complete
 
   [[nodiscard]] bool usable() const { return completed && cover.chosen.has_value(); }
 };
 
 /// The published sampling of every muscle in every task, the choice of tasks from it, and the indices of those chosen.
 /// Simulations that cannot finish are counted and end nothing. The same bits on any number of threads.
-/// @throws InputError when an option is out of order.
+/// @param store  where batches "sampling" and "indices" are kept; which simulations are in the second of them follows
+///               from the first
+/// @throws InputError when an option is out of order; what `BlockStore::compute` throws.
+[[nodiscard]] MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject,
+                                                    std::span<const PreparedTask> tasks,
+                                                    const SensitivityStudyOptions& options, numerics::BlockStore& store,
+                                                    Progress& progress);
+/// The same, and nothing is kept.
 [[nodiscard]] MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject,
                                                     std::span<const PreparedTask> tasks,
                                                     const SensitivityStudyOptions& options, Progress& progress);

@@ -77,7 +77,8 @@ void warn_of_wide(const ResultIndices& r, const std::vector<std::string>& inputs
 bool wide_interval(double index, double low, double high) { return !(high - low <= kWideInterval * std::abs(index)); }
 
 TaskIndices task_indices(const TaskResponses& responses, std::span<const std::size_t> tasks,
-                         std::span<const std::string> names, const TaskIndexOptions& options, Progress& progress) {
+                         std::span<const std::string> names, const TaskIndexOptions& options,
+                         numerics::BlockStore& store, Progress& progress) {
   TaskIndices result;
   const std::vector<std::size_t> inputs = varied(responses);
   for (const std::size_t i : inputs) result.inputs.push_back(responses.unknowns()[i].name);
@@ -87,7 +88,8 @@ TaskIndices task_indices(const TaskResponses& responses, std::span<const std::si
                                      : numerics::morris_design(inputs.size(), options.morris_trajectories,
                                                                options.morris_levels, options.variance.seed);
   const auto begun = std::chrono::steady_clock::now();
-  const ResponseTable table = respond(responses, values_at(responses, inputs, design), tasks, progress);
+  const ResponseTable table =
+      respond(responses, values_at(responses, inputs, design), tasks, store, "indices", progress);
   result.simulations = table.simulations;
   result.processor_seconds = table.processor_seconds;
   result.completed = table.completed;

@@ -41,7 +41,7 @@ struct TaskIndices {
   std::size_t simulations = 0;
   double seconds = 0.0, processor_seconds = 0.0;
   std::vector<std::string> warnings;
-  bool completed = true;  ///< false: the progress asked to stop
+  bool completed = true;  ///< false: the progress asked to stop, or blocks of other processes are missing
 };
 
 /// Intervals wider than this share of their index are warned of.
@@ -52,8 +52,9 @@ inline constexpr double kWideInterval = 0.1;
 /// Which share of the variance of a task's NRMSE each unknown causes when all of them vary between their bounds,
 /// independently and evenly; those that are fixed stay at their start.
 /// @param names  of all tasks of `responses`
+/// @param store  its batch is called "indices"
 [[nodiscard]] TaskIndices task_indices(const TaskResponses& responses, std::span<const std::size_t> tasks,
                                        std::span<const std::string> names, const TaskIndexOptions& options,
-                                       Progress& progress);
+                                       numerics::BlockStore& store, Progress& progress);
 
 }  // namespace veridyn::muscle

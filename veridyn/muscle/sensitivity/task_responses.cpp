@@ -1,11 +1,10 @@
 #include "veridyn/muscle/sensitivity/task_responses.hpp"
 
-#include <ctime>
-
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
-#include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/batches/block_store.hpp"
+#include "veridyn/numerics/batches/fingerprint.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -19,11 +18,10 @@ Eigen::VectorXd theta_of(const MuscleParametricModel& model, std::size_t segment
   return theta;
 }
 
-/// Processor time of the calling thread [s].
-double thread_seconds() {
-  std::timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+void add_bits(numerics::Fingerprint& print, const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  print.add(static_cast<std::uint64_t>(matrix.rows()));
+  print.add(static_cast<std::uint64_t>(matrix.cols()));
+  for (const double v : matrix.reshaped()) print.add(v);
 }
 
 }  // namespace
@@ -57,25 +55,38 @@ double TaskResponses::nrmse(std::size_t task, const Eigen::VectorXd& unknowns) c
   return task_error(target, response.output).nrmse;
 }
 
+std::uint64_t TaskResponses::fingerprint() const {
+  numerics::Fingerprint print;
+  print.add(model_->accuracy());
+  for (const MuscleUnknown& u : unknowns()) {
+    print.add(static_cast<std::uint64_t>(u.factor));
+    for (const MuscleParameterName& p : u.parameters) {
+      print.add(static_cast<std::uint64_t>(p.muscle));
+      print.add(static_cast<std::uint64_t>(p.field));
+    }
+  }
+  for (const estimation::RowMatrix& target : targets_) add_bits(print, target);
+  return print.value();
+}
+
 ResponseTable respond(const TaskResponses& responses, const Eigen::MatrixXd& points, std::span<const std::size_t> tasks,
-                      Progress& progress) {
-  const std::size_t rows = at(points.rows()), all = rows * tasks.size();
-  ResponseTable table{.nrmse = Eigen::MatrixXd(points.rows(), signed_index(tasks.size()))};
-  std::vector<double> seconds(all);
+                      numerics::BlockStore& store, const std::string& batch, Progress& progress) {
+  const std::size_t rows = at(points.rows());
+  numerics::Fingerprint print;
+  print.add(responses.fingerprint());
+  add_bits(print, points);
+  for (const std::size_t t : tasks) print.add(static_cast<std::uint64_t>(t));
   const auto one = [&](std::size_t item) {
-    const double begun = thread_seconds();
     const std::size_t row = item / tasks.size(), task = item % tasks.size();
-    table.nrmse(signed_index(row), signed_index(task)) =
-        responses.nrmse(tasks[task], points.row(signed_index(row)).transpose());
-    seconds[item] = thread_seconds() - begun;
+    return responses.nrmse(tasks[task], points.row(signed_index(row)).transpose());
   };
-  const auto proceed = [&](std::size_t done) {
-    return progress.update(static_cast<double>(done) / static_cast<double>(all));
-  };
-  table.completed = numerics::parallel_for(all, progress.threads(), one, proceed);
-  table.simulations = all;
-  for (const double s : seconds) table.processor_seconds += s;
-  return table;
+  const numerics::BatchValues found = store.compute(
+      {.name = batch, .fingerprint = print.value(), .items = rows * tasks.size(), .value = one}, progress);
+  return {
+      .nrmse = Eigen::Map<const estimation::RowMatrix>(found.values.data(), points.rows(), signed_index(tasks.size())),
+      .simulations = rows * tasks.size(),
+      .processor_seconds = found.processor_seconds,
+      .completed = found.completed};
 }
 
 }  // namespace veridyn::muscle

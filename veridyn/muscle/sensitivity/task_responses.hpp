@@ -1,13 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/muscle/identification/muscle_parametric_model.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
+
+namespace veridyn::numerics {
+class BlockStore;
+}
 
 namespace veridyn::muscle {
 
@@ -23,6 +29,8 @@ class TaskResponses {
   [[nodiscard]] std::size_t tasks() const { return targets_.size(); }
   /// The standard model's motion: samples x free coordinates; empty: it could not be simulated, and nothing can.
   [[nodiscard]] const estimation::RowMatrix& target(std::size_t task) const { return targets_[task]; }
+  /// Of the unknowns and of every bit of the standard model's motions, which follow from model, controls and accuracy.
+  [[nodiscard]] std::uint64_t fingerprint() const;
   /// NaN: the simulation could not finish, or the target moves less than 1 deg.
   [[nodiscard]] double nrmse(std::size_t task, const Eigen::VectorXd& unknowns) const;
 
@@ -36,13 +44,16 @@ class TaskResponses {
 struct ResponseTable {
   Eigen::MatrixXd nrmse;  ///< points x tasks as asked for
   std::size_t simulations = 0;
-  double processor_seconds = 0.0;  ///< of all threads
-  bool completed = true;           ///< false: the progress asked to stop
+  double processor_seconds = 0.0;  ///< of all threads, processes and earlier runs
+  bool completed = true;           ///< false: the progress asked to stop, or the store lacks blocks of other processes
 };
 
 /// Simulates each of the tasks at each point, on the progress' threads; the same bits on any number of them.
 /// @param points  a row each: values of the unknowns
+/// @param store   what has been simulated before is taken from there
+/// @param batch   what the store calls it
 [[nodiscard]] ResponseTable respond(const TaskResponses& responses, const Eigen::MatrixXd& points,
-                                    std::span<const std::size_t> tasks, Progress& progress);
+                                    std::span<const std::size_t> tasks, numerics::BlockStore& store,
+                                    const std::string& batch, Progress& progress);
 
 }  // namespace veridyn::muscle

@@ -1,0 +1,215 @@
+// Long work that is killed, resumed, cut into shards and run under a launcher gives the same files.
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "tests/apps/program.hpp"
+#include "tests/support/folders.hpp"
+
+namespace veridyn {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kKilled = 137;  // by the shell
+
+constexpr const char* kNoMpirun =
+    "there is no mpirun here; ProcessesOfALauncherMeetInTheFolder runs the same code without it";
+
+bool has_mpirun() { return std::system("command -v mpirun >/dev/null 2>&1") == 0; }
+std::string mpirun(const std::string& processes) {
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " + processes;
+}
+
+class CheckpointProgram : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    // What a launcher that started this test says is not for the programs that it starts.
+    for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID"}) ::unsetenv(name);
+  }
+
+  /// 960 simulations and 152 more of the tasks that are chosen: eight blocks and two.
+  [[nodiscard]] std::string sensitivity(const std::string& out = "out", const std::string& more = "--threads 1") const {
+    return "sensitivity " + (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string() +
+           " --out " + (folder_ / out).string() + " --checkpoint " + checkpoint() + " " + more;
+  }
+  [[nodiscard]] std::string checkpoint() const { return (folder_ / "blocks").string(); }
+  [[nodiscard]] std::size_t blocks() const {
+    std::size_t count = 0;
+    if (!std::filesystem::exists(checkpoint())) return 0;
+    for (const auto& entry : std::filesystem::directory_iterator(checkpoint()))
+      count += entry.path().extension() == ".block" ? 1U : 0U;
+    return count;
+  }
+  [[nodiscard]] std::map<std::string, std::string> tables(const std::string& out = "out") const {
+    std::map<std::string, std::string> found;
+    for (const char* name : {"sensitivity.csv", "tasks.csv", "indices.csv"})
+      found[name] = read_file(folder_ / out / name);
+    return found;
+  }
+  /// Of a run without a checkpoint.
+  [[nodiscard]] const std::map<std::string, std::string>& undisturbed() const {
+    static const std::map<std::string, std::string> all = [this] {
+      const Outcome done =
+          run("sensitivity " + (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string() +
+              " --out " + (folder_ / "undisturbed").string());
+      EXPECT_EQ(done.exit_code, 0) << done.text;
+      return tables("undisturbed");
+    }();
+    return all;
+  }
+  void forget() const { std::filesystem::remove_all(checkpoint()); }
+};
+
+TEST_F(CheckpointProgram, ResumesBitForBitWhenItIsKilled) {
+  std::mt19937 random(std::random_device{}());
+  std::uniform_real_distribution<double> seconds(0.2, 0.7);
+  int killed = 0;
+  std::size_t before = 0;
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    const Outcome outcome = run_under("timeout -s KILL " + std::to_string(seconds(random)), sensitivity());
+    ASSERT_TRUE(outcome.exit_code == kKilled || outcome.exit_code == 0) << outcome.exit_code << outcome.text;
+    killed += outcome.exit_code == kKilled ? 1 : 0;
+    EXPECT_GE(blocks(), before);
+    before = blocks();
+  }
+  EXPECT_GT(killed, 0);
+  const Outcome done = run(sensitivity());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  EXPECT_THAT(done.text, HasSubstr(std::to_string(before) + " of 10 blocks were in " + checkpoint()));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, ShardsMergeToTheSameBytes) {
+  const Outcome first = run(sensitivity("out", "--shard 1/2"));
+  ASSERT_EQ(first.exit_code, 0) << first.text;
+  EXPECT_THAT(first.text, HasSubstr("shard 1 of 2 is done; 4 of 8 blocks are missing in " + checkpoint()));
+  EXPECT_TRUE(results().empty());
+  const Outcome early = run(sensitivity("out", "--merge"));
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.text, HasSubstr("blocks: 4 of 8 blocks are missing"));
+  // Nothing of the sampling is missing any more: the second shard goes on with the indices.
+  const Outcome second = run(sensitivity("out", "--shard 2/2"));
+  EXPECT_THAT(second.text, HasSubstr("shard 2 of 2 is done; 1 of 2 blocks are missing"));
+  const Outcome last = run(sensitivity("out", "--shard 1/2"));
+  ASSERT_EQ(last.exit_code, 0) << last.text;
+  EXPECT_EQ(tables(), undisturbed());
+  std::filesystem::remove_all(folder_ / "out");
+  const Outcome merge = run(sensitivity("out", "--merge"));
+  EXPECT_THAT(merge.text, HasSubstr("10 of 10 blocks were in"));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, ProcessesOfALauncherMeetInTheFolder) {
+  // What srun tells two processes, without srun.
+  std::vector<Outcome> outcomes(2);
+  std::vector<std::thread> processes;
+  for (std::size_t rank = 0; rank < 2; ++rank)
+    processes.emplace_back([&, rank] {
+      outcomes[rank] = run_under("SLURM_PROCID=" + std::to_string(rank) + " SLURM_STEP_NUM_TASKS=2", sensitivity());
+    });
+  for (std::thread& p : processes) p.join();
+  EXPECT_EQ(outcomes[0].exit_code, 0) << outcomes[0].text;
+  EXPECT_EQ(outcomes[1].exit_code, 0) << outcomes[1].text;
+  EXPECT_EQ(outcomes[1].text, "");
+  EXPECT_THAT(outcomes[0].text, HasSubstr("wrote sensitivity.csv"));
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, MpirunGivesTheSameBytes) {
+  if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
+  for (const char* size : {"1", "2", "3"}) {
+    forget();
+    const Outcome done = run_under(mpirun(size), sensitivity(size, ""));
+    ASSERT_EQ(done.exit_code, 0) << done.text;
+    EXPECT_EQ(tables(size), undisturbed()) << size;
+  }
+}
+
+TEST_F(CheckpointProgram, MpirunEndsWithAProcessAndIsResumed) {
+  if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
+  Outcome ended;
+  std::jthread running([&] { ended = run_under(mpirun("2"), sensitivity()); });
+  // "node7, process 4711" and a count, each with the end of its line: else the file is being written.
+  const auto process_of_second = [&] {
+    std::ifstream alive(std::filesystem::path(checkpoint()) / "process-2.alive");
+    const std::string text{std::istreambuf_iterator<char>(alive), std::istreambuf_iterator<char>()};
+    const std::size_t at = text.find("process ");
+    return std::count(text.begin(), text.end(), '\n') == 2 && at < text.size() ? std::stoi(text.substr(at + 8)) : 0;
+  };
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  int process = 0;
+  while ((blocks() == 0 || process == 0) && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    process = process_of_second();
+  }
+  ASSERT_GT(process, 1);
+  ASSERT_EQ(::kill(process, SIGKILL), 0);
+  running.join();
+  EXPECT_NE(ended.exit_code, 0) << ended.text;
+  EXPECT_TRUE(results().empty());
+  const Outcome done = run_under(mpirun("3"), sensitivity("out", ""));
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  EXPECT_EQ(tables(), undisturbed());
+}
+
+TEST_F(CheckpointProgram, TakesTheProcessorsThatItMayUse) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one processor";
+  cpu_set_t allowed;
+  ASSERT_EQ(::sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  int first = 0;
+  while (!CPU_ISSET(first, &allowed)) ++first;
+  const std::string bound = "taskset -c " + std::to_string(first);
+  const std::string study = (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string();
+  const std::string small = "sensitivity " + study + " --set tasks.numbers=[8] --set sensitivity.samples=1 " +
+                            "--set sensitivity.choose=1 --set sensitivity.method=none" + out();
+  const auto threads = [&](const std::string& under, const std::string& more) {
+    const Outcome done = run_under(under, small + more);
+    EXPECT_EQ(done.exit_code, 0) << done.text;
+    const std::string record = read_file(in_out("run.json"));
+    return record.substr(record.find("\"threads\": "), 12);
+  };
+  EXPECT_EQ(threads(bound, ""), "\"threads\": 1");
+  EXPECT_EQ(threads(bound, " --threads 2"), "\"threads\": 2");
+}
+
+TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
+  const std::string study = (test::source_folder() / "examples/studies/muscle/arm_sensitivity.toml").string();
+  const auto refused = [&](const std::string& more, const std::string& message) {
+    expect_refusal("sensitivity " + study + " " + more + out(), message);
+  };
+  refused("--shard 1/2", "--shard: needs --checkpoint");
+  refused("--merge", "--merge: needs --checkpoint");
+  const std::string kept = " --checkpoint " + checkpoint();
+  refused("--merge --shard 1/2" + kept, "choose one of them");
+  for (const char* wrong : {"0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"})
+    refused(std::string("--shard ") + wrong + kept, "must be I/N with I from 1 to N");
+  const Outcome many = run_under("OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2", "sensitivity " + study + out());
+  EXPECT_EQ(many.exit_code, 2);
+  EXPECT_THAT(many.text, HasSubstr("--checkpoint: is missing: 2 processes under mpirun"));
+  const Outcome rank = run_under("PMI_RANK=2 PMI_SIZE=2", "sensitivity " + study + out());
+  EXPECT_EQ(rank.exit_code, 2);
+  EXPECT_THAT(rank.text, HasSubstr("PMI_RANK: is 2; must be below PMI_SIZE = 2"));
+  // A batch script has these without srun, and is alone.
+  const Outcome script =
+      run_under("SLURM_PROCID=0 SLURM_NTASKS=4", "sensitivity " + study +
+                                                     " --set tasks.numbers=[8] --set sensitivity.samples=1 "
+                                                     "--set sensitivity.choose=1 --set sensitivity.method=none" +
+                                                     kept + out());
+  EXPECT_EQ(script.exit_code, 0) << script.text;
+  std::filesystem::remove_all(folder_ / "out");
+  refused("--set sensitivity.samples=8" + kept, "is of another study or version: ");
+  EXPECT_TRUE(results().empty());
+}
+
+}  // namespace
+}  // namespace veridyn

@@ -1,0 +1,240 @@
+#include "veridyn/numerics/batches/block_store.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+
+namespace veridyn::numerics {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Stops after so many looks.
+class StoreProgress : public Progress {
+ public:
+  explicit StoreProgress(long looks = 1000000000) : looks_(looks) {}
+  [[nodiscard]] bool update(double) override { return !interrupted(); }
+  [[nodiscard]] bool interrupted() const override { return --looks_ < 0; }
+  [[nodiscard]] int threads() const override { return 2; }
+
+ private:
+  mutable std::atomic<long> looks_;
+};
+
+class BlockStoreTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("veridyn_blocks_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// 47 items in blocks of 5; every value is odd bits, some are NaN, infinite or -0.
+  [[nodiscard]] Batch batch() {
+    const auto value = [this](std::size_t i) {
+      ++computed_;
+      if (i == 3) return std::numeric_limits<double>::quiet_NaN();
+      if (i == 4) return std::bit_cast<double>(std::uint64_t{0xfff8000000000123});  // a NaN with a payload
+      if (i == 7) return -std::numeric_limits<double>::infinity();
+      return i == 8 ? -0.0 : std::sin(1.0 + static_cast<double>(i));
+    };
+    return {.name = "waves", .fingerprint = 77, .items = 47, .items_per_block = 5, .value = value};
+  }
+  [[nodiscard]] BlockStore store(const BlockShare& share = {}) const { return {folder_, kIdentity, share}; }
+  static std::vector<std::uint64_t> bits(const BatchValues& values) {
+    std::vector<std::uint64_t> all;
+    for (const double v : values.values) all.push_back(std::bit_cast<std::uint64_t>(v));
+    return all;
+  }
+  [[nodiscard]] std::vector<std::uint64_t> undisturbed() {
+    std::vector<std::uint64_t> all = bits(BlockStore().compute(batch(), progress_));
+    computed_ = 0;
+    return all;
+  }
+  [[nodiscard]] std::filesystem::path block(int number) const {
+    return folder_ / ("waves-00000" + std::to_string(number) + ".block");
+  }
+  static std::string refusal(const std::function<void()>& call) {
+    try {
+      call();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  static inline const BlockStore::Identity kIdentity = {{"program", "veridyn 1"}, {"study", "samples = 4"}};
+  std::filesystem::path folder_;
+  StoreProgress progress_;
+  std::atomic<int> computed_ = 0;
+};
+
+TEST_F(BlockStoreTest, GivesBackEveryBitAndComputesNothingTwice) {
+  const std::vector<std::uint64_t> expected = undisturbed();
+  BlockStore first = store();
+  EXPECT_EQ(bits(first.compute(batch(), progress_)), expected);
+  EXPECT_EQ(computed_, 47);
+  EXPECT_EQ(first.found(), 0u);
+  BlockStore second = store();
+  const BatchValues again = second.compute(batch(), progress_);
+  EXPECT_TRUE(again.completed);
+  EXPECT_EQ(bits(again), expected);
+  EXPECT_EQ(computed_, 47);
+  EXPECT_EQ(second.found(), 10u);
+  EXPECT_EQ(second.blocks(), 10u);
+}
+
+TEST_F(BlockStoreTest, GoesOnWhereItWasInterrupted) {
+  const std::vector<std::uint64_t> expected = undisturbed();
+  int runs = 0;
+  for (bool completed = false; !completed && runs < 100; ++runs) {
+    StoreProgress stopping(6);
+    BlockStore s = store();
+    const BatchValues values = s.compute(batch(), stopping);
+    completed = values.completed;
+    EXPECT_EQ(s.missing(), 0u);
+    if (completed) {
+      EXPECT_EQ(bits(values), expected);
+    }
+  }
+  EXPECT_GT(runs, 1);
+  EXPECT_LT(runs, 100);
+}
+
+TEST_F(BlockStoreTest, ComputesDamagedBlocksAgain) {
+  const std::vector<std::uint64_t> expected = undisturbed();
+  ASSERT_TRUE(store().compute(batch(), progress_).completed);
+  const std::string whole = read_file(block(3));
+  std::string changed = whole, no_head = "veridyn block 1\n";
+  changed[changed.size() / 2] ^= 1;
+  for (const std::string& damaged :
+       {std::string(), whole.substr(0, 60), whole.substr(0, whole.size() - 1), changed, whole + "x", no_head}) {
+    write_file(block(3), damaged);
+    computed_ = 0;
+    BlockStore s = store();
+    EXPECT_EQ(bits(s.compute(batch(), progress_)), expected);
+    EXPECT_EQ(computed_, 5);
+    ASSERT_EQ(s.warnings().size(), 1u);
+    EXPECT_THAT(s.warnings()[0], HasSubstr("waves-000003.block: is damaged"));
+    // Its processor time is measured, not the same.
+    EXPECT_EQ(read_file(block(3)).substr(0, 64), whole.substr(0, 64));
+  }
+}
+
+TEST_F(BlockStoreTest, RefusesWhatIsOfSomethingElse) {
+  ASSERT_TRUE(store().compute(batch(), progress_).completed);
+  const auto opened = [&](const BlockStore::Identity& identity) {
+    return refusal([&] { const BlockStore s(folder_, identity); });
+  };
+  EXPECT_THAT(opened({{"program", "veridyn 2"}, {"study", "samples = 4"}}),
+              HasSubstr("'program: veridyn 1' there, 'program: veridyn 2' here"));
+  EXPECT_THAT(opened({{"program", "veridyn 1"}, {"study", "samples = 8"}}),
+              HasSubstr("'study: samples = 4' there, 'study: samples = 8' here"));
+  EXPECT_THAT(opened({{"program", "veridyn 1"}}), HasSubstr("'study: samples = 4' there, nothing here"));
+  Batch other = batch();
+  other.fingerprint = 78;
+  EXPECT_THAT(refusal([&] { (void)store().compute(other, progress_); }), HasSubstr("waves-000000.block: was computed"));
+  other = batch();
+  other.items = 48;
+  EXPECT_THAT(refusal([&] { (void)store().compute(other, progress_); }), HasSubstr("waves-000009.block: was computed"));
+  std::filesystem::remove_all(folder_);
+  make_folder(folder_);
+  write_file(folder_ / "thesis.tex", "x");
+  EXPECT_THAT(refusal([&] { const BlockStore s = store(); }), HasSubstr("holds thesis.tex and is no checkpoint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "checkpoint.txt"));
+}
+
+TEST_F(BlockStoreTest, HasTheSameBitsFromAnyNumberOfShards) {
+  const std::vector<std::uint64_t> expected = undisturbed();
+  for (const std::size_t count : {1u, 2u, 3u, 11u}) {
+    std::filesystem::remove_all(folder_);
+    computed_ = 0;
+    for (std::size_t index = 0; index < count; ++index) {
+      BlockStore s = store({.index = index, .count = count});
+      const bool completed = s.compute(batch(), progress_).completed;
+      EXPECT_EQ(completed, s.missing() == 0);
+      // Of ten blocks this share and those before it have theirs.
+      std::size_t there = 0;
+      for (std::size_t b = 0; b < 10; ++b) there += b % count <= index ? 1U : 0U;
+      EXPECT_EQ(s.missing(), 10 - there);
+      EXPECT_EQ(s.last_blocks(), 10u);
+    }
+    EXPECT_EQ(computed_, 47);
+    BlockStore merge = store({.count = 0});
+    EXPECT_EQ(bits(merge.compute(batch(), progress_)), expected);
+    EXPECT_EQ(computed_, 47);
+  }
+  std::filesystem::remove(block(4));
+  BlockStore merge = store({.count = 0});
+  EXPECT_FALSE(merge.compute(batch(), progress_).completed);
+  EXPECT_EQ(merge.missing(), 1u);
+  EXPECT_EQ(computed_, 47);
+}
+
+TEST_F(BlockStoreTest, ProcessesWaitForEachOther) {
+  const std::vector<std::uint64_t> expected = undisturbed();
+  std::vector<std::vector<std::uint64_t>> found(3);
+  {
+    std::vector<std::thread> processes;
+    for (std::size_t p = 0; p < 3; ++p)
+      processes.emplace_back([&, p] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(40 * p));
+        StoreProgress progress;
+        found[p] = bits(store({.index = p, .count = 3, .wait = true}).compute(batch(), progress));
+      });
+    for (std::thread& t : processes) t.join();
+  }
+  EXPECT_EQ(computed_, 47);
+  for (const auto& f : found) EXPECT_EQ(f, expected);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_NE(entry.path().extension(), ".alive") << entry.path();
+}
+
+TEST_F(BlockStoreTest, NamesTheProcessThatShowsNoLife) {
+  BlockStore s = store({.index = 0, .count = 2, .wait = true, .patience_s = 0.2});
+  write_file(folder_ / "process-2.alive", "node7, process 4711\n12\n");
+  try {
+    (void)s.compute(batch(), progress_);
+    FAIL() << "did not wait";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("process 2 of 2 (node7, process 4711) has shown no life for 0.2 s, and 5 blocks"));
+  }
+  // Its blocks are there for the next run.
+  computed_ = 0;
+  EXPECT_TRUE(store().compute(batch(), progress_).completed);
+  EXPECT_EQ(computed_, 22);  // blocks 1, 3, 5, 7 and the short one
+}
+
+TEST_F(BlockStoreTest, WaitingEndsWithTheProgress) {
+  struct StopsWaiting : StoreProgress {
+    void stage(std::string_view name) override { waits = name == "waiting for 5 blocks of other processes"; }
+    [[nodiscard]] bool update(double) override { return !waits; }
+    bool waits = false;
+  } stopping;
+  BlockStore s = store({.index = 0, .count = 2, .wait = true});
+  EXPECT_FALSE(s.compute(batch(), stopping).completed);
+  EXPECT_TRUE(stopping.waits);
+  EXPECT_EQ(s.missing(), 0u);
+}
+
+TEST_F(BlockStoreTest, AnEmptyBatchIsComplete) {
+  Batch none = batch();
+  none.items = 0;
+  const BatchValues values = store().compute(none, progress_);
+  EXPECT_TRUE(values.completed);
+  EXPECT_TRUE(values.values.empty());
+}
+
+}  // namespace
+}  // namespace veridyn::numerics

@@ -1,0 +1,254 @@
+#include "veridyn/numerics/batches/block_store.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <map>
+#include <stdexcept>
+#include <thread>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/numerics/batches/block_file.hpp"
+#include "veridyn/numerics/batches/heartbeat.hpp"
+#include "veridyn/numerics/parallel.hpp"
+
+namespace veridyn::numerics {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kManifest = "checkpoint.txt";
+constexpr std::string_view kManifestFormat = "veridyn checkpoint 1";
+
+/// Processor time of the calling thread [s].
+double thread_seconds() {
+  std::timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::vector<std::string> manifest_lines(const BlockStore::Identity& identity) {
+  std::vector<std::string> lines = {std::string(kManifestFormat)};
+  for (const auto& [name, value] : identity) {
+    std::string line = fmt::format("{}: {}", name, value);
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    lines.push_back(text.substr(from, end - from));
+    from = end + 1;
+  }
+  return lines;
+}
+
+/// A line as a message quotes it.
+std::string quoted(const std::vector<std::string>& lines, std::size_t i) {
+  constexpr std::size_t kLongest = 100;
+  if (i >= lines.size()) return "nothing";
+  return lines[i].size() <= kLongest ? fmt::format("'{}'", lines[i])
+                                     : fmt::format("'{}...'", lines[i].substr(0, kLongest));
+}
+
+std::string alive_name(std::size_t index) { return fmt::format("process-{}.alive", index + 1); }
+
+}  // namespace
+
+/// A batch at work.
+struct BlockStore::Round {
+  explicit Round(const Batch& of)
+      : batch(&of),
+        blocks((of.items + of.items_per_block - 1) / of.items_per_block),
+        there(blocks, 0),
+        seconds(blocks, 0.0),
+        values(of.items) {}
+
+  [[nodiscard]] std::size_t first(std::size_t block) const { return block * batch->items_per_block; }
+  [[nodiscard]] std::size_t size(std::size_t block) const {
+    return std::min(batch->items_per_block, batch->items - first(block));
+  }
+  [[nodiscard]] std::size_t absent() const {
+    return static_cast<std::size_t>(std::count(there.begin(), there.end(), 0));
+  }
+  [[nodiscard]] double fraction(std::size_t done) const {
+    return batch->items == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(batch->items);
+  }
+
+  const Batch* batch;
+  std::size_t blocks;
+  std::vector<char> there;  ///< by block; not bool: threads write side by side
+  std::vector<double> seconds;
+  std::vector<double> values;
+};
+
+BlockStore::BlockStore() = default;
+BlockStore::~BlockStore() = default;
+BlockStore::BlockStore(BlockStore&&) noexcept = default;
+BlockStore& BlockStore::operator=(BlockStore&&) noexcept = default;
+
+BlockStore::BlockStore(fs::path folder, const Identity& identity, const BlockShare& share)
+    : folder_(std::move(folder)), share_(share) {
+  open(identity);
+  if (share_.wait) heartbeat_ = std::make_unique<Heartbeat>(folder_ / alive_name(share_.index));
+}
+
+void BlockStore::open(const Identity& identity) const {
+  make_folder(folder_);
+  const fs::path path = folder_ / kManifest;
+  const std::vector<std::string> here = manifest_lines(identity);
+  if (!fs::exists(path)) {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      // Another process may be beginning the same folder; what it writes comes after its manifest.
+      if (!entry.path().filename().string().starts_with(kManifest) && !fs::exists(path))
+        throw InputError(folder_.string(), fmt::format("holds {} and is no checkpoint; choose a new or an empty folder",
+                                                       entry.path().filename().string()));
+    }
+    std::string text;
+    for (const std::string& line : here) text += line + "\n";
+    // Processes of two machines may have the same number: each has a name of its own before the last.
+    const fs::path own = folder_ / fmt::format("{}.{}", kManifest, share_.index + 1);
+    write_file(own, text, path.string());
+    fs::rename(own, path);
+  }
+  const std::vector<std::string> there = lines_of(read_file(path));
+  if (there.empty() || !there.front().starts_with(kManifestFormat.substr(0, kManifestFormat.rfind(' '))))
+    throw InputError(path.string(), "is no checkpoint; choose another folder");
+  const std::size_t most = std::max(here.size(), there.size());
+  for (std::size_t i = 0; i < most; ++i) {
+    if (i >= here.size() || i >= there.size() || here[i] != there[i])
+      throw InputError(folder_.string(), fmt::format("is of another study or version: {} there, {} here; choose "
+                                                     "another folder, or remove this one",
+                                                     quoted(there, i), quoted(here, i)));
+  }
+}
+
+fs::path BlockStore::path_of(const Batch& batch, std::size_t block) const {
+  return folder_ / fmt::format("{}-{:06}.block", batch.name, block);
+}
+
+bool BlockStore::read(Round& round, std::size_t block, bool warn) {
+  if (folder_.empty()) return false;
+  const fs::path path = path_of(*round.batch, block);
+  Block b{.batch = round.batch->name,
+          .fingerprint = round.batch->fingerprint,
+          .first = round.first(block),
+          .values = std::vector<double>(round.size(block))};
+  switch (read_block(path, b)) {
+    case BlockState::kAbsent:
+      return false;
+    case BlockState::kDamaged:
+      if (warn) warnings_.push_back(fmt::format("{}: is damaged and is computed again", path.string()));
+      return false;
+    case BlockState::kOtherBatch:
+      throw InputError(
+          path.string(),
+          "was computed from other numbers than here, although the study is the same: by another build, or "
+          "on a machine whose processor rounds otherwise; go on there, or choose another folder");
+    case BlockState::kRead:
+      break;
+  }
+  std::copy(b.values.begin(), b.values.end(), round.values.begin() + static_cast<std::ptrdiff_t>(b.first));
+  round.seconds[block] = b.seconds;
+  round.there[block] = 1;
+  return true;
+}
+
+bool BlockStore::compute_share(Round& round, Progress& progress) const {
+  std::vector<std::size_t> mine;
+  std::size_t items = 0, done_before = 0;
+  for (std::size_t b = 0; b < round.blocks; ++b) {
+    if (round.there[b] != 0) {
+      done_before += round.size(b);
+    } else if (share_.count > 0 && b % share_.count == share_.index) {
+      mine.push_back(b);
+      items += round.size(b);
+    }
+  }
+  // Items are handed out across blocks, so that no thread waits for the last of a block.
+  const Batch& batch = *round.batch;
+  std::vector<double> seconds(items);
+  std::vector<std::atomic<std::size_t>> left(mine.size());
+  for (std::size_t k = 0; k < mine.size(); ++k) left[k] = round.size(mine[k]);
+  const auto finish = [&](std::size_t k) {
+    const std::size_t block = mine[k], from = k * batch.items_per_block;
+    for (std::size_t i = 0; i < round.size(block); ++i) round.seconds[block] += seconds[from + i];
+    if (!folder_.empty()) {
+      const auto first = round.values.begin() + static_cast<std::ptrdiff_t>(round.first(block));
+      write_block(path_of(batch, block),
+                  {.batch = batch.name,
+                   .fingerprint = batch.fingerprint,
+                   .first = round.first(block),
+                   .values = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(round.size(block))),
+                   .seconds = round.seconds[block]});
+    }
+    round.there[block] = 1;
+  };
+  const auto one = [&](std::size_t item) {
+    const std::size_t k = item / batch.items_per_block;  // only the last block is short
+    const std::size_t i = round.first(mine[k]) + item % batch.items_per_block;
+    const double begun = thread_seconds();
+    round.values[i] = batch.value(i);
+    seconds[item] = thread_seconds() - begun;
+    if (--left[k] == 0) finish(k);
+  };
+  return parallel_for(items, progress.threads(), one,
+                      [&](std::size_t done) { return progress.update(round.fraction(done_before + done)); });
+}
+
+bool BlockStore::wait_for_others(Round& round, Progress& progress) {
+  using namespace std::chrono_literals;
+  std::map<std::size_t, HeartbeatWatch> watches;
+  progress.stage(fmt::format("waiting for {} blocks of other processes", round.absent()));
+  for (auto pause = 10ms; round.absent() > 0; pause = std::min(pause * 2, std::chrono::milliseconds(500))) {
+    std::this_thread::sleep_for(pause);
+    std::size_t done = 0;
+    for (std::size_t b = 0; b < round.blocks; ++b) {
+      if (round.there[b] != 0 || read(round, b, false)) {
+        done += round.size(b);
+        continue;
+      }
+      const std::size_t owner = b % share_.count;
+      HeartbeatWatch& watch = watches.try_emplace(owner, folder_ / alive_name(owner)).first->second;
+      if (watch.silence().count() <= share_.patience_s) continue;
+      const std::string who = watch.who().empty() ? "" : fmt::format(" ({})", watch.who());
+      throw std::runtime_error(fmt::format(
+          "{}: process {} of {}{} has shown no life for {:g} s, and {} blocks are missing; run again to go on",
+          folder_.string(), owner + 1, share_.count, who, share_.patience_s, round.absent()));
+    }
+    if (!progress.update(round.fraction(done))) return false;
+  }
+  return true;
+}
+
+BatchValues BlockStore::compute(const Batch& batch, Progress& progress) {
+  Round round(batch);
+  missing_ = 0;
+  last_blocks_ = round.blocks;
+  blocks_ += round.blocks;
+  for (std::size_t b = 0; b < round.blocks; ++b) found_ += read(round, b, true) ? 1U : 0U;
+  bool proceed = compute_share(round, progress);
+  if (proceed && round.absent() > 0 && share_.wait) proceed = wait_for_others(round, progress);
+  if (proceed) {
+    // Others may have gone on meanwhile.
+    for (std::size_t b = 0; b < round.blocks; ++b) {
+      if (round.there[b] == 0) static_cast<void>(read(round, b, false));
+    }
+    missing_ = round.absent();
+  }
+  BatchValues result{.values = std::move(round.values), .completed = proceed && missing_ == 0};
+  for (const double s : round.seconds) result.processor_seconds += s;
+  return result;
+}
+
+}  // namespace veridyn::numerics
