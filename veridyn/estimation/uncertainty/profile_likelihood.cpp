@@ -262,7 +262,7 @@ class Profiling {
     }
     if (beyond && !progress_.interrupted() && done(side, *beyond, centre)) {
       side.how = ProfileEnd::kClosed;
-      side.end = crossing(side, *beyond, centre, goal);
+      side.end = crossing(side, *beyond, goal);
     }
     if (beyond) side.points.push_back(*beyond);
     return side;
@@ -282,7 +282,7 @@ class Profiling {
     const ProfilePoint& inside = side.points.back();
     const double d = std::abs(inside.value - centre);
     if (beyond) {
-      const double to = std::abs(crossing(side, *beyond, centre, goal) - centre);
+      const double to = std::abs(crossing(side, *beyond, goal) - centre);
       // Never next to an end of the bracket, where it would hardly shrink.
       const double outer = std::abs(beyond->value - centre), margin = 0.1 * (outer - d);
       return std::clamp(to, d + margin, outer - margin);
@@ -299,7 +299,7 @@ class Profiling {
   }
 
   /// Where the line through the two points around the threshold crosses it; a parabola with the point before them.
-  [[nodiscard]] static double crossing(const Side& side, const ProfilePoint& beyond, double centre, double goal) {
+  [[nodiscard]] static double crossing(const Side& side, const ProfilePoint& beyond, double goal) {
     const ProfilePoint& inside = side.points.back();
     const double r0 = root_of(inside), r1 = root_of(beyond);
     const double line = inside.value + (goal - r0) / (r1 - r0) * (beyond.value - inside.value);
@@ -312,7 +312,6 @@ class Profiling {
                             beyond.value * (goal - r0) * (goal - r2) / ((r1 - r0) * (r1 - r2)) +
                             before.value * (goal - r0) * (goal - r1) / ((r2 - r0) * (r2 - r1));
     const double low = std::min(inside.value, beyond.value), high = std::max(inside.value, beyond.value);
-    static_cast<void>(centre);
     return parabola >= low && parabola <= high ? parabola : line;
   }
 
