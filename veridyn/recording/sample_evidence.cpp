@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/resample.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -212,13 +214,6 @@ std::optional<Flaw> is_coarse(const Sampled& channel) {
       "log the channel with its full resolution"};
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Indices of samples that stand alone: by more than `least` from the middle between their neighbours, which are near
 /// each other, and by many times what samples there and everywhere are.
 std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
@@ -228,7 +223,7 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
     const double d = std::abs(x[i] - 0.5 * (x[i - 1] + x[i + 1]));
     deviation[i] = std::isfinite(d) ? d : 0.0;
   }
-  const double limit = std::max(least, kSpike * median_of(deviation));
+  const double limit = std::max(least, kSpike * numerics::median(deviation));
   std::vector<std::size_t> found;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
     if (!(deviation[i] > limit) || std::abs(x[i + 1] - x[i - 1]) > 0.5 * deviation[i]) continue;
@@ -236,21 +231,10 @@ std::vector<std::size_t> spikes_in(std::span<const double> x, double least) {
     const auto here = deviation.begin() + static_cast<std::ptrdiff_t>(i);
     const auto before = std::min<std::ptrdiff_t>(kAround, here - deviation.begin());
     const auto after = std::min<std::ptrdiff_t>(kAround, deviation.end() - here);
-    const double nearby = std::max(median_of({here - before, here}), median_of({here, here + after}));
+    const double nearby = std::max(numerics::median({here - before, here}), numerics::median({here, here + after}));
     if (deviation[i] > kSpike * nearby) found.push_back(i);
   }
   return found;
-}
-
-/// Samples of a channel; a heading that passes +-180 deg does not jump.
-std::vector<double> continuous(std::span<const double> x, const Unit& unit) {
-  std::vector<double> values(x.begin(), x.end());
-  if (unit.si_name() != "rad") return values;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double turns = std::round((values[i] - values[i - 1]) / (2.0 * kPi));
-    if (std::isfinite(turns)) values[i] -= 2.0 * kPi * turns;
-  }
-  return values;
 }
 
 std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan> spans) {
@@ -263,9 +247,11 @@ std::optional<Flaw> has_spikes(const Sampled& sampled, std::span<const TimeSpan>
     const auto first = std::ranges::lower_bound(times, span.begin) - times.begin();
     const auto last = std::ranges::upper_bound(times, span.end) - times.begin();
     if (last <= first) continue;
-    const std::span<const double> x(sampled.channel->value.data() + first, static_cast<std::size_t>(last - first));
-    for (const std::size_t i : spikes_in(continuous(x, sampled.channel->unit), least))
-      at.push_back(times[static_cast<std::size_t>(first) + i]);
+    const double* const value = sampled.channel->value.data();
+    std::vector<double> x(value + first, value + last);
+    // A heading that passes +-180 deg does not jump.
+    if (sampled.channel->unit.si_name() == "rad") numerics::unwrap_angles(x);
+    for (const std::size_t i : spikes_in(x, least)) at.push_back(times[static_cast<std::size_t>(first) + i]);
   }
   const double share = static_cast<double>(at.size()) / static_cast<double>(sampled.samples);
   if (at.size() < kFewestSpikes || share < kSpikeShare) return std::nullopt;
