@@ -173,7 +173,7 @@ class AdditiveRungeKutta {
     }
     double worst = 0.0;
     for (std::size_t j = 0; j < tangents_; ++j)
-      if (size[j] > 0.0) worst = std::max(worst, error[j] / size[j]);
+      if (size[j] > 0.0) worst = std::max(worst, error[j] / std::max(size[j], control.least_derivative));
     return std::max(largest, worst / control.derivative_tolerance);
   }
 

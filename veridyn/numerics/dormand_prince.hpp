@@ -163,16 +163,18 @@ class DormandPrince {
                            h_ * std::abs(part(6)) / scale[i]});
           error = std::max(error, std::abs(combined(part)) / scale[i]);
         }
-        if (size > 0.0) largest = std::max(largest, error / (control.derivative_tolerance * size));
+        if (size > 0.0)
+          largest =
+              std::max(largest, error / (control.derivative_tolerance * std::max(size, control.least_derivative)));
       }
     } else if (tangents_ > 0) {
-      largest = std::max(largest, tangent_error(scale) / control.derivative_tolerance);
+      largest = std::max(largest, tangent_error(scale, control.least_derivative) / control.derivative_tolerance);
     }
     return largest;
   }
 
   /// Largest error of a tangent over the largest part of its column, both in units of the scales.
-  double tangent_error(std::span<const double> scale) requires std::is_same_v<Scalar, double> {
+  double tangent_error(std::span<const double> scale, double least) requires std::is_same_v<Scalar, double> {
     constexpr double e1 = 71.0 / 57600.0, e3 = -71.0 / 16695.0, e4 = 71.0 / 1920.0, e5 = -17253.0 / 339200.0,
                      e6 = 22.0 / 525.0, e7 = -1.0 / 40.0;
     double* const size = column_.data();
@@ -195,7 +197,7 @@ class DormandPrince {
     }
     double largest = 0.0;
     for (std::size_t j = 0; j < tangents_; ++j) {
-      if (size[j] > 0.0) largest = std::max(largest, error[j] / size[j]);
+      if (size[j] > 0.0) largest = std::max(largest, error[j] / std::max(size[j], least));
     }
     return largest;
   }

@@ -14,6 +14,9 @@ struct StepControl {
   /// where a stiff solution rests, steps grow until its errors show, and those of a derivative would have grown unseen
   /// meanwhile.
   double derivative_tolerance = 1e-4;
+  /// Derivatives whose largest (scaled) is below this count as that large. One that is zero until an input or a branch
+  /// begins to act is wrong by all of itself in the step in which that happens, however short it is.
+  double least_derivative = 0.0;
   double first_step = 0.0;     ///< 0: chosen from the first derivative
   double smallest_step = 0.0;  ///< 0: 1e-13 of the interval
   double largest_step = 0.0;   ///< 0: the interval

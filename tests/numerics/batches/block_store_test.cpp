@@ -236,5 +236,32 @@ TEST_F(BlockStoreTest, AnEmptyBatchIsComplete) {
   EXPECT_TRUE(values.values.empty());
 }
 
+TEST_F(BlockStoreTest, KeepsSeveralValuesOfAnItemTogether) {
+  std::atomic<std::size_t> filled{0};
+  const Batch pairs{.name = "pairs",
+                    .fingerprint = 5,
+                    .items = 13,
+                    .items_per_block = 4,
+                    .values_per_item = 2,
+                    .fill = [&](std::size_t i, std::span<double> values) {
+                      ++filled;
+                      ASSERT_EQ(values.size(), 2u);
+                      values[0] = static_cast<double>(i);
+                      values[1] = -static_cast<double>(i);
+                    }};
+  BlockStore half = store({.index = 0, .count = 2});
+  EXPECT_FALSE(half.compute(pairs, progress_).completed);
+  EXPECT_EQ(filled, 8u);
+  BlockStore rest = store();
+  const BatchValues values = rest.compute(pairs, progress_);
+  ASSERT_TRUE(values.completed);
+  EXPECT_EQ(filled, 13u);
+  ASSERT_EQ(values.values.size(), 26u);
+  for (std::size_t i = 0; i < 13; ++i) {
+    EXPECT_EQ(values.values[2 * i], static_cast<double>(i));
+    EXPECT_EQ(values.values[2 * i + 1], -static_cast<double>(i));
+  }
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

@@ -72,12 +72,15 @@ struct BlockStore::Round {
         blocks((of.items + of.items_per_block - 1) / of.items_per_block),
         there(blocks, 0),
         seconds(blocks, 0.0),
-        values(of.items) {}
+        values(of.items * of.values_per_item) {}
 
   [[nodiscard]] std::size_t first(std::size_t block) const { return block * batch->items_per_block; }
   [[nodiscard]] std::size_t size(std::size_t block) const {
     return std::min(batch->items_per_block, batch->items - first(block));
   }
+  /// The block's values among all.
+  [[nodiscard]] std::size_t first_value(std::size_t block) const { return first(block) * batch->values_per_item; }
+  [[nodiscard]] std::size_t values_in(std::size_t block) const { return size(block) * batch->values_per_item; }
   [[nodiscard]] std::size_t absent() const {
     return static_cast<std::size_t>(std::count(there.begin(), there.end(), 0));
   }
@@ -142,8 +145,8 @@ bool BlockStore::read(Round& round, std::size_t block, bool warn) {
   const fs::path path = path_of(*round.batch, block);
   Block b{.batch = round.batch->name,
           .fingerprint = round.batch->fingerprint,
-          .first = round.first(block),
-          .values = std::vector<double>(round.size(block))};
+          .first = round.first_value(block),
+          .values = std::vector<double>(round.values_in(block))};
   switch (read_block(path, b)) {
     case BlockState::kAbsent:
       return false;
@@ -184,12 +187,12 @@ bool BlockStore::compute_share(Round& round, Progress& progress) const {
     const std::size_t block = mine[k], from = k * batch.items_per_block;
     for (std::size_t i = 0; i < round.size(block); ++i) round.seconds[block] += seconds[from + i];
     if (!folder_.empty()) {
-      const auto first = round.values.begin() + static_cast<std::ptrdiff_t>(round.first(block));
+      const auto first = round.values.begin() + static_cast<std::ptrdiff_t>(round.first_value(block));
       write_block(path_of(batch, block),
                   {.batch = batch.name,
                    .fingerprint = batch.fingerprint,
-                   .first = round.first(block),
-                   .values = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(round.size(block))),
+                   .first = round.first_value(block),
+                   .values = std::vector<double>(first, first + static_cast<std::ptrdiff_t>(round.values_in(block))),
                    .seconds = round.seconds[block]});
     }
     round.there[block] = 1;
@@ -198,7 +201,11 @@ bool BlockStore::compute_share(Round& round, Progress& progress) const {
     const std::size_t k = item / batch.items_per_block;  // only the last block is short
     const std::size_t i = round.first(mine[k]) + item % batch.items_per_block;
     const double begun = thread_seconds();
-    round.values[i] = batch.value(i);
+    if (batch.fill) {
+      batch.fill(i, std::span(round.values).subspan(i * batch.values_per_item, batch.values_per_item));
+    } else {
+      round.values[i] = batch.value(i);
+    }
     seconds[item] = thread_seconds() - begun;
     if (--left[k] == 0) finish(k);
   };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,18 +24,21 @@ struct BlockShare {
   double patience_s = 60.0;  ///< so long may a process that is waited for show no life
 };
 
-/// Independent items with a number each, whatever they are.
+/// Independent items with a number each, or several, whatever they are.
 struct Batch {
   std::string name;               ///< of its files: "sampling"
   std::uint64_t fingerprint = 0;  ///< of everything that its values follow from
   std::size_t items = 0;
-  std::size_t items_per_block = 128;         ///< lost at most, for each thread, when the process is killed
-  std::function<double(std::size_t)> value;  ///< of an item; on any thread
+  std::size_t items_per_block = 128;              ///< lost at most, for each thread, when the process is killed
+  std::function<double(std::size_t)> value = {};  ///< of an item; on any thread
+  std::size_t values_per_item = 1;
+  /// Instead of `value`: fills all values of an item; on any thread.
+  std::function<void(std::size_t, std::span<double>)> fill = {};
 };
 
 /// What came out of a batch.
 struct BatchValues {
-  std::vector<double> values;      ///< by item; complete only if `completed`
+  std::vector<double> values;      ///< by item, those of an item together; complete only if `completed`
   double processor_seconds = 0.0;  ///< of all threads and processes, and of earlier runs that are continued
   /// False: the progress asked to stop, or blocks of others are missing (`BlockStore::missing`).
   bool completed = true;
