@@ -132,6 +132,32 @@ TEST(ProfileLikelihood, OfALinearModelIsTheIntervalOfItsErrorBar) {
   }
 }
 
+TEST(ProfileLikelihood, IsWiderByTheInflationOfEachParameter) {
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  RowMatrix X(60, 2);
+  for (Index i = 0; i < X.size(); ++i) X.data()[i] = normal(engine);
+  const Static model({{X}});
+  const std::vector<RowMatrix> measured{noisy(model, Eigen::Vector2d(1.0, -1.0), 3)};
+  const OutputErrorOptions o = given_noise(1);
+  const OutputErrorEstimate e = output_error(model, measured, o);
+  Progress progress;
+  const ProfileResult r =
+      profile_likelihood(model, measured, e, {0, 1}, {.output_error = o, .inflation = {4.0, 1.0}}, progress);
+  ASSERT_TRUE(r.usable()) << r.message;
+  for (const std::size_t i : {0u, 1u}) {
+    const double sigma = std::sqrt(e.covariance_white(static_cast<Index>(i), static_cast<Index>(i)));
+    EXPECT_NEAR(r.profiles[i].high - r.profiles[i].low, 2.0 * 1.959963984540054 * sigma * (i == 0 ? 2.0 : 1.0),
+                1e-6 * sigma);
+  }
+  EXPECT_THROW(
+      static_cast<void>(profile_likelihood(model, measured, e, {0}, {.output_error = o, .inflation = {1.0}}, progress)),
+      InputError);
+  EXPECT_THROW(static_cast<void>(
+                   profile_likelihood(model, measured, e, {0}, {.output_error = o, .inflation = {0.5, 1.0}}, progress)),
+               InputError);
+}
+
 // The profile of an only parameter is its likelihood, here in closed form.
 TEST(ProfileLikelihood, OfAnOnlyParameterIsItsLikelihood) {
   const Curve<Decay> model({{.name = "a", .start = 1.0, .low = 0.0, .high = 10.0}}, 12);

@@ -125,6 +125,7 @@ class Estimation {
   OutputErrorEstimate run() {
     search();
     finish();
+    result_.simulations = problem_.simulations();
     return std::move(result_);
   }
 

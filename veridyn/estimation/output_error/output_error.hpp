@@ -81,6 +81,17 @@ struct SegmentParameter {
   double value = 0.0;
 };
 
+/// Simulations of segments that a search took.
+struct SimulationCount {
+  std::size_t values = 0;            ///< of outputs alone
+  std::size_t with_derivatives = 0;  ///< of outputs and their sensitivities to all unknowns
+  SimulationCount& operator+=(const SimulationCount& more) {
+    values += more.values;
+    with_derivatives += more.with_derivatives;
+    return *this;
+  }
+};
+
 /// Maximum-likelihood estimate of a model's parameters from its outputs.
 struct OutputErrorEstimate {
   OutputErrorTermination termination = OutputErrorTermination::kTooFewSamples;
@@ -108,6 +119,7 @@ struct OutputErrorEstimate {
   int steps = 0;                 ///< Levenberg-Marquardt steps, all relaxations
   int diverged_steps = 0;        ///< of these, refused because a simulation diverged
   std::string diverged_segment;  ///< the segment that diverged last; empty when none did
+  SimulationCount simulations;
 
   [[nodiscard]] bool usable() const {
     return termination == OutputErrorTermination::kConverged || termination == OutputErrorTermination::kRelaxations;

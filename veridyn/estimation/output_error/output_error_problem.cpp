@@ -241,6 +241,7 @@ void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) cons
 }
 
 void OutputErrorProblem::evaluate(bool derivatives) {
+  (derivatives ? simulations_.with_derivatives : simulations_.values) += segments_.size();
   numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
     Segment& segment = segments_[s];
     RowMatrix rows;

@@ -52,6 +52,7 @@ class OutputErrorProblem {
   [[nodiscard]] const SegmentTriangle& triangle(std::size_t s) const { return segments_[s].triangle; }
   [[nodiscard]] int diverged_evaluations() const { return diverged_evaluations_; }
   [[nodiscard]] const std::string& diverged_segment() const { return diverged_segment_; }
+  [[nodiscard]] const SimulationCount& simulations() const { return simulations_; }
 
   void start_noise();
   /// R from the residuals; returns the largest relative change of a standard deviation.
@@ -102,6 +103,7 @@ class OutputErrorProblem {
   Eigen::VectorXd noise_floor_;
   int diverged_evaluations_ = 0;
   std::string diverged_segment_;
+  SimulationCount simulations_;
 };
 
 }  // namespace veridyn::estimation::internal

@@ -153,6 +153,10 @@ class Profiling {
     return true;
   }
 
+  [[nodiscard]] double dispersion_of(std::size_t parameter) const {
+    return options_.dispersion * (options_.inflation.empty() ? 1.0 : options_.inflation[parameter]);
+  }
+
   [[nodiscard]] bool estimates_noise() const { return fit_.noise != OutputNoise::kGiven; }
 
   /// Negative log posterior; `fixed` has its prior too, which the estimator does not count.
@@ -186,7 +190,7 @@ class Profiling {
     InterruptionOnly watch(progress_);
     const OutputErrorEstimate e = output_error(model, measured_, o, watch);
     if (!e.usable()) return std::nullopt;
-    return ProfilePoint{value, 2.0 * (cost(model, e, parameter) - cost_) / options_.dispersion, e.theta};
+    return ProfilePoint{value, 2.0 * (cost(model, e, parameter) - cost_) / dispersion_of(parameter), e.theta};
   }
 
   /// Where the other parameters are expected at `value`: on the line through the last two points, or that of the
@@ -212,7 +216,8 @@ class Profiling {
   /// The first step: to half the interval that the covariance says, within the bounds.
   [[nodiscard]] double first_step(std::size_t parameter, double sign) const {
     const ModelParameter& p = model_.parameters()[parameter];
-    const double sigma = std::sqrt(covariance_(signed_index(parameter), signed_index(parameter)) * options_.dispersion);
+    const double sigma =
+        std::sqrt(covariance_(signed_index(parameter), signed_index(parameter)) * dispersion_of(parameter));
     const double room = sign > 0.0 ? p.high - theta_(signed_index(parameter)) : theta_(signed_index(parameter)) - p.low;
     const double wanted = std::isfinite(sigma) && sigma > 0.0
                               ? 0.5 * std::sqrt(threshold_) * sigma
@@ -381,6 +386,10 @@ void ProfileOptions::validate() const {
   if (!(confidence > 0.0 && confidence < 1.0))
     throw InputError("profile.confidence", fmt::format("is {}; must be in (0, 1)", confidence));
   if (!(dispersion >= 1.0)) throw InputError("profile.dispersion", fmt::format("is {}; must be >= 1", dispersion));
+  for (const double i : inflation) {
+    if (!(i >= 1.0 && i < kInfinity))
+      throw InputError("profile.inflation", fmt::format("has {}; must be finite and >= 1", i));
+  }
   if (max_fits < 2) throw InputError("profile.max_fits", fmt::format("is {}; must be >= 2", max_fits));
 }
 
@@ -408,6 +417,9 @@ ProfileResult profile_likelihood(const ParametricModel& model, const std::vector
                                  const ProfileOptions& options, Progress& progress) {
   options.validate();
   options.output_error.validate(model);
+  if (!options.inflation.empty() && options.inflation.size() != model.parameters().size())
+    throw InputError("profile.inflation", fmt::format("has {} values for {} parameters", options.inflation.size(),
+                                                      model.parameters().size()));
   for (const std::size_t i : parameters) {
     if (i >= model.parameters().size())
       throw InputError("profile.parameters", fmt::format("{} is not one of {}", i, model.parameters().size()));

@@ -19,6 +19,11 @@ struct ProfileOptions {
   /// The statistic is divided by it: the normalised chi-square of a residual that is larger than the stated noise
   /// (Birge 1932); at least 1.
   double dispersion = 1.0;
+  /// The statistic of a model's parameter is divided by this too, one value a parameter, at least 1; empty: 1. The
+  /// ratio of its variance corrected for autocorrelated residuals to the uncorrected one makes the profile of a linear
+  /// model as wide as the corrected error bar (magnitude adjustment of Pace, Salvan & Sartori 2011, Stat Sinica 21:129,
+  /// for a scalar parameter).
+  std::vector<double> inflation = {};
   int max_fits = 12;  ///< re-optimisations on each side of the estimate
 
   /// @throws InputError naming option, value and rule.
@@ -36,9 +41,10 @@ enum class ProfileEnd {
 
 /// The best fit with one parameter fixed.
 struct ProfilePoint {
-  double value = 0.0;      ///< of that parameter
-  double statistic = 0.0;  ///< 2 (J - J of the estimate)/dispersion, J the negative log posterior of `output_error`
-  Eigen::VectorXd theta;   ///< all shared parameters there
+  double value = 0.0;  ///< of that parameter
+  /// 2 (J - J of the estimate)/(dispersion inflation), J the negative log posterior of `output_error`.
+  double statistic = 0.0;
+  Eigen::VectorXd theta;  ///< all shared parameters there
 };
 
 /// Likelihood-ratio statistic of one parameter, all other unknowns fitted again at every value.
