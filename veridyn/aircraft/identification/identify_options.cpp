@@ -43,6 +43,11 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
       options.coefficients.push_back(*c);
     }
   }
+  if (table.has("profiles") && (table.is_array("profiles") || table.flag_or("profiles", false)))
+    table.fail(
+        "profiles",
+        "is for studies of vehicles and muscles: an aircraft's parameters come from linear regressions, of which "
+        "the profile likelihood is a parabola and gives the interval of the error bar again");
   options.method = read_method(table);
   options.refit_significant = table.flag_or("refit_significant", options.refit_significant);
   options.signal_to_noise = table.number_or("signal_to_noise", "1", options.signal_to_noise);

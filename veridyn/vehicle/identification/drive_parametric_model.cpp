@@ -67,12 +67,12 @@ std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz, doubl
 }
 
 /// Lowest and highest value of an unknown that starts at `start`.
-std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase) {
+std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
   switch (unknown) {
     case DriveUnknown::kCf:
     case DriveUnknown::kCr:
     case DriveUnknown::kIz:
-      return {1e-3 * start, 1e3 * start};
+      return {start / factor, factor * start};
     case DriveUnknown::kA:
       return {0.02 * wheelbase, 0.98 * wheelbase};
     case DriveUnknown::kMu:
@@ -102,7 +102,7 @@ estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveMode
   p.prior_sigma = options.prior[i];
   p.fixed = !options.free[i];
   // Bounds must hold at the start, whatever was given.
-  const auto [low, high] = bounds_of(unknown, p.start, wheelbase);
+  const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
   p.low = std::min(low, p.start);
   p.high = std::max(high, p.start);
   return p;

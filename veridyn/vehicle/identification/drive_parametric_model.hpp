@@ -82,6 +82,8 @@ struct DriveModelOptions {
   /// that. 0: none; negative (the default): 4 Hz or a tenth of the rate, where the steering's noise is above 1e-4 of
   /// the steering.
   double smoothing_Hz = -1.0;
+  /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
+  double search_factor = 1e3;
   double gravity = kGravity;
 
   DriveModelOptions();

@@ -296,20 +296,27 @@ EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem)
   return out;
 }
 
-OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                                           Progress& progress) {
+OutputErrorProblem output_error_problem(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                        double search_factor) {
   DriveModelOptions model_options = problem.options.model;
   model_options.gravity = problem.signal_options.gravity;
-  const DriveParametricModel model(problem.signals, problem.segments.identification,
-                                   begin_of_search(problem, equation_error), model_options);
+  model_options.search_factor = search_factor;
   estimation::OutputErrorOptions options;
   options.significance = problem.options.significance;
   // What is not determined by then crawls along a valley: more relaxations would not help it.
   options.max_relaxations = 12;
   options.max_lag =
       std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * problem.signals.grid.rate_Hz()));
+  return {DriveParametricModel(problem.signals, problem.segments.identification,
+                               begin_of_search(problem, equation_error), model_options),
+          options};
+}
+
+OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                           Progress& progress) {
+  const OutputErrorProblem given = output_error_problem(problem, equation_error);
   OutputErrorResult out;
-  out.raw = estimation::output_error(model, model.measured(), options, progress);
+  out.raw = estimation::output_error(given.model, given.model.measured(), given.options, progress);
   out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
   return out;
 }

@@ -42,6 +42,16 @@ struct OutputErrorResult {
                                                          const EquationErrorEstimates* equation_error,
                                                          Progress& progress);
 
+/// The drive's model, begun where the equation error is known well enough, and how it is fitted.
+struct OutputErrorProblem {
+  DriveParametricModel model;
+  estimation::OutputErrorOptions options;
+};
+/// The output-error problem of a drive; `equation_error` may be null, `search_factor` as of DriveModelOptions.
+[[nodiscard]] OutputErrorProblem output_error_problem(const VehicleProblem& problem,
+                                                      const EquationErrorEstimates* equation_error,
+                                                      double search_factor = 1e3);
+
 /// The parameters of the start, all of them not excited; `reason` is its message.
 [[nodiscard]] VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason);
 

@@ -8,6 +8,7 @@
 #include "veridyn/vehicle/identification/vehicle_judgement.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
+#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -91,6 +92,11 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   theta.covariance *= widening;
   for (VehicleEstimate& e : out.estimates)
     if (e.method == out.chosen) e = widened(std::move(e), widening, problem.options.significance);
+  if (output_error && !problem.options.profiles.empty()) {
+    progress.stage(fmt::format("profile likelihood of {} parameters", problem.options.profiles.size()));
+    const bool widened_too = out.chosen == VehicleMethod::kOutputError;
+    out.profiles = profile_drive(problem, by_regression, *output_error, widened_too ? widening : 1.0, progress);
+  }
   const VehicleEstimate* const chosen = out.best();
   const DriveModelOptions& model = problem.options.model;
   out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta, progress);

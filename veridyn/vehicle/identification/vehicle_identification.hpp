@@ -12,6 +12,7 @@
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 #include "veridyn/vehicle/identification/drive_parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_regression.hpp"
@@ -43,6 +44,8 @@ struct VehicleIdentifyOptions {
   double mass_sigma = 0.0;
   double a_sigma = 0.0;
   double b_sigma = 0.0;
+  /// `profiles`: free unknowns whose profile likelihood is followed by output error; `true`: all of them.
+  std::vector<std::string> profiles = {};
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static VehicleIdentifyOptions read(const StudyTable& table);
@@ -75,6 +78,7 @@ struct VehicleIdentification {
   std::vector<estimation::Evidence> checks;  ///< residuals, agreement of methods, of data parts, hold-out
   estimation::Judgement judgement;           ///< of them; what was not estimated is not judged
   VehicleParameters<double> identified;      ///< the subject with what was identified
+  estimation::ProfileResult profiles;        ///< of the output error, where the study asks for them
   DriveValidation fit;                       ///< on the identification segments
   DriveValidation validation;                ///< on the hold-out
   std::vector<std::string> warnings;

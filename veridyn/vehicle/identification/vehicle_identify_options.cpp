@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "veridyn/estimation/uncertainty/profile_choice.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
@@ -17,6 +18,12 @@ VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
   const std::string method = table.choice_or("method", methods, "auto");
   if (method != "auto") o.method = vehicle_method(method);
   o.model.read_keys(table);
+  std::vector<std::string> free;
+  for (std::size_t i = 0; i < kDriveUnknowns; ++i)
+    if (o.model.free[i]) free.emplace_back(kDriveUnknownNames[i]);
+  o.profiles = estimation::read_profiles(table, free);
+  if (!o.profiles.empty() && !o.output_error)
+    table.fail("profiles", "are of the output error, which output_error = false leaves out");
   o.signal_to_noise = table.number_or("signal_to_noise", "1", o.signal_to_noise);
   if (!(o.signal_to_noise >= 1.0 && o.signal_to_noise <= 10.0))
     table.fail("signal_to_noise", fmt::format("= {} must be from 1 to 10", o.signal_to_noise));

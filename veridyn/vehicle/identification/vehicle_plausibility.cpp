@@ -72,16 +72,16 @@ std::vector<Evidence> plausibility(std::span<const Parameter> parameters, const 
 std::vector<Evidence> bound_rows(std::span<const Parameter> parameters) {
   std::vector<Evidence> rows;
   for (const Parameter& p : parameters) {
-    constexpr double kRounding = 1e-12;
+    constexpr double kNoError = 1e-12; // a share of the value
     if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited) continue;
     const bool at_bound = p.status == ParameterStatus::kAtBound;
-    if (!at_bound && (!(p.sigma <= kRounding * std::abs(p.value)) || p.value == 0.0)) continue;
+    if (!at_bound && (!(p.sigma <= kNoError * std::abs(p.value)) || p.value == 0.0)) continue;
     rows.push_back(
         {.name = fmt::format("bound of {}", p.name),
          .about = p.name,
          .outcome = Outcome::kFailed,
          .value = at_bound ? p.value : p.sigma,
-         .limit = at_bound ? p.value : kRounding * std::abs(p.value),
+         .limit = at_bound ? p.value : kNoError * std::abs(p.value),
          .scale = p.unit,
          .text = at_bound
                      ? fmt::format("the search for {} ended at {:.3g}, the limit of what it may be", p.name, p.value)
