@@ -6,150 +6,84 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/emg_estimate.hpp"
+#include "veridyn/muscle/identification/emg_judgement.hpp"
+#include "veridyn/muscle/identification/task_posterior.hpp"
 #include "veridyn/muscle/identification/task_profiles.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/identification/task_warnings.hpp"
-#include "veridyn/numerics/random.hpp"
+#include "veridyn/muscle/simulation/wrap_bands.hpp"
+#include "veridyn/muscle/task_recordings.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
 using estimation::RowMatrix;
 
-/// The tasks of a study with what was measured, those that can be used.
-struct MeasuredTasks {
-  std::vector<PreparedTask> tasks;
-  std::vector<RowMatrix> measured;
-  std::vector<std::string> unused;
-  std::map<std::string, double, std::less<>> truth;
-  double seconds = 0.0;
-};
-
-Eigen::VectorXd start_values(const std::vector<MuscleUnknown>& unknowns) {
-  Eigen::VectorXd theta(signed_index(unknowns.size()));
-  for (std::size_t i = 0; i < unknowns.size(); ++i) theta(signed_index(i)) = unknowns[i].start;
-  return theta;
-}
-
-/// Hidden values, drawn unknown by unknown.
-Eigen::VectorXd hidden_values(const TaskStudy& study) {
-  Eigen::VectorXd theta = start_values(study.unknowns);
-  for (std::size_t i = 0; i < study.unknowns.size(); ++i) {
-    const MuscleUnknown& u = study.unknowns[i];
-    numerics::RandomStream random(study.seed, "hidden " + u.name);
-    const double drawn = u.start * (1.0 + study.person->spread * random.uniform(-1.0, 1.0));
-    if (u.fixed) continue;
-    const auto set = study.person->values.find(u.name);
-    theta(signed_index(i)) = set != study.person->values.end() ? set->second : std::clamp(drawn, u.low, u.high);
-  }
-  return theta;
-}
-
-/// A person's system in a task: true muscles and loads along the model's paths.
-std::shared_ptr<const MusculoskeletalSystem> person_system(const TaskStudy& study, const PreparedTask& task) {
-  SystemChanges changes{.loads = task.task.loads};
-  for (HeldLoad& load : changes.loads) load.mass *= study.person->load_factor;
-  const Model& model = study.subject.system->model();
-  for (const HeldCoordinate& held : task.task.held)
-    changes.locked.push_back(model.coordinates[at(held.coordinate)].name);
-  changes.muscles = muscle_parameters(model);
-  for (MuscleParameters& muscle : changes.muscles) {
-    if (!study.person->millard) continue;
-    muscle.curves = MillardCurves{};
-    muscle.fiber_damping = 0.1;
-  }
-  return std::make_shared<const MusculoskeletalSystem>(*study.subject.system, changes);
-}
-
-double noise_of(const TaskStudy& study, const MuscleOutput& output) {
-  return output.kind == MuscleOutputKind::kValue ? study.person->noise : output.noise_sd;
-}
-
-void simulate_person(const TaskStudy& study, MeasuredTasks& out, const Progress& progress) {
-  const Eigen::VectorXd hidden = hidden_values(study);
-  for (std::size_t i = 0; i < study.unknowns.size(); ++i) out.truth[study.unknowns[i].name] = hidden(signed_index(i));
-  std::vector<std::shared_ptr<const MusculoskeletalSystem>> systems;
-  std::vector<MotionSegment> segments = segments_of(out.tasks);
-  for (std::size_t s = 0; s < segments.size(); ++s) {
-    systems.push_back(person_system(study, out.tasks[s]));
-    segments[s].system = systems.back().get();
-  }
-  const MuscleParametricModel person(*study.subject.system, study.unknowns, std::move(segments),
-                                     {.accuracy = study.accuracy, .outputs = study.outputs});
-  out.measured = simulate_tasks(person, hidden, progress.threads());
-  for (std::size_t s = 0; s < out.measured.size(); ++s) {
-    numerics::RandomStream random(study.seed, "noise of " + out.tasks[s].task.name);
-    for (Eigen::Index k = 0; k < out.measured[s].rows(); ++k) {
-      for (std::size_t j = 0; j < study.outputs.size(); ++j)
-        out.measured[s](k, signed_index(j)) += noise_of(study, study.outputs[j]) * random.normal();
-    }
-  }
-}
-
-void drop_unusable(MeasuredTasks& out) {
-  std::vector<PreparedTask> tasks;
-  std::vector<RowMatrix> measured;
-  for (std::size_t i = 0; i < out.tasks.size(); ++i) {
-    const bool has_motion = out.measured.empty() || out.measured[i].size() > 0;
-    if (out.tasks[i].usable() && has_motion) {
-      tasks.push_back(std::move(out.tasks[i]));
-      if (!out.measured.empty()) measured.push_back(std::move(out.measured[i]));
-      continue;
-    }
-    out.unused.push_back(fmt::format("{}: {}", out.tasks[i].task.name,
-                                     has_motion ? out.tasks[i].trouble : "the simulated person cannot perform it"));
-  }
-  out.tasks = std::move(tasks);
-  out.measured = std::move(measured);
-}
-
-MeasuredTasks measured_tasks(const TaskStudy& study, Progress& progress) {
-  const auto begun = std::chrono::steady_clock::now();
-  MeasuredTasks out;
-  progress.stage(fmt::format("controls of {} tasks", study.tasks.size()));
-  out.tasks = prepare_tasks(*study.subject.system, study.tasks, progress);
-  if (progress.interrupted()) return out;
-  drop_unusable(out);
-  if (study.person) {
-    simulate_person(study, out, progress);
-    drop_unusable(out);
-  } else {
-    for (const PreparedTask& task : out.tasks) out.measured.push_back(task.task.measured->values);
-  }
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  return out;
-}
-
-/// Those with `hold_out` as given: segments and measurements.
+/// The tasks of one use, and the model that estimators see of them.
 struct Part {
-  std::vector<const PreparedTask*> tasks;
-  std::vector<MotionSegment> segments;
+  std::vector<const TaskRecording*> tasks;
   std::vector<RowMatrix> measured;
-};
-Part part_of(const MeasuredTasks& all, bool hold_out) {
-  Part part;
-  for (std::size_t i = 0; i < all.tasks.size(); ++i) {
-    if (all.tasks[i].task.hold_out != hold_out) continue;
-    part.tasks.push_back(&all.tasks[i]);
-    part.segments.push_back(segment_of(all.tasks[i]));
-    part.measured.push_back(all.measured[i]);
+  // One of them: tasks that are simulated forward, or along their recorded angles.
+  std::unique_ptr<MuscleParametricModel> forward;
+  std::unique_ptr<EmgDrivenModel> along;
+
+  [[nodiscard]] const estimation::ParametricModel& model() const {
+    if (along) return *along;
+    return *forward;
   }
+};
+
+MuscleModelOptions model_options(const TaskStudy& study) {
+  return {.accuracy = study.accuracy, .estimate_start = study.estimate_start, .outputs = study.outputs};
+}
+
+/// Those with `hold_out` as given.
+Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out) {
+  Part part;
+  std::vector<MotionSegment> forward;
+  std::vector<EmgSegment> along;
+  for (const TaskRecording& task : all.tasks) {
+    if (task.hold_out != hold_out) continue;
+    part.tasks.push_back(&task);
+    part.measured.push_back(task.measured);
+    if (task.forward) forward.push_back(*task.forward);
+    if (task.along) along.push_back(*task.along);
+  }
+  if (part.tasks.empty()) return part;
+  const MusculoskeletalSystem& system = *study.subject.system;
+  if (study.emg)
+    part.along = std::make_unique<EmgDrivenModel>(system, study.unknowns, std::move(along), study.outputs,
+                                                  study.emg->signal_of, study.accuracy);
+  else
+    part.forward =
+        std::make_unique<MuscleParametricModel>(system, study.unknowns, std::move(forward), model_options(study));
   return part;
 }
 
+/// Standard deviations of the outputs' noise; empty unless all are known.
+Eigen::VectorXd stated_noise(const TaskStudy& study) {
+  Eigen::VectorXd noise(signed_index(study.outputs.size()));
+  for (std::size_t j = 0; j < study.outputs.size(); ++j) {
+    if (!(study.outputs[j].noise_sd > 0.0)) return {};
+    noise(signed_index(j)) = study.outputs[j].noise_sd;
+  }
+  return noise;
+}
+
 /// How a part's tasks go with the standard model and at `theta`; `predicted` in place of simulations where given.
-void add_outcomes(const MuscleParametricModel& model, const Part& part, const Eigen::VectorXd& standard,
-                  const Eigen::VectorXd& theta, const std::vector<RowMatrix>& predicted, bool hold_out, int threads,
-                  std::vector<TaskOutcome>& out) {
-  std::vector<RowMatrix> before = simulate_tasks(model, standard, threads);
-  std::vector<RowMatrix> after = predicted.empty() ? simulate_tasks(model, theta, threads) : predicted;
+void add_outcomes(const Part& part, const Eigen::VectorXd& standard, const Eigen::VectorXd& theta,
+                  const std::vector<RowMatrix>& predicted, bool hold_out, int threads, std::vector<TaskOutcome>& out) {
+  std::vector<RowMatrix> before = simulate_tasks(part.model(), standard, threads);
+  std::vector<RowMatrix> after = predicted.empty() ? simulate_tasks(part.model(), theta, threads) : predicted;
   for (std::size_t s = 0; s < part.tasks.size(); ++s) {
-    TaskOutcome task{.name = part.tasks[s]->task.name, .hold_out = hold_out, .time = part.tasks[s]->time};
+    TaskOutcome task{.name = part.tasks[s]->name, .hold_out = hold_out, .time = part.tasks[s]->time};
     task.before = task_error(part.measured[s], before[s]);
     task.after = task_error(part.measured[s], after[s]);
     task.measured = part.measured[s];
@@ -211,8 +145,9 @@ void fill_analysis(const TaskStudy& study, std::vector<estimation::Evidence> row
   group.judgement = estimation::judge(rows);
   group.verdict = estimation::verdict_of(group.judgement);
   a.estimate.subject = study.subject.title;
-  a.estimate.method =
-      study.published ? "particle swarm, then pattern search over all tasks" : "output error over all tasks";
+  a.estimate.method = study.published ? "particle swarm, then pattern search over all tasks"
+                      : study.emg     ? "generalised least squares along the recorded angles of all tasks"
+                                      : "output error over all tasks";
   a.estimate.evidence = std::move(rows);
   a.estimate.judgement = group.judgement;
   a.predictions = predictions_of(a);
@@ -307,19 +242,25 @@ void advise_next(const TaskStudy& study, const MuscleParametricModel& model, con
                   a.advice.now.parameter, 100.0 * a.advice.now.share, 100.0 * best.then.share, determined->advice);
 }
 
-/// By the route that the study asks for.
-TaskEstimate estimated(const TaskStudy& study, const MuscleParametricModel& model,
-                       const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise, Progress& progress) {
-  if (!study.published) return estimate_from_tasks(model, measured, noise, study.search, progress);
-  const PublishedRouteResult found = published_route(model, measured, *study.published, progress);
+/// By the route that the study asks for; with EMG `emg` holds what profiles need.
+TaskEstimate estimated(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, EmgEstimate& emg,
+                       Progress& progress) {
+  if (part.along) {
+    emg = estimate_from_emg(*part.along, part.measured, noise, study.emg->error, study.search, progress);
+    return emg.estimate;
+  }
+  const MuscleParametricModel& model = *part.forward;
+  if (!study.published) return estimate_from_tasks(model, part.measured, noise, study.search, progress);
+  const PublishedRouteResult found = published_route(model, part.measured, *study.published, progress);
   if (found.theta.size() == 0 || progress.interrupted()) {
     TaskEstimate none;
     none.best.message = found.message();
     return none;
   }
   TaskSearch search{.steps = static_cast<int>(found.evaluations), .message = found.message()};
-  TaskEstimate estimate = describe_estimate(model, measured, noise, found.theta, std::move(search), progress);
+  TaskEstimate estimate = describe_estimate(model, part.measured, noise, found.theta, std::move(search), progress);
   estimate.seconds = found.seconds;
+  estimate.simulations = {.values = found.simulations};
   return estimate;
 }
 
@@ -327,8 +268,9 @@ TaskEstimate estimated(const TaskStudy& study, const MuscleParametricModel& mode
 std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEstimate& e) {
   std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
   Progress silent;
-  for (std::size_t s = 0; s < part.segments.size(); ++s) {
-    const MotionSegment& segment = part.segments[s];
+  for (const TaskRecording* task : part.tasks) {
+    if (!task->forward) continue;
+    const MotionSegment& segment = *task->forward;
     const MuscleTrajectory t = simulate_forward(
         *segment.system, segment.start, segment.drive,
         {.begin = segment.time.front(), .end = segment.time.back(), .accuracy = study.accuracy}, silent);
@@ -337,51 +279,85 @@ std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEst
   return text;
 }
 
-}  // namespace
-
-MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
-  MuscleAnalysis a;
-  MeasuredTasks all = measured_tasks(study, progress);
-  a.interrupted = progress.interrupted();
-  if (a.interrupted) return a;
-  a.preparing_s = all.seconds;
-  a.truth = all.truth;
-  const Part trained = part_of(all, false), unseen = part_of(all, true);
-  if (trained.tasks.empty())
-    throw InputError(study.subject.title,
-                     fmt::format("no task is left to estimate from: {}", fmt::join(all.unused, "; ")));
-  const MuscleModelOptions options{
-      .accuracy = study.accuracy, .estimate_start = study.estimate_start, .outputs = study.outputs};
-  const MuscleParametricModel model(*study.subject.system, study.unknowns, trained.segments, options);
-  a.outputs.assign(model.outputs().begin(), model.outputs().end());
-  const Eigen::VectorXd noise = model.output_noise();
-  progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
-  a.result = estimated(study, model, trained.measured, noise, progress);
-  a.interrupted = progress.interrupted();
-  if (a.interrupted) return a;
-  if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));
-  a.estimate.covariance = a.result.best.covariance;
-  const Eigen::VectorXd standard = start_values(study.unknowns), theta = a.result.best.theta;
-  add_outcomes(model, trained, standard, theta, a.result.best.predicted, false, progress.threads(), a.tasks);
-  if (!unseen.tasks.empty()) {
-    const MuscleParametricModel other(*study.subject.system, study.unknowns, unseen.segments, options);
-    add_outcomes(other, unseen, standard, theta, {}, true, progress.threads(), a.tasks);
+/// What the paths of the tasks have to be warned of.
+std::vector<std::string> path_warnings(const TaskStudy& study, const Part& part, const Eigen::VectorXd& theta) {
+  if (part.forward) return task_warnings(*part.forward, theta);
+  std::vector<std::string> warnings;
+  for (const TaskRecording* task : part.tasks) {
+    for (const WrapBandVisit& visit : wrap_band_visits(*study.subject.system, task->time, task->q))
+      warnings.push_back(fmt::format("{}: {}", task->name, wrap_band_text(*study.subject.system, visit)));
   }
-  a.unused = std::move(all.unused);
-  const std::vector<std::string> wraps = task_warnings(model, theta);
-  std::vector<estimation::Evidence> rows = judge_tasks({.model = model,
-                                                        .estimate = a.result,
+  return warnings;
+}
+
+/// The rows that judge the estimate; those about EMG where the study has it.
+std::vector<estimation::Evidence> judged(const TaskStudy& study, const Part& trained, const MuscleAnalysis& a,
+                                         const std::vector<std::string>& wraps, const Eigen::VectorXd& noise) {
+  std::vector<estimation::Evidence> rows = judge_tasks({.estimate = a.result,
                                                         .tasks = a.tasks,
                                                         .unused = a.unused,
                                                         .wrap_warnings = wraps,
                                                         .noise_known = noise.size() > 0,
                                                         .noise = noise.size() > 0 ? noise(0) : 0.0,
-                                                        .simulated = study.person.has_value()});
+                                                        .simulated = study.person.has_value(),
+                                                        .along_angles = study.emg.has_value()});
+  if (!study.emg) return rows;
+  for (estimation::Evidence& row : judge_emg({.model = *trained.along,
+                                   .system = *study.subject.system,
+                                   .theta = a.result.best.theta,
+                                   .tasks = a.tasks,
+                                   .error = study.emg->error,
+                                   .outputs = study.outputs}))
+    rows.push_back(std::move(row));
+  return rows;
+}
+
+}  // namespace
+
+MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
+  MuscleAnalysis a;
+  TaskRecordings all = task_recordings(study, progress);
+  a.interrupted = progress.interrupted();
+  if (a.interrupted) return a;
+  a.preparing_s = all.seconds;
+  a.truth = all.truth;
+  const Part trained = part_of(study, all, false), unseen = part_of(study, all, true);
+  if (trained.tasks.empty())
+    throw InputError(study.subject.title,
+                     fmt::format("no task is left to estimate from: {}", fmt::join(all.unused, "; ")));
+  a.outputs.assign(trained.model().outputs().begin(), trained.model().outputs().end());
+  const Eigen::VectorXd noise = stated_noise(study);
+  progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
+  EmgEstimate emg;
+  a.result = estimated(study, trained, noise, emg, progress);
+  a.interrupted = progress.interrupted();
+  if (a.interrupted) return a;
+  if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));
+  a.moment_noise = emg.noise;
+  a.emg_share = emg.input_share;
+  a.estimate.covariance = a.result.best.covariance;
+  const Eigen::VectorXd standard = start_values(study.unknowns), theta = a.result.best.theta;
+  // Those of the whitened outputs are in no unit that a reader knows.
+  const std::vector<RowMatrix> predicted = study.emg ? std::vector<RowMatrix>() : a.result.best.predicted;
+  add_outcomes(trained, standard, theta, predicted, false, progress.threads(), a.tasks);
+  if (!unseen.tasks.empty()) add_outcomes(unseen, standard, theta, {}, true, progress.threads(), a.tasks);
+  a.unused = std::move(all.unused);
+  const std::vector<std::string> wraps = path_warnings(study, trained, theta);
+  std::vector<estimation::Evidence> rows = judged(study, trained, a, wraps, noise);
   if (!study.profiles.empty()) {
     progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
-    a.profiles = profile_tasks(model, trained.measured, noise, a.result, study.profiles, progress);
+    const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
+    a.profiles = study.emg
+                     ? profile_tasks(*emg.model, emg.measured, one, a.result, study.profiles, progress)
+                     : profile_tasks(trained.model(), trained.measured, noise, a.result, study.profiles, progress);
   }
-  if (study.advice && !progress.interrupted()) advise_next(study, model, options, rows, a, progress);
+  if (study.posterior && !progress.interrupted()) {
+    progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
+    a.posterior = study.emg ? sample_tasks(*emg.model, emg.measured, a.result, *study.posterior, progress)
+                            : sample_tasks(trained.model(), trained.measured, a.result, *study.posterior, progress);
+  }
+  if (study.advice && !progress.interrupted())
+    advise_next(study, *trained.forward, model_options(study), rows, a, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   fill_analysis(study, std::move(rows), a);
@@ -403,24 +379,21 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
   if (known == 0)
     throw InputError(study.subject.title, "the estimate has no parameter that this study's [[parameter]] names");
   MuscleAnalysis a;
-  MeasuredTasks all = measured_tasks(study, progress);
+  TaskRecordings all = task_recordings(study, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   a.preparing_s = all.seconds;
   a.truth = all.truth;
-  for (PreparedTask& task : all.tasks) task.task.hold_out = true;
-  const Part unseen = part_of(all, true);
+  for (TaskRecording& task : all.tasks) task.hold_out = true;
+  const Part unseen = part_of(study, all, true);
   if (unseen.tasks.empty())
     throw InputError(study.subject.title,
                      fmt::format("no task is left to validate on: {}", fmt::join(all.unused, "; ")));
-  const MuscleParametricModel model(
-      *study.subject.system, study.unknowns, unseen.segments,
-      {.accuracy = study.accuracy, .estimate_start = study.estimate_start, .outputs = study.outputs});
-  a.outputs.assign(model.outputs().begin(), model.outputs().end());
+  a.outputs.assign(unseen.model().outputs().begin(), unseen.model().outputs().end());
   progress.stage("validating");
-  add_outcomes(model, unseen, start_values(study.unknowns), theta, {}, true, progress.threads(), a.tasks);
+  add_outcomes(unseen, start_values(study.unknowns), theta, {}, true, progress.threads(), a.tasks);
   a.unused = std::move(all.unused);
-  const Eigen::VectorXd noise = model.output_noise();
+  const Eigen::VectorXd noise = stated_noise(study);
   fill_analysis(study, {judge_hold_out(a.tasks, noise.size() > 0 ? noise(0) : 0.0, kNaN)}, a);
   a.estimate.parameters = estimate.parameters;
   a.estimate.covariance = estimate.covariance;

@@ -5,6 +5,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/analysis.hpp"
+#include "veridyn/estimation/uncertainty/posterior_sampling.hpp"
 #include "veridyn/estimation/uncertainty/profile_likelihood.hpp"
 #include "veridyn/muscle/identification/task_advice.hpp"
 #include "veridyn/muscle/identification/task_judgement.hpp"
@@ -19,8 +20,12 @@ struct MuscleAnalysis : estimation::Analysis {
   std::vector<std::string> unused;  ///< tasks that could not be set up, with why
   std::vector<estimation::ModelOutput> outputs;
   Model identified;  ///< the file's model with what was estimated; the file's own where the estimate is rejected
-  estimation::ProfileResult profiles;  ///< those that the study asks for
-  TaskAdvice advice;                   ///< empty where the study asks for none
+  estimation::ProfileResult profiles;     ///< those that the study asks for
+  estimation::PosteriorSample posterior;  ///< where the study asks for it
+  TaskAdvice advice;                      ///< empty where the study asks for none
+  // Of recordings with EMG:
+  Eigen::VectorXd moment_noise = {};   ///< of the outputs, as stated or as found beside the EMG's error
+  std::vector<double> emg_share = {};  ///< by trained task: share of the residual's variance that is the EMG's error
   double preparing_s = 0.0;            ///< computed muscle control of the tasks
 };
 

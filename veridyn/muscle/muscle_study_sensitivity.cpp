@@ -38,18 +38,7 @@ SensitivityStudyOptions read_options(const StudyTable& table, std::uint64_t seed
   o.cover.tasks = count_or(table, "choose", o.cover.tasks, 0);
   o.cover.share = share_or(table, "cover_share", o.cover.share, 1.0);
   o.cover.least_nrmse = share_or(table, "least_nrmse", o.cover.least_nrmse, 1.0);
-  constexpr internal::Words<IndexMethod, 3> kIndexMethods{
-      {{"variance", IndexMethod::kVariance}, {"morris", IndexMethod::kMorris}, {"none", IndexMethod::kNone}}};
-  o.indices.method = internal::word_or_first(table, "method", kIndexMethods);
-  o.indices.variance.samples = count_or(table, "index_samples", o.indices.variance.samples, 2);
-  o.indices.variance.resamples = count_or(table, "resamples", o.indices.variance.resamples, 2);
-  o.indices.variance.level = table.number_or("level", "1", o.indices.variance.level);
-  if (!(o.indices.variance.level > 0.0 && o.indices.variance.level < 1.0))
-    table.fail("level", fmt::format("= {:g} must be above 0 and below 1", o.indices.variance.level));
-  o.indices.variance.seed = seed;
-  o.indices.morris_trajectories = count_or(table, "trajectories", o.indices.morris_trajectories, 1);
-  o.indices.morris_levels = count_or(table, "levels", o.indices.morris_levels, 2);
-  if (o.indices.morris_levels % 2 != 0) table.fail("levels", fmt::format("= {} must be even", o.indices.morris_levels));
+  o.indices = estimation::read_index_options(table, seed);
   return o;
 }
 
@@ -77,7 +66,7 @@ SensitivityStudy read_sensitivity_study(const Study& source, Progress& progress)
   }
   study.inputs = study.subject.inputs;
   study.inputs.insert(study.inputs.end(), read.inputs.begin(), read.inputs.end());
-  for (const char* other : {"motion", "identify", "person", "validate"}) root.accept(other);
+  for (const char* other : {"motion", "identify", "person", "validate", "emg"}) root.accept(other);
   if (study.title.empty()) study.title = model.name;
   root.finish();
   return study;

@@ -108,7 +108,6 @@ void add_elbow_tasks(const StudyTable& table, SharedSettings settings, const Mus
 
 /// The desired motion of a file, as far as the table names one.
 void read_desired_file(const StudyTable& table, const Model& model, Task& task, StudyTasks& out) {
-  task.desired.coordinate.resize(model.coordinates.size());
   if (!table.has("file")) return;
   MotionOptions options;
   if (table.has("low_pass")) options.low_pass_Hz = table.positive("low_pass", "1/s");
@@ -220,14 +219,55 @@ void read_recording(const StudyTable& table, const MuscleStudy& subject, const S
                                        time.front(), covers.front(), covers.back()));
 }
 
+/// A task recorded with EMG, or nothing where the study's person performs it.
+bool read_recorded(const StudyTable& table, const MuscleStudy& subject, std::span<const MuscleOutput> outputs,
+                   const EmgSettings* emg, Task& task, StudyTasks& out) {
+  const char* const keys[] = {"angles", "moments", "emg"};
+  const bool any = std::any_of(std::begin(keys), std::end(keys), [&](const char* key) { return table.has(key); });
+  if (emg == nullptr) {
+    for (const char* key : keys)
+      if (table.has(key))
+        table.fail(key,
+                   "needs [emg]: which electrode is which muscle's, or an empty one where columns have their names");
+    return false;
+  }
+  for (const char* key : {"measured", "excitation_file"}) {
+    if (table.has(key))
+      table.fail(key,
+                 "is of motions that are simulated forward; with [emg] a recorded task has angles, moments and emg");
+  }
+  if (!any) return false;
+  for (const char* key : {"file", "ramp", "duration", "load"})
+    if (table.has(key)) table.fail(key, "and angles exclude each other: the recording says how the task moves");
+  read_held(table.table_or_empty("held"), subject, task);
+  const Model& model = subject.system->model();
+  Eigen::VectorXd rest = model.default_pose();
+  std::vector<char> given(model.coordinates.size(), 0);
+  for (const HeldCoordinate& held : task.held) {
+    rest(held.coordinate) = held.value;
+    given[at(held.coordinate)] = 1;
+  }
+  const StudyTable pose = table.table_or_empty("start");
+  for (const std::string& key : pose.keys()) {
+    const std::size_t c = internal::coordinate_of(pose, key, key, model);
+    internal::check_not_coupled(pose, key, c, subject);
+    rest(signed_index(c)) = internal::coordinate_value(pose, key, model.coordinates[c]);
+    given[c] = 1;
+  }
+  read_emg_recording(table, subject, *emg, outputs, rest, given, task, out.inputs, out.notes);
+  return true;
+}
+
 Task read_task(const StudyTable& table, const MuscleStudy& subject, const SharedSettings& settings,
-               std::span<const MuscleOutput> outputs, StudyTasks& out) {
+               std::span<const MuscleOutput> outputs, const EmgSettings* emg, StudyTasks& out) {
   Task task{.name = table.text("name")};
   task.hold_out = table.flag_or("hold_out", false);
   task.begin = task.end = 0.0;
   task.rate_Hz = settings.elbow.rate_Hz;
   task.control = settings.elbow.control;
   const Model& model = subject.system->model();
+  task.desired.coordinate.resize(model.coordinates.size());
+  if (read_recorded(table, subject, outputs, emg, task, out)) return task;
   read_desired_file(table, model, task, out);
   read_held(table.table_or_empty("held"), subject, task);
   if (!task.held.empty()) {
@@ -255,7 +295,8 @@ Task read_task(const StudyTable& table, const MuscleStudy& subject, const Shared
 
 }  // namespace
 
-StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject, std::span<const MuscleOutput> outputs) {
+StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject, std::span<const MuscleOutput> outputs,
+                      const EmgSettings* emg) {
   StudyTasks out;
   const StudyTable table = root.table_or_empty("tasks");
   const SharedSettings settings = read_shared(table, subject, out);
@@ -266,7 +307,7 @@ StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject, std::s
   }
   add_elbow_tasks(table, settings, subject, out);
   for (const StudyTable& own : root.tables("task")) {
-    Task task = read_task(own, subject, settings, outputs, out);
+    Task task = read_task(own, subject, settings, outputs, emg, out);
     for (const Task& other : out.tasks) {
       if (other.name == task.name) own.fail("name", fmt::format("= '{}' is another task's too", task.name));
     }

@@ -6,6 +6,7 @@
 
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
+#include "veridyn/muscle/muscle_study_emg.hpp"
 #include "veridyn/muscle/tasks/elbow_tasks.hpp"
 #include "veridyn/muscle/tasks/task.hpp"
 
@@ -56,10 +57,12 @@ struct StudyTasks {
 ///     excitation_file = "controls.sto"  # the controls with which it was performed; `interpolation` as in [motion].
 ///                                    # Without them: those with which the standard model follows the desired motion
 ///
+/// With `emg`, of a study with `[emg]`, recorded tasks are those of `read_emg_recording`, with `held` and `start` for
+/// coordinates that their files do not have.
 /// @throws InputError with file, line and key: unknown names (with the nearest), every coordinate held, two tasks of
 /// one name, a recording with gaps, without motion, shorter than two samples, beyond the controls, in degrees where
 /// radians are said; no tasks at all.
 [[nodiscard]] StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject,
-                                    std::span<const MuscleOutput> outputs);
+                                    std::span<const MuscleOutput> outputs, const EmgSettings* emg = nullptr);
 
 }  // namespace veridyn::muscle

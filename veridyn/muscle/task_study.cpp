@@ -8,35 +8,66 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/estimation/uncertainty/profile_choice.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 #include "veridyn/muscle/muscle_study_unknowns.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
-std::vector<MuscleUnknown> default_unknowns(const Model& model) {
+/// With EMG the gains of the muscles that have a signal; else F0, L0 and LS of every muscle, `bounds` below and above
+/// the model's values, in percent of them.
+std::vector<MuscleUnknown> default_unknowns(const Model& model, const std::optional<EmgSettings>& emg, double bounds) {
   std::vector<MuscleUnknown> unknowns;
+  for (std::size_t m = 0; emg && m < model.muscles.size(); ++m) {
+    if (emg->signal_of[m] >= 0)
+      unknowns.push_back(
+          make_unknown(model, {.muscles = {model.muscles[m].name()}, .fields = {"excitation_gain"}}, model.name));
+  }
+  if (emg) return unknowns;
   for (const Muscle& muscle : model.muscles) {
     for (const char* field : {"max_isometric_force", "optimal_fiber_length", "tendon_slack_length"})
       unknowns.push_back(make_unknown(
           model,
-          {.muscles = {muscle.name()}, .fields = {field}, .low = Extent{-20.0, true}, .high = Extent{20.0, true}},
+          {.muscles = {muscle.name()}, .fields = {field}, .low = Extent{-bounds, true}, .high = Extent{bounds, true}},
           model.name));
   }
   return unknowns;
 }
 
-std::vector<MuscleOutput> default_outputs(const MusculoskeletalSystem& system) {
+std::vector<MuscleOutput> default_outputs(const MusculoskeletalSystem& system, bool moments) {
   std::vector<MuscleOutput> outputs;
-  for (const int c : system.reduction().free()) outputs.push_back({MuscleOutputKind::kValue, c, 0.0});
+  for (const int c : system.reduction().free()) {
+    const auto pairs = system.pairs();
+    const auto moves = [&](const auto& pair) {
+      return system.reduction().free_root(pair.coordinate) == system.reduction().free_root(c);
+    };
+    if (!moments || std::any_of(pairs.begin(), pairs.end(), moves))
+      outputs.push_back({moments ? MuscleOutputKind::kMoment : MuscleOutputKind::kValue, c, 0.0});
+  }
   return outputs;
 }
 
-/// Leaves out the outputs of coordinates that every task holds.
+/// `[[parameter]]`, or the default ones within `identify.bounds`.
+std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, const Model& model,
+                                       const std::optional<EmgSettings>& emg) {
+  const StudyTable identify = root.table_or_empty("identify");
+  const double bounds = identify.positive_or("bounds", "1", 0.2);
+  if (bounds >= 1.0)
+    identify.fail("bounds", fmt::format("{:g} must be below 1: a muscle's parameters are positive", bounds));
+  std::vector<MuscleUnknown> unknowns = read_unknowns(root, model);
+  if (emg && identify.has("bounds")) identify.fail("bounds", "is not for [emg]: write [[parameter]] with bounds");
+  if (unknowns.empty()) return default_unknowns(model, emg, 100.0 * bounds);
+  if (identify.has("bounds")) identify.fail("bounds", "is for studies without [[parameter]], where each has its own");
+  return unknowns;
+}
+
+/// Leaves out the outputs of coordinates that every task holds, or that no recording has.
 void drop_resting_outputs(TaskStudy& study) {
   std::vector<Eigen::Index> kept;
   for (std::size_t j = 0; j < study.outputs.size(); ++j) {
     const bool moves = std::any_of(study.tasks.begin(), study.tasks.end(), [&](const Task& task) {
+      if (task.recording) return !task.recording->measured.col(signed_index(j)).array().isNaN().all();
       return std::none_of(task.held.begin(), task.held.end(),
                           [&](const HeldCoordinate& h) { return h.coordinate == study.outputs[j].index; });
     });
@@ -45,8 +76,10 @@ void drop_resting_outputs(TaskStudy& study) {
   std::vector<MuscleOutput> outputs;
   for (const Eigen::Index j : kept) outputs.push_back(study.outputs[at(j)]);
   study.outputs = outputs;
-  for (Task& task : study.tasks)
+  for (Task& task : study.tasks) {
     if (task.measured) task.measured->values = estimation::RowMatrix(task.measured->values(Eigen::all, kept));
+    if (task.recording) task.recording->measured = estimation::RowMatrix(task.recording->measured(Eigen::all, kept));
+  }
 }
 
 SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
@@ -59,6 +92,14 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
   constexpr internal::Words<bool, 2> kMuscles{{{"as the model", false}, {"millard", true}}};
   person.millard = internal::word_or_first(table, "muscles", kMuscles);
   person.load_factor = table.positive_or("load_factor", "1", person.load_factor);
+  if (study.emg) {
+    person.moment_noise = table.number_or("moment_noise", "N m", person.moment_noise);
+    if (!(person.moment_noise >= 0.0))
+      table.fail("moment_noise", fmt::format("{:g} must be >= 0", person.moment_noise));
+    person.emg_noise = table.optional_number("emg_noise", "1");
+    if (person.emg_noise && !(*person.emg_noise >= 0.0 && *person.emg_noise < 1.0))
+      table.fail("emg_noise", fmt::format("{:g} must be from 0 to below 1", *person.emg_noise));
+  }
   const StudyTable values = table.table_or_empty("parameters");
   std::vector<std::string> names;
   for (const MuscleUnknown& u : study.unknowns) names.push_back(u.name);
@@ -73,25 +114,18 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
     person.values[key] = value;
   }
   for (std::size_t i = 0; i < study.tasks.size(); ++i) {
-    if (study.tasks[i].measured)
+    if (study.tasks[i].measured || study.tasks[i].recording)
       table.fail("", fmt::format("and task '{}' with a recording exclude each other", study.tasks[i].name));
   }
   return person;
 }
 
-/// Names, or all that are free.
-std::vector<std::string> read_profiles(const StudyTable& table, const std::vector<MuscleUnknown>& unknowns) {
+/// Names of the unknowns that are estimated.
+std::vector<std::string> free_unknowns(const std::vector<MuscleUnknown>& unknowns) {
   std::vector<std::string> free;
   for (const MuscleUnknown& u : unknowns)
     if (!u.fixed) free.push_back(u.name);
-  if (!table.is_array("profiles")) return table.flag_or("profiles", false) ? free : std::vector<std::string>();
-  std::vector<std::string> names = table.texts("profiles");
-  for (const std::string& name : names) {
-    if (std::find(free.begin(), free.end(), name) == free.end())
-      table.fail("profiles", fmt::format("'{}' is no free unknown of this study{}", name, suggestion(name, free)));
-    if (std::count(names.begin(), names.end(), name) > 1) table.fail("profiles", fmt::format("has '{}' twice", name));
-  }
-  return names;
+  return free;
 }
 
 void read_published_route(const StudyTable& table, TaskStudy& study) {
@@ -107,6 +141,27 @@ void read_published_route(const StudyTable& table, TaskStudy& study) {
   study.published = std::move(route);
 }
 
+/// `posterior = true`, or a table with options.
+std::optional<estimation::EnsembleOptions> read_posterior(const StudyTable& table, const TaskStudy& study) {
+  estimation::EnsembleOptions options{.seed = study.seed};
+  if (!table.is_table("posterior")) return table.flag_or("posterior", false) ? std::optional(options) : std::nullopt;
+  const StudyTable t = table.table("posterior");
+  const auto count = [&](const char* key, std::size_t otherwise) {
+    return static_cast<std::size_t>(std::max(0LL, t.integer_or(key, static_cast<long long>(otherwise))));
+  };
+  options.walkers = count("walkers", options.walkers);
+  options.steps = count("steps", options.steps);
+  options.effective = count("effective", options.effective);
+  try {
+    options.validate(static_cast<std::size_t>(
+        std::count_if(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return !u.fixed; })));
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    t.fail(error.place(), what.substr(std::min(what.size(), error.place().size() + 2)));
+  }
+  return options;
+}
+
 void read_search(const StudyTable& table, const std::string& no_elbow, TaskStudy& study) {
   study.search.starts = static_cast<int>(std::clamp(table.integer_or("starts", study.search.starts), 0LL, 1000000LL));
   study.search.screened = static_cast<int>(
@@ -119,13 +174,30 @@ void read_search(const StudyTable& table, const std::string& no_elbow, TaskStudy
                what.substr(std::min(what.size(), error.place().size() + 2)));
   }
   study.search.seed = study.seed;
-  study.estimate_start = table.flag_or("estimate_start", !study.person);
-  study.profiles = read_profiles(table, study.unknowns);
+  study.estimate_start = table.flag_or("estimate_start", !study.person && !study.emg);
+  if (study.estimate_start && study.emg)
+    table.fail("estimate_start", "has no meaning with [emg]: the angles are those of the recording from the beginning");
+  study.profiles = estimation::read_profiles(table, free_unknowns(study.unknowns));
+  study.posterior = read_posterior(table, study);
   const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.drive; });
-  study.advice = table.flag_or("advice", study.elbow && !recorded);
+  study.advice = table.flag_or("advice", study.elbow && !recorded && !study.emg);
+  if (study.advice && study.emg)
+    table.fail("advice", "has no meaning with [emg]: the EMG of a task that was not performed is not known");
   if (study.advice && !study.elbow) table.fail("advice", fmt::format("needs the elbow tasks: {}", no_elbow));
   const std::vector<std::string> routes = {"gradient", "published"};
-  if (table.choice_or("route", routes, "gradient") == "published") read_published_route(table, study);
+  if (table.choice_or("route", routes, "gradient") != "published") return;
+  if (study.emg) table.fail("route", "= \"published\" simulates tasks forward; with [emg] it is \"gradient\"");
+  read_published_route(table, study);
+}
+
+void check_emg_outputs(const StudyTable& root, const Model& model, const std::vector<MuscleOutput>& outputs) {
+  const std::vector<StudyTable> tables = root.tables("output");
+  for (std::size_t i = 0; i < outputs.size() && i < tables.size(); ++i) {
+    if (outputs[i].kind == MuscleOutputKind::kValue || outputs[i].kind == MuscleOutputKind::kSpeed)
+      tables[i].fail("name", fmt::format("= '{}' is an angle, which is given with [emg]: outputs are "
+                                         "COORDINATE.moment, MUSCLE.fiber_length, MUSCLE.tendon_force",
+                                         output_name(model, outputs[i])));
+  }
 }
 
 }  // namespace
@@ -147,15 +219,15 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
   if (system.path_source() == PathSource::kAsOpenSim)
     root.table("subject").fail("paths", "= \"opensim\" has no derivatives; take \"exact\" or \"fitted\"");
   if (study.subject.title.empty()) study.subject.title = system.model().name;
-  study.unknowns = read_unknowns(root, system.model());
-  if (study.unknowns.empty()) study.unknowns = default_unknowns(system.model());
-  study.unknowns = with_bound_priors(std::move(study.unknowns));
+  if (root.is_table("emg")) study.emg = read_emg(root.table("emg"), system.model());
+  study.unknowns = with_bound_priors(unknowns_of(root, system.model(), study.emg));
   if (std::all_of(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return u.fixed; }))
     root.fail("parameter", "leaves nothing to estimate: all are fixed");
   study.outputs = read_outputs(root, system.model());
   const bool chosen = !study.outputs.empty();
-  if (!chosen) study.outputs = default_outputs(system);
-  StudyTasks tasks = read_tasks(root, study.subject, study.outputs);
+  if (!chosen) study.outputs = default_outputs(system, study.emg.has_value());
+  if (study.emg) check_emg_outputs(root, system.model(), study.outputs);
+  StudyTasks tasks = read_tasks(root, study.subject, study.outputs, study.emg ? &*study.emg : nullptr);
   study.tasks = std::move(tasks.tasks);
   study.accuracy = tasks.accuracy;
   study.notes = std::move(tasks.notes);
@@ -166,13 +238,13 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
   if (root.is_table("person")) {
     study.person = read_person(root.table("person"), study);
     for (MuscleOutput& output : study.outputs)
-      if (!chosen && output.noise_sd == 0.0) output.noise_sd = study.person->noise;
+      if ((!chosen || study.emg) && output.noise_sd == 0.0)
+        output.noise_sd = study.emg ? study.person->moment_noise : study.person->noise;
   }
   for (const Task& task : study.tasks) {
-    if (!study.person && !task.measured)
-      root.fail("task", fmt::format("'{}' has no recording (measured = \"trial.mot\"), and there is no [person] to "
-                                    "simulate one",
-                                    task.name));
+    if (!study.person && !task.measured && !task.recording)
+      root.fail("task", fmt::format("'{}' has no recording ({}), and there is no [person] to simulate one", task.name,
+                                    study.emg ? "angles, moments and emg" : "measured = \"trial.mot\""));
   }
   read_search(root.table_or_empty("identify"), tasks.no_elbow, study);
   for (const char* other : {"motion", "sensitivity"})

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/estimation/uncertainty/ensemble_sampler.hpp"
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/identification/muscle_unknowns.hpp"
 #include "veridyn/muscle/identification/published_route.hpp"
@@ -19,9 +20,11 @@ namespace veridyn::muscle {
 struct SimulatedPerson {
   double spread = 0.05;  ///< hidden parameters: the model's times 1 +- at most this, uniform
   std::map<std::string, double, std::less<>> values;  ///< unknowns that are set instead, by name
-  bool millard = false;      ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
-  double load_factor = 1.0;  ///< the loads of the tasks are this much heavier than the study says
-  double noise = 1e-3;       ///< standard deviation of measured angles and positions [rad or m]
+  bool millard = false;       ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
+  double load_factor = 1.0;   ///< the loads of the tasks are this much heavier than the study says
+  double noise = 1e-3;        ///< standard deviation of measured angles and positions [rad or m]
+  double moment_noise = 0.1;  ///< of measured moments and forces that `[[output]]` says no other of [N m or N]
+  std::optional<double> emg_noise{};  ///< of the EMG's value; else as the study's `[emg]` says
 };
 
 /// A study that estimates a person's muscles from tasks, read and checked.
@@ -31,13 +34,15 @@ struct TaskStudy {
   double accuracy = 1e-6;
   std::vector<MuscleUnknown> unknowns;  ///< each with a prior: its own, or that of its bounds
   std::vector<MuscleOutput> outputs;
+  std::optional<EmgSettings> emg;  ///< muscles along recorded angles; else tasks are simulated forward
   std::optional<SimulatedPerson> person;
   std::optional<PublishedRouteOptions> published;  ///< the published search in place of `search`
   TaskEstimateOptions search;
   std::optional<ElbowTaskOptions> elbow;  ///< as `StudyTasks`
   bool advice = false;                    ///< say which further elbow task would lessen the widest interval most
   std::vector<std::string> profiles;      ///< parameters whose profile likelihood is followed
-  bool estimate_start = false;            ///< pose and speed where each task begins are unknown too
+  std::optional<estimation::EnsembleOptions> posterior;  ///< sample it
+  bool estimate_start = false;                           ///< pose and speed where each task begins are unknown too
   std::uint64_t seed = 1;
   std::vector<std::string> notes;
   std::vector<std::filesystem::path> inputs;
@@ -46,7 +51,8 @@ struct TaskStudy {
 /// Whether a muscle study has tasks.
 [[nodiscard]] bool has_tasks(const StudyTable& root);
 
-/// Reads a study: `[subject]` as `read_study`, `[tasks]` and `[[task]]` as `read_tasks`, `[[parameter]]` and
+/// Reads a study: `[subject]` as `read_study`, `[emg]` as `read_emg`, `[tasks]` and `[[task]]` as `read_tasks`,
+/// `[[parameter]]` and
 /// `[[output]]` as `read_unknowns` and `read_outputs`, and
 ///
 ///     seed = 1
@@ -55,6 +61,8 @@ struct TaskStudy {
 ///     noise = "0.06 deg"             # of the measured angles; of other outputs that of [[output]]
 ///     muscles = "millard"            # of another class than the model's, to see what is said of a wrong model
 ///     load_factor = 1.0              # true load over the stated one, likewise
+///     moment_noise = "0.1 N m"       # with [emg]: of the measured moments, unless [[output]] says it
+///     emg_noise = "20 %"             # with [emg]: of the EMG, where the study says otherwise in [emg]
 ///     [person.parameters]            # hidden values of single unknowns, by the unknown's name
 ///     "BRA.max_isometric_force" = 1000
 ///     [identify]
@@ -63,16 +71,19 @@ struct TaskStudy {
 ///     tolerance = "1 %"              # published: greatest NRMSE of a task
 ///     evaluations = 20000            # published: at most, each of all tasks
 ///     log = "search.csv"             # published: every evaluation; a log that is there is continued
+///     bounds = "20 %"                # of the unknowns where the study has no [[parameter]]
 ///     starts = 3                     # gradient: searches
 ///     screened = 16                  # points whose fit is looked at to choose where they begin
 ///     advice = true                  # which further elbow task would lessen the widest interval most; false when left
 ///                                    # out where controls are recorded: those of a task to come are not known
 ///     profiles = ["BRA.tendon_slack_length"]  # profile likelihood of these; true: of all that are not fixed
+///     posterior = true               # draws of the posterior by an ensemble of walkers; or a table with its options:
+///     # posterior = { walkers = 40, steps = 4000, effective = 1000 }
 ///     estimate_start = true          # pose and speed at the beginning too; true when left out with recordings
 ///
-/// Without `[[parameter]]`: max_isometric_force, optimal_fiber_length and tendon_slack_length of every muscle, within
-/// 20 %. Without `[[output]]`: the values of all coordinates that move in some task. `[motion]`, of `veridyn simulate`,
-/// may stay in the study.
+/// Without `[[parameter]]`: max_isometric_force, optimal_fiber_length and tendon_slack_length of every muscle; with
+/// `[emg]` excitation_gain of every muscle, within 50 %. Without `[[output]]`: the values of all coordinates that move
+/// in some task; with `[emg]` their moments. `[motion]`, of `veridyn simulate`, may stay in the study.
 /// @throws InputError with file, line and key.
 [[nodiscard]] TaskStudy read_task_study(const Study& study, Progress& progress);
 

@@ -1,6 +1,7 @@
 #include "veridyn/muscle/identification/measured_motion.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,9 @@ namespace {
 /// Column of an output; -1: none.
 int column_of(const SignalTable& table, const Model& model, const MuscleOutput& output) {
   if (output.kind == MuscleOutputKind::kValue) return table.find(model.coordinates[at(output.index)].name, "value");
-  const std::string name = output_name(model, output);
+  std::string name = output_name(model, output);
+  if (output.kind == MuscleOutputKind::kMoment && output_unit(model, output) == "N" && table.find(name, "") < 0)
+    name = model.coordinates[at(output.index)].name + ".force";
   const std::size_t dot = name.rfind('.');
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     for (const char separator : {'.', '_', '/'}) {
@@ -27,7 +30,9 @@ int column_of(const SignalTable& table, const Model& model, const MuscleOutput& 
   return -1;
 }
 
-void check_time(const SignalTable& table) {
+}  // namespace
+
+void check_times(const SignalTable& table) {
   const std::vector<double>& t = table.time;
   if (t.size() < 2) throw InputError(table.source, "has fewer than two samples");
   std::vector<double> steps;
@@ -42,8 +47,6 @@ void check_time(const SignalTable& table) {
                                                  t[i], t[i + 1], usual));
   }
 }
-
-}  // namespace
 
 void refuse_degrees(const SignalTable& table, const Model& model) {
   if (table.rotations_in_degrees) return;
@@ -71,7 +74,7 @@ void refuse_degrees(const SignalTable& table, const Model& model) {
 
 MeasuredMotion read_measured_motion(const SignalTable& table, const Model& model,
                                     std::span<const MuscleOutput> outputs) {
-  check_time(table);
+  check_times(table);
   refuse_degrees(table, model);
   MeasuredMotion motion;
   motion.source = table.source;
@@ -101,7 +104,8 @@ MeasuredMotion read_measured_motion(const SignalTable& table, const Model& model
   if (!any) {
     std::string wanted;
     for (const MuscleOutput& output : outputs) wanted += (wanted.empty() ? "" : ", ") + output_name(model, output);
-    throw InputError(table.source, fmt::format("has no column of an output ({})", wanted));
+    throw InputError(table.source,
+                     fmt::format("has no column of an output ({}); it has {}", wanted, fmt::join(table.names, ", ")));
   }
   if (!moves) throw InputError(table.source, "does not move: there is nothing to compare a simulation with");
   return motion;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/identification/muscle_values.hpp"
 #include "veridyn/muscle/identification/shaped_drive.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/muscle/simulation/system_linearization.hpp"
@@ -12,46 +13,6 @@
 
 namespace veridyn::muscle::internal {
 namespace {
-
-/// Muscles and excitations at theta.
-struct TaskParameters {
-  std::vector<MusculotendonParameters<double>> muscles;
-  std::vector<double> gain, delay;
-};
-
-double& parameter_of(TaskParameters& p, const MuscleParameterName& name) {
-  if (name.field == MuscleParameterName::kGain) return p.gain[at(name.muscle)];
-  if (name.field == MuscleParameterName::kDelay) return p.delay[at(name.muscle)];
-  return field_of(p.muscles[at(name.muscle)], name.field);
-}
-
-TaskParameters parameters_at(const MuscleTask& task, const Eigen::VectorXd& theta) {
-  TaskParameters p;
-  const MuscleGroup<double>& muscles = task.system->muscles();
-  for (std::size_t m = 0; m < muscles.size(); ++m) p.muscles.push_back(muscles.settings(m).musculotendon);
-  p.gain.assign(muscles.size(), 1.0);
-  p.delay.assign(muscles.size(), 0.0);
-  for (std::size_t i = 0; i < task.unknowns.size(); ++i) {
-    const MuscleUnknown& u = task.unknowns[i];
-    for (const MuscleParameterName& name : u.parameters) {
-      double& value = parameter_of(p, name);
-      value = u.factor ? value * theta(signed_index(i)) : theta(signed_index(i));
-    }
-  }
-  return p;
-}
-
-/// Bounds of the search keep estimates inside; a step beyond them must not crash.
-bool possible(const TaskParameters& p) {
-  for (const MusculotendonParameters<double>& m : p.muscles) {
-    for (std::size_t f = 0; f < kEstimableFields; ++f) {
-      const double value = field_of(m, f);
-      if (!std::isfinite(value) || !(f == 3 ? value >= 0.0 && value < 1.5 : value > 0.0)) return false;
-    }
-  }
-  const auto finite = [](double value) { return std::isfinite(value); };
-  return std::all_of(p.gain.begin(), p.gain.end(), finite) && std::all_of(p.delay.begin(), p.delay.end(), finite);
-}
 
 numerics::StepControl step_control(double accuracy) {
   // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
@@ -113,7 +74,7 @@ double muscle_moment(SystemEvaluator<double>& e, const MusculoskeletalSystem& sy
 }
 
 double fiber_length_of(const SystemEvaluator<double>& e, const MusculoskeletalSystem& system,
-                       const TaskParameters& parameters, int muscle) {
+                       const MuscleValues& parameters, int muscle) {
   if (system.layout().fiber_length[at(muscle)] >= 0) return e.fiber_length()[at(muscle)];
   const MusculotendonParameters<double>& p = parameters.muscles[at(muscle)];
   return std::hypot(std::max(0.0, e.path_length()[at(muscle)] - p.tendon_slack_length),
@@ -150,7 +111,7 @@ Forcings forcings_of(const MuscleTask& task, std::span<const Eigen::Index> activ
 class TangentSimulation {
  public:
   TangentSimulation(const MuscleTask& task, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
-                    TaskParameters parameters, estimation::ModelResponse& response)
+                    MuscleValues parameters, estimation::ModelResponse& response)
       : task_(task),
         system_(*task.system),
         columns_(active.size()),
@@ -293,8 +254,8 @@ class TangentSimulation {
 }  // namespace
 
 bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estimation::ModelResponse& response) {
-  TaskParameters parameters = parameters_at(task, theta);
-  if (!possible(parameters)) return false;
+  MuscleValues parameters = values_at(task.system->muscles(), task.unknowns, theta);
+  if (!parameters.possible()) return false;
   const MusculoskeletalSystem& system = *task.system;
   const StateLayout& layout = system.layout();
   SystemEvaluator<double> evaluator(system, system.muscles().with<double>(parameters.muscles));
@@ -353,8 +314,8 @@ bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estim
 
 bool simulate_tangents(const MuscleTask& task, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                        estimation::ModelResponse& response) {
-  TaskParameters parameters = parameters_at(task, theta);
-  if (!possible(parameters)) return false;
+  MuscleValues parameters = values_at(task.system->muscles(), task.unknowns, theta);
+  if (!parameters.possible()) return false;
   return TangentSimulation(task, theta, active, std::move(parameters), response).run();
 }
 

@@ -49,7 +49,8 @@ class ShapedDrive {
     const std::span<const double> times = drive_->excitation.times();
     for (std::size_t m = 0; m < gain_.size(); ++m) {
       if (!held() && split_[m] == 0) continue;
-      std::size_t next = sample_[m] + 1;
+      // A signal on lines has its first corner where it begins to change.
+      std::size_t next = held() || times[0] + delay_[m] <= begin ? sample_[m] + 1 : 0;
       while (next < times.size() && times[next] + delay_[m] <= begin) ++next;
       if (next < times.size()) end = std::min(end, times[next] + delay_[m]);
     }

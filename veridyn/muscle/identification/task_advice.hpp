@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/muscle/identification/muscle_parametric_model.hpp"
 #include "veridyn/muscle/identification/task_estimate.hpp"
 #include "veridyn/muscle/tasks/elbow_tasks.hpp"
 

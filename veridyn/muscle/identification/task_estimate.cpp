@@ -36,7 +36,7 @@ constexpr double kCorrelated = 0.15;
 /// View of one estimation.
 class TaskEstimation {
  public:
-  TaskEstimation(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+  TaskEstimation(const estimation::ParametricModel& model, const std::vector<RowMatrix>& measured,
                  const Eigen::VectorXd& noise, const TaskEstimateOptions& options, Progress& progress)
       : model_(model), measured_(measured), noise_(noise), options_(options), progress_(progress) {
     for (const RowMatrix& z : measured) values_ += (z.array() == z.array()).count();
@@ -69,7 +69,8 @@ class TaskEstimation {
 
  private:
   /// Root mean square of the residual, each output in units of its noise (or of its own size); NaN: diverged.
-  [[nodiscard]] double residual(const Eigen::VectorXd& theta) const {
+  [[nodiscard]] double residual(const Eigen::VectorXd& theta) {
+    result_.simulations.values += model_.segments();
     const std::vector<RowMatrix> y = simulate_tasks(model_, theta, progress_.threads());
     double sum = 0.0;
     for (std::size_t s = 0; s < y.size(); ++s) {
@@ -84,6 +85,12 @@ class TaskEstimation {
     return std::sqrt(sum / static_cast<double>(values_));
   }
 
+  [[nodiscard]] OutputErrorEstimate fitted(const OutputErrorOptions& options, Progress& progress) {
+    OutputErrorEstimate e = estimation::output_error(model_, measured_, options, progress);
+    result_.simulations += e.simulations;
+    return e;
+  }
+
   [[nodiscard]] Eigen::VectorXd scale() const {
     return noise_.size() > 0 ? noise_ : Eigen::VectorXd::Constant(signed_index(model_.outputs().size()), 1.0);
   }
@@ -96,7 +103,7 @@ class TaskEstimation {
 
   /// The model's values, then points of the screening, the best fits first; all that can be simulated.
   std::vector<std::pair<double, Eigen::VectorXd>> starting_points() {
-    const Eigen::VectorXd start = own_values();
+    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
     std::vector<std::pair<double, Eigen::VectorXd>> points{{residual(start), start}};
     if (options_.starts < 2) return points;
     const Eigen::MatrixXd sobol =
@@ -132,7 +139,7 @@ class TaskEstimation {
       o.noise_start = level * scale();
       o.max_steps = kCoarseSteps;
       o.max_relaxations = 1;
-      const OutputErrorEstimate e = estimation::output_error(model_, measured_, o, quiet_);
+      const OutputErrorEstimate e = fitted(o, quiet_);
       search.steps += e.steps;
       if (!e.usable()) break;
       from = e.theta;
@@ -152,7 +159,7 @@ class TaskEstimation {
       o.noise_start = noise_;
       o.max_relaxations = once ? 1 : 3;
     }
-    return estimation::output_error(model_, measured_, o, quiet_);
+    return fitted(o, quiet_);
   }
 
   /// Negative logarithm of likelihood and prior.
@@ -222,14 +229,14 @@ class TaskEstimation {
   }
 
   [[nodiscard]] OutputErrorEstimate why_nothing(const std::vector<std::optional<OutputErrorEstimate>>& finished,
-                                                std::size_t first) const {
+                                                std::size_t first) {
     if (first < finished.size() && finished[first]) return *finished[first];
     OutputErrorOptions o = options_of(own_values());
     if (noise_.size() > 0) o.noise_start = noise_;
     o.max_relaxations = 1;
     o.max_steps = 1;
     Progress silent;
-    return estimation::output_error(model_, measured_, o, silent);
+    return fitted(o, silent);
   }
 
   [[nodiscard]] bool same_place(const OutputErrorEstimate& e) const {
@@ -375,7 +382,7 @@ class TaskEstimation {
     const Progress& outer_;
   };
 
-  const MuscleParametricModel& model_;
+  const estimation::ParametricModel& model_;
   const std::vector<RowMatrix>& measured_;
   const Eigen::VectorXd& noise_;
   const TaskEstimateOptions& options_;
@@ -418,13 +425,13 @@ std::vector<MuscleUnknown> with_bound_priors(std::vector<MuscleUnknown> unknowns
   return unknowns;
 }
 
-TaskEstimate estimate_from_tasks(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+TaskEstimate estimate_from_tasks(const estimation::ParametricModel& model, const std::vector<RowMatrix>& measured,
                                  const Eigen::VectorXd& noise, const TaskEstimateOptions& options, Progress& progress) {
   options.validate();
   return TaskEstimation(model, measured, noise, options, progress).run();
 }
 
-TaskEstimate describe_estimate(const MuscleParametricModel& model, const std::vector<RowMatrix>& measured,
+TaskEstimate describe_estimate(const estimation::ParametricModel& model, const std::vector<RowMatrix>& measured,
                                const Eigen::VectorXd& noise, const Eigen::VectorXd& theta, TaskSearch search,
                                Progress& progress) {
   const TaskEstimateOptions options;

@@ -6,7 +6,7 @@
 
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
-#include "veridyn/muscle/identification/muscle_parametric_model.hpp"
+#include "veridyn/muscle/identification/muscle_unknowns.hpp"
 
 namespace veridyn::muscle {
 
@@ -15,6 +15,8 @@ struct TaskEstimateOptions {
   int starts = 3;     ///< searches: from the model's own values, and from the best points of the screening
   int screened = 16;  ///< points of a Sobol sequence within the bounds whose fit is looked at first
   std::uint64_t seed = 1;
+  /// Where the first search begins, one value a parameter; empty: at the model's own values.
+  Eigen::VectorXd first = {};
   /// @throws InputError naming the option and its rule.
   void validate() const;
 };
@@ -55,6 +57,7 @@ struct TaskEstimate {
   double chi_square = 0.0;       ///< of the residual over its freedom; NaN where the noise is not known
   double freedom = 0.0;          ///< measured values less what the parameters took
   double lag1 = 0.0;             ///< autocorrelation of the residual at one sample, the largest of any output
+  estimation::SimulationCount simulations;  ///< of tasks, by all searches
   double seconds = 0.0;
 
   [[nodiscard]] bool usable() const { return best.usable(); }
@@ -70,14 +73,14 @@ struct TaskEstimate {
 /// and corrected for autocorrelated residuals.
 /// @param measured by segment: samples x outputs, NaN where nothing was measured
 /// @param noise standard deviation by output; empty: estimated
-[[nodiscard]] TaskEstimate estimate_from_tasks(const MuscleParametricModel& model,
+[[nodiscard]] TaskEstimate estimate_from_tasks(const estimation::ParametricModel& model,
                                                const std::vector<estimation::RowMatrix>& measured,
                                                const Eigen::VectorXd& noise, const TaskEstimateOptions& options,
                                                Progress& progress);
 
 /// What the tasks say where another search ended: `theta` with its intervals, words and null directions. `search` says
-/// how it was found.
-[[nodiscard]] TaskEstimate describe_estimate(const MuscleParametricModel& model,
+/// how it was found; its simulations are not in the count.
+[[nodiscard]] TaskEstimate describe_estimate(const estimation::ParametricModel& model,
                                              const std::vector<estimation::RowMatrix>& measured,
                                              const Eigen::VectorXd& noise, const Eigen::VectorXd& theta,
                                              TaskSearch search, Progress& progress);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "veridyn/estimation/judgement/evidence.hpp"
+#include "veridyn/estimation/regression/regression_data.hpp"
 #include "veridyn/muscle/identification/task_estimate.hpp"
 #include "veridyn/muscle/tasks/task_error.hpp"
 
@@ -22,14 +23,14 @@ struct TaskOutcome {
 
 /// What an estimate from tasks is judged by.
 struct TaskFindings {
-  const MuscleParametricModel& model;
   const TaskEstimate& estimate;
   const std::vector<TaskOutcome>& tasks;          ///< trained ones, then those held out
   const std::vector<std::string>& unused;         ///< tasks that could not be set up, with why
   const std::vector<std::string>& wrap_warnings;  ///< `task_warnings`
   bool noise_known = false;
-  double noise = 0.0;      ///< of the first output
-  bool simulated = false;  ///< the recording is a simulated person's
+  double noise = 0.0;         ///< of the first output
+  bool simulated = false;     ///< the recording is a simulated person's
+  bool along_angles = false;  ///< muscles along recorded angles, driven by EMG
 };
 
 /// Name of the row that says how many parameters the tasks determine.

@@ -4,7 +4,7 @@
 
 namespace veridyn::muscle {
 
-estimation::ProfileResult profile_tasks(const MuscleParametricModel& model,
+estimation::ProfileResult profile_tasks(const estimation::ParametricModel& model,
                                         const std::vector<estimation::RowMatrix>& measured,
                                         const Eigen::VectorXd& noise, const TaskEstimate& estimate,
                                         std::span<const std::string> parameters, Progress& progress) {

@@ -11,7 +11,7 @@ namespace veridyn::muscle {
 
 /// Profile likelihood of parameters of an estimate from tasks, by name: its priors, its noise, and its widening where
 /// the residual is larger than the noise. Arguments as of `estimate_from_tasks`.
-[[nodiscard]] estimation::ProfileResult profile_tasks(const MuscleParametricModel& model,
+[[nodiscard]] estimation::ProfileResult profile_tasks(const estimation::ParametricModel& model,
                                                       const std::vector<estimation::RowMatrix>& measured,
                                                       const Eigen::VectorXd& noise, const TaskEstimate& estimate,
                                                       std::span<const std::string> parameters, Progress& progress);

@@ -19,8 +19,8 @@ std::vector<MotionSegment> segments_of(std::span<const PreparedTask> tasks) {
   return segments;
 }
 
-std::vector<estimation::RowMatrix> simulate_tasks(const MuscleParametricModel& model, const Eigen::VectorXd& theta,
-                                                  int threads) {
+std::vector<estimation::RowMatrix> simulate_tasks(const estimation::ParametricModel& model,
+                                                  const Eigen::VectorXd& theta, int threads) {
   std::vector<estimation::RowMatrix> outputs(model.segments());
   numerics::parallel_for(model.segments(), threads, [&](std::size_t s) {
     const auto initial = model.initial_conditions(s);

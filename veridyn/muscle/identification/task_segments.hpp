@@ -16,7 +16,7 @@ namespace veridyn::muscle {
 
 /// Outputs of each segment of `model` at `theta` (the parameters that all segments share; starts are the segments'
 /// own); empty where a simulation cannot finish. On `threads` threads, the same bits on any number of them.
-[[nodiscard]] std::vector<estimation::RowMatrix> simulate_tasks(const MuscleParametricModel& model,
+[[nodiscard]] std::vector<estimation::RowMatrix> simulate_tasks(const estimation::ParametricModel& model,
                                                                 const Eigen::VectorXd& theta, int threads);
 
 }  // namespace veridyn::muscle

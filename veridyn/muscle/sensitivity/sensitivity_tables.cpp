@@ -52,29 +52,6 @@ std::string task_choice_csv(const MuscleSensitivity& s, std::span<const Prepared
   return text;
 }
 
-std::string indices_csv(const MuscleSensitivity& s, IndexMethod method) {
-  const bool morris = method == IndexMethod::kMorris;
-  std::string text = morris ? "result,input,mu,mu_star,sigma\n"
-                            : "result,input,first,first_low,first_high,first_wide,total,total_low,total_high,"
-                              "total_wide\n";
-  for (const ResultIndices& r : s.indices.results) {
-    for (std::size_t i = 0; i < r.morris.size(); ++i) {
-      const numerics::MorrisEffect& e = r.morris[i];
-      text += fmt::format("{},{},{},{},{}\n", io::csv_text(r.result), io::csv_text(s.indices.inputs[i]),
-                          io::csv_number(e.mean), io::csv_number(e.absolute), io::csv_number(e.sd));
-    }
-    for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
-      const numerics::SensitivityIndex& x = r.variance.inputs[i];
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", io::csv_text(r.result), io::csv_text(s.indices.inputs[i]),
-                          io::csv_number(x.first), io::csv_number(x.first_low), io::csv_number(x.first_high),
-                          wide_interval(x.first, x.first_low, x.first_high) ? "yes" : "no", io::csv_number(x.total),
-                          io::csv_number(x.total_low), io::csv_number(x.total_high),
-                          wide_interval(x.total, x.total_low, x.total_high) ? "yes" : "no");
-    }
-  }
-  return text;
-}
-
 std::string task_list(const MuscleSensitivity& s, const TaskSet& set) {
   std::vector<std::string> names;
   for (const std::size_t t : set.tasks)

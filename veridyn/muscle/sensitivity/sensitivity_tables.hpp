@@ -13,9 +13,6 @@ namespace veridyn::muscle {
 /// tasks.csv: a row a task: chosen, in the runner-up, the muscles that it excites, why it may not be chosen, the wrap
 /// bands that it enters; of its computed muscle control the tracking error and the share of the reserves.
 [[nodiscard]] std::string task_choice_csv(const MuscleSensitivity& s, std::span<const PreparedTask> tasks);
-/// indices.csv: a row for each result and input: first and total order with their intervals and whether these are wide,
-/// or mu, mu* and sigma of Morris.
-[[nodiscard]] std::string indices_csv(const MuscleSensitivity& s, IndexMethod method);
 
 /// "2, 9, 27": numbers of elbow tasks, or names of a study's own.
 [[nodiscard]] std::string task_list(const MuscleSensitivity& s, const TaskSet& set);

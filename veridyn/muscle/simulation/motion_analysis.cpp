@@ -36,15 +36,6 @@ Instant instant_of(const Motion& motion, const Eigen::VectorXd& rest, const Coor
   return now;
 }
 
-/// By coordinate: dq / d(the free coordinate that it follows).
-Eigen::VectorXd slopes_at(const Eigen::VectorXd& q, const CoordinateReduction& reduction) {
-  Eigen::VectorXd slope = Eigen::VectorXd::Ones(q.size());
-  for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
-    slope(coupler.dependent) = coupler.function.evaluate(q(coupler.independent)).slope * slope(coupler.independent);
-  }
-  return slope;
-}
-
 MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::vector<double>& time) {
   MotionAnalysis a;
   a.time = time;
@@ -69,6 +60,14 @@ void analyse(const Instant& now, Eigen::Index row, SystemEvaluator<double>& eval
 }
 
 }  // namespace
+
+Eigen::VectorXd coupled_slopes(const Eigen::VectorXd& q, const CoordinateReduction& reduction) {
+  Eigen::VectorXd slope = Eigen::VectorXd::Ones(q.size());
+  for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
+    slope(coupler.dependent) = coupler.function.evaluate(q(coupler.independent)).slope * slope(coupler.independent);
+  }
+  return slope;
+}
 
 std::vector<double> frame_times(double begin, double end, double rate_Hz) {
   const auto last = static_cast<std::size_t>(std::floor((end - begin) * rate_Hz * (1.0 + 1e-12) + 1e-9));
@@ -112,7 +111,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
     const auto row = static_cast<Eigen::Index>(i);
     const Instant now = instant_of(motion, rest, system.reduction(), time[i]);
     analyse(now, row, evaluator, analysis);
-    const Eigen::VectorXd slope = slopes_at(now.q, system.reduction());
+    const Eigen::VectorXd slope = coupled_slopes(now.q, system.reduction());
     limits.setZero();
     add_limit_forces<double>(system.model().limit_forces, now.q.data(), now.qdot.data(), limits.data());
     required.setZero();

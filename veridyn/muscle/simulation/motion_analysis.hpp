@@ -25,6 +25,9 @@ struct MotionAnalysis {
   bool interrupted = false;
 };
 
+/// By coordinate, at values `q` of all: dq over the free coordinate that it follows; 1 where it follows none.
+[[nodiscard]] Eigen::VectorXd coupled_slopes(const Eigen::VectorXd& q, const CoordinateReduction& reduction);
+
 /// Instants from `begin` to `end`, `rate_Hz` apart.
 [[nodiscard]] std::vector<double> frame_times(double begin, double end, double rate_Hz);
 

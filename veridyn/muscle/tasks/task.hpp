@@ -10,6 +10,7 @@
 #include "veridyn/muscle/simulation/computed_muscle_control.hpp"
 #include "veridyn/muscle/simulation/forward_simulation.hpp"
 #include "veridyn/muscle/simulation/musculoskeletal_system.hpp"
+#include "veridyn/muscle/tasks/emg_recording.hpp"
 
 namespace veridyn::muscle {
 
@@ -40,6 +41,8 @@ struct Task {
   /// The controls with which it was performed; none: those with which the standard model follows the wish.
   std::optional<Drive> drive = {};
   std::optional<MeasuredMotion> measured = {};
+  /// Muscles follow recorded angles instead of moving a skeleton.
+  std::optional<EmgRecording> recording = {};
   bool hold_out = false;  ///< for validation: no estimate sees it
 };
 
