@@ -33,8 +33,6 @@ constexpr const char* kIdentifiesIt = "`veridyn identify` analyses it";
 constexpr const char* kIdentifiesDrive = "`veridyn identify` prepares the signals of a drive itself";
 constexpr const char* kMovesMuscles = "`veridyn simulate` runs it";
 
-constexpr const char* kIdentifiesSensitivity = "the report of `veridyn identify` says what the recording determines";
-
 constexpr std::array kTable = {
     // aircraft, vehicle, muscle, swing test, calibration
     Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt}},
@@ -45,8 +43,7 @@ constexpr std::array kTable = {
          "`veridyn identify` says in its report how well each swing is described",
          "`veridyn identify` writes the residuals of each point"}},
     Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
-    Row{"sensitivity",
-        {kIdentifiesSensitivity, kIdentifiesSensitivity, sensitivity_muscle, kIdentifiesIt, kIdentifiesIt}},
+    Row{"sensitivity", {sensitivity_aircraft, sensitivity_vehicle, sensitivity_muscle, kIdentifiesIt, kIdentifiesIt}},
     Row{"export",
         {export_aircraft, "`veridyn simulate` and `veridyn identify` write the vehicle to subject.toml",
          "`veridyn simulate` writes the model to model.osim", "`veridyn identify` writes the inertia to subject.toml",

@@ -66,6 +66,8 @@ int validate_vehicle(const StudyRun& run);
 int validate_muscles(const StudyRun& run);
 int track_aircraft(const StudyRun& run);
 int track_vehicle(const StudyRun& run);
+int sensitivity_aircraft(const StudyRun& run);
+int sensitivity_vehicle(const StudyRun& run);
 int sensitivity_muscle(const StudyRun& run);
 int export_aircraft(const StudyRun& run);
 int scale_vehicle(const StudyRun& run);

@@ -9,6 +9,7 @@
 
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/profile_results.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/progress.hpp"
@@ -16,6 +17,7 @@
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
+#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
@@ -64,6 +66,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   folder.write("methods.csv", methods_csv(analysis));
   folder.write("validation.csv", prediction_csv(id.validation));
+  write_profiles(folder, id.profiles, profiled_parameters(id));
   if (drive.run) {
     folder.write("truth.csv", io::to_csv(to_recording(drive.run->trajectory)));
     folder.write("recording.csv", io::to_csv(*drive.run->measured));
@@ -89,6 +92,7 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
                                       estimation::to_string(p.status)));
     }
   }
+  print_profiles(options, id.profiles, 20);
   for (const estimation::PredictedQuantity& q : id.validation.quantities) {
     print_line(options,
                fmt::format("  hold-out {:<16} R2 {:.3f}, RMSE {:.3g} {}", q.name, q.fit.r2, q.fit.rmse, q.unit));
@@ -104,6 +108,8 @@ Summary summary_of(const VehicleAnalysis& analysis, const std::filesystem::path&
   s["verdict"] = to_string(analysis.identification.verdict);
   s["grades"] = grades_summary(analysis.estimate.judgement);
   s["reason"] = analysis.identification.reason;
+  if (!analysis.identification.profiles.profiles.empty())
+    s["profiles"] = profiles_summary(analysis.identification.profiles);
   s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }

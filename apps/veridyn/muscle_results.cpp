@@ -5,6 +5,8 @@
 
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/posterior_results.hpp"
+#include "apps/veridyn/profile_results.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
@@ -26,44 +28,6 @@ std::string tasks_csv(const MuscleAnalysis& analysis) {
   return text;
 }
 
-/// Points of the profiles, with all parameters at each.
-std::string profiles_csv(const MuscleAnalysis& analysis) {
-  std::string text = "parameter,unit,value,likelihood_ratio";
-  for (const estimation::Parameter& p : analysis.estimate.parameters) text += "," + io::csv_text(p.name);
-  text += "\n";
-  for (const estimation::ParameterProfile& profile : analysis.profiles.profiles) {
-    for (const estimation::ProfilePoint& point : profile.points) {
-      text += fmt::format("{},{},{},{}", io::csv_text(profile.name), io::csv_text(profile.unit),
-                          io::csv_number(point.value), io::csv_number(point.statistic));
-      for (const double value : point.theta) text += "," + io::csv_number(value);
-      text += "\n";
-    }
-  }
-  return text;
-}
-
-/// Their intervals; an end that is not closed is empty and says why.
-std::string profile_intervals_csv(const MuscleAnalysis& analysis) {
-  std::string text = "parameter,unit,value,low95,high95,low_end,high_end\n";
-  for (const estimation::ParameterProfile& p : analysis.profiles.profiles) {
-    text += fmt::format("{},{},{},{},{},{},{}\n", io::csv_text(p.name), io::csv_text(p.unit), io::csv_number(p.value),
-                        io::csv_number(p.low), io::csv_number(p.high), to_string(p.low_end), to_string(p.high_end));
-  }
-  return text;
-}
-
-Summary summary_of_profiles(const MuscleAnalysis& analysis) {
-  Summary s = Summary::object();
-  for (const estimation::ParameterProfile& p : analysis.profiles.profiles) {
-    Summary& one = s[p.name];
-    one["low95"] = p.low;
-    one["high95"] = p.high;
-    one["low_end"] = to_string(p.low_end);
-    one["high_end"] = to_string(p.high_end);
-  }
-  return s;
-}
-
 Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::path& folder) {
   Summary s;
   s["folder"] = folder.string();
@@ -75,7 +39,8 @@ Summary summary_of_tasks(const MuscleAnalysis& analysis, const std::filesystem::
   for (std::size_t i = 0; i < analysis.result.verdicts.size(); ++i)
     s["words"][analysis.estimate.parameters[i].name] = to_string(analysis.result.verdicts[i]);
   s["null_directions"] = analysis.result.null_directions;
-  if (!analysis.profiles.profiles.empty()) s["profiles"] = summary_of_profiles(analysis);
+  if (!analysis.profiles.profiles.empty()) s["profiles"] = profiles_summary(analysis.profiles);
+  if (analysis.posterior.usable()) s["posterior"] = posterior_summary(analysis.posterior);
   s["estimate"] = Summary::json(io::to_json(analysis.estimate));
   return s;
 }
@@ -89,10 +54,8 @@ void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy&
   folder.write("estimate.json", io::to_json(analysis.estimate));
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   folder.write("tasks.csv", tasks_csv(analysis));
-  if (!analysis.profiles.profiles.empty()) {
-    folder.write("profiles.csv", profiles_csv(analysis));
-    folder.write("profile_intervals.csv", profile_intervals_csv(analysis));
-  }
+  write_profiles(folder, analysis.profiles, analysis.estimate.parameters);
+  write_posterior(folder, analysis.posterior);
   if (!validation_only && estimation::usable(analysis.groups.front().verdict))
     folder.write("model.osim", study.subject.file->text_with(analysis.identified));
   folder.write("report.html",
@@ -109,9 +72,8 @@ void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy&
   }
   for (const std::string& direction : analysis.result.null_directions)
     print_line(options, "  left to the priors: " + direction);
-  if (!analysis.profiles.message.empty()) print_line(options, "warning: " + analysis.profiles.message);
-  for (const estimation::ParameterProfile& p : analysis.profiles.profiles)
-    print_line(options, fmt::format("  profile   {:<40} {} {}", p.name, p.text(), p.unit));
+  print_profiles(options, analysis.profiles, 40);
+  print_posterior(options, analysis.posterior);
   for (const estimation::NextMeasurement& next : analysis.estimate.next_measurements)
     print_line(options,
                fmt::format("  next      {:<48} widest interval +-{:.2g} % ({}) -> {:.2g} % ({})", next.name,

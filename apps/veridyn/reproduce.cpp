@@ -1,4 +1,4 @@
-// veridyn reproduce aircraft|vehicle: published results alongside ours, one study per row.
+// veridyn reproduce aircraft|vehicle|muscle: published results alongside ours, one study per row.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/report/aircraft_reproduction.hpp"
 #include "veridyn/report/document/html.hpp"
+#include "veridyn/report/muscle_reproduction_report.hpp"
 #include "veridyn/report/vehicle_reproduction_report.hpp"
 
 namespace veridyn::app {
@@ -56,7 +57,7 @@ std::vector<NamedStudy> studies_of(const Arguments& arguments, std::span<const E
   return chosen;
 }
 
-using Run = std::optional<report::ReproducedRow> (*)(const StudyTable& root, Progress& progress);
+using Run = std::optional<report::ReproducedRow> (*)(const Study& study, Progress& progress);
 
 /// Runs every study by `run` (nothing: interrupted), prints the rows and writes the report.
 int reproduce(const Arguments& arguments, const std::string& domain, std::span<const EmbeddedText> embedded, Run run) {
@@ -73,7 +74,7 @@ int reproduce(const Arguments& arguments, const std::string& domain, std::span<c
   for (const NamedStudy& named : studies) {
     const Study study = Study::parse(named.text, named.name + ".toml", {}, overrides);
     run_toml += fmt::format("# {}\n{}\n", named.name, study.to_toml());
-    const std::optional<report::ReproducedRow> row = run(study.root(), progress);
+    const std::optional<report::ReproducedRow> row = run(study, progress);
     if (!row) throw Interrupted();
     print_line(options, fmt::format("{:<4} {}", row->passed() ? "ok" : "NO", row->title));
     if (!row->finding.empty()) print_line(options, fmt::format("       published: {}", row->finding));
@@ -98,16 +99,22 @@ int reproduce(const Arguments& arguments, const std::string& domain, std::span<c
   return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row.passed(); }) ? kDone : kFailed;
 }
 
-std::optional<report::ReproducedRow> run_aircraft(const StudyTable& root, Progress& progress) {
-  const aircraft::Reproduction row = aircraft::reproduce(root, progress);
+std::optional<report::ReproducedRow> run_aircraft(const Study& study, Progress& progress) {
+  const aircraft::Reproduction row = aircraft::reproduce(study.root(), progress);
   if (row.interrupted) return std::nullopt;
   return report::reproduced_row(row);
 }
 
-std::optional<report::ReproducedRow> run_vehicle(const StudyTable& root, Progress& progress) {
-  const vehicle::VehicleReproduction row = vehicle::reproduce_vehicle(root, progress);
+std::optional<report::ReproducedRow> run_vehicle(const Study& study, Progress& progress) {
+  const vehicle::VehicleReproduction row = vehicle::reproduce_vehicle(study.root(), progress);
   if (row.analysis.interrupted) return std::nullopt;
-  root.finish();
+  study.root().finish();
+  return report::reproduced_row(row);
+}
+
+std::optional<report::ReproducedRow> run_muscle(const Study& study, Progress& progress) {
+  const muscle::MuscleReproduction row = muscle::reproduce_muscle(study, progress);
+  if (row.interrupted) return std::nullopt;
   return report::reproduced_row(row);
 }
 
@@ -136,7 +143,9 @@ Command reproduce_command() {
           .commands = {reproduce_domain("aircraft", "regression, total least squares, recursion, stall: eleven rows",
                                         "Cm_change", aircraft_studies, run_aircraft),
                        reproduce_domain("vehicle", "a car and its model of one fifth the size: four rows", "bicycle",
-                                        vehicle_studies, run_vehicle)}};
+                                        vehicle_studies, run_vehicle),
+                       reproduce_domain("muscle", "hidden persons from one task and from several: four rows",
+                                        "one_task", muscle_studies, run_muscle)}};
 }
 
 }  // namespace veridyn::app

@@ -10,5 +10,7 @@ namespace veridyn::app {
 [[nodiscard]] std::span<const EmbeddedText> aircraft_studies();
 /// examples/reproduce/vehicle, in order.
 [[nodiscard]] std::span<const EmbeddedText> vehicle_studies();
+/// examples/reproduce/muscle, in order.
+[[nodiscard]] std::span<const EmbeddedText> muscle_studies();
 
 }  // namespace veridyn::app

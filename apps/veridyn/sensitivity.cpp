@@ -1,4 +1,5 @@
-// veridyn sensitivity STUDY: which muscle moves which task, which tasks excite every muscle, first and total indices.
+// veridyn sensitivity STUDY of muscles: which muscle moves which task, which tasks excite every muscle, first and total
+// indices. Vehicles and aircraft: sensitivity_vehicle.cpp, sensitivity_aircraft.cpp.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,8 +10,10 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/response_results.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/io/results/indices_csv.hpp"
 #include "veridyn/muscle/muscle_study_sensitivity.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -29,26 +32,6 @@ Summary summary_of(const TaskSet& set, const MuscleSensitivity& s) {
                           {"weakest_muscle", s.muscles[set.weakest_muscle]},
                           {"weakest_share", set.weakest},
                           {"mean_share", set.mean}});
-}
-
-Summary summary_of(const ResultIndices& r, const std::vector<std::string>& inputs) {
-  Summary s;
-  s["result"] = r.result;
-  s["failed"] = r.failed;
-  s["inputs"] = Summary::object();
-  for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
-    const numerics::SensitivityIndex& x = r.variance.inputs[i];
-    s["inputs"][inputs[i]] = Summary::object({{"first", x.first},
-                                              {"first_low", x.first_low},
-                                              {"first_high", x.first_high},
-                                              {"total", x.total},
-                                              {"total_low", x.total_low},
-                                              {"total_high", x.total_high}});
-  }
-  for (std::size_t i = 0; i < r.morris.size(); ++i)
-    s["inputs"][inputs[i]] =
-        Summary::object({{"mu", r.morris[i].mean}, {"mu_star", r.morris[i].absolute}, {"sigma", r.morris[i].sd}});
-  return s;
 }
 
 Summary summary_of(const std::filesystem::path& folder, const SensitivityStudy& study, const MuscleSensitivity& r) {
@@ -73,7 +56,7 @@ Summary summary_of(const std::filesystem::path& folder, const SensitivityStudy& 
     s["tasks"].push_back(std::move(task));
   }
   s["indices"] = Summary::array();
-  for (const ResultIndices& i : r.indices.results) s["indices"].push_back(summary_of(i, r.indices.inputs));
+  for (const ResultIndices& i : r.indices.results) s["indices"].push_back(indices_summary(i, r.indices.inputs));
   s["warnings"] = r.warnings;
   s["notes"] = study.notes;
   return s;
@@ -111,7 +94,9 @@ int sensitivity_muscle(const StudyRun& run) {
   progress.stage("writing the results");
   folder->write("sensitivity.csv", sensitivity_csv(result));
   folder->write("tasks.csv", task_choice_csv(result, tasks));
-  if (!result.indices.results.empty()) folder->write("indices.csv", indices_csv(result, study.options.indices.method));
+  if (!result.indices.results.empty())
+    folder->write("indices.csv",
+                  io::indices_csv(result.indices.results, result.indices.inputs, study.options.indices.method));
   folder->write("report.html", report::to_html(report::sensitivity_report(study, tasks, result, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder->files(), ", "));
   folder->publish(run.record(study.seed, study.inputs), options, summary_of(folder->path(), study, result));
@@ -129,15 +114,19 @@ int sensitivity_muscle(const StudyRun& run) {
 }
 
 Command sensitivity_command() {
-  Command command = {.name = "sensitivity",
-                     .summary = "which muscle moves which task, and which tasks excite every muscle",
-                     .arguments = {{.name = "STUDY",
-                                    .help = "study file (TOML) of a musculoskeletal model; [tasks] says which tasks, "
-                                            "[sensitivity] how they are sampled and chosen",
-                                    .required = true}},
-                     .default_out = "out/sensitivity",
-                     .example = "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm",
-                     .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
+  Command command = {
+      .name = "sensitivity",
+      .summary = "which parameter moves which result of a simulated motion",
+      .arguments = {{.name = "STUDY",
+                     .help = "study file (TOML). Muscles: [tasks] says which tasks, [sensitivity] how they "
+                             "are sampled and chosen. Vehicle: the simulated [drive]; aircraft: the "
+                             "simulated [flight]; [sensitivity] says what varies and how far",
+                     .required = true}},
+      .default_out = "out/sensitivity",
+      .example =
+          "veridyn sensitivity arm.toml --set tasks.numbers=all --out out/arm\n"
+          "  veridyn sensitivity step_steer.toml --set sensitivity.method=morris",
+      .run = [](const Arguments& arguments) { return run_on_study("sensitivity", arguments); }};
   for (Argument& argument : checkpoint_arguments()) command.arguments.push_back(std::move(argument));
   return command;
 }

@@ -33,6 +33,7 @@ void finish_flight_study(const StudyTable& root) {
   static_cast<void>(aircraft::ValidationOptions::read(root.table_or_empty("validate")));
   static_cast<void>(aircraft::TrackOptions::read(root.table_or_empty("track")));
   static_cast<void>(aircraft::UncertaintyOptions::read(root.table_or_empty("uncertainty")));
+  root.accept("sensitivity");
   root.finish();
 }
 
@@ -67,6 +68,7 @@ void finish_drive_study(const StudyTable& root, const Progress& progress, DriveT
   const bool drives = root.has("drive") || root.has("road") || root.has("sensors");
   if (read == DriveTables::kNone && drives) check(simulation, {"drive", "road", "sensors"});
   if (read != DriveTables::kScale && root.has("scale")) check(scale, {"drive", "road", "sensors", "scale"});
+  root.accept("sensitivity");
   root.finish();
 }
 

@@ -7,6 +7,7 @@ constexpr const char* kVehicleStudy = R"toml(# A study of a road vehicle: drive 
 #   veridyn simulate study.toml         drives the manoeuvre below, with a report
 #   veridyn identify study.toml         from a drive log to parameters with error bars, validated on held-out data;
 #                                       without a log the drive below is simulated and its truth shown alongside
+#   veridyn sensitivity study.toml      which number of the vehicle moves which result of the drive below, without a log
 #   veridyn track study.toml            follows cornering stiffnesses on line, replayed or --live
 #   veridyn scale study.toml            the same vehicle in another size, and how like it a model is
 # Numbers are SI and radians; a text may carry any unit of the same kind: "80 km/h", "12 deg". Keys with a leading # show
@@ -78,6 +79,7 @@ set = "reference"                  # production-car sensors; "perfect"
 # method = "auto"                  # "output error", "GTLS", ...
 # tyre = "linear"                  # "magic formula": mu and shape too
 # estimate = ["C_f", "C_r", "I_z", "steer_bias", "yaw_rate_bias", "accel_y_bias"]   # also steer_scale, delays, mu, a
+# profiles = ["C_f", "C_r"]        # profile likelihood of these; true: of all that are estimated
 # [identify.uncertainty]
 # mass = "20 kg"                   # how well what is taken as known is known
 

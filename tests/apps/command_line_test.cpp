@@ -16,13 +16,14 @@ TEST_F(CommandLine, NamesTheNearestCommandForAMistypedOne) {
                  "veridyn: identfy: there is no such command (did you mean 'identify'?)\n");
   expect_refusal("simulat study.toml" + out(), "(did you mean 'simulate'?)");
   expect_refusal("init aircaft" + out(), "veridyn: init aircaft: there is no such command (did you mean 'aircraft'?)");
-  expect_refusal("reproduce muscle" + out(), "reproduce muscle: there is no such command (known: aircraft, vehicle)");
+  expect_refusal("reproduce limb" + out(),
+                 "reproduce limb: there is no such command (known: aircraft, vehicle, muscle)");
   expect_refusal("--quiet identify study.toml" + out(), "--quiet: is no option here");
 }
 
 TEST_F(CommandLine, NamesAllCommandsWhereNoneIsGiven) {
   expect_refusal("", "veridyn: command line: a command is missing (known: demo, init, inspect, ");
-  expect_refusal("reproduce", "veridyn: reproduce: a command is missing (known: aircraft, vehicle)");
+  expect_refusal("reproduce", "veridyn: reproduce: a command is missing (known: aircraft, vehicle, muscle)");
 }
 
 TEST_F(CommandLine, RefusesWrongArgumentsInOneLine) {

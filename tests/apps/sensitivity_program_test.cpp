@@ -52,8 +52,8 @@ TEST_F(SensitivityProgram, RefusesWhatItCannotUse) {
   refused("subject.paths=opensim", "take \"exact\" or \"fitted\"");
   refused("tasks.numbers=[43]", "43");
   expect_refusal("sensitivity " + file("empty.toml", "[subject]\nmodel = \"arm\"\n") + out(), "leave no task");
-  expect_refusal("sensitivity " + file("flight.toml", "[subject]\nmass = 1\n") + out(),
-                 "sensitivity is for musculoskeletal models");
+  expect_refusal("sensitivity " + file("swing.toml", "[swing_test]\nmass = 1\n") + out(),
+                 "sensitivity is for aircraft, vehicles and musculoskeletal models");
 }
 
 TEST_F(SensitivityProgram, SaysWhyNoTaskCanBeChosen) {

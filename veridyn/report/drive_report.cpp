@@ -10,8 +10,10 @@
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
+#include "veridyn/report/parts/profile_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 #include "veridyn/report/vehicle_report.hpp"
+#include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
 
 namespace veridyn::report {
@@ -285,6 +287,9 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       analysis,
       "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
       "bars where [identify.uncertainty] gives it."));
+  add(profile_section(id.profiles, profiled_parameters(id),
+                      "Autocorrelated residuals and parts of the drive that scatter widen profiles as they widen the "
+                      "error bars; what [identify.uncertainty] adds is in the error bars only."));
   if (!id.validation.stretches.empty()) add(validation_section(id.validation));
   add(methods_section(analysis));
   add(evidence_section(analysis.estimate));

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
+#include "veridyn/report/parts/posterior_section.hpp"
 #include "veridyn/report/parts/profile_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
@@ -32,6 +34,19 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
                          {"Recording", study.person ? "a simulated person" : "measured motion"},
                          {"Estimated from", fmt::format("{} tasks", count_tasks(a, false))},
                          {"Held out", fmt::format("{} tasks", count_tasks(a, true))}};
+  if (study.emg) {
+    list.push_back(
+        {"EMG", fmt::format("{} signals drive the muscles along the recorded angles", study.emg->signals.size())});
+    for (std::size_t j = 0; j < a.outputs.size() && j < at(a.moment_noise.size()); ++j)
+      list.push_back({fmt::format("Noise of {}", a.outputs[j].name),
+                      fmt::format("{:.3g} {}{}", a.moment_noise(signed_index(j)), a.outputs[j].unit,
+                                  study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found beside the EMG's error)")});
+    if (!a.emg_share.empty())
+      list.push_back(
+          {"Error of the EMG", fmt::format("{:.0f} % of the residual's variance",
+                                           100.0 * std::accumulate(a.emg_share.begin(), a.emg_share.end(), 0.0) /
+                                               static_cast<double>(a.emg_share.size()))});
+  }
   if (!a.result.searches.empty()) list.push_back({"Method", a.estimate.method});
   return list;
 }
@@ -77,6 +92,26 @@ Section muscle_parameters(const TaskStudy& study, const MuscleAnalysis& a) {
     row.status = status_of(p.status);
     table.rows.push_back(std::move(row));
   }
+  section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
+/// Which electrode is whose.
+Section emg_section(const TaskStudy& study) {
+  Section section{.title = "Which EMG drives which muscle", .id = "emg", .folded = true};
+  if (!study.emg) return section;
+  Table table{.title = "EMG",
+              .caption = "Muscles of one signal share its error. A muscle at rest stays at its least activation.",
+              .columns = {{.name = "signal", .align = Align::kLeft}, {.name = "muscles", .align = Align::kLeft}}};
+  const auto add = [&](const std::string& name, int signal) {
+    std::vector<std::string> muscles;
+    for (std::size_t m = 0; m < study.emg->signal_of.size(); ++m)
+      if (study.emg->signal_of[m] == signal) muscles.push_back(study.subject.system->model().muscles[m].name());
+    if (!muscles.empty())
+      table.rows.push_back({.cells = {text_cell(name), text_cell(fmt::format("{}", fmt::join(muscles, ", ")))}});
+  };
+  for (std::size_t s = 0; s < study.emg->signals.size(); ++s) add(study.emg->signals[s], static_cast<int>(s));
+  add("at rest", -1);
   section.blocks.emplace_back(std::move(table));
   return section;
 }
@@ -184,8 +219,11 @@ TimeSeries task_figure(const MuscleAnalysis& a, bool hold_out) {
 Section cost_section(const MuscleAnalysis& a) {
   Section section{.title = "Searches and their cost", .id = "searches", .folded = true};
   if (a.result.searches.empty()) return section;
-  section.blocks.emplace_back(Paragraph{fmt::format("Controls of the tasks took {:.2g} s, the estimate {:.2g} s. {}",
-                                                    a.preparing_s, a.result.seconds, a.result.best.message)});
+  const estimation::SimulationCount& n = a.result.simulations;
+  section.blocks.emplace_back(Paragraph{
+      fmt::format("Controls of the tasks took {:.2g} s, the estimate {:.2g} s: {} simulations of a task, {} with "
+                  "derivatives. {}",
+                  a.preparing_s, a.result.seconds, n.values, n.with_derivatives, a.result.best.message)});
   Table table{.title = "Searches",
               .caption = "The first begins at the standard model, the others at the best points of a Sobol sequence.",
               .columns = {{.name = "search"},
@@ -224,6 +262,7 @@ Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, con
   add(muscle_parameters(study, a));
   add(directions_section(a));
   add(profile_section(a.profiles, a.estimate.parameters));
+  add(posterior_section(a.posterior, a.estimate.parameters));
   add(advice_section(a));
   Section tasks{.title = "Tasks before and after", .id = "tasks"};
   tasks.blocks.emplace_back(task_table(a));
@@ -234,6 +273,7 @@ Document muscle_task_report(const TaskStudy& study, const MuscleAnalysis& a, con
   if (!a.predictions.empty()) tasks.blocks.emplace_back(prediction_table(a.predictions, "Prediction of unseen tasks"));
   add(std::move(tasks));
   add(evidence_section(a.estimate));
+  add(emg_section(study));
   add(cost_section(a));
   add_warnings(document, a.estimate.warnings);
   std::vector<std::string> notes = study.notes;

@@ -8,6 +8,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/sensitivity/sensitivity_tables.hpp"
+#include "veridyn/report/parts/index_blocks.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
@@ -128,51 +129,16 @@ Table task_table(std::span<const PreparedTask> tasks, const MuscleSensitivity& s
   return table;
 }
 
-/// First and total order of one result with their intervals.
-IntervalPlot index_plot(const MuscleSensitivity& s, const ResultIndices& r, double level) {
-  IntervalPlot plot{
-      .title = r.result,
-      .caption = fmt::format("Shares of the variance of the NRMSE; {:g} % bootstrap intervals. {} of {} "
-                             "samples had a point that could not be simulated and do not count.",
-                             100.0 * level, r.variance.dropped, r.variance.evaluations / (s.indices.inputs.size() + 2)),
-      .methods = {"first order", "total order"},
-      .shared_scale = true};
-  for (std::size_t i = 0; i < r.variance.inputs.size(); ++i) {
-    const numerics::SensitivityIndex& x = r.variance.inputs[i];
-    plot.rows.push_back({.name = s.indices.inputs[i],
-                         .estimates = {{.value = x.first, .low = x.first_low, .high = x.first_high},
-                                       {.value = x.total, .low = x.total_low, .high = x.total_high}}});
-  }
-  return plot;
-}
-
-Table morris_table(const MuscleSensitivity& s, const ResultIndices& r) {
-  Table table{.title = r.result,
-              .caption =
-                  "Morris: change of the NRMSE over an input's whole range. mu* mean of the magnitudes, mu with "
-                  "signs, sigma large where the effect depends on other inputs or is not linear.",
-              .columns = {{.name = "Input"},
-                          {.name = "mu*", .unit = "%", .digits = 3},
-                          {.name = "mu", .unit = "%", .digits = 3},
-                          {.name = "sigma", .unit = "%", .digits = 3}}};
-  for (std::size_t i = 0; i < r.morris.size(); ++i)
-    table.rows.push_back({.cells = {text_cell(s.indices.inputs[i]), number_cell(100.0 * r.morris[i].absolute),
-                                    number_cell(100.0 * r.morris[i].mean), number_cell(100.0 * r.morris[i].sd)}});
-  return table;
-}
-
 Section index_section(const SensitivityStudy& study, const MuscleSensitivity& s) {
   Section section{.title = "Indices of the chosen tasks", .id = "indices"};
   const bool shares = std::ranges::any_of(s.indices.results, [](const auto& r) { return !r.variance.inputs.empty(); });
-  section.blocks.emplace_back(Paragraph{
-      .text = shares
-                  ? "All inputs vary between their bounds at once. First order: what is gone of the variance when the "
-                    "input is known. Total order: what is left when only it is not. What lies between is interaction."
-                  : "Inputs vary between their bounds, one after the other, from points all over them (Morris).",
-      .tone = Tone::kNote});
+  section.blocks.emplace_back(index_explanation(shares));
   for (const ResultIndices& r : s.indices.results) {
-    if (!r.variance.inputs.empty()) section.blocks.emplace_back(index_plot(s, r, study.options.indices.variance.level));
-    if (!r.morris.empty()) section.blocks.emplace_back(morris_table(s, r));
+    const IndexedResult result{
+        .indices = r, .inputs = s.indices.inputs, .quantity = "the NRMSE", .unit = "%", .factor = 100.0};
+    if (!r.variance.inputs.empty())
+      section.blocks.emplace_back(index_plot(result, study.options.indices.variance.level));
+    if (!r.morris.empty()) section.blocks.emplace_back(morris_table(result));
   }
   return section;
 }

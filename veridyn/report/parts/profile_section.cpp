@@ -150,7 +150,7 @@ std::optional<XYPlot> valley_plot(const ProfileResult& result, std::span<const P
 
 }  // namespace
 
-Section profile_section(const ProfileResult& result, std::span<const Parameter> parameters) {
+Section profile_section(const ProfileResult& result, std::span<const Parameter> parameters, const std::string& note) {
   Section section{.title = "Profile likelihood", .id = "profiles"};
   if (!result.message.empty()) section.blocks.emplace_back(Paragraph{result.message, Tone::kWarning});
   if (result.profiles.empty()) return section;
@@ -158,6 +158,7 @@ Section profile_section(const ProfileResult& result, std::span<const Parameter> 
       "One parameter is moved and all others are fitted again, priors included. The interval holds the values whose "
       "likelihood ratio stays below the line; where the curve is no parabola, error bars mislead. Open: not even the "
       "parameter's bound is excluded. Dashed: what the error bar says."});
+  if (!note.empty()) section.blocks.emplace_back(Paragraph{note});
   if (result.gain > 0.1)
     section.blocks.emplace_back(Paragraph{
         fmt::format("On the way a better fit was found, by {:.2g} of the likelihood ratio: profiles are about "
