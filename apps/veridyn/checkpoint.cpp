@@ -69,6 +69,12 @@ std::vector<Argument> checkpoint_arguments() {
        .value = false}};
 }
 
+Argument checkpoint_argument() {
+  return {.name = "--checkpoint",
+          .help = "of a person's tasks: keep finished simulations in this folder, go on from what is there",
+          .type = "FOLDER"};
+}
+
 Checkpoint checkpoint_of(const Arguments& arguments) {
   const LaunchedProcess process = launched_process();
   Checkpoint checkpoint{
@@ -116,6 +122,24 @@ numerics::BlockStore open_store(const Checkpoint& checkpoint, const StudyRun& ru
     from = end + 1;
   }
   return {checkpoint.folder, identity, checkpoint.share};
+}
+
+std::unique_ptr<numerics::ValueLog> open_value_log(const StudyRun& run,
+                                                   const std::vector<std::filesystem::path>& inputs) {
+  const std::filesystem::path folder = run.arguments.text("--checkpoint");
+  if (folder.empty()) return nullptr;
+  const numerics::BlockStore identity = open_store({.folder = folder, .options = run.options()}, run, inputs);
+  return std::make_unique<numerics::ValueLog>(folder / "evaluations.log");
+}
+
+bool runs_alone(std::string_view command) {
+  const LaunchedProcess process = launched_process();
+  if (process.size > 1 && process.rank == 0)
+    throw InputError(std::string(command),
+                     fmt::format("runs in one process, {} were started under {}; --threads takes the processors of one "
+                                 "machine",
+                                 process.size, process.launcher));
+  return process.size == 1;
 }
 
 }  // namespace veridyn::app

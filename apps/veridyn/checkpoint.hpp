@@ -1,16 +1,22 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <string_view>
 #include <vector>
 
 #include "apps/veridyn/command.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "veridyn/numerics/batches/block_store.hpp"
+#include "veridyn/numerics/batches/value_log.hpp"
 
 namespace veridyn::app {
 
 /// The options --checkpoint, --shard and --merge of commands whose long work may be resumed and shared.
 [[nodiscard]] std::vector<Argument> checkpoint_arguments();
+
+/// The first of them alone, of commands whose work is one search after the other and cannot be shared.
+[[nodiscard]] Argument checkpoint_argument();
 
 /// Where long work is kept, and which part of it this process does.
 struct Checkpoint {
@@ -33,5 +39,14 @@ struct Checkpoint {
 /// @throws as the constructor of `BlockStore`.
 [[nodiscard]] numerics::BlockStore open_store(const Checkpoint& checkpoint, const StudyRun& run,
                                               const std::vector<std::filesystem::path>& inputs);
+
+/// What a search asks of its model, kept in the folder of `checkpoint_argument`; nullptr where none is named.
+/// @throws as `open_store` and the constructor of `numerics::ValueLog`.
+[[nodiscard]] std::unique_ptr<numerics::ValueLog> open_value_log(const StudyRun& run,
+                                                                 const std::vector<std::filesystem::path>& inputs);
+
+/// Whether this process is to run a command that shares no work: of several under a launcher none is.
+/// @throws InputError in the first of them, so that it is said once.
+[[nodiscard]] bool runs_alone(std::string_view command);
 
 }  // namespace veridyn::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -52,6 +53,9 @@ constexpr std::array kTable = {
         {"the model of an aircraft is dimensionless already: `veridyn export` writes it", scale_vehicle, kMovesMuscles,
          kIdentifiesIt, kIdentifiesIt}},
 };
+
+/// The command that several processes of a launcher run together.
+constexpr std::string_view kSharesWork = "sensitivity";
 
 constexpr auto kCommands = [] {
   std::array<std::string_view, kTable.size()> names;
@@ -116,6 +120,7 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
 }
 
 int run_on_study(std::string_view command, const Arguments& arguments) {
+  if (command != kSharesWork && !runs_alone(command)) return kDone;
   const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
   const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);

@@ -1,13 +1,29 @@
 // veridyn identify STUDY: from recording to parameters, validation and report.
+#include <fmt/format.h>
+
+#include <memory>
+
 #include "apps/veridyn/aircraft_results.hpp"
+#include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
 #include "apps/veridyn/muscle_results.hpp"
+#include "veridyn/core/error.hpp"
 
 namespace veridyn::app {
 
+namespace {
+
+void refuse_checkpoint(const StudyRun& run) {
+  if (!run.arguments.text("--checkpoint").empty())
+    throw InputError("--checkpoint", "is for a person's tasks; identify of other studies begins anew");
+}
+
+}  // namespace
+
 int identify_aircraft(const StudyRun& run) {
+  refuse_checkpoint(run);
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
   const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
@@ -19,6 +35,7 @@ int identify_aircraft(const StudyRun& run) {
 }
 
 int identify_vehicle(const StudyRun& run) {
+  refuse_checkpoint(run);
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
   PreparedDrive drive = prepare_drive(run.study, progress);
@@ -32,8 +49,15 @@ int identify_muscles(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
   const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
-  const muscle::MuscleAnalysis analysis = muscle::identify(study, progress);
-  if (analysis.interrupted) throw Interrupted();
+  const std::unique_ptr<numerics::ValueLog> log = open_value_log(run, study.inputs);
+  const muscle::MuscleAnalysis analysis = muscle::identify(study, progress, log.get());
+  if (analysis.interrupted) {
+    if (log) print_line(run.options(), fmt::format("finished simulations are kept in {}", log->path().string()));
+    throw Interrupted();
+  }
+  if (log && log->loaded() > 0)
+    print_line(run.options(), fmt::format("{} simulations of the search were in {}", analysis.resumed,
+                                          log->path().parent_path().string()));
   progress.stage("writing the results");
   publish_muscles(run, folder, study, analysis);
   return kDone;
@@ -48,7 +72,8 @@ Command identify_command() {
                          "study file (TOML) of an aircraft's flight, a vehicle's drive, a person's tasks ([tasks] in "
                          "a study of muscles), a swing test or a calibration; `veridyn init` writes one to "
                          "start from",
-                     .required = true}},
+                     .required = true},
+                    checkpoint_argument()},
       .default_out = "out/identify",
       .example = "veridyn identify study.toml --out out/flight7 --set data.from=120",
       .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); }};

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/posterior_results.hpp"
@@ -24,6 +26,25 @@ std::string tasks_csv(const MuscleAnalysis& analysis) {
     text += fmt::format("{},{},{},{},{},{},{},{}\n", io::csv_text(t.name), t.hold_out ? "unseen" : "trained",
                         io::csv_number(t.before.nrmse), io::csv_number(t.after.nrmse), io::csv_number(t.before.rmse),
                         io::csv_number(t.after.rmse), io::csv_number(t.before.range), io::csv_number(t.reserve_share));
+  }
+  return text;
+}
+
+/// Every evaluation of the search.
+std::string evaluations_csv(const MuscleAnalysis& analysis) {
+  std::string text = "evaluation,kind,seconds,end";
+  for (const TaskOutcome& t : analysis.tasks)
+    if (!t.hold_out) text += "," + io::csv_text("NRMSE " + t.name);
+  for (const estimation::Parameter& p : analysis.estimate.parameters) text += "," + io::csv_text(p.name);
+  text += "\n";
+  for (std::size_t i = 0; i < analysis.evaluations.size(); ++i) {
+    const estimation::ModelEvaluation& e = analysis.evaluations[i];
+    const bool failed = std::ranges::count(e.failed, 0) < static_cast<std::ptrdiff_t>(e.failed.size());
+    text += fmt::format("{},{},{:.3g},{}", i + 1, e.derivatives ? "derivatives" : "values", e.seconds,
+                        failed ? "failed" : "done");
+    for (const double nrmse : e.misfit) text += "," + io::csv_number(nrmse);
+    for (const double value : e.theta) text += "," + io::csv_number(value);
+    text += "\n";
   }
   return text;
 }
@@ -54,6 +75,7 @@ void publish_muscles(const StudyRun& run, OutputFolder& folder, const TaskStudy&
   folder.write("estimate.json", io::to_json(analysis.estimate));
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   folder.write("tasks.csv", tasks_csv(analysis));
+  if (!validation_only) folder.write("evaluations.csv", evaluations_csv(analysis));
   write_profiles(folder, analysis.profiles, analysis.estimate.parameters);
   write_posterior(folder, analysis.posterior);
   if (!validation_only && estimation::usable(analysis.groups.front().verdict))

@@ -18,6 +18,7 @@ namespace veridyn {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr int kKilled = 137;  // by the shell
 
@@ -208,6 +209,80 @@ TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
   EXPECT_EQ(script.exit_code, 0) << script.text;
   std::filesystem::remove_all(folder_ / "out");
   refused("--set sensitivity.samples=8" + kept, "is of another study or version: ");
+  EXPECT_TRUE(results().empty());
+}
+
+/// `veridyn identify` of a person: one search after the other.
+class IdentifyCheckpoint : public CheckpointProgram {
+ protected:
+  [[nodiscard]] std::string identify(const std::string& more, const std::string& out = "out") const {
+    return "identify " + (test::source_folder() / "examples/studies/muscle/profile_arm.toml").string() +
+           " --set identify.advice=false --threads 1 " + more + " --out " + (folder_ / out).string();
+  }
+  [[nodiscard]] std::string kept() const { return " --checkpoint " + checkpoint() + " "; }
+
+  /// Killed at six random moments of its first seconds, and resumed: the files of a run that nothing disturbed.
+  void expect_resumes(const std::string& more, double seconds, const std::vector<std::string>& files) {
+    ASSERT_EQ(run(identify(more, "whole")).exit_code, 0);
+    std::mt19937 random(std::random_device{}());
+    std::uniform_real_distribution<double> when(0.1 * seconds, seconds);
+    int killed = 0;
+    for (int attempt = 0; attempt < 6; ++attempt) {
+      const Outcome outcome =
+          run_under("timeout -s KILL " + std::to_string(when(random)), identify(more + kept(), "killed"));
+      ASSERT_TRUE(outcome.exit_code == kKilled || outcome.exit_code == 0) << outcome.exit_code << outcome.text;
+      killed += outcome.exit_code == kKilled ? 1 : 0;
+    }
+    EXPECT_GT(killed, 0);
+    const Outcome done = run(identify(more + kept()));
+    ASSERT_EQ(done.exit_code, 0) << done.text;
+    for (const std::string& name : files)
+      EXPECT_EQ(read_file(in_out(name)), read_file(folder_ / "whole" / name)) << name;
+  }
+};
+
+TEST_F(IdentifyCheckpoint, ResumesSearchProfilesAndPosteriorBitForBit) {
+  expect_resumes(
+      "--set 'identify.profiles=[\"triceps_long.optimal_fiber_length\"]' "
+      "--set 'identify.posterior={walkers=10,steps=30,effective=10}'",
+      1.0, {"estimate.json", "parameters.csv", "tasks.csv", "profiles.csv", "posterior.csv", "model.osim"});
+  EXPECT_THAT(run(identify(kept())).text, HasSubstr("is of another study or version: "));
+}
+
+TEST_F(IdentifyCheckpoint, ResumesThePublishedSearchBitForBit) {
+  expect_resumes("--set 'identify.profiles=[]' --set identify.route=published --set identify.evaluations=400", 0.4,
+                 {"estimate.json", "parameters.csv", "tasks.csv", "model.osim"});
+}
+
+TEST_F(IdentifyCheckpoint, APublishedSearchThatDoesNotHoldItsToleranceIsSaidSo) {
+  const Outcome done =
+      run(identify("--set 'identify.profiles=[]' --set identify.route=published "
+                   "--set identify.evaluations=30 --set identify.tolerance=1e-5"));
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  EXPECT_THAT(done.text, HasSubstr("warning: the published search ended with an NRMSE of "));
+  EXPECT_THAT(done.text, HasSubstr("more than the tolerance of 1e-05"));
+}
+
+TEST_F(IdentifyCheckpoint, SaysWhatItTookFromTheFolderAndWhatWasAskedOfTheModel) {
+  const std::string more = "--set 'identify.profiles=[]'" + kept();
+  EXPECT_THAT(run(identify(more)).text, Not(HasSubstr("of the search were in")));
+  EXPECT_THAT(run(identify(more)).text, HasSubstr(" simulations of the search were in " + checkpoint()));
+  const std::string log = read_file(in_out("evaluations.csv"));
+  EXPECT_THAT(log, ::testing::StartsWith("evaluation,kind,seconds,end,\"NRMSE task 8: "));
+  EXPECT_THAT(log, HasSubstr("\n1,values,"));
+  EXPECT_THAT(log, HasSubstr(",derivatives,"));
+  EXPECT_THAT(log, Not(HasSubstr("failed")));
+}
+
+TEST_F(IdentifyCheckpoint, RefusesOtherStudiesAndSeveralProcesses) {
+  const std::string flight = (test::source_folder() / "examples/studies/simulated_flight.toml").string();
+  expect_refusal("identify " + flight + kept() + out(), "--checkpoint: is for a person's tasks");
+  const Outcome first = run_under("OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2", identify(""));
+  EXPECT_EQ(first.exit_code, 2);
+  EXPECT_THAT(first.text, HasSubstr("identify: runs in one process, 2 were started under mpirun"));
+  const Outcome second = run_under("OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=2", identify(""));
+  EXPECT_EQ(second.exit_code, 0);
+  EXPECT_EQ(second.text, "");
   EXPECT_TRUE(results().empty());
 }
 

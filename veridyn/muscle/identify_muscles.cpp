@@ -20,6 +20,7 @@
 #include "veridyn/muscle/identification/task_warnings.hpp"
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 #include "veridyn/muscle/task_recordings.hpp"
+#include "veridyn/muscle/tasks/task_error.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -33,6 +34,7 @@ struct Part {
   // One of them: tasks that are simulated forward, or along their recorded angles.
   std::unique_ptr<MuscleParametricModel> forward;
   std::unique_ptr<EmgDrivenModel> along;
+  std::unique_ptr<estimation::LoggedModel> logged;  // views it
 
   [[nodiscard]] const estimation::ParametricModel& model() const {
     if (along) return *along;
@@ -45,7 +47,7 @@ MuscleModelOptions model_options(const TaskStudy& study) {
 }
 
 /// Those with `hold_out` as given.
-Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out) {
+Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out, numerics::ValueLog* log = nullptr) {
   Part part;
   std::vector<MotionSegment> forward;
   std::vector<EmgSegment> along;
@@ -64,6 +66,10 @@ Part part_of(const TaskStudy& study, const TaskRecordings& all, bool hold_out) {
   else
     part.forward =
         std::make_unique<MuscleParametricModel>(system, study.unknowns, std::move(forward), model_options(study));
+  const auto nrmse = [tasks = part.tasks](std::size_t segment, const RowMatrix& output) {
+    return task_error(tasks[segment]->measured, output).nrmse;
+  };
+  part.logged = std::make_unique<estimation::LoggedModel>(part.model(), hold_out ? "unseen" : "trained", nrmse, log);
   return part;
 }
 
@@ -242,26 +248,66 @@ void advise_next(const TaskStudy& study, const MuscleParametricModel& model, con
                   a.advice.now.parameter, 100.0 * a.advice.now.share, 100.0 * best.then.share, determined->advice);
 }
 
-/// By the route that the study asks for; with EMG `emg` holds what profiles need.
-TaskEstimate estimated(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, EmgEstimate& emg,
-                       Progress& progress) {
-  if (part.along) {
-    emg = estimate_from_emg(*part.along, part.measured, noise, study.emg->error, study.search, progress);
-    return emg.estimate;
-  }
-  const MuscleParametricModel& model = *part.forward;
-  if (!study.published) return estimate_from_tasks(model, part.measured, noise, study.search, progress);
-  const PublishedRouteResult found = published_route(model, part.measured, *study.published, progress);
+/// By the published search.
+TaskEstimate published_estimate(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+                                const numerics::ValueLog* log, MuscleAnalysis& a, Progress& progress) {
+  PublishedRouteOptions options = *study.published;
+  if (log != nullptr && options.evaluation.log.empty())
+    options.evaluation.log = log->path().parent_path() / "search.csv";
+  PublishedRouteResult found = published_route(*part.forward, part.measured, options, progress);
+  a.evaluations = std::move(found.evaluations);
+  a.resumed = found.resumed * part.tasks.size();
   if (found.theta.size() == 0 || progress.interrupted()) {
     TaskEstimate none;
     none.best.message = found.message();
     return none;
   }
-  TaskSearch search{.steps = static_cast<int>(found.evaluations), .message = found.message()};
-  TaskEstimate estimate = describe_estimate(model, part.measured, noise, found.theta, std::move(search), progress);
+  for (std::size_t s = 0; s < found.nrmse.size(); ++s) {
+    if (!(found.nrmse[s] <= options.tolerance))
+      a.estimate.warnings.push_back(
+          fmt::format("the published search ended with an NRMSE of {:.2g} in {}, more than the "
+                      "tolerance of {:.2g}: {}",
+                      found.nrmse[s], part.tasks[s]->name, options.tolerance, found.pattern.message()));
+  }
+  TaskSearch search{.steps = static_cast<int>(a.evaluations.size()), .message = found.message()};
+  TaskEstimate estimate =
+      describe_estimate(*part.logged, part.measured, noise, found.theta, std::move(search), progress);
   estimate.seconds = found.seconds;
   estimate.simulations = {.values = found.simulations};
   return estimate;
+}
+
+/// By the route that the study asks for; with EMG `emg` holds what profiles need.
+TaskEstimate estimated(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+                       const numerics::ValueLog* log, EmgEstimate& emg, MuscleAnalysis& a, Progress& progress) {
+  if (study.published) return published_estimate(study, part, noise, log, a, progress);
+  TaskEstimate estimate;
+  if (part.along) {
+    emg = estimate_from_emg(*part.along, *part.logged, part.measured, noise, study.emg->error, study.search, progress);
+    estimate = emg.estimate;
+  } else {
+    estimate = estimate_from_tasks(*part.logged, part.measured, noise, study.search, progress);
+  }
+  a.evaluations = part.logged->evaluations();
+  a.resumed = part.logged->resumed();
+  return estimate;
+}
+
+/// Profiles and posterior, where the study asks for them.
+void look_around(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, const EmgEstimate& emg,
+                 numerics::ValueLog* log, MuscleAnalysis& a, Progress& progress) {
+  if (!study.profiles.empty()) {
+    progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
+    const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
+    a.profiles = study.emg ? profile_tasks(*emg.model, emg.measured, one, a.result, study.profiles, progress)
+                           : profile_tasks(*part.logged, part.measured, noise, a.result, study.profiles, progress);
+  }
+  if (!study.posterior || progress.interrupted()) return;
+  progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
+  // The densities are kept, a number each, not the responses.
+  a.posterior = study.emg
+                    ? sample_tasks(emg.model->on(part.model()), emg.measured, a.result, *study.posterior, progress, log)
+                    : sample_tasks(part.model(), part.measured, a.result, *study.posterior, progress, log);
 }
 
 /// Why no search came to an end, with the first task's time and state.
@@ -314,14 +360,14 @@ std::vector<estimation::Evidence> judged(const TaskStudy& study, const Part& tra
 
 }  // namespace
 
-MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
+MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log) {
   MuscleAnalysis a;
   TaskRecordings all = task_recordings(study, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   a.preparing_s = all.seconds;
   a.truth = all.truth;
-  const Part trained = part_of(study, all, false), unseen = part_of(study, all, true);
+  const Part trained = part_of(study, all, false, log), unseen = part_of(study, all, true);
   if (trained.tasks.empty())
     throw InputError(study.subject.title,
                      fmt::format("no task is left to estimate from: {}", fmt::join(all.unused, "; ")));
@@ -329,7 +375,7 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
   const Eigen::VectorXd noise = stated_noise(study);
   progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
   EmgEstimate emg;
-  a.result = estimated(study, trained, noise, emg, progress);
+  a.result = estimated(study, trained, noise, log, emg, a, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));
@@ -344,18 +390,7 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress) {
   a.unused = std::move(all.unused);
   const std::vector<std::string> wraps = path_warnings(study, trained, theta);
   std::vector<estimation::Evidence> rows = judged(study, trained, a, wraps, noise);
-  if (!study.profiles.empty()) {
-    progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
-    const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
-    a.profiles = study.emg
-                     ? profile_tasks(*emg.model, emg.measured, one, a.result, study.profiles, progress)
-                     : profile_tasks(trained.model(), trained.measured, noise, a.result, study.profiles, progress);
-  }
-  if (study.posterior && !progress.interrupted()) {
-    progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
-    a.posterior = study.emg ? sample_tasks(*emg.model, emg.measured, a.result, *study.posterior, progress)
-                            : sample_tasks(trained.model(), trained.measured, a.result, *study.posterior, progress);
-  }
+  look_around(study, trained, noise, emg, log, a, progress);
   if (study.advice && !progress.interrupted())
     advise_next(study, *trained.forward, model_options(study), rows, a, progress);
   a.interrupted = progress.interrupted();

@@ -90,7 +90,7 @@ TEST(PublishedRoute, FindsTheHiddenPersonAsTheGradientDoesWithManyMoreSimulation
   const double error = (found.theta - person.hidden()).cwiseAbs().maxCoeff();
   EXPECT_LT(error, 2e-3) << found.message();
   for (const double e : found.nrmse) EXPECT_LT(e, 1e-3);
-  EXPECT_EQ(found.simulations, 2U * found.evaluations);
+  EXPECT_EQ(found.simulations, 2U * found.evaluations.size());
 
   const CountedModel counted(person.model());
   const auto begun = std::chrono::steady_clock::now();
@@ -121,14 +121,14 @@ TEST(PublishedRoute, ContinuesItsLogAndRefusesThatOfOtherTargets) {
                                 .pattern = {.tolerance = 1e-2},
                                 .evaluation = {.max_evaluations = 15, .log = log}};
   const PublishedRouteResult first = published_route(person.model(), person.targets(), options, progress);
-  EXPECT_LE(first.evaluations, 15U);
+  EXPECT_LE(first.evaluations.size(), 15U);
   options.evaluation.max_evaluations = 1000;
   const PublishedRouteResult second = published_route(person.model(), person.targets(), options, progress);
-  EXPECT_EQ(second.resumed, first.evaluations);
+  EXPECT_EQ(second.resumed, first.evaluations.size());
   options.evaluation.log.clear();
   const PublishedRouteResult whole = published_route(person.model(), person.targets(), options, progress);
   EXPECT_EQ(second.theta, whole.theta);
-  EXPECT_EQ(second.evaluations, whole.evaluations);
+  EXPECT_EQ(second.evaluations.size(), whole.evaluations.size());
   std::vector<estimation::RowMatrix> others = person.targets();
   others[0](3, 0) += 1e-9;
   options.evaluation.log = log;

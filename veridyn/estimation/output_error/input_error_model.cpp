@@ -66,6 +66,12 @@ InputErrorModel::InputErrorModel(const ParametricModel& model, std::vector<Error
   for (const ModelOutput& output : model.outputs()) outputs_.push_back({output.name, "1"});
 }
 
+InputErrorModel InputErrorModel::on(const ParametricModel& model) const {
+  InputErrorModel other = *this;
+  other.model_ = &model;
+  return other;
+}
+
 bool InputErrorModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Index> active,
                               ModelResponse& response) const {
   if (!model_->respond(segment, theta, active, response)) return false;

@@ -51,6 +51,9 @@ class InputErrorModel final : public ParametricModel {
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              ModelResponse& response) const override;
 
+  /// The same units of another model, which must outlive it: of a view of this one, say.
+  [[nodiscard]] InputErrorModel on(const ParametricModel& model) const;
+
   /// A recording in the same units; NaN stays.
   [[nodiscard]] RowMatrix whitened(std::size_t segment, const RowMatrix& measured) const;
 

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -140,6 +142,19 @@ class Posterior {
   std::size_t shared_count_ = 0;
 };
 
+/// Answered from the log where it is there; a density takes a simulation of every segment.
+double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, numerics::ValueLog* log) {
+  if (log == nullptr) return posterior.log_density(x);
+  numerics::Fingerprint key;
+  key.add("posterior");
+  for (const double value : x) key.add(value);
+  std::vector<double> values;
+  if (log->find(key.value(), values) && values.size() == 1) return values.front();
+  const double density = posterior.log_density(x);
+  log->append(key.value(), std::span(&density, 1));
+  return density;
+}
+
 /// Of sorted values.
 double quantile_of(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
@@ -152,11 +167,11 @@ double quantile_of(const std::vector<double>& sorted, double share) {
 
 PosteriorSample sample_posterior(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                  const OutputErrorEstimate& estimate, const PosteriorOptions& options,
-                                 Progress& progress) {
+                                 Progress& progress, numerics::ValueLog* log) {
   if (!(options.dispersion >= 1.0))
     throw InputError("dispersion", fmt::format("= {:g} must be at least 1", options.dispersion));
   const Posterior posterior(model, measured, estimate, options.dispersion);
-  const LogDensity density = [&](const Eigen::VectorXd& x) { return posterior.log_density(x); };
+  const LogDensity density = [&](const Eigen::VectorXd& x) { return kept_density(posterior, x, log); };
   const NormalApproximation near = posterior.linearised();
   PosteriorSample sample;
   sample.ensemble =

@@ -7,6 +7,7 @@
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 #include "veridyn/estimation/uncertainty/ensemble_sampler.hpp"
+#include "veridyn/numerics/batches/value_log.hpp"
 
 namespace veridyn::estimation {
 
@@ -40,9 +41,11 @@ struct PosteriorSample {
 /// conditions are sampled with them. Where error bars (a parabola about the estimate) and these quantiles differ, the
 /// quantiles are right, as far as the noise is white.
 /// @param estimate usable; where the walkers begin
+/// @param log  densities by walkers' places, of this model and recording alone: those of an earlier run are taken from
+/// it, so that one which was cut off goes on to the same bits. nullptr: nothing is kept
 /// @throws InputError when an option is out of order, or the estimate has biases of outputs.
 [[nodiscard]] PosteriorSample sample_posterior(const ParametricModel& model, const std::vector<RowMatrix>& measured,
                                                const OutputErrorEstimate& estimate, const PosteriorOptions& options,
-                                               Progress& progress);
+                                               Progress& progress, numerics::ValueLog* log = nullptr);
 
 }  // namespace veridyn::estimation

@@ -20,9 +20,11 @@ constexpr double kAtRest = 0.1;
 /// View of one estimation.
 class EmgEstimation {
  public:
-  EmgEstimation(const EmgDrivenModel& model, const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise,
-                const EmgError& error, TaskEstimateOptions options, Progress& progress)
+  EmgEstimation(const EmgDrivenModel& model, const estimation::ParametricModel& responses,
+                const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise, const EmgError& error,
+                TaskEstimateOptions options, Progress& progress)
       : model_(model),
+        responses_(responses),
         measured_(measured),
         given_(noise),
         error_(error),
@@ -65,7 +67,7 @@ class EmgEstimation {
     std::vector<char> good(measured_.size(), 0);
     numerics::parallel_for(measured_.size(), progress_.threads(), [&](std::size_t s) {
       estimation::ModelResponse now;
-      good[s] = model_.error_response(s, theta, error_, response[s]) && model_.respond(s, theta, {}, now) ? 1 : 0;
+      good[s] = model_.error_response(s, theta, error_, response[s]) && responses_.respond(s, theta, {}, now) ? 1 : 0;
       if (good[s] != 0) residual[s] = measured_[s] - now.output;
     });
     if (std::count(good.begin(), good.end(), 0) > 0) return false;
@@ -77,7 +79,7 @@ class EmgEstimation {
       whitening.emplace_back(response[s], result_.noise, measured_[s]);
       result_.input_share.push_back(whitening.back().input_share());
     }
-    result_.model = std::make_unique<estimation::InputErrorModel>(model_, std::move(whitening));
+    result_.model = std::make_unique<estimation::InputErrorModel>(responses_, std::move(whitening));
     result_.measured.clear();
     for (std::size_t s = 0; s < measured_.size(); ++s)
       result_.measured.push_back(result_.model->whitened(s, measured_[s]));
@@ -112,6 +114,7 @@ class EmgEstimation {
   }
 
   const EmgDrivenModel& model_;
+  const estimation::ParametricModel& responses_;
   const std::vector<RowMatrix>& measured_;
   const Eigen::VectorXd& given_;
   const EmgError& error_;
@@ -122,10 +125,10 @@ class EmgEstimation {
 
 }  // namespace
 
-EmgEstimate estimate_from_emg(const EmgDrivenModel& model, const std::vector<RowMatrix>& measured,
-                              const Eigen::VectorXd& noise, const EmgError& error, const TaskEstimateOptions& options,
-                              Progress& progress) {
-  return EmgEstimation(model, measured, noise, error, options, progress).run();
+EmgEstimate estimate_from_emg(const EmgDrivenModel& model, const estimation::ParametricModel& responses,
+                              const std::vector<RowMatrix>& measured, const Eigen::VectorXd& noise,
+                              const EmgError& error, const TaskEstimateOptions& options, Progress& progress) {
+  return EmgEstimation(model, responses, measured, noise, error, options, progress).run();
 }
 
 }  // namespace veridyn::muscle

@@ -15,7 +15,7 @@ struct EmgEstimate {
   Eigen::VectorXd noise;            ///< of the outputs' measurement, as stated or as found
   std::vector<double> input_share;  ///< by segment: share of the residual's variance that is the EMG's error
   // What profiles need: the outputs in units in which residuals are independent.
-  std::unique_ptr<estimation::InputErrorModel> model;  ///< views the model that was estimated
+  std::unique_ptr<estimation::InputErrorModel> model;  ///< views `responses`
   std::vector<estimation::RowMatrix> measured;
 };
 
@@ -23,8 +23,9 @@ struct EmgEstimate {
 /// the EMG make of the moments, by the model's own response to them, is part of the residual's covariance. It follows
 /// from the parameters and is computed again at each estimate until that rests. Without it intervals would take errors
 /// of the EMG, alike over a tenth of a second and larger the harder a muscle pulls, for noise of the moments.
+/// @param responses what the search is answered by: the model, or a view of it (`estimation::LoggedModel`)
 /// @param noise standard deviation by output; empty: found from the residual (expectation maximisation)
-[[nodiscard]] EmgEstimate estimate_from_emg(const EmgDrivenModel& model,
+[[nodiscard]] EmgEstimate estimate_from_emg(const EmgDrivenModel& model, const estimation::ParametricModel& responses,
                                             const std::vector<estimation::RowMatrix>& measured,
                                             const Eigen::VectorXd& noise, const EmgError& error,
                                             const TaskEstimateOptions& options, Progress& progress);

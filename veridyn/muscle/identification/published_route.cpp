@@ -87,6 +87,16 @@ estimation::BlackBoxProblem problem_of(const MuscleParametricModel& model,
   return p;
 }
 
+estimation::ModelEvaluation noted(const estimation::SearchEvaluation& e, const MuscleParametricModel& model,
+                                  double tolerance) {
+  estimation::ModelEvaluation out{.theta = all_unknowns(model, searched(model), e.x), .seconds = e.seconds};
+  for (const double c : e.values.constraints) {
+    out.misfit.push_back(c + tolerance);
+    out.failed.push_back(std::isfinite(c) ? 0 : 1);
+  }
+  return out;
+}
+
 }  // namespace
 
 void PublishedRouteOptions::validate() const {
@@ -123,11 +133,12 @@ PublishedRouteResult published_route(const MuscleParametricModel& model, std::sp
   }
   if (result.pattern.x.size() > 0) result.theta = all_unknowns(model, searched(model), result.pattern.x);
   for (const double c : result.pattern.values.constraints) result.nrmse.push_back(c + options.tolerance);
-  result.evaluations = evaluator.evaluations().size();
+  for (const estimation::SearchEvaluation& e : evaluator.evaluations())
+    result.evaluations.push_back(noted(e, model, options.tolerance));
   result.resumed = evaluator.resumed();
   result.failed = evaluator.failed();
-  result.simulations = result.evaluations * model.segments();
-  for (const estimation::SearchEvaluation& e : evaluator.evaluations()) result.seconds += e.seconds;
+  result.simulations = result.evaluations.size() * model.segments();
+  for (const estimation::ModelEvaluation& e : result.evaluations) result.seconds += e.seconds;
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/output_error/logged_model.hpp"
 #include "veridyn/estimation/search/batch_evaluator.hpp"
 #include "veridyn/estimation/search/particle_swarm.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
@@ -31,9 +32,9 @@ struct PublishedRouteResult {
   Eigen::VectorXd theta;      ///< values of the model's unknowns; those that are fixed at their start
   std::vector<double> nrmse;  ///< by task, at theta
   estimation::SearchResult swarm, pattern;
-  std::size_t evaluations = 0;  ///< each of all tasks
-  std::size_t resumed = 0;      ///< of them answered from an earlier run's log
-  std::size_t failed = 0;       ///< of them a task could not be simulated
+  std::vector<estimation::ModelEvaluation> evaluations;  ///< each of all tasks
+  std::size_t resumed = 0;                               ///< of them answered from an earlier run's log
+  std::size_t failed = 0;                                ///< of them a task could not be simulated
   std::size_t simulations = 0;
   double seconds = 0.0;  ///< of all evaluations, those of the earlier run included
 
