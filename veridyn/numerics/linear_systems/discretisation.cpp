@@ -1,0 +1,57 @@
+#include "veridyn/numerics/linear_systems/discretisation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
+
+namespace veridyn::numerics {
+
+HeldSystem held(const StateSpace& system, double step, Hold hold) {
+  if (!(step >= 0.0 && std::isfinite(step)))
+    throw InputError("step", fmt::format("is {} s; must be finite and not negative", step));
+  const Eigen::Index n = system.states(), m = system.inputs();
+  // d/dt [x; u; slope] with the slope in units of one step.
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(n + 2 * m, n + 2 * m);
+  rates.topLeftCorner(n, n) = step * system.A;
+  rates.block(0, n, n, m) = step * system.B;
+  rates.block(n, n + m, m, m).setIdentity();
+  const Eigen::MatrixXd e = matrix_exponential(rates);
+  HeldSystem h{e.topLeftCorner(n, n), e.block(0, n, n, m), Eigen::MatrixXd::Zero(n, m)};
+  if (hold == Hold::kFirstOrder) h.Slope = e.block(0, n + m, n, m);
+  return h;
+}
+
+StateSpace zero_order_hold(const StateSpace& system, double step) {
+  HeldSystem h = held(system, step, Hold::kZeroOrder);
+  return {std::move(h.Phi), std::move(h.Gamma), system.C, system.D};
+}
+
+StateSpace first_order_hold(const StateSpace& system, double step) {
+  const HeldSystem h = held(system, step, Hold::kFirstOrder);
+  // w = x - Slope u: w(k+1) = Phi w(k) + (Gamma + Phi Slope - Slope) u(k).
+  return {h.Phi, h.Gamma + h.Phi * h.Slope - h.Slope, system.C, system.D + system.C * h.Slope};
+}
+
+StateSpace bilinear(const StateSpace& system, double step, double omega) {
+  if (!(step > 0.0 && std::isfinite(step))) throw InputError("step", fmt::format("is {} s; must be > 0", step));
+  if (!(omega >= 0.0 && omega * step < kPi))
+    throw InputError(
+        "omega", fmt::format("is {} rad/s; must be from 0 to below {}, half of the sampling rate", omega, kPi / step));
+  const double a = omega == 0.0 ? 2.0 / step : omega / std::tan(0.5 * omega * step);
+  const Eigen::Index n = system.states();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(a * identity - system.A);
+  if (!lu.isInvertible())
+    throw InputError("step", fmt::format("of {} s makes a pole of the system one of the transformation", step));
+  // States v = (a I - A) x - B u.
+  const Eigen::MatrixXd inverse = lu.inverse();
+  const Eigen::MatrixXd A = (a * identity + system.A) * inverse, C = system.C * inverse;
+  return {A, A * system.B + system.B, C, system.D + C * system.B};
+}
+
+}  // namespace veridyn::numerics
