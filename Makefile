@@ -40,7 +40,7 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	tools/tidy.sh $(BUILD) $(JOBS) $(TIDY)
 
-ASAN_MODULES ?= core numerics estimation io recording aircraft vehicle muscle report apps
+ASAN_MODULES ?= core numerics estimation io recording aircraft vehicle muscle cueing report apps
 # Accuracy and coverage of intervals over many recordings say nothing about memory that one recording does not say.
 ASAN_WITHOUT := Campaign|WithManyMoreSimulations|EndsWhereTheGradientDoes|PredictsUnseenTasks|AWrongModelIsSaidToBeWrong|NullDirectionsAreTrue|ByWhatWasForetold|ItDoesSoOfAnotherPerson|LeavesWhatItDoesNotDetermineWhereItWas|CorrectsWhatTheFlightShows|DoesNotMoveACleanFlightsAnswer|FindsTheScaleOfTheVanes|IsNoneOfTheBuiltInAircrafts|FindsNoDelayInTurbulence|Cover|Alarm|StatesItsFrequencyError|DoesNotAllocate|HoldTheTruth|HoldsTheTruth|HaveRealisticSigmas|DoesNotClaim|ReachesTheBound|ReachesTheSpecificationsBound|RevertsFromAWrongModel|FindsTheTermsOfTheTrueModel
 

@@ -9,7 +9,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
 
 // Modules whose types and free functions all have comments; the others are counted. Add a module when it is done.
-const complete = ['core', 'numerics', 'estimation', 'io', 'recording', 'aircraft', 'vehicle', 'muscle', 'report'];
+const complete = ['core', 'numerics', 'estimation', 'io', 'recording', 'aircraft', 'vehicle', 'muscle', 'cueing', 'report'];
 
 const output = process.argv[2] ?? 'build/docs';
 if (output.startsWith('-')) {
