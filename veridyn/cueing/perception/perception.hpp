@@ -12,6 +12,7 @@ namespace veridyn::cueing {
 /// motion is taken to go on a line. Nothing is allocated or thrown after construction; a copy saves the state.
 class Perception {
  public:
+  /// What is felt at a moment.
   struct Felt {
     Eigen::Vector3d rate;   ///< roll, pitch, yaw [rad/s, or as the model's unit says]
     Eigen::Vector3d force;  ///< along x, y, z [m/s^2, or as the model's unit says]

@@ -22,6 +22,7 @@ struct TransferFunction {
 
 /// In series.
 [[nodiscard]] TransferFunction operator*(const TransferFunction& a, const TransferFunction& b);
+/// Amplified.
 [[nodiscard]] TransferFunction operator*(double gain, TransferFunction a);
 /// In parallel.
 [[nodiscard]] TransferFunction operator+(const TransferFunction& a, const TransferFunction& b);
