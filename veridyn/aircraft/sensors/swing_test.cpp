@@ -5,10 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/read.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/resample.hpp"
@@ -92,226 +96,207 @@ std::pair<double, double> mean_frequency(const std::vector<SwingRun>& runs, bool
   return {mean, w.size() > 1 ? std::max(by_fits, std::sqrt(scatter / (n - 1.0) / n)) : by_fits};
 }
 
-/// Fits the runs of a swing test and judges the moments of inertia.
-class SwingAnalysis {
- public:
-  SwingAnalysis(SwingTest test, int threads) : test_(std::move(test)), threads_(threads) {}
+bool with_cradle(const SwingTest& test) { return test.cradle_mass > 0.0; }
 
-  SwingTestResult run(Progress& progress) {
-    for (const SwingAxis& axis : test_.axes) {
-      progress.stage(fmt::format("fitting the swings about {}", axis.axis));
-      result_.axes.push_back(analyse(axis));
-    }
-    covariance();
-    check_body();
-    summarise();
-    return std::move(result_);
+/// What a run has to be warned of.
+std::vector<std::string> warnings_of(const SwingRun& run) {
+  if (!run.fit.usable()) return {fmt::format("{} is left out: {}", run.file, to_string(run.fit.end))};
+  std::vector<std::string> warnings;
+  // A pendulum's period grows by a sixteenth of the amplitude squared; of a bifilar suspension it does so as well.
+  const double slower = run.fit.mean_square_swing / 16.0;
+  if (slower > 0.002) {
+    warnings.push_back(fmt::format(
+        "{}: swings of {:.0f} deg at first make it slower by about {:.1f} %, the inertia larger by {:.1f} %", run.file,
+        run.fit.amplitude() * 180.0 / kPi, 100.0 * slower, 200.0 * slower));
   }
-
- private:
-  bool with_cradle() const { return test_.cradle_mass > 0.0; }
-
-  AxisInertia analyse(const SwingAxis& axis) {
-    AxisInertia inertia;
-    inertia.test = axis;
-    const auto read = [&](const std::vector<std::filesystem::path>& files, bool cradle) {
-      bool any = false;
-      for (const std::filesystem::path& file : files) {
-        SwingRun run;
-        run.file = file.filename().string();
-        run.cradle_alone = cradle;
-        run.swing = swing_angle(io::read_recording(file), test_.channel);
-        std::tie(run.begin, run.end) = free_swing(run.swing, test_.settle_s, test_.fade);
-        const std::size_t count = run.end - run.begin;
-        run.fit = estimation::fit_damped_cosine(std::span<const double>(run.swing.time).subspan(run.begin, count),
-                                                std::span<const double>(run.swing.angle).subspan(run.begin, count));
-        if (run.fit.usable()) {
-          any = true;
-          warn_about(run);
-        } else {
-          result_.warnings.push_back(fmt::format("{} is left out: {}", run.file, to_string(run.fit.end)));
-        }
-        inertia.runs.push_back(std::move(run));
-      }
-      if (!any) {
-        throw InputError(files.front().string(),
-                         fmt::format("neither this nor another {} run about {} holds a decaying oscillation",
-                                     cradle ? "cradle" : "aircraft", axis.axis));
-      }
-    };
-    read(axis.files, false);
-    if (with_cradle()) read(axis.cradle_files, true);
-    std::tie(inertia.frequency, inertia.sigma_frequency) = mean_frequency(inertia.runs, false);
-    if (with_cradle()) {
-      std::tie(inertia.cradle_frequency, inertia.sigma_cradle_frequency) = mean_frequency(inertia.runs, true);
-    } else {
-      inertia.cradle_frequency = 1.0;
-    }
-    propagate(inertia);
-    judge(inertia);
-    return inertia;
+  if (run.swing.principal_share < 0.9) {
+    warnings.push_back(fmt::format("{}: only {:.0f} % of the motion is about its main axis", run.file,
+                                   100.0 * run.swing.principal_share));
   }
+  return warnings;
+}
 
-  void warn_about(const SwingRun& run) {
-    // A pendulum's period grows by a sixteenth of the amplitude squared; of a bifilar suspension it does so as well.
-    const double slower = run.fit.mean_square_swing / 16.0;
-    if (slower > 0.002) {
-      result_.warnings.push_back(fmt::format(
-          "{}: swings of {:.0f} deg at first make it slower by about {:.1f} %, the inertia larger by {:.1f} %",
-          run.file, run.fit.amplitude() * 180.0 / kPi, 100.0 * slower, 200.0 * slower));
-    }
-    if (run.swing.principal_share < 0.9) {
-      result_.warnings.push_back(fmt::format("{}: only {:.0f} % of the motion is about its main axis", run.file,
-                                             100.0 * run.swing.principal_share));
-    }
+SwingRun fitted_run(const SwingTest& test, const std::filesystem::path& file, bool cradle_alone) {
+  SwingRun run;
+  run.file = file.filename().string();
+  run.cradle_alone = cradle_alone;
+  run.swing = swing_angle(io::read_recording(file), test.channel);
+  std::tie(run.begin, run.end) = free_swing(run.swing, test.settle_s, test.fade);
+  const std::size_t count = run.end - run.begin;
+  run.fit = estimation::fit_damped_cosine(std::span<const double>(run.swing.time).subspan(run.begin, count),
+                                          std::span<const double>(run.swing.angle).subspan(run.begin, count));
+  return run;
+}
+
+/// All runs about an axis, the aircraft's or those of the cradle alone. @throws InputError where none is usable.
+std::vector<SwingRun> fitted_runs(const SwingTest& test, const SwingAxis& axis, bool cradle_alone) {
+  const std::vector<std::filesystem::path>& files = cradle_alone ? axis.cradle_files : axis.files;
+  std::vector<SwingRun> runs;
+  for (const std::filesystem::path& file : files) runs.push_back(fitted_run(test, file, cradle_alone));
+  if (std::ranges::none_of(runs, [](const SwingRun& run) { return run.fit.usable(); })) {
+    throw InputError(files.front().string(),
+                     fmt::format("neither this nor another {} run about {} holds a decaying oscillation",
+                                 cradle_alone ? "cradle" : "aircraft", axis.axis));
   }
+  return runs;
+}
 
-  Eigen::VectorXd sigma_of(const AxisInertia& i) const {
-    const bool bifilar = i.test.suspension == Suspension::kBifilar;
-    Eigen::VectorXd sigma(kInputs);
-    sigma << test_.sigma_mass, with_cradle() ? test_.sigma_mass : 0.0, bifilar ? test_.sigma_filar_distance : 0.0,
-        test_.sigma_length, with_cradle() ? test_.sigma_length : 0.0, bifilar ? 0.0 : test_.sigma_length,
-        i.sigma_frequency, i.sigma_cradle_frequency;
-    return sigma;
+Eigen::VectorXd sigma_of(const SwingTest& test, const AxisInertia& i) {
+  const bool bifilar = i.test.suspension == Suspension::kBifilar, cradle = with_cradle(test);
+  Eigen::VectorXd sigma(kInputs);
+  sigma << test.sigma_mass, cradle ? test.sigma_mass : 0.0, bifilar ? test.sigma_filar_distance : 0.0,
+      test.sigma_length, cradle ? test.sigma_length : 0.0, bifilar ? 0.0 : test.sigma_length, i.sigma_frequency,
+      i.sigma_cradle_frequency;
+  return sigma;
+}
+
+Eigen::RowVectorXd jacobian_of(const SwingTest& test, const AxisInertia& i) {
+  using Jet = ceres::Jet<double, kInputs>;
+  const Eigen::VectorXd v = values_of(test, i.test, i.frequency, i.cradle_frequency);
+  std::array<Jet, kInputs> jets;
+  for (int k = 0; k < kInputs; ++k) jets[at(k)] = Jet(v(k), k);
+  return terms_of(i.test, test.gravity, with_cradle(test), jets.data()).sum().v.transpose();
+}
+
+/// The distribution of its error, from those of all that was measured.
+estimation::ErrorDistribution error_of(const SwingTest& test, const AxisInertia& i, int threads) {
+  estimation::UncertainInputs inputs;
+  inputs.names = {"mass",          "cradle mass", "filar distance", "length",
+                  "cradle length", "offset",      "frequency",      "cradle frequency"};
+  inputs.low = inputs.high = values_of(test, i.test, i.frequency, i.cradle_frequency);
+  inputs.correlation = Eigen::MatrixXd::Identity(kInputs, kInputs);
+  inputs.error_covariance = sigma_of(test, i).cwiseAbs2().asDiagonal();
+  const double g = test.gravity;
+  const bool cradle = with_cradle(test);
+  const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).sum(); };
+  const estimation::MonteCarloOptions options{.draws = test.draws, .seed = test.seed, .threads = threads};
+  return estimation::propagate_errors(inputs, 1, f, options).outputs[0];
+}
+
+/// Whether it is determined, and the sentence that says so.
+std::pair<InertiaVerdict, std::string> judged(const SwingTest& test, const AxisInertia& i) {
+  const double relative = i.sigma() / i.value;
+  const double ratio = i.largest_term / std::abs(i.value);
+  const std::string numbers = fmt::format("I{} = {:.4g} +- {:.2g} kg m^2", i.test.axis, i.value, i.sigma());
+  if (i.value > 0.0 && relative <= test.max_relative_sigma)
+    return {InertiaVerdict::kDetermined, fmt::format("{}, {:.1f} %", numbers, 100.0 * relative)};
+  std::string reason = fmt::format("I{} is not determined by this test: {}", i.test.axis, numbers);
+  if (!(i.value > 0.0)) {
+    reason += ", which no body has";
+  } else {
+    reason += fmt::format(", {:.0f} % (limit {:.0f} %)", 100.0 * relative, 100.0 * test.max_relative_sigma);
   }
-
-  Eigen::RowVectorXd jacobian_of(const AxisInertia& i) const {
-    using Jet = ceres::Jet<double, kInputs>;
-    const Eigen::VectorXd v = values_of(test_, i.test, i.frequency, i.cradle_frequency);
-    std::array<Jet, kInputs> jets;
-    for (int k = 0; k < kInputs; ++k) jets[static_cast<std::size_t>(k)] = Jet(v(k), k);
-    return terms_of(i.test, test_.gravity, with_cradle(), jets.data()).sum().v.transpose();
+  if (ratio > 5.0) {
+    reason += fmt::format(
+        "; it is the difference of numbers up to {:.0f} times larger: half a percent of frequency moves it by {:.2g} "
+        "kg m^2",
+        ratio, i.per_half_percent_of_frequency);
   }
+  return {InertiaVerdict::kNotDetermined, std::move(reason)};
+}
 
-  void propagate(AxisInertia& i) const {
-    const Eigen::VectorXd v = values_of(test_, i.test, i.frequency, i.cradle_frequency);
-    const Terms<double> terms = terms_of(i.test, test_.gravity, with_cradle(), v.data());
-    i.value = terms.sum();
-    i.largest_term = std::max({terms.whole, terms.cradle, terms.transfer});
-    const Eigen::VectorXd sigma = sigma_of(i);
-    const Eigen::VectorXd parts = jacobian_of(i).transpose().cwiseProduct(sigma);
-    i.by_mass = parts.head<2>().norm();
-    i.by_filar_distance = std::abs(parts(2));
-    i.by_length = parts.segment<3>(3).norm();
-    i.by_frequency = parts.tail<2>().norm();
-    i.per_half_percent_of_frequency = std::abs(jacobian_of(i)(6)) * 0.005 * i.frequency;
-    estimation::UncertainInputs inputs;
-    inputs.names = {"mass",          "cradle mass", "filar distance", "length",
-                    "cradle length", "offset",      "frequency",      "cradle frequency"};
-    inputs.low = inputs.high = v;
-    inputs.correlation = Eigen::MatrixXd::Identity(kInputs, kInputs);
-    inputs.error_covariance = sigma.cwiseAbs2().asDiagonal();
-    const double g = test_.gravity;
-    const bool cradle = with_cradle();
-    const auto f = [&](const double* x, double* y) { y[0] = terms_of(i.test, g, cradle, x).sum(); };
-    const estimation::MonteCarloOptions options{.draws = test_.draws, .seed = test_.seed, .threads = threads_};
-    i.error = estimation::propagate_errors(inputs, 1, f, options).outputs[0];
+AxisInertia analysed(const SwingTest& test, const SwingAxis& axis, int threads) {
+  AxisInertia i;
+  i.test = axis;
+  i.runs = fitted_runs(test, axis, false);
+  std::tie(i.frequency, i.sigma_frequency) = mean_frequency(i.runs, false);
+  i.cradle_frequency = 1.0;
+  if (with_cradle(test)) {
+    for (SwingRun& run : fitted_runs(test, axis, true)) i.runs.push_back(std::move(run));
+    std::tie(i.cradle_frequency, i.sigma_cradle_frequency) = mean_frequency(i.runs, true);
   }
+  const Eigen::VectorXd v = values_of(test, axis, i.frequency, i.cradle_frequency);
+  const Terms<double> terms = terms_of(axis, test.gravity, with_cradle(test), v.data());
+  i.value = terms.sum();
+  i.largest_term = std::max({terms.whole, terms.cradle, terms.transfer});
+  const Eigen::RowVectorXd jacobian = jacobian_of(test, i);
+  const Eigen::VectorXd parts = jacobian.transpose().cwiseProduct(sigma_of(test, i));
+  i.by_mass = parts.head<2>().norm();
+  i.by_filar_distance = std::abs(parts(2));
+  i.by_length = parts.segment<3>(3).norm();
+  i.by_frequency = parts.tail<2>().norm();
+  i.per_half_percent_of_frequency = std::abs(jacobian(6)) * 0.005 * i.frequency;
+  i.error = error_of(test, i, threads);
+  std::tie(i.verdict, i.reason) = judged(test, i);
+  return i;
+}
 
-  void judge(AxisInertia& i) const {
-    const double relative = i.sigma() / i.value;
-    const double ratio = i.largest_term / std::abs(i.value);
-    const bool determined = i.value > 0.0 && relative <= test_.max_relative_sigma;
-    i.verdict = determined ? InertiaVerdict::kDetermined : InertiaVerdict::kNotDetermined;
-    const std::string numbers = fmt::format("I{} = {:.4g} +- {:.2g} kg m^2", i.test.axis, i.value, i.sigma());
-    if (determined) {
-      i.reason = fmt::format("{}, {:.1f} %", numbers, 100.0 * relative);
-      return;
-    }
-    i.reason = fmt::format("I{} is not determined by this test: {}", i.test.axis, numbers);
-    if (!(i.value > 0.0)) {
-      i.reason += ", which no body has";
-    } else {
-      i.reason += fmt::format(", {:.0f} % (limit {:.0f} %)", 100.0 * relative, 100.0 * test_.max_relative_sigma);
-    }
-    if (ratio > 5.0) {
-      i.reason += fmt::format(
-          "; it is the difference of numbers up to {:.0f} times larger: half a percent of frequency moves it by {:.2g} "
-          "kg m^2",
-          ratio, i.per_half_percent_of_frequency);
-    }
-  }
-
-  void covariance() {
-    const auto n = static_cast<Eigen::Index>(result_.axes.size());
-    result_.covariance = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index a = 0; a < n; ++a) {
-      const AxisInertia& first = result_.axes[static_cast<std::size_t>(a)];
-      const Eigen::RowVectorXd Ja = jacobian_of(first).cwiseProduct(sigma_of(first).transpose());
-      result_.covariance(a, a) = first.sigma() * first.sigma();
-      for (Eigen::Index b = 0; b < a; ++b) {
-        const AxisInertia& second = result_.axes[static_cast<std::size_t>(b)];
-        const Eigen::RowVectorXd Jb = jacobian_of(second).cwiseProduct(sigma_of(second).transpose());
-        // The two masses are the same in all tests; lines and lengths are measured for each.
-        result_.covariance(a, b) = result_.covariance(b, a) = Ja.head<2>().dot(Jb.head<2>());
-      }
+Eigen::MatrixXd covariance_of(const SwingTest& test, const std::vector<AxisInertia>& axes) {
+  const Eigen::Index n = signed_index(axes.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  const auto by_input = [&](const AxisInertia& i) -> Eigen::RowVectorXd {
+    return jacobian_of(test, i).cwiseProduct(sigma_of(test, i).transpose());
+  };
+  for (Eigen::Index a = 0; a < n; ++a) {
+    covariance(a, a) = axes[at(a)].sigma() * axes[at(a)].sigma();
+    for (Eigen::Index b = 0; b < a; ++b) {
+      // The two masses are the same in all tests; lines and lengths are measured for each.
+      const double shared = by_input(axes[at(a)]).head<2>().dot(by_input(axes[at(b)]).head<2>());
+      covariance(a, b) = covariance(b, a) = shared;
     }
   }
+  return covariance;
+}
 
-  /// No moment exceeds the sum of the others.
-  void check_body() {
-    if (result_.axes.size() != 3) return;
-    const Eigen::Vector3d J(result_.axes[0].value, result_.axes[1].value, result_.axes[2].value);
-    Eigen::Index largest = 0;
-    J.maxCoeff(&largest);
-    Eigen::Vector3d signs = Eigen::Vector3d::Constant(-1.0);
-    signs(largest) = 1.0;
-    const double excess = signs.dot(J);
-    const double sigma = std::sqrt(std::max(0.0, signs.dot(result_.covariance * signs)));
-    if (!(excess > 0.0)) return;
-    AxisInertia& axis = result_.axes[static_cast<std::size_t>(largest)];
-    const std::string text = fmt::format(
-        "I{} exceeds the sum of the other two by {:.2g} +- {:.2g} kg m^2, which no body of positive mass does",
-        axis.test.axis, excess, sigma);
-    if (excess > 2.0 * sigma) {
-      for (AxisInertia& i : result_.axes) {
-        i.verdict = InertiaVerdict::kNotDetermined;
-        i.reason += "; " + text;
-      }
-    } else {
-      result_.warnings.push_back(text + " (within its error)");
-    }
-  }
-
-  void summarise() {
-    estimation::Estimate& e = result_.estimate;
-    e.subject = test_.name;
-    e.method = "swing test";
-    std::vector<std::string> found, missing;
-    const double z = numerics::normal_quantile(0.975);
-    for (const AxisInertia& i : result_.axes) {
-      const bool determined = i.verdict == InertiaVerdict::kDetermined;
-      (determined ? found : missing).push_back(fmt::format("J{}", i.test.axis));
-      // error = measured - true: the interval of the true value is the other way round.
-      const bool skew = i.error.not_finite == 0;
-      e.parameters.push_back(
-          {.name = fmt::format("J{}", i.test.axis),
-           .value = i.value,
-           .sigma = i.sigma(),
-           .low95 = skew ? i.value - i.error.high : i.value - z * i.sigma(),
-           .high95 = skew ? i.value - i.error.low : i.value + z * i.sigma(),
-           .unit = "kg m^2",
-           .status = determined ? estimation::ParameterStatus::kIdentified : estimation::ParameterStatus::kRejected});
-      e.fit[fmt::format("J{}.frequency", i.test.axis)] = i.frequency;
-      e.fit[fmt::format("J{}.sigma_frequency", i.test.axis)] = i.sigma_frequency;
-      if (with_cradle()) {
-        e.fit[fmt::format("J{}.cradle_frequency", i.test.axis)] = i.cradle_frequency;
-        e.fit[fmt::format("J{}.sigma_cradle_frequency", i.test.axis)] = i.sigma_cradle_frequency;
-      }
-      if (!determined) e.warnings.push_back(i.reason);
-    }
-    e.covariance = result_.covariance;
-    std::vector<std::string> parts;
-    if (!found.empty()) parts.push_back(fmt::format("determined: {}", fmt::join(found, ", ")));
-    if (!missing.empty()) parts.push_back(fmt::format("not determined: {}", fmt::join(missing, ", ")));
-    e.verdict = fmt::format("{}", fmt::join(parts, "; "));
-    e.warnings.insert(e.warnings.end(), result_.warnings.begin(), result_.warnings.end());
-  }
-
-  SwingTest test_;
-  int threads_;
-  SwingTestResult result_;
+/// A moment that exceeds the sum of the other two.
+struct Excess {
+  std::string text;
+  bool beyond_error = false;
 };
+
+std::optional<Excess> excess_of(const std::vector<AxisInertia>& axes, const Eigen::MatrixXd& covariance) {
+  if (axes.size() != 3) return std::nullopt;
+  const Eigen::Vector3d J(axes[0].value, axes[1].value, axes[2].value);
+  Eigen::Index largest = 0;
+  J.maxCoeff(&largest);
+  Eigen::Vector3d signs = Eigen::Vector3d::Constant(-1.0);
+  signs(largest) = 1.0;
+  const double excess = signs.dot(J);
+  const double sigma = std::sqrt(std::max(0.0, signs.dot(covariance * signs)));
+  if (!(excess > 0.0)) return std::nullopt;
+  return Excess{
+      fmt::format(
+          "I{} exceeds the sum of the other two by {:.2g} +- {:.2g} kg m^2, which no body of positive mass does",
+          axes[at(largest)].test.axis, excess, sigma),
+      excess > 2.0 * sigma};
+}
+
+estimation::Estimate estimate_of(const SwingTest& test, const std::vector<AxisInertia>& axes,
+                                 const Eigen::MatrixXd& covariance, const std::vector<std::string>& warnings) {
+  estimation::Estimate e;
+  e.subject = test.name;
+  e.method = "swing test";
+  std::vector<std::string> found, missing;
+  const double z = numerics::normal_quantile(0.975);
+  for (const AxisInertia& i : axes) {
+    const bool determined = i.verdict == InertiaVerdict::kDetermined;
+    (determined ? found : missing).push_back(fmt::format("J{}", i.test.axis));
+    // error = measured - true: the interval of the true value is the other way round.
+    const bool skew = i.error.not_finite == 0;
+    e.parameters.push_back(
+        {.name = fmt::format("J{}", i.test.axis),
+         .value = i.value,
+         .sigma = i.sigma(),
+         .low95 = skew ? i.value - i.error.high : i.value - z * i.sigma(),
+         .high95 = skew ? i.value - i.error.low : i.value + z * i.sigma(),
+         .unit = "kg m^2",
+         .status = determined ? estimation::ParameterStatus::kIdentified : estimation::ParameterStatus::kRejected});
+    e.fit[fmt::format("J{}.frequency", i.test.axis)] = i.frequency;
+    e.fit[fmt::format("J{}.sigma_frequency", i.test.axis)] = i.sigma_frequency;
+    if (with_cradle(test)) {
+      e.fit[fmt::format("J{}.cradle_frequency", i.test.axis)] = i.cradle_frequency;
+      e.fit[fmt::format("J{}.sigma_cradle_frequency", i.test.axis)] = i.sigma_cradle_frequency;
+    }
+    if (!determined) e.warnings.push_back(i.reason);
+  }
+  e.covariance = covariance;
+  std::vector<std::string> parts;
+  if (!found.empty()) parts.push_back(fmt::format("determined: {}", fmt::join(found, ", ")));
+  if (!missing.empty()) parts.push_back(fmt::format("not determined: {}", fmt::join(missing, ", ")));
+  e.verdict = fmt::format("{}", fmt::join(parts, "; "));
+  e.warnings.insert(e.warnings.end(), warnings.begin(), warnings.end());
+  return e;
+}
 
 }  // namespace
 
@@ -424,7 +409,24 @@ double swing_inertia(const SwingTest& test, const SwingAxis& axis, double freque
 }
 
 SwingTestResult analyse_swing_test(const SwingTest& test, Progress& progress) {
-  return SwingAnalysis(test, progress.threads()).run(progress);
+  SwingTestResult result;
+  for (const SwingAxis& axis : test.axes) {
+    progress.stage(fmt::format("fitting the swings about {}", axis.axis));
+    result.axes.push_back(analysed(test, axis, progress.threads()));
+    for (const SwingRun& run : result.axes.back().runs)
+      for (std::string& warning : warnings_of(run)) result.warnings.push_back(std::move(warning));
+  }
+  result.covariance = covariance_of(test, result.axes);
+  if (const std::optional<Excess> excess = excess_of(result.axes, result.covariance)) {
+    if (!excess->beyond_error) result.warnings.push_back(excess->text + " (within its error)");
+    for (AxisInertia& i : result.axes) {
+      if (!excess->beyond_error) break;
+      i.verdict = InertiaVerdict::kNotDetermined;
+      i.reason += "; " + excess->text;
+    }
+  }
+  result.estimate = estimate_of(test, result.axes, result.covariance, result.warnings);
+  return result;
 }
 
 std::string inertia_toml(const SwingTest& test, const SwingTestResult& result) {
