@@ -100,6 +100,15 @@ TEST(FitMeasures, MatchHandComputedNumbers) {
   EXPECT_THROW((void)fit_measures(measured, std::vector<double>{1.0}), veridyn::InputError);
 }
 
+TEST(QuantileOfSorted, LiesOnLinesBetweenNeighbours) {
+  const std::vector<double> sorted = {1.0, 2.0, 4.0, 8.0, 16.0};
+  EXPECT_EQ(quantile_of_sorted(sorted, 0.0), 1.0);
+  EXPECT_EQ(quantile_of_sorted(sorted, 0.5), 4.0);
+  EXPECT_EQ(quantile_of_sorted(sorted, 0.625), 6.0);
+  EXPECT_EQ(quantile_of_sorted(sorted, 1.0), 16.0);
+  EXPECT_EQ(quantile_of_sorted(std::vector<double>{3.0}, 0.3), 3.0);
+}
+
 TEST(RobustSd, IgnoresAMinorityOfOutliers) {
   std::vector<double> x = ar1(5, 10000, 0.0);
   for (std::size_t k = 0; k < x.size(); k += 10) x[k] = 1e6;

@@ -42,7 +42,7 @@ class AdditiveRungeKutta {
     VERIDYN_ASSERT(scale.size() == stiff_.size() && end >= t);
     return sizes_.advance(
         t, end, control, [&] { return f(t, 0.0, x, stage(0)) && finite(stage(0)); },
-        [&](double interval) { return guess(x, scale, control.tolerance, interval); },
+        [&](double interval) { return first_step(x, stage(0), scale, control.tolerance, 0.25, interval); },
         [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
         [&](double reached) {
           begin_ = t;
@@ -102,16 +102,6 @@ class AdditiveRungeKutta {
     double sum = 0.0;
     for (std::size_t i = 0; i < n_; ++i) sum += x[i] * 0.0;
     return sum == 0.0;
-  }
-
-  double guess(const double* x, std::span<const double> scale, double tolerance, double interval) const {
-    double size = 0.0, rate = 0.0;
-    for (std::size_t i = 0; i < scale.size(); ++i) {
-      size = std::max(size, std::abs(x[i]) / scale[i]);
-      rate = std::max(rate, std::abs(stage(0)[i]) / scale[i]);
-    }
-    const double h = rate > 0.0 ? 0.1 * std::pow(tolerance, 0.25) * std::max(size, 1.0) / rate : 1e-3 * interval;
-    return std::min(h, interval);
   }
 
   /// y = x + h sum of the first `count` stages, by the table of each component.

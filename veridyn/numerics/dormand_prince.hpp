@@ -13,14 +13,6 @@
 
 namespace veridyn::numerics {
 
-namespace internal {
-inline double value_of(double x) { return x; }
-template <typename Jet>
-auto value_of(const Jet& x) -> decltype(x.a) {
-  return x.a;
-}
-}  // namespace internal
-
 /// The fifth-order method of Dormand & Prince (1980) with fourth-order error estimate, PI step control and the
 /// fourth-order continuous extension of Hairer, Norsett & Wanner (1993, II.6), for derivatives so cheap that the
 /// stepper must cost nothing: it is a template on the derivative, keeps its stages, and does not allocate while it
@@ -52,7 +44,7 @@ class DormandPrince {
     VERIDYN_ASSERT(scale.size() == values_ && end >= t);
     return sizes_.advance(
         t, end, control, [&] { return f(t, x, stage(0)) && finite(stage(0)); },
-        [&](double interval) { return guess(x, scale, control.tolerance, interval); },
+        [&](double interval) { return first_step(x, stage(0), scale, control.tolerance, 0.2, interval); },
         [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
         [&](double reached) {
           begin_ = t;
@@ -96,16 +88,6 @@ class DormandPrince {
     double sum = 0.0;
     for (std::size_t i = 0; i < n_; ++i) sum += internal::value_of(x[i]) * 0.0;
     return sum == 0.0;
-  }
-
-  double guess(const Scalar* x, std::span<const double> scale, double tolerance, double interval) const {
-    double size = 0.0, rate = 0.0;
-    for (std::size_t i = 0; i < values_; ++i) {
-      size = std::max(size, std::abs(internal::value_of(x[i])) / scale[i]);
-      rate = std::max(rate, std::abs(internal::value_of(stage(0)[i])) / scale[i]);
-    }
-    const double h = rate > 0.0 ? 0.1 * std::pow(tolerance, 0.2) * std::max(size, 1.0) / rate : 1e-3 * interval;
-    return std::min(h, interval);
   }
 
   template <typename F>

@@ -9,6 +9,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -51,14 +52,6 @@ Estimate estimate_over(const Rows& rows, std::span<const std::size_t> chosen, st
   return e;
 }
 
-/// Percentile of values that are sorted.
-double percentile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto i = static_cast<std::size_t>(at);
-  const double part = at - static_cast<double>(i);
-  return i + 1 < sorted.size() ? sorted[i] + part * (sorted[i + 1] - sorted[i]) : sorted.back();
-}
-
 void set_intervals(SensitivityIndices& result, const Rows& rows, const SensitivityOptions& options) {
   const std::size_t inputs = result.inputs.size(), n = rows.kept.size();
   RandomStream random(options.seed, "bootstrap of sensitivity indices");
@@ -77,10 +70,10 @@ void set_intervals(SensitivityIndices& result, const Rows& rows, const Sensitivi
     std::sort(first[i].begin(), first[i].end());
     std::sort(total[i].begin(), total[i].end());
     SensitivityIndex& index = result.inputs[i];
-    index.first_low = percentile(first[i], tail);
-    index.first_high = percentile(first[i], 1.0 - tail);
-    index.total_low = percentile(total[i], tail);
-    index.total_high = percentile(total[i], 1.0 - tail);
+    index.first_low = quantile_of_sorted(first[i], tail);
+    index.first_high = quantile_of_sorted(first[i], 1.0 - tail);
+    index.total_low = quantile_of_sorted(total[i], tail);
+    index.total_high = quantile_of_sorted(total[i], 1.0 - tail);
   }
 }
 

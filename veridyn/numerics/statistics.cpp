@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
@@ -223,6 +224,14 @@ FitMeasures fit_measures(std::span<const double> measured, std::span<const doubl
   const double scale = std::sqrt(measured2 / n) + std::sqrt(model2 / n);
   fit.theil = scale > 0.0 ? fit.rmse / scale : 0.0;
   return fit;
+}
+
+double quantile_of_sorted(std::span<const double> sorted, double share) {
+  VERIDYN_ASSERT(!sorted.empty());
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
 double median(std::span<const double> x) {

@@ -93,6 +93,9 @@ struct FitMeasures {
 /// @throws InputError when the sizes differ.
 [[nodiscard]] FitMeasures fit_measures(std::span<const double> measured, std::span<const double> model);
 
+/// The value below which `share` (0 to 1) of values lie that are sorted and not empty; on a line between neighbours
+/// (Hyndman & Fan 1996, Am Stat 50:361, definition 7).
+[[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double share);
 /// Median of the finite values (NaN when there are none).
 [[nodiscard]] double median(std::span<const double> x);
 /// 1.4826 median |x - median|: the standard deviation of normal data, whatever a minority of outliers does.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "veridyn/numerics/ode.hpp"
 
@@ -22,6 +23,29 @@ struct StepControl {
   double largest_step = 0.0;   ///< 0: the interval
   long max_steps = 1000000;    ///< accepted and rejected, of this object
 };
+
+namespace internal {
+inline double value_of(double x) { return x; }
+template <typename Jet>
+auto value_of(const Jet& x) -> decltype(x.a) {
+  return x.a;
+}
+}  // namespace internal
+
+/// A step to begin with: a tenth of that in which the fastest component changes by its value (or its scale), shorter
+/// the smaller the tolerance. @param exponent 1 over the order of the error of a step
+template <typename Scalar>
+double first_step(const Scalar* x, const Scalar* rate, std::span<const double> scale, double tolerance, double exponent,
+                  double interval) {
+  double size = 0.0, fastest = 0.0;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    size = std::max(size, std::abs(internal::value_of(x[i])) / scale[i]);
+    fastest = std::max(fastest, std::abs(internal::value_of(rate[i])) / scale[i]);
+  }
+  const double h =
+      fastest > 0.0 ? 0.1 * std::pow(tolerance, exponent) * std::max(size, 1.0) / fastest : 1e-3 * interval;
+  return std::min(h, interval);
+}
 
 /// The step sizes of an integration: PI control (Gustafsson 1991) by an error estimate, for any one-step method.
 class StepSizes {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/resample.hpp"
@@ -37,11 +37,11 @@ struct GridSignal {
 template <typename Signal, std::size_t kCount>
 struct GridSignals {
   numerics::UniformGrid grid;
-  std::array<GridSignal, kCount> signals;
+  EnumArray<Signal, GridSignal, kCount> signals;
   std::vector<std::string> notes;  ///< what was assumed or taken off, in words
 
-  [[nodiscard]] const GridSignal& operator[](Signal s) const { return signals[static_cast<std::size_t>(s)]; }
-  [[nodiscard]] GridSignal& operator[](Signal s) { return signals[static_cast<std::size_t>(s)]; }
+  [[nodiscard]] const GridSignal& operator[](Signal s) const { return signals[s]; }
+  [[nodiscard]] GridSignal& operator[](Signal s) { return signals[s]; }
   [[nodiscard]] std::size_t size() const { return grid.count; }
   /// First and one-past-last grid index inside a span.
   [[nodiscard]] std::pair<std::size_t, std::size_t> indices(const TimeSpan& span) const;

@@ -180,7 +180,7 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   out.interrupted = out.identification.interrupted;
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
-      !study.identify.model.free[static_cast<std::size_t>(DriveUnknown::kAccelYScale)]) {
+      !study.identify.model.free[DriveUnknown::kAccelYScale]) {
     warnings.emplace_back(
         "accel_y is taken as it is: where the sensor leans with the body it shows g sin(roll) too (5 deg of roll per g "
         "make 8.7 % of it); give signals.roll_gradient, record roll, or estimate accel_y_scale");

@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, ModelBasedSoak, ::testing::Values(15.0, 20.0, 2
 TEST(ModelBasedFilter, TakesAnUnknownDragFromTheAccelerometer) {
   Flown f = fly({.duration = 50.0});
   Subject half = f.subject;
-  half.model.coefficients[static_cast<std::size_t>(Coefficient::kCD)].reset();
+  half.model.coefficients[Coefficient::kCD].reset();
   ReconstructOptions o = reference_options();
   o.filter = FilterKind::kModelBased;
   Progress quiet;

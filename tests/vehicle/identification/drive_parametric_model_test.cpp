@@ -23,10 +23,10 @@ TEST(DriveParametricModel, SensitivitiesAreThoseOfFiniteDifferences) {
     DriveModelOptions options;
     options.tyre = tyre;
     options.free.fill(true);
-    options.start[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] = 0.013;
-    options.start[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = 0.017;
+    options.start[DriveUnknown::kYawRateDelay] = 0.013;
+    options.start[DriveUnknown::kSteerDelay] = 0.017;
     // At no delay the ends, where nothing lies beyond, have one-sided derivatives.
-    options.start[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)] = 0.009;
+    options.start[DriveUnknown::kAccelYDelay] = 0.009;
     const std::vector<TimeSpan> spans{{4.0, 8.0}};
     const DriveParametricModel model(signals, spans, p, options);
     Eigen::VectorXd theta(static_cast<Eigen::Index>(kDriveUnknowns) + 2);

@@ -134,7 +134,7 @@ TEST(VehicleIdentification, FindsTheDelayOfTheSteering) {
   sensors[DriveSensorKind::kYawRate].delay_s = 0.03;
   sensors[DriveSensorKind::kAccelY].delay_s = 0.03;
   VehicleIdentifyOptions options;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kSteerDelay)] = true;
+  options.model.free[DriveUnknown::kSteerDelay] = true;
   const VehicleIdentification id = identify(lively_drive(p, 3), sensors, 1, options);
   EXPECT_NEAR(id.find(VehicleMethod::kOutputError)->find("steer_delay")->value, 0.03, 2e-3);
   EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 0.02);
@@ -187,8 +187,8 @@ TEST(VehicleIdentification, FindsFrictionAndShapeOfMagicFormulaTyresDrivenHard) 
   const VehicleParameters<double> p = family_car();
   VehicleIdentifyOptions options;
   options.model.tyre = DriveTyre::kMagicFormula;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+  options.model.free[DriveUnknown::kMu] = true;
+  options.model.free[DriveUnknown::kShape] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.04), reference_drive_sensors(), 1, options);
   const VehicleEstimate* e = id.find(VehicleMethod::kOutputError);
   ASSERT_TRUE(e != nullptr && e->usable) << id.reason;
@@ -203,8 +203,8 @@ TEST(VehicleIdentification, DoesNotClaimFrictionFromTheLinearRange) {
   const VehicleParameters<double> p = family_car();
   VehicleIdentifyOptions options;
   options.model.tyre = DriveTyre::kMagicFormula;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+  options.model.free[DriveUnknown::kMu] = true;
+  options.model.free[DriveUnknown::kShape] = true;
   const VehicleIdentification id = identify(magic_drive(p, 0.9, 0.004), reference_drive_sensors(), 1, options);
   const VehicleEstimate* e = id.find(VehicleMethod::kOutputError);
   ASSERT_NE(e, nullptr);

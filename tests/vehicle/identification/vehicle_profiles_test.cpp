@@ -75,8 +75,8 @@ TEST(VehicleProfiles, AreOpenWhereADriveExcludesNothing) {
   DriveSegments segments;
   segments.identification = {{.begin = 8.0, .end = 27.0}};
   VehicleIdentifyOptions options;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kCf)] = false;
-  options.model.free[static_cast<std::size_t>(DriveUnknown::kCr)] = false;
+  options.model.free[DriveUnknown::kCf] = false;
+  options.model.free[DriveUnknown::kCr] = false;
   options.profiles = {"I_z"};
   const VehicleProblem problem{signals, segments, car, signal_options, options};
   Progress progress;

@@ -317,12 +317,12 @@ bool operator==(const CoefficientModel& a, const CoefficientModel& b) {
 }
 
 const CoefficientModel* AeroModel::find(Coefficient c) const {
-  const auto& m = coefficients[static_cast<std::size_t>(c)];
+  const auto& m = coefficients[c];
   return m ? &*m : nullptr;
 }
 
 CoefficientModel* AeroModel::find(Coefficient c) {
-  auto& m = coefficients[static_cast<std::size_t>(c)];
+  auto& m = coefficients[c];
   return m ? &*m : nullptr;
 }
 
@@ -340,7 +340,7 @@ CoefficientModel& AeroModel::at(Coefficient c) {
 
 void AeroModel::set(CoefficientModel model) {
   VERIDYN_ASSERT(model.terms.size() == model.values.size());
-  auto& slot = coefficients[static_cast<std::size_t>(model.coefficient)];
+  auto& slot = coefficients[model.coefficient];
   slot = std::move(model);
 }
 

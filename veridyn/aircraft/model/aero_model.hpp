@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/model/stall.hpp"
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -166,7 +167,7 @@ struct AeroCoefficients {
 ///
 /// A coefficient that is absent is not modelled: it evaluates to zero.
 struct AeroModel {
-  std::array<std::optional<CoefficientModel>, kCoefficients> coefficients;
+  EnumArray<Coefficient, std::optional<CoefficientModel>, kCoefficients> coefficients;
   std::optional<StallBlend> stall;
 
   [[nodiscard]] const CoefficientModel* find(Coefficient c) const;
@@ -263,7 +264,7 @@ Scalar affine_in_alpha(const CoefficientModel& m, const Scalar& alpha) {
 template <typename Scalar>
 AeroCoefficients<Scalar> AeroModel::evaluate(const AeroVariables<Scalar>& v) const {
   const auto value = [&](Coefficient c) {
-    const auto& m = coefficients[static_cast<std::size_t>(c)];
+    const auto& m = coefficients[c];
     return m ? m->linear(v) : Scalar(0.0);
   };
   AeroCoefficients<Scalar> out;
@@ -276,8 +277,8 @@ AeroCoefficients<Scalar> AeroModel::evaluate(const AeroVariables<Scalar>& v) con
   if (!stall) return out;
   using std::sqrt;
   const Scalar s = separated_share(v.alpha, stall->M, stall->alpha0);
-  const auto& lift = coefficients[static_cast<std::size_t>(Coefficient::kCL)];
-  const auto& drag = coefficients[static_cast<std::size_t>(Coefficient::kCD)];
+  const auto& lift = coefficients[Coefficient::kCL];
+  const auto& drag = coefficients[Coefficient::kCD];
   const bool full = stall->form == StallForm::kFull;
   if (lift && stall->form == StallForm::kSeparation) {
     // The square root has no derivative at zero, which underflow could reach.

@@ -295,13 +295,13 @@ void move_to_centre_of_gravity(FlightStreams& s, const std::array<double, 3>& po
 ModelStreams load_model_streams(const Recording& recording, Subject subject, FlightStreams s,
                                 const std::string& needing) {
   for (const Coefficient c : {Coefficient::kCl, Coefficient::kCm, Coefficient::kCn}) {
-    subject.model.coefficients[static_cast<std::size_t>(c)].reset();
+    subject.model.coefficients[c].reset();
   }
   for (const Coefficient c : kForces) {
     CoefficientModel* model = subject.model.find(c);
     if (model == nullptr || model->known()) continue;
     if (c == Coefficient::kCL) break;
-    subject.model.coefficients[static_cast<std::size_t>(c)].reset();
+    subject.model.coefficients[c].reset();
   }
   const CoefficientModel* lift = subject.model.find(Coefficient::kCL);
   if (lift == nullptr || !lift->known()) {

@@ -16,6 +16,7 @@
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 #include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/random.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -58,13 +59,6 @@ RegressionData resample_rows(const RegressionData& data, const SegmentRanges& se
     }
   }
   return drawn;
-}
-
-double percentile(std::vector<double>& sorted, double p) {
-  const double position = p * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(position);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (position - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
 Index automatic_block(const RegressionData& data) {
@@ -171,8 +165,8 @@ Bootstrap block_bootstrap(const RegressionData& data, const PointEstimator& esti
     std::vector<double> sorted(static_cast<std::size_t>(count));
     for (Index i = 0; i < count; ++i) sorted[static_cast<std::size_t>(i)] = result.replicates(i, j);
     std::sort(sorted.begin(), sorted.end());
-    result.low95(j) = percentile(sorted, 0.025);
-    result.high95(j) = percentile(sorted, 0.975);
+    result.low95(j) = numerics::quantile_of_sorted(sorted, 0.025);
+    result.high95(j) = numerics::quantile_of_sorted(sorted, 0.975);
   }
   result.message =
       fmt::format("{} replicates of blocks of {} rows{}", count, result.block_length,

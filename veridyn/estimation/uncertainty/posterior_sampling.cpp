@@ -155,14 +155,6 @@ double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, numeri
   return density;
 }
 
-/// Of sorted values.
-double quantile_of(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 }  // namespace
 
 PosteriorSample sample_posterior(const ParametricModel& model, const std::vector<RowMatrix>& measured,
@@ -187,9 +179,9 @@ PosteriorSample sample_posterior(const ParametricModel& model, const std::vector
                                  .unit = p.unit,
                                  .mean = mean,
                                  .sd = std::sqrt((column.array() - mean).square().mean()),
-                                 .low = quantile_of(sorted, 0.025),
-                                 .median = quantile_of(sorted, 0.5),
-                                 .high = quantile_of(sorted, 0.975)});
+                                 .low = numerics::quantile_of_sorted(sorted, 0.025),
+                                 .median = numerics::quantile_of_sorted(sorted, 0.5),
+                                 .high = numerics::quantile_of_sorted(sorted, 0.975)});
   }
   return sample;
 }

@@ -123,15 +123,7 @@ EmgDrivenModel::EmgDrivenModel(const MusculoskeletalSystem& system, std::vector<
     alone_.emplace_back(std::span<const MuscleParameters>(&system.muscles().settings(m), 1));
     least_.push_back({ControlSignals({system.muscles().settings(m).minimum_activation}), {}});
   }
-  for (const MuscleUnknown& u : unknowns_) {
-    parameters_.push_back({.name = u.name,
-                           .unit = u.unit,
-                           .start = u.start,
-                           .low = u.low,
-                           .high = u.high,
-                           .prior_sigma = u.prior_sigma,
-                           .fixed = u.fixed});
-  }
+  parameters_ = model_parameters(unknowns_);
 }
 
 bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {

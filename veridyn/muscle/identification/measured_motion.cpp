@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -37,9 +38,7 @@ void check_times(const SignalTable& table) {
   if (t.size() < 2) throw InputError(table.source, "has fewer than two samples");
   std::vector<double> steps;
   for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
-  std::vector<double> sorted = steps;
-  std::nth_element(sorted.begin(), sorted.begin() + signed_index(sorted.size() / 2), sorted.end());
-  const double usual = sorted[sorted.size() / 2];
+  const double usual = numerics::median(steps);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i] > 5.0 * usual && steps[i] > 0.05)
       throw InputError(table.source, fmt::format("has a gap from {:g} to {:g} s; its samples are {:.3g} s apart "

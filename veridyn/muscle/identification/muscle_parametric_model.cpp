@@ -31,15 +31,7 @@ MuscleParametricModel::MuscleParametricModel(const MusculoskeletalSystem& system
     : system_(&system), unknowns_(std::move(unknowns)), segments_(std::move(segments)), accuracy_(options.accuracy) {
   check_unknowns(system.model(), unknowns_, system.model().name);
   check_systems();
-  for (const MuscleUnknown& u : unknowns_) {
-    parameters_.push_back({.name = u.name,
-                           .unit = u.unit,
-                           .start = u.start,
-                           .low = u.low,
-                           .high = u.high,
-                           .prior_sigma = u.prior_sigma,
-                           .fixed = u.fixed});
-  }
+  parameters_ = model_parameters(unknowns_);
   list_outputs(options.outputs);
   list_initial_conditions(options.estimate_start);
 }

@@ -146,6 +146,20 @@ MuscleUnknown unknown_of(const Model& model, const MuscleParameterName& name) {
                       full_name(model, name));
 }
 
+std::vector<estimation::ModelParameter> model_parameters(std::span<const MuscleUnknown> unknowns) {
+  std::vector<estimation::ModelParameter> parameters;
+  for (const MuscleUnknown& u : unknowns) {
+    parameters.push_back({.name = u.name,
+                          .unit = u.unit,
+                          .start = u.start,
+                          .low = u.low,
+                          .high = u.high,
+                          .prior_sigma = u.prior_sigma,
+                          .fixed = u.fixed});
+  }
+  return parameters;
+}
+
 void check_unknowns(const Model& model, std::span<const MuscleUnknown> unknowns, std::string_view place) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     for (std::size_t a = 0; a < unknowns[i].parameters.size(); ++a) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
 
@@ -67,6 +68,9 @@ struct MuscleUnknown {
 
 /// One field of one muscle as its own unknown, within half and one and a half of the model's value.
 [[nodiscard]] MuscleUnknown unknown_of(const Model& model, const MuscleParameterName& name);
+
+/// As estimators see them.
+[[nodiscard]] std::vector<estimation::ModelParameter> model_parameters(std::span<const MuscleUnknown> unknowns);
 
 /// @throws InputError when two unknowns set the same parameter, or have the same name.
 void check_unknowns(const Model& model, std::span<const MuscleUnknown> unknowns, std::string_view place);

@@ -130,25 +130,24 @@ template double SampledInput::at(const double&) const;
 template ceres::Jet<double, 8> SampledInput::at(const ceres::Jet<double, 8>&) const;
 
 DriveModelOptions::DriveModelOptions() {
-  const auto set = [](auto& values, DriveUnknown u, auto to) { values[static_cast<std::size_t>(u)] = to; };
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
                                DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
-    set(free, u, true);
+    free[u] = true;
   start.fill(0.0);
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
-    set(start, u, kNaN);
-  set(start, DriveUnknown::kMu, 1.0);
-  set(start, DriveUnknown::kShape, 1.3);
+    start[u] = kNaN;
+  start[DriveUnknown::kMu] = 1.0;
+  start[DriveUnknown::kShape] = 1.3;
   prior.fill(kInfinity);
-  set(prior, DriveUnknown::kSteerBias, kDegree);
-  set(prior, DriveUnknown::kYawRateBias, kDegree);
-  set(prior, DriveUnknown::kAccelYBias, 0.5);
-  set(prior, DriveUnknown::kSteerScale, 0.1);
-  set(prior, DriveUnknown::kAccelYScale, 0.1);
+  prior[DriveUnknown::kSteerBias] = kDegree;
+  prior[DriveUnknown::kYawRateBias] = kDegree;
+  prior[DriveUnknown::kAccelYBias] = 0.5;
+  prior[DriveUnknown::kSteerScale] = 0.1;
+  prior[DriveUnknown::kAccelYScale] = 0.1;
   for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
-    set(prior, u, 0.1);
-  set(prior, DriveUnknown::kShape, 0.2);
-  set(prior, DriveUnknown::kCurvature, 0.5);
+    prior[u] = 0.1;
+  prior[DriveUnknown::kShape] = 0.2;
+  prior[DriveUnknown::kCurvature] = 0.5;
 }
 
 void DriveModelOptions::read_keys(const StudyTable& table) {
@@ -156,8 +155,8 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
   tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
   const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
   if (tyre == DriveTyre::kMagicFormula) {
-    free[static_cast<std::size_t>(DriveUnknown::kMu)] = true;
-    free[static_cast<std::size_t>(DriveUnknown::kShape)] = true;
+    free[DriveUnknown::kMu] = true;
+    free[DriveUnknown::kShape] = true;
   }
   if (table.has("estimate")) {
     free.fill(false);
@@ -308,8 +307,7 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
   };
   const bool delayed = !(unknown(DriveUnknown::kYawRateDelay) == Scalar(0.0)) ||
                        !(unknown(DriveUnknown::kAccelYDelay) == Scalar(0.0)) ||
-                       options_.free[static_cast<std::size_t>(DriveUnknown::kYawRateDelay)] ||
-                       options_.free[static_cast<std::size_t>(DriveUnknown::kAccelYDelay)];
+                       options_.free[DriveUnknown::kYawRateDelay] || options_.free[DriveUnknown::kAccelYDelay];
   std::vector<Scalar> yaw_rate(delayed ? n : 0), accel(delayed && accel_ ? n : 0);
 
   const auto [x, y, z] = accel_position_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
@@ -69,13 +70,13 @@ struct DriveModelOptions {
   DriveTyre tyre = DriveTyre::kLinear;  ///< `tyre = "linear"` or "magic formula"
   /// `estimate = ["C_f", "C_r", ...]`: names of what is free. Default: C_f, C_r, I_z, the three biases, and with the
   /// Magic Formula mu and C. What is not free stays at its start.
-  std::array<bool, kDriveUnknowns> free{};
+  EnumArray<DriveUnknown, bool, kDriveUnknowns> free{};
   /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior.
-  std::array<double, kDriveUnknowns> start{};
+  EnumArray<DriveUnknown, double, kDriveUnknowns> start{};
   /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
   /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
   /// indistinguishable without), steer_scale and accel_y_scale 0.1, delays 0.1 s, C 0.2, E 0.5.
-  std::array<double, kDriveUnknowns> prior{};
+  EnumArray<DriveUnknown, double, kDriveUnknowns> prior{};
   /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
   /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
   /// power is taken off C_f: 1.3 % for 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip. 4 Hz leave a tenth of

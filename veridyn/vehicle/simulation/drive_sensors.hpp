@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
@@ -36,14 +37,14 @@ inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorUnits{"
 
 /// The sensors of a vehicle and where its accelerometer is.
 struct DriveSensorSet {
-  std::array<DriveSensor, kDriveSensors> sensors;
+  EnumArray<DriveSensorKind, DriveSensor, kDriveSensors> sensors;
   std::array<double, 3> accel_position{};  ///< of the accelerometer from the centre of gravity, forward, left, up [m]
   /// A sensor on the body of a vehicle that rolls and pitches measures gravity too: g sin(roll) along y, -g sin(pitch)
   /// along x. Only where the trajectory has these angles.
   bool feels_gravity = true;
   double gravity = kGravity;
-  [[nodiscard]] const DriveSensor& operator[](DriveSensorKind k) const { return sensors[static_cast<std::size_t>(k)]; }
-  [[nodiscard]] DriveSensor& operator[](DriveSensorKind k) { return sensors[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const DriveSensor& operator[](DriveSensorKind k) const { return sensors[k]; }
+  [[nodiscard]] DriveSensor& operator[](DriveSensorKind k) { return sensors[k]; }
 };
 
 /// Sensors as production cars carry them for stability control, all at 100 Hz: yaw rate noise 0.1 deg/s with a bias of
