@@ -89,6 +89,9 @@ SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
     table.fail("spread", fmt::format("{:g} must be from 0 to below 1", person.spread));
   person.noise = table.number_or("noise", "rad", person.noise);
   if (!(person.noise >= 0.0)) table.fail("noise", fmt::format("{:g} must be >= 0", person.noise));
+  person.noise_correlation_s = table.number_or("noise_correlation", "s", person.noise_correlation_s);
+  if (!(person.noise_correlation_s >= 0.0))
+    table.fail("noise_correlation", fmt::format("{:g} must be >= 0", person.noise_correlation_s));
   constexpr internal::Words<bool, 2> kMuscles{{{"as the model", false}, {"millard", true}}};
   person.millard = internal::word_or_first(table, "muscles", kMuscles);
   person.load_factor = table.positive_or("load_factor", "1", person.load_factor);
