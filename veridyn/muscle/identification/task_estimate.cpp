@@ -10,6 +10,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/output_error/correlated_noise_model.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/sensitivity_indices.hpp"
@@ -32,6 +33,9 @@ constexpr double kIdentifiedShare = 0.75, kWeakShareOfPrior = 0.25;
 constexpr double kAsGood = 6.0;
 /// Correlation of neighbouring residuals from which error bars are corrected for it.
 constexpr double kCorrelated = 0.15;
+/// Mean square of the residual in units of the noise from which it is not the noise's, whatever its correlation; and
+/// twice the gain of the log likelihood by which noise of first order has to be likelier than white (5 % by chance).
+constexpr double kOfStatedSize = 1.5, kLikelierByChance = 3.84;
 
 /// View of one estimation.
 class TaskEstimation {
@@ -45,6 +49,7 @@ class TaskEstimation {
   TaskEstimate run() {
     const auto begun = std::chrono::steady_clock::now();
     search();
+    if (result_.usable() && options_.correlated_noise && noise_.size() > 0) allow_for_correlated_noise();
     if (result_.usable()) describe();
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return std::move(result_);
@@ -228,6 +233,37 @@ class TaskEstimation {
     }
   }
 
+  /// Fits again with noise of first order until its correlation rests.
+  void allow_for_correlated_noise() {
+    constexpr int kCorrelatedRounds = 3;
+    constexpr double kCorrelationRests = 0.02;
+    const double rms = residual(result_.best.theta);
+    if (!(rms * rms < kOfStatedSize)) return;
+    for (int round = 0; round < kCorrelatedRounds && !progress_.interrupted(); ++round) {
+      const auto found = estimation::noise_correlation(model_, measured_, result_.best, noise_, progress_.threads());
+      result_.simulations.with_derivatives += model_.segments();
+      if (!found || (round == 0 && !(found->gain > kLikelierByChance))) return;
+      const Eigen::VectorXd& before = result_.noise_correlation;
+      if (round > 0 && (found->correlation - before).cwiseAbs().maxCoeff() < kCorrelationRests) return;
+      const estimation::CorrelatedNoiseModel white(model_, measured_, found->correlation);
+      std::vector<RowMatrix> measured;
+      for (std::size_t s = 0; s < measured_.size(); ++s) measured.push_back(white.whitened(s, measured_[s]));
+      OutputErrorOptions o = options_of(result_.best.theta);
+      // Each round goes on where the one before stopped.
+      o.tolerance = 0.5;
+      o.noise = estimation::OutputNoise::kGiven;
+      o.noise_start = noise_;
+      o.max_relaxations = 1;
+      OutputErrorEstimate e = estimation::output_error(white, measured, o, quiet_);
+      result_.simulations += e.simulations;
+      if (!e.usable()) return;
+      for (std::size_t s = 0; s < e.predicted.size(); ++s) e.predicted[s] = white.restored(s, e.predicted[s]);
+      result_.searches[result_.chosen].steps += e.steps;
+      result_.best = std::move(e);
+      result_.noise_correlation = found->correlation;
+    }
+  }
+
   [[nodiscard]] OutputErrorEstimate why_nothing(const std::vector<std::optional<OutputErrorEstimate>>& finished,
                                                 std::size_t first) {
     if (first < finished.size() && finished[first]) return *finished[first];
@@ -248,26 +284,49 @@ class TaskEstimation {
     return true;
   }
 
-  void residual_statistics() {
-    const std::vector<RowMatrix>& y = result_.best.predicted;
-    double sum = 0.0;
-    result_.lag1 = 0.0;
-    for (Eigen::Index j = 0; j < signed_index(model_.outputs().size()); ++j) {
+  /// Predicted less measured.
+  [[nodiscard]] std::vector<RowMatrix> residuals() const {
+    std::vector<RowMatrix> e;
+    for (std::size_t s = 0; s < measured_.size(); ++s) e.push_back(result_.best.predicted[s] - measured_[s]);
+    return e;
+  }
+
+  /// The largest of any output.
+  [[nodiscard]] static double lag1_of(const std::vector<RowMatrix>& e) {
+    double largest = 0.0;
+    for (Eigen::Index j = 0; j < e.front().cols(); ++j) {
       double cross = 0.0, squares = 0.0;
-      for (std::size_t s = 0; s < y.size(); ++s) {
-        for (Eigen::Index k = 0; k < y[s].rows(); ++k) {
-          const double e = y[s](k, j) - measured_[s](k, j);
-          if (std::isnan(e)) continue;
-          squares += e * e;
-          sum += e * e / (scale()(j) * scale()(j));
-          const double before = k > 0 ? y[s](k - 1, j) - measured_[s](k - 1, j) : kNaN;
-          if (!std::isnan(before)) cross += e * before;
+      for (const RowMatrix& r : e) {
+        for (Eigen::Index k = 0; k < r.rows(); ++k) {
+          if (std::isnan(r(k, j))) continue;
+          squares += r(k, j) * r(k, j);
+          const double before = k > 0 ? r(k - 1, j) : kNaN;
+          if (!std::isnan(before)) cross += r(k, j) * before;
         }
       }
-      if (squares > 0.0) result_.lag1 = std::max(result_.lag1, cross / squares);
+      if (squares > 0.0) largest = std::max(largest, cross / squares);
+    }
+    return largest;
+  }
+
+  /// Sets what the residual is; returns the correlation of neighbours that is left in it.
+  double residual_statistics() {
+    std::vector<RowMatrix> e = residuals();
+    double left = result_.lag1 = lag1_of(e);
+    if (result_.noise_correlation.size() > 0) {
+      const estimation::CorrelatedNoiseModel white(model_, measured_, result_.noise_correlation);
+      for (std::size_t s = 0; s < e.size(); ++s) e[s] = white.whitened(s, e[s]);
+      left = lag1_of(e);
+    }
+    double sum = 0.0;
+    for (const RowMatrix& r : e) {
+      for (Eigen::Index k = 0; k < r.rows(); ++k)
+        for (Eigen::Index j = 0; j < r.cols(); ++j)
+          if (!std::isnan(r(k, j))) sum += std::pow(r(k, j) / scale()(j), 2);
     }
     result_.freedom = std::max(1.0, static_cast<double>(values_) - std::max(0.0, result_.learned.sum()));
     result_.chi_square = noise_.size() > 0 ? sum / result_.freedom : kNaN;
+    return left;
   }
 
   void describe() {
@@ -280,9 +339,9 @@ class TaskEstimation {
         result_.learned(signed_index(i)) =
             std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
     }
-    residual_statistics();
+    const double left = residual_statistics();
     // Correcting white residuals for chance correlations would only add the correction's own error.
-    const bool white = result_.lag1 < kCorrelated;
+    const bool white = left < kCorrelated;
     if (white) e.covariance = e.covariance_white;
     for (std::size_t i = 0; i < n; ++i) {
       estimation::Parameter& p = e.parameters[i];

@@ -17,6 +17,9 @@ struct TaskEstimateOptions {
   std::uint64_t seed = 1;
   /// Where the first search begins, one value a parameter; empty: at the model's own values.
   Eigen::VectorXd first = {};
+  /// Estimate once more, with noise of first order, where that explains the residual better than white noise (with a
+  /// stated noise only).
+  bool correlated_noise = true;
   /// @throws InputError naming the option and its rule.
   void validate() const;
 };
@@ -57,6 +60,9 @@ struct TaskEstimate {
   double chi_square = 0.0;       ///< of the residual over its freedom; NaN where the noise is not known
   double freedom = 0.0;          ///< measured values less what the parameters took
   double lag1 = 0.0;             ///< autocorrelation of the residual at one sample, the largest of any output
+  /// Of the noise from sample to sample, by output, where the estimate takes it for of first order; empty: for white.
+  /// `chi_square` is then that of its innovations, and `best` is that of `CorrelatedNoiseModel` but for `predicted`.
+  Eigen::VectorXd noise_correlation = {};
   estimation::SimulationCount simulations;  ///< of tasks, by all searches
   double seconds = 0.0;
 
