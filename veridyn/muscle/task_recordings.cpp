@@ -135,7 +135,8 @@ std::shared_ptr<const MusculoskeletalSystem> person_system(const TaskStudy& stud
     muscle.curves = MillardCurves{};
     muscle.fiber_damping = 0.1;
   }
-  return std::make_shared<const MusculoskeletalSystem>(*study.subject.system, changes);
+  return std::make_shared<const MusculoskeletalSystem>(study.person->body ? *study.person->body : *study.subject.system,
+                                                       changes);
 }
 
 }  // namespace internal

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,7 @@ struct TaskStudy {
 ///     noise = "0.06 deg"             # of the measured angles; of other outputs that of [[output]]
 ///     noise_correlation = "20 ms"    # correlation time of that noise, first order; 0: white
 ///     muscles = "millard"            # of another class than the model's, to see what is said of a wrong model
+///     model = "turned.osim"          # with the bodies, joints and paths of another model, likewise
 ///     load_factor = 1.0              # true load over the stated one, likewise
 ///     moment_noise = "0.1 N m"       # with [emg]: of the measured moments, unless [[output]] says it
 ///     emg_noise = "20 %"             # with [emg]: of the EMG, where the study says otherwise in [emg]

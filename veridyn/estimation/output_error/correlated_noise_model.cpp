@@ -246,6 +246,12 @@ RowMatrix CorrelatedNoiseModel::whitened(std::size_t segment, const RowMatrix& v
   return v;
 }
 
+std::vector<RowMatrix> CorrelatedNoiseModel::whitened(const std::vector<RowMatrix>& values) const {
+  std::vector<RowMatrix> all;
+  for (std::size_t s = 0; s < values.size(); ++s) all.push_back(whitened(s, values[s]));
+  return all;
+}
+
 RowMatrix CorrelatedNoiseModel::restored(std::size_t segment, const RowMatrix& values) const {
   RowMatrix y = values;
   for (Index k = 0; k < y.rows(); ++k) {

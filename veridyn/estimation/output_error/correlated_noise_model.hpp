@@ -36,6 +36,8 @@ class CorrelatedNoiseModel final : public ParametricModel {
 
   /// A recording or response, samples x outputs, as the model shows its own; NaN stays.
   [[nodiscard]] RowMatrix whitened(std::size_t segment, const RowMatrix& values) const;
+  /// Those of all segments.
+  [[nodiscard]] std::vector<RowMatrix> whitened(const std::vector<RowMatrix>& values) const;
   /// Back from that.
   [[nodiscard]] RowMatrix restored(std::size_t segment, const RowMatrix& values) const;
 

@@ -11,8 +11,8 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/correlated_noise_model.hpp"
+#include "veridyn/muscle/identification/null_directions.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
-#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/sensitivity_indices.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -246,15 +246,13 @@ class TaskEstimation {
       const Eigen::VectorXd& before = result_.noise_correlation;
       if (round > 0 && (found->correlation - before).cwiseAbs().maxCoeff() < kCorrelationRests) return;
       const estimation::CorrelatedNoiseModel white(model_, measured_, found->correlation);
-      std::vector<RowMatrix> measured;
-      for (std::size_t s = 0; s < measured_.size(); ++s) measured.push_back(white.whitened(s, measured_[s]));
       OutputErrorOptions o = options_of(result_.best.theta);
       // Each round goes on where the one before stopped.
       o.tolerance = 0.5;
       o.noise = estimation::OutputNoise::kGiven;
       o.noise_start = noise_;
       o.max_relaxations = 1;
-      OutputErrorEstimate e = estimation::output_error(white, measured, o, quiet_);
+      OutputErrorEstimate e = estimation::output_error(white, white.whitened(measured_), o, quiet_);
       result_.simulations += e.simulations;
       if (!e.usable()) return;
       for (std::size_t s = 0; s < e.predicted.size(); ++s) e.predicted[s] = white.restored(s, e.predicted[s]);
@@ -315,7 +313,7 @@ class TaskEstimation {
     double left = result_.lag1 = lag1_of(e);
     if (result_.noise_correlation.size() > 0) {
       const estimation::CorrelatedNoiseModel white(model_, measured_, result_.noise_correlation);
-      for (std::size_t s = 0; s < e.size(); ++s) e[s] = white.whitened(s, e[s]);
+      e = white.whitened(e);
       left = lag1_of(e);
     }
     double sum = 0.0;
@@ -354,7 +352,9 @@ class TaskEstimation {
       result_.verdicts.push_back(verdict_of(i));
       p.status = status_of(result_.verdicts.back());
     }
-    find_null_directions();
+    const NullDirections null = null_directions(model_.parameters(), e.covariance_white, 1.0 - kWeakShareOfPrior);
+    result_.null_directions = null.texts;
+    result_.null_vectors = null.vectors;
   }
 
   [[nodiscard]] TaskVerdict verdict_of(std::size_t i) const {
@@ -384,49 +384,6 @@ class TaskEstimation {
         break;
     }
     return ParameterStatus::kNotExcited;
-  }
-
-  /// Eigenvectors of the posterior covariance in units of the priors: one is what the prior says, zero is known.
-  void find_null_directions() {
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < model_.parameters().size(); ++i)
-      if (!model_.parameters()[i].fixed) free.push_back(i);
-    const auto n = signed_index(free.size());
-    Eigen::MatrixXd scaled(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const std::size_t a = free[at(i)], b = free[at(j)];
-        scaled(i, j) = result_.best.covariance_white(signed_index(a), signed_index(b)) /
-                       (model_.parameters()[a].prior_sigma * model_.parameters()[b].prior_sigma);
-      }
-    }
-    if (!scaled.allFinite()) return;
-    const auto eigen = numerics::symmetric_eigen(scaled);
-    std::vector<Eigen::VectorXd> found;
-    for (Eigen::Index j = n - 1; j >= 0; --j) {
-      if (!(eigen.values(j) > 1.0 - kWeakShareOfPrior)) continue;
-      const Eigen::VectorXd v = eigen.vectors.col(j);
-      result_.null_directions.push_back(words_of(v, free));
-      Eigen::VectorXd all = Eigen::VectorXd::Zero(signed_index(model_.parameters().size()));
-      for (Eigen::Index i = 0; i < n; ++i) all(signed_index(free[at(i)])) = v(i);
-      found.push_back(all);
-    }
-    result_.null_vectors.resize(signed_index(model_.parameters().size()), signed_index(found.size()));
-    for (std::size_t j = 0; j < found.size(); ++j) result_.null_vectors.col(signed_index(j)) = found[j];
-  }
-
-  /// The parameters that a direction raises against those that it lowers; those with a third of the largest part.
-  [[nodiscard]] std::string words_of(const Eigen::VectorXd& v, const std::vector<std::size_t>& free) const {
-    Eigen::Index largest = 0;
-    v.cwiseAbs().maxCoeff(&largest);
-    const double sign = v(largest) < 0.0 ? -1.0 : 1.0;
-    std::string raised, lowered;
-    for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (std::abs(v(i)) < std::abs(v(largest)) / 3.0) continue;
-      std::string& side = sign * v(i) > 0.0 ? raised : lowered;
-      side += (side.empty() ? "" : ", ") + model_.parameters()[free[at(i)]].name;
-    }
-    return lowered.empty() ? raised : fmt::format("{} against {}", raised, lowered);
   }
 
   /// Searches within a stage show no progress of their own.

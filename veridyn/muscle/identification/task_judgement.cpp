@@ -109,6 +109,15 @@ Evidence check_correlation(const TaskFindings& f) {
                               "model does not have, or noise that is not white",
                               f.estimate.lag1)
                         : fmt::format("residuals are like noise (correlation of neighbours {:.2f})", f.estimate.lag1);
+  if (systematic && f.estimate.noise_correlation.size() > 0) {
+    row.text = fmt::format(
+        "neighbouring residuals are alike (correlation {:.2f}): values and intervals are those of noise that is "
+        "correlated from sample to sample ({:.2f}) and of the stated size, but motion that the model does not have "
+        "would "
+        "look alike",
+        f.estimate.lag1, f.estimate.noise_correlation.maxCoeff());
+    row.advice = "record the coordinates at rest: noise is as correlated there, what a model lacks is not seen";
+  }
   if (numerical && f.estimate.lag1 > kSystematic) {
     row.outcome = Outcome::kCare;
     row.text = fmt::format(
