@@ -21,9 +21,11 @@ namespace veridyn::muscle {
 struct SimulatedPerson {
   double spread = 0.05;  ///< hidden parameters: the model's times 1 +- at most this, uniform
   std::map<std::string, double, std::less<>> values;  ///< unknowns that are set instead, by name
-  bool millard = false;      ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
-  double load_factor = 1.0;  ///< the loads of the tasks are this much heavier than the study says
-  double noise = 1e-3;       ///< standard deviation of measured angles and positions [rad or m]
+  bool millard = false;  ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
+  /// With another model's bodies, joints and paths, with the same coordinates and muscles: geometry that is wrong.
+  std::shared_ptr<const MusculoskeletalSystem> body = {};
+  double load_factor = 1.0;           ///< the loads of the tasks are this much heavier than the study says
+  double noise = 1e-3;                ///< standard deviation of measured angles and positions [rad or m]
   double noise_correlation_s = 0.0;   ///< of that noise, first order: exp(-dt/this) from sample to sample; 0: white
   double moment_noise = 0.1;          ///< of measured moments and forces that `[[output]]` says no other of [N m or N]
   std::optional<double> emg_noise{};  ///< of the EMG's value; else as the study's `[emg]` says
