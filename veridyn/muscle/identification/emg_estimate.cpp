@@ -30,6 +30,8 @@ class EmgEstimation {
         progress_(progress) {
     // That of the residual is the EMG's error's, which the covariance holds already.
     options_.correlated_noise = false;
+    // The noise is found on the way.
+    options_.search_further = false;
   }
 
   EmgEstimate run() {

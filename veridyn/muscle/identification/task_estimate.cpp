@@ -12,6 +12,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/correlated_noise_model.hpp"
 #include "veridyn/muscle/identification/null_directions.hpp"
+#include "veridyn/muscle/identification/task_residuals.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/numerics/sensitivity_indices.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -29,13 +30,19 @@ constexpr double kCoarse = 0.05;
 constexpr int kCoarseSteps = 8, kCoarseRounds = 4;
 /// Shares of the prior's variance that the data have to remove.
 constexpr double kIdentifiedShare = 0.75, kWeakShareOfPrior = 0.25;
-/// Difference of two negative log posteriors up to which fits are as good.
+/// Difference of two negative log posteriors up to which fits are as good: at least this, and that of the region that
+/// holds all parameters together with 95 %.
 constexpr double kAsGood = 6.0;
 /// Correlation of neighbouring residuals from which error bars are corrected for it.
 constexpr double kCorrelated = 0.15;
 /// Mean square of the residual in units of the noise from which it is not the noise's, whatever its correlation; and
 /// twice the gain of the log likelihood by which noise of first order has to be likelier than white (5 % by chance).
 constexpr double kOfStatedSize = 1.5, kLikelierByChance = 3.84;
+
+/// Where the first searches leave what is not noise: searches and points of the screening in all, in units of theirs,
+/// and the correlation of neighbouring residuals from which they are motion.
+constexpr int kFurtherStarts = 3, kFurtherScreened = 8;
+constexpr double kLooksLikeMotion = 0.3;
 
 /// View of one estimation.
 class TaskEstimation {
@@ -106,14 +113,14 @@ class TaskEstimation {
     return start;
   }
 
-  /// The model's values, then points of the screening, the best fits first; all that can be simulated.
-  std::vector<std::pair<double, Eigen::VectorXd>> starting_points() {
-    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
-    std::vector<std::pair<double, Eigen::VectorXd>> points{{residual(start), start}};
-    if (options_.starts < 2) return points;
-    const Eigen::MatrixXd sobol =
-        numerics::sobol_points(static_cast<std::size_t>(options_.screened), at(start.size()), options_.seed);
-    for (Eigen::Index k = 0; k < sobol.rows() && !progress_.interrupted(); ++k) {
+  using StartingPoints = std::vector<std::pair<double, Eigen::VectorXd>>;
+
+  /// The best fits, `wanted` of them, of the points `from` to `to` of the screening; all that can be simulated.
+  StartingPoints screened_points(int from, int to, int wanted) {
+    StartingPoints points;
+    const Eigen::VectorXd start = own_values();
+    const Eigen::MatrixXd sobol = numerics::sobol_points(static_cast<std::size_t>(to), at(start.size()), options_.seed);
+    for (Eigen::Index k = from; k < sobol.rows() && !progress_.interrupted(); ++k) {
       Eigen::VectorXd theta = start;
       for (Eigen::Index i = 0; i < start.size(); ++i) {
         const estimation::ModelParameter& p = model_.parameters()[at(i)];
@@ -122,8 +129,8 @@ class TaskEstimation {
       const double fit = residual(theta);
       if (std::isfinite(fit)) points.emplace_back(fit, theta);
     }
-    std::stable_sort(points.begin() + 1, points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (points.size() > at(options_.starts)) points.resize(at(options_.starts));
+    std::stable_sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    if (points.size() > at(wanted)) points.resize(at(wanted));
     return points;
   }
 
@@ -179,12 +186,57 @@ class TaskEstimation {
   }
 
   void search() {
-    const auto points = starting_points();
+    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
+    StartingPoints points{{residual(start), start}};
+    if (options_.starts > 1) {
+      for (auto& point : screened_points(0, options_.screened, options_.starts - 1)) points.push_back(std::move(point));
+    }
+    search_from(points);
+    // A minimum that leaves motion unexplained may be one of several.
+    if (options_.starts > 1 && options_.search_further && result_.usable() && !explained()) {
+      search_from(
+          screened_points(options_.screened, kFurtherScreened * options_.screened, kFurtherStarts * options_.starts));
+    }
+    if (!result_.usable()) return;
+    const double best = result_.searches[result_.chosen].cost;
+    for (std::size_t i = 0; i < finished_.size(); ++i) {
+      TaskSearch& s = result_.searches[i];
+      if (!finished_[i] || !finished_[i]->usable()) {
+        if (s.message.empty()) s.message = "left after the coarse fit: others were better";
+        continue;
+      }
+      s.agrees = same_place(*finished_[i]);
+      if (s.agrees || !(s.cost - best < as_good())) continue;
+      result_.ambiguous = true;
+      rivals_.push_back(finished_[i]->theta);
+    }
+  }
+
+  /// Half the 95 % quantile of chi-square with as many degrees of freedom as parameters.
+  [[nodiscard]] double as_good() const {
+    double n = 0.0;
+    for (const estimation::ModelParameter& p : model_.parameters()) n += p.fixed ? 0.0 : 1.0;
+    return n > 0.0 ? std::max(kAsGood, 0.5 * numerics::chi_square_quantile(0.95, n)) : kAsGood;
+  }
+
+  /// Whether the best fit leaves no more than the noise; where that is not known, nothing that looks like motion.
+  [[nodiscard]] bool explained() const {
+    const std::vector<RowMatrix> e = residuals();
+    if (noise_.size() == 0) return lag1_of(e) < kLooksLikeMotion || share_of_motion(e, measured_) < kIntegrationShare;
+    const double values = static_cast<double>(values_);
+    return squares_of(e) / values < 1.0 + 4.0 * std::sqrt(2.0 / values);
+  }
+
+  /// Searches from some points coarsely, finishes the best two, and keeps the best of all searches so far.
+  void search_from(const StartingPoints& points) {
+    const std::size_t first = result_.searches.size();
     std::vector<Eigen::VectorXd> ends(points.size());
     std::vector<double> rms(points.size(), kInfinity);
-    result_.searches.resize(points.size());
+    result_.searches.resize(first + points.size());
+    finished_.resize(result_.searches.size());
+    const double steps = static_cast<double>(points.size() + 2);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      TaskSearch& s = result_.searches[i];
+      TaskSearch& s = result_.searches[first + i];
       s.rms_start = points[i].first;
       s.cost = kNaN;
       if (!std::isfinite(s.rms_start)) {
@@ -194,43 +246,28 @@ class TaskEstimation {
       ends[i] = coarse(points[i].second, points[i].first, s);
       const double end = residual(ends[i]);
       if (std::isfinite(end)) rms[i] = end;
-      if (!progress_.update(static_cast<double>(i + 1) / static_cast<double>(points.size() + 2))) break;
+      if (!progress_.update(static_cast<double>(i + 1) / steps)) break;
     }
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rms[a] < rms[b]; });
-    std::vector<std::optional<OutputErrorEstimate>> finished(points.size());
-    double best = kInfinity;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
       const std::size_t i = order[k];
       if (!std::isfinite(rms[i]) || progress_.interrupted()) continue;
-      finished[i] = fine(ends[i], k > 0);
-      TaskSearch& s = result_.searches[i];
-      s.steps += finished[i]->steps;
-      s.message = finished[i]->message;
-      if (!finished[i]->usable()) continue;
-      s.cost = cost(*finished[i]);
-      if (s.cost < best) {
-        best = s.cost;
-        result_.chosen = i;
+      std::optional<OutputErrorEstimate>& fit = finished_[first + i];
+      fit = fine(ends[i], k > 0);
+      TaskSearch& s = result_.searches[first + i];
+      s.steps += fit->steps;
+      s.message = fit->message;
+      if (!fit->usable()) continue;
+      s.cost = cost(*fit);
+      if (!result_.usable() || s.cost < result_.searches[result_.chosen].cost) {
+        result_.best = *fit;
+        result_.chosen = first + i;
       }
-      if (!progress_.update(static_cast<double>(points.size() + k + 1) / static_cast<double>(points.size() + 2))) break;
+      if (!progress_.update(static_cast<double>(points.size() + k + 1) / steps)) break;
     }
-    if (!std::isfinite(best)) {
-      result_.best = why_nothing(finished, order.empty() ? 0 : order.front());
-      return;
-    }
-    result_.best = *finished[result_.chosen];
-    for (std::size_t i = 0; i < finished.size(); ++i) {
-      if (!finished[i] || !finished[i]->usable()) {
-        if (result_.searches[i].message.empty())
-          result_.searches[i].message = "left after the coarse fit: others were better";
-        continue;
-      }
-      result_.searches[i].agrees = same_place(*finished[i]);
-      result_.ambiguous =
-          result_.ambiguous || (!result_.searches[i].agrees && result_.searches[i].cost - best < kAsGood);
-    }
+    if (!result_.usable()) result_.best = why_nothing(first + (order.empty() ? 0 : order.front()));
   }
 
   /// Fits again with noise of first order until its correlation rests.
@@ -262,9 +299,8 @@ class TaskEstimation {
     }
   }
 
-  [[nodiscard]] OutputErrorEstimate why_nothing(const std::vector<std::optional<OutputErrorEstimate>>& finished,
-                                                std::size_t first) {
-    if (first < finished.size() && finished[first]) return *finished[first];
+  [[nodiscard]] OutputErrorEstimate why_nothing(std::size_t first) {
+    if (first < finished_.size() && finished_[first]) return *finished_[first];
     OutputErrorOptions o = options_of(own_values());
     if (noise_.size() > 0) o.noise_start = noise_;
     o.max_relaxations = 1;
@@ -289,22 +325,15 @@ class TaskEstimation {
     return e;
   }
 
-  /// The largest of any output.
-  [[nodiscard]] static double lag1_of(const std::vector<RowMatrix>& e) {
-    double largest = 0.0;
-    for (Eigen::Index j = 0; j < e.front().cols(); ++j) {
-      double cross = 0.0, squares = 0.0;
-      for (const RowMatrix& r : e) {
-        for (Eigen::Index k = 0; k < r.rows(); ++k) {
-          if (std::isnan(r(k, j))) continue;
-          squares += r(k, j) * r(k, j);
-          const double before = k > 0 ? r(k - 1, j) : kNaN;
-          if (!std::isnan(before)) cross += r(k, j) * before;
-        }
-      }
-      if (squares > 0.0) largest = std::max(largest, cross / squares);
+  /// Sum of squares, each output in units of its noise.
+  [[nodiscard]] double squares_of(const std::vector<RowMatrix>& e) const {
+    double sum = 0.0;
+    for (const RowMatrix& r : e) {
+      for (Eigen::Index k = 0; k < r.rows(); ++k)
+        for (Eigen::Index j = 0; j < r.cols(); ++j)
+          if (!std::isnan(r(k, j))) sum += std::pow(r(k, j) / scale()(j), 2);
     }
-    return largest;
+    return sum;
   }
 
   /// Sets what the residual is; returns the correlation of neighbours that is left in it.
@@ -316,14 +345,8 @@ class TaskEstimation {
       e = white.whitened(e);
       left = lag1_of(e);
     }
-    double sum = 0.0;
-    for (const RowMatrix& r : e) {
-      for (Eigen::Index k = 0; k < r.rows(); ++k)
-        for (Eigen::Index j = 0; j < r.cols(); ++j)
-          if (!std::isnan(r(k, j))) sum += std::pow(r(k, j) / scale()(j), 2);
-    }
     result_.freedom = std::max(1.0, static_cast<double>(values_) - std::max(0.0, result_.learned.sum()));
-    result_.chi_square = noise_.size() > 0 ? sum / result_.freedom : kNaN;
+    result_.chi_square = noise_.size() > 0 ? squares_of(e) / result_.freedom : kNaN;
     return left;
   }
 
@@ -331,12 +354,18 @@ class TaskEstimation {
     OutputErrorEstimate& e = result_.best;
     const std::size_t n = model_.parameters().size();
     result_.learned = Eigen::VectorXd::Zero(signed_index(n));
+    double squares = 0.0, count = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       const estimation::ModelParameter& p = model_.parameters()[i];
-      if (!p.fixed)
-        result_.learned(signed_index(i)) =
-            std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
+      if (p.fixed) continue;
+      if (p.start != 0.0) {
+        squares += std::pow(e.theta(signed_index(i)) / p.start - 1.0, 2);
+        count += 1.0;
+      }
+      result_.learned(signed_index(i)) =
+          std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
     }
+    result_.distance = count > 0.0 ? std::sqrt(squares / count) : 0.0;
     const double left = residual_statistics();
     // Correcting white residuals for chance correlations would only add the correction's own error.
     const bool white = left < kCorrelated;
@@ -361,6 +390,12 @@ class TaskEstimation {
     const estimation::Parameter& p = result_.best.parameters[i];
     if (p.status == ParameterStatus::kAtBound) return TaskVerdict::kAtBound;
     const double learned = result_.learned(signed_index(i));
+    // What explains the motion as well with a value outside the interval does not leave the interval known.
+    for (const Eigen::VectorXd& rival : rivals_) {
+      const double other = rival(signed_index(i));
+      if (learned >= kWeakShareOfPrior && !(other >= p.low95 && other <= p.high95))
+        return TaskVerdict::kNotIdentifiable;
+    }
     if (learned >= kIdentifiedShare) return TaskVerdict::kIdentified;
     if (learned >= kWeakShareOfPrior) return TaskVerdict::kWeak;
     // Were all others known: the variance inflation says by how much they spread it.
@@ -405,6 +440,8 @@ class TaskEstimation {
   Progress& progress_;
   Watched quiet_{progress_};
   Eigen::Index values_ = 0;
+  std::vector<std::optional<OutputErrorEstimate>> finished_;  ///< by search
+  std::vector<Eigen::VectorXd> rivals_;                       ///< where other searches ended with as good a fit
   TaskEstimate result_;
 };
 
