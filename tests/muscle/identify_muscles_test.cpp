@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -90,12 +92,65 @@ TEST(IdentifyMuscles, ThePublishedRouteEndsWhereTheGradientDoes) {
   }
 }
 
+// Two samples of noise that are alike say little more than one: as many seconds of it tell less.
+TEST(IdentifyMuscles, CorrelatedNoiseIsFoundAndWidensIntervals) {
+  const std::string person = kFour + kForces + "[person]\nspread = \"5 %\"\n";
+  const MuscleAnalysis white = recovered(1, person + "[identify]\nstarts = 1\n");
+  const MuscleAnalysis a = recovered(1, person + "noise_correlation = \"20 ms\"\n[identify]\nstarts = 1\n");
+  EXPECT_EQ(white.result.noise_correlation.size(), 0);
+  ASSERT_EQ(a.result.noise_correlation.size(), 1);
+  // exp(-1/2), with sqrt((1 - phi^2)/416) = 0.04 of chance.
+  EXPECT_NEAR(a.result.noise_correlation(0), std::exp(-0.5), 0.12);
+  EXPECT_NEAR(a.result.chi_square, 1.0, 0.3);
+  EXPECT_GT(a.result.lag1, 0.45);
+  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(row_of(a, "correlation of the residual").outcome, estimation::Outcome::kCare);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const estimation::Parameter& p = a.estimate.parameters[i];
+    EXPECT_LT(std::abs(p.value - a.true_value(p.name)), 4.0 * p.sigma) << p.name;
+    EXPECT_GT(p.sigma, 1.3 * white.estimate.parameters[i].sigma) << p.name;
+  }
+  // The residual is that of the model itself, not of what was fitted.
+  EXPECT_LT((a.tasks[0].estimated - a.tasks[0].measured).cwiseAbs().maxCoeff(), 6e-3);
+}
+
 TEST(IdentifyMuscles, AWrongModelIsSaidToBeWrong) {
   const MuscleAnalysis a = recovered(2, kFour + kForces + "[person]\nmuscles = \"millard\"\n[identify]\nstarts = 1\n");
   EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);
   EXPECT_EQ(a.estimate.judgement.parameters.grade, estimation::Grade::kNo);
   for (const estimation::Parameter& p : a.estimate.parameters)
     EXPECT_NE(p.status, estimation::ParameterStatus::kIdentified);
+}
+
+/// The built-in arm with its elbow's axis turned about the direction of the motion by three degrees, as a file.
+std::string turned_arm() {
+  const std::string path = ::testing::TempDir() + "/turned_arm.osim";
+  std::string text;
+  for (const EmbeddedText& model : builtin_models())
+    if (model.name == "arm") text = model.text;
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    const std::size_t place = text.find(what, text.find("<PinJoint name=\"elbow\">"));
+    if (place == std::string::npos) throw std::runtime_error("no " + what);
+    text.replace(place, what.size(), by);
+  };
+  const std::string turned = fmt::format("<orientation>{} 0 0</orientation>", 3.0 * kPi / 180.0);
+  replace("<socket_child_frame>/bodyset/forearm<", "<socket_child_frame>elbow_in_forearm<");
+  replace("<orientation>0 0 0</orientation>", turned);
+  replace("</PhysicalOffsetFrame>",
+          "</PhysicalOffsetFrame><PhysicalOffsetFrame name=\"elbow_in_forearm\">"
+          "<socket_parent>/bodyset/forearm</socket_parent><translation>0 0 0</translation>" +
+              turned + "</PhysicalOffsetFrame>");
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(IdentifyMuscles, APersonWithAnotherElbowDoesNotFit) {
+  const MuscleAnalysis a =
+      recovered(1, kFour + kForces + "[person]\nmodel = \"" + turned_arm() + "\"\n[identify]\nstarts = 1\n");
+  EXPECT_EQ(row_of(a, "residual against the noise").outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(a.estimate.judgement.parameters.grade, estimation::Grade::kNo);
+  // Three degrees are little: a person whose model were another altogether would be hundreds off.
+  EXPECT_LT(a.result.chi_square, 10.0);
 }
 
 TEST(IdentifyMuscles, OneTaskIsFlaggedAndItsNullDirectionsAreTrue) {
@@ -141,35 +196,53 @@ TEST(IdentifyMuscles, AnEstimateIsValidatedOnOtherTasks) {
   EXPECT_THROW(static_cast<void>(validate(person_study(1, kFour + person), wrong, progress)), InputError);
 }
 
-/// 18 parameters, four tasks, hidden within 5 %, angle noise 1e-3 rad: about 5 to 20 s each.
-TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredAndSearchesEndInTime) {
+/// What became of several persons' identified parameters.
+struct Recoveries {
   std::vector<double> seconds;
   std::size_t identified = 0, covered = 0, at_bound = 0, failed = 0;
-  double worst_unseen = 0.0;
-  for (int seed = 1; seed <= 20; ++seed) {
-    const MuscleAnalysis a = recovered(seed, kFour + "[person]\nspread = \"5 %\"\nnoise = 0.001\n");
-    seconds.push_back(a.result.seconds);
-    failed += row_of(a, "residual against the noise").passed() ? 0 : 1;
-    worst_unseen = std::max(worst_unseen, a.tasks.back().after.nrmse);
+
+  [[nodiscard]] double share() const { return static_cast<double>(covered) / static_cast<double>(identified); }
+};
+
+/// 18 parameters, four tasks, hidden within 5 %: about 5 to 20 s each on a machine that does nothing else.
+Recoveries recoveries(int persons, const std::string& person) {
+  Recoveries all;
+  for (int seed = 1; seed <= persons; ++seed) {
+    const MuscleAnalysis a = recovered(seed, kFour + "[person]\nspread = \"5 %\"\n" + person);
+    all.seconds.push_back(a.result.seconds);
+    all.failed += row_of(a, "residual against the noise").outcome == estimation::Outcome::kFailed ? 1 : 0;
     for (std::size_t i = 0; i < a.result.verdicts.size(); ++i) {
       const estimation::Parameter& p = a.estimate.parameters[i];
       const double truth = a.true_value(p.name);
-      if (a.result.verdicts[i] == TaskVerdict::kAtBound) ++at_bound;
+      if (a.result.verdicts[i] == TaskVerdict::kAtBound) ++all.at_bound;
       if (a.result.verdicts[i] != TaskVerdict::kIdentified) continue;
-      ++identified;
-      covered += truth >= p.low95 && truth <= p.high95 ? 1 : 0;
+      ++all.identified;
+      all.covered += truth >= p.low95 && truth <= p.high95 ? 1 : 0;
     }
     fmt::print("{}: {:.1f} s, identified {} covered {}, chi {:.3f}, unseen {:.2g}\n", seed, a.result.seconds,
-               identified, covered, a.result.chi_square, a.tasks.back().after.nrmse);
+               all.identified, all.covered, a.result.chi_square, a.tasks.back().after.nrmse);
     std::fflush(stdout);
   }
-  std::sort(seconds.begin(), seconds.end());
+  std::sort(all.seconds.begin(), all.seconds.end());
   fmt::print("median {:.2f} s, longest {:.2f} s; {} identified, {} covered; {} at a bound; {} residuals too large\n",
-             seconds[seconds.size() / 2], seconds.back(), identified, covered, at_bound, failed);
-  EXPECT_EQ(at_bound, 0u);
-  EXPECT_LE(failed, 1u);
-  const double share = static_cast<double>(covered) / static_cast<double>(identified);
-  EXPECT_GE(share, 0.90);
+             all.seconds[all.seconds.size() / 2], all.seconds.back(), all.identified, all.covered, all.at_bound,
+             all.failed);
+  return all;
+}
+
+TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredAndSearchesEndInTime) {
+  const Recoveries all = recoveries(20, "noise = 0.001\n");
+  EXPECT_EQ(all.at_bound, 0u);
+  EXPECT_LE(all.failed, 1u);
+  EXPECT_GE(all.share(), 0.90);
+}
+
+// Taken for white, noise that is correlated over two samples left 93 % of the parameters inside and over five 89 %, of
+// more parameters, with errors of up to 20 %.
+TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredWithColouredNoise) {
+  const Recoveries all = recoveries(20, "noise = 0.001\nnoise_correlation = \"20 ms\"\n");
+  EXPECT_LE(all.failed, 1u);
+  EXPECT_GE(all.share(), 0.90);
 }
 
 }  // namespace

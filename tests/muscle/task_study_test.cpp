@@ -60,6 +60,8 @@ TEST(TaskStudy, MistakesAreNamedWithFileLineAndKey) {
   EXPECT_THAT(task_study_error(kTasks), AllOf(HasSubstr("s.toml"), HasSubstr("no recording")));
   EXPECT_THAT(task_study_error(kTasks + "[person]\nspread = 2\n"), AllOf(HasSubstr("s.toml:6"), HasSubstr("spread")));
   EXPECT_THAT(task_study_error(kTasks + "[person]\nmuscles = \"thelen\"\n"), HasSubstr("millard"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\nnoise_correlation = -1\n"), HasSubstr("must be >= 0"));
+  EXPECT_THAT(task_study_error(kTasks + "[person]\nmodel = \"nowhere.osim\"\n"), HasSubstr("nowhere.osim"));
   EXPECT_THAT(task_study_error(kTasks + "[person]\n[person.parameters]\n\"brachiali.max_isometric_force\" = 900\n"),
               HasSubstr("brachialis.max_isometric_force"));
   EXPECT_THAT(task_study_error(kTasks + "[person]\n[person.parameters]\n\"brachialis.max_isometric_force\" = 90\n"),

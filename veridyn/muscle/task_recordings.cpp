@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
@@ -33,10 +34,15 @@ std::vector<RowMatrix> simulate_person(const TaskStudy& study, const std::vector
                                      {.accuracy = study.accuracy, .outputs = study.outputs});
   std::vector<RowMatrix> measured = simulate_tasks(person, hidden, progress.threads());
   for (std::size_t s = 0; s < measured.size(); ++s) {
+    if (measured[s].size() == 0) continue;
     numerics::RandomStream random(study.seed, "noise of " + tasks[s].task.name);
+    std::vector<internal::RecordingNoise> noise;
+    for (const MuscleOutput& output : study.outputs)
+      noise.emplace_back(output.kind == MuscleOutputKind::kValue ? study.person->noise_correlation_s : 0.0);
     for (Eigen::Index k = 0; k < measured[s].rows(); ++k) {
       for (std::size_t j = 0; j < study.outputs.size(); ++j)
-        measured[s](k, signed_index(j)) += noise_of(study, study.outputs[j]) * random.normal();
+        measured[s](k, signed_index(j)) +=
+            noise_of(study, study.outputs[j]) * noise[j].next(tasks[s].time[at(k)], random);
     }
   }
   return measured;
@@ -93,6 +99,14 @@ TaskRecordings task_recordings(const TaskStudy& study, Progress& progress) {
 
 namespace internal {
 
+double RecordingNoise::next(double time, numerics::RandomStream& random) {
+  const double kept = correlation_s_ > 0.0 && !first_ ? std::exp(-(time - time_) / correlation_s_) : 0.0;
+  value_ = kept * value_ + std::sqrt(1.0 - kept * kept) * random.normal();
+  time_ = time;
+  first_ = false;
+  return value_;
+}
+
 Eigen::VectorXd hidden_values(const TaskStudy& study) {
   Eigen::VectorXd theta = start_values(study.unknowns);
   for (std::size_t i = 0; i < study.unknowns.size(); ++i) {
@@ -121,7 +135,8 @@ std::shared_ptr<const MusculoskeletalSystem> person_system(const TaskStudy& stud
     muscle.curves = MillardCurves{};
     muscle.fiber_damping = 0.1;
   }
-  return std::make_shared<const MusculoskeletalSystem>(*study.subject.system, changes);
+  return std::make_shared<const MusculoskeletalSystem>(study.person->body ? *study.person->body : *study.subject.system,
+                                                       changes);
 }
 
 }  // namespace internal

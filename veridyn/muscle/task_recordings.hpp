@@ -10,6 +10,7 @@
 #include "veridyn/muscle/identification/emg_driven_model.hpp"
 #include "veridyn/muscle/identification/muscle_parametric_model.hpp"
 #include "veridyn/muscle/task_study.hpp"
+#include "veridyn/numerics/random.hpp"
 
 namespace veridyn::muscle {
 
@@ -44,6 +45,19 @@ struct TaskRecordings {
 [[nodiscard]] Eigen::VectorXd start_values(const std::vector<MuscleUnknown>& unknowns);
 
 namespace internal {
+
+/// Noise of a simulated recording with standard deviation 1: stationary, of first order (correlation
+/// exp(-dt/correlation_s) of samples dt apart), white where the correlation time is 0.
+class RecordingNoise {
+ public:
+  explicit RecordingNoise(double correlation_s) : correlation_s_(correlation_s) {}
+  /// At the next sample [s].
+  [[nodiscard]] double next(double time, numerics::RandomStream& random);
+
+ private:
+  double correlation_s_, value_ = 0.0, time_ = 0.0;
+  bool first_ = true;
+};
 
 /// Hidden values of a simulated person, unknown by unknown, delays within half of the way to their bounds.
 [[nodiscard]] Eigen::VectorXd hidden_values(const TaskStudy& study);

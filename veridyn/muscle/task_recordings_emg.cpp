@@ -105,8 +105,9 @@ Motion recorded_angles(const TaskStudy& study, const PreparedTask& task, const R
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     table.names.push_back(study.subject.system->model().coordinates[at(coordinates[i])].name);
     std::vector<double> values;
+    RecordingNoise noise(study.person->noise_correlation_s);
     for (Eigen::Index k = 0; k < q.rows(); ++k)
-      values.push_back(q(k, signed_index(i)) + study.person->noise * random.normal());
+      values.push_back(q(k, signed_index(i)) + study.person->noise * noise.next(task.time[at(k)], random));
     table.values.push_back(std::move(values));
   }
   return make_motion(table, study.subject.system->model(), {.low_pass_Hz = study.emg->low_pass_Hz});

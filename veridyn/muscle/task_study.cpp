@@ -11,6 +11,7 @@
 #include "veridyn/estimation/uncertainty/profile_choice.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 #include "veridyn/muscle/muscle_study_unknowns.hpp"
+#include "veridyn/muscle/osim/osim_reader.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -82,15 +83,42 @@ void drop_resting_outputs(TaskStudy& study) {
   }
 }
 
-SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
+/// The model of a person who is built otherwise than the study says, prepared as the study's.
+std::shared_ptr<const MusculoskeletalSystem> read_body(const StudyTable& table, TaskStudy& study) {
+  if (study.emg) table.fail("model", "is for tasks that are simulated forward, not with [emg]");
+  const MusculoskeletalSystem& own = *study.subject.system;
+  study.inputs.push_back(table.file("model"));
+  Model model = OsimFile::load(study.inputs.back()).model();
+  const auto names_of = [](const Model& of) {
+    std::vector<std::string> names;
+    for (const Coordinate& c : of.coordinates) names.push_back(c.name);
+    for (const Muscle& m : of.muscles) names.push_back(m.name());
+    return names;
+  };
+  if (names_of(model) != names_of(own.model()))
+    table.fail("model", "has other coordinates or muscles, or in another order, than subject.model");
+  for (const HeldLoad& load : study.subject.loads) add_load(model, load.body, load.mass, load.location);
+  SystemOptions options{.paths = own.fit() != nullptr ? PathSource::kFitted : PathSource::kExact};
+  for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    model.coordinates[c].locked = own.model().coordinates[c].locked;
+    model.coordinates[c].default_value = own.model().coordinates[c].default_value;
+  }
+  return std::make_shared<const MusculoskeletalSystem>(std::move(model), options);
+}
+
+SimulatedPerson read_person(const StudyTable& table, TaskStudy& study) {
   SimulatedPerson person;
   person.spread = table.number_or("spread", "1", person.spread);
   if (!(person.spread >= 0.0 && person.spread < 1.0))
     table.fail("spread", fmt::format("{:g} must be from 0 to below 1", person.spread));
   person.noise = table.number_or("noise", "rad", person.noise);
   if (!(person.noise >= 0.0)) table.fail("noise", fmt::format("{:g} must be >= 0", person.noise));
+  person.noise_correlation_s = table.number_or("noise_correlation", "s", person.noise_correlation_s);
+  if (!(person.noise_correlation_s >= 0.0))
+    table.fail("noise_correlation", fmt::format("{:g} must be >= 0", person.noise_correlation_s));
   constexpr internal::Words<bool, 2> kMuscles{{{"as the model", false}, {"millard", true}}};
   person.millard = internal::word_or_first(table, "muscles", kMuscles);
+  if (table.has("model")) person.body = read_body(table, study);
   person.load_factor = table.positive_or("load_factor", "1", person.load_factor);
   if (study.emg) {
     person.moment_noise = table.number_or("moment_noise", "N m", person.moment_noise);

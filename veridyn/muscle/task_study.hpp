@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,10 +21,13 @@ namespace veridyn::muscle {
 struct SimulatedPerson {
   double spread = 0.05;  ///< hidden parameters: the model's times 1 +- at most this, uniform
   std::map<std::string, double, std::less<>> values;  ///< unknowns that are set instead, by name
-  bool millard = false;       ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
-  double load_factor = 1.0;   ///< the loads of the tasks are this much heavier than the study says
-  double noise = 1e-3;        ///< standard deviation of measured angles and positions [rad or m]
-  double moment_noise = 0.1;  ///< of measured moments and forces that `[[output]]` says no other of [N m or N]
+  bool millard = false;  ///< with the muscles of Millard et al. in place of the model's: a model that is wrong
+  /// With another model's bodies, joints and paths, with the same coordinates and muscles: geometry that is wrong.
+  std::shared_ptr<const MusculoskeletalSystem> body = {};
+  double load_factor = 1.0;           ///< the loads of the tasks are this much heavier than the study says
+  double noise = 1e-3;                ///< standard deviation of measured angles and positions [rad or m]
+  double noise_correlation_s = 0.0;   ///< of that noise, first order: exp(-dt/this) from sample to sample; 0: white
+  double moment_noise = 0.1;          ///< of measured moments and forces that `[[output]]` says no other of [N m or N]
   std::optional<double> emg_noise{};  ///< of the EMG's value; else as the study's `[emg]` says
 };
 
@@ -59,7 +63,9 @@ struct TaskStudy {
 ///     [person]                       # simulated: its motions are what a recording would be
 ///     spread = "5 %"                 # hidden parameters, within so much of the model's; drawn by the seed
 ///     noise = "0.06 deg"             # of the measured angles; of other outputs that of [[output]]
+///     noise_correlation = "20 ms"    # correlation time of that noise, first order; 0: white
 ///     muscles = "millard"            # of another class than the model's, to see what is said of a wrong model
+///     model = "turned.osim"          # with the bodies, joints and paths of another model, likewise
 ///     load_factor = 1.0              # true load over the stated one, likewise
 ///     moment_noise = "0.1 N m"       # with [emg]: of the measured moments, unless [[output]] says it
 ///     emg_noise = "20 %"             # with [emg]: of the EMG, where the study says otherwise in [emg]

@@ -29,7 +29,12 @@ class EmgEstimation {
         given_(noise),
         error_(error),
         options_(std::move(options)),
-        progress_(progress) {}
+        progress_(progress) {
+    // That of the residual is the EMG's error's, which the covariance holds already.
+    options_.correlated_noise = false;
+    // The noise is found on the way.
+    options_.search_further = false;
+  }
 
   EmgEstimate run() {
     const auto parameters = model_.parameters();

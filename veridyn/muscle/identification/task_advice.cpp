@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/output_error/correlated_noise_model.hpp"
 #include "veridyn/estimation/output_error/information.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
 #include "veridyn/muscle/identification/task_warnings.hpp"
@@ -41,7 +42,7 @@ class Foretelling {
 
   /// With the candidate's information; none where it cannot be simulated with the estimate.
   [[nodiscard]] std::optional<WidestInterval> after(const MuscleParametricModel& candidate) const {
-    const std::optional<RowMatrix> root = estimation::information_root(candidate, options_);
+    const std::optional<RowMatrix> root = information_of(candidate);
     if (!root) return std::nullopt;
     return widest(estimation::covariance_after(P_, *root));
   }
@@ -49,6 +50,16 @@ class Foretelling {
   [[nodiscard]] WidestInterval now() const { return widest(P_); }
 
  private:
+  /// Of a recording with the noise of those that the estimate is from.
+  [[nodiscard]] std::optional<RowMatrix> information_of(const MuscleParametricModel& candidate) const {
+    if (estimate_.noise_correlation.size() == 0) return estimation::information_root(candidate, options_);
+    std::vector<RowMatrix> complete;
+    for (std::size_t s = 0; s < candidate.segments(); ++s)
+      complete.emplace_back(RowMatrix::Zero(candidate.samples(s), signed_index(candidate.outputs().size())));
+    return estimation::information_root(
+        estimation::CorrelatedNoiseModel(candidate, complete, estimate_.noise_correlation), options_);
+  }
+
   /// Intervals shrink as the inverse information does.
   [[nodiscard]] WidestInterval widest(const Eigen::MatrixXd& then) const {
     WidestInterval widest;

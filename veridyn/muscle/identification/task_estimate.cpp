@@ -10,8 +10,10 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/estimation/output_error/correlated_noise_model.hpp"
+#include "veridyn/muscle/identification/null_directions.hpp"
+#include "veridyn/muscle/identification/task_residuals.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
-#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/sensitivity_indices.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -28,10 +30,19 @@ constexpr double kCoarse = 0.05;
 constexpr int kCoarseSteps = 8, kCoarseRounds = 4;
 /// Shares of the prior's variance that the data have to remove.
 constexpr double kIdentifiedShare = 0.75, kWeakShareOfPrior = 0.25;
-/// Difference of two negative log posteriors up to which fits are as good.
+/// Difference of two negative log posteriors up to which fits are as good: at least this, and that of the region that
+/// holds all parameters together with 95 %.
 constexpr double kAsGood = 6.0;
 /// Correlation of neighbouring residuals from which error bars are corrected for it.
 constexpr double kCorrelated = 0.15;
+/// Mean square of the residual in units of the noise from which it is not the noise's, whatever its correlation; and
+/// twice the gain of the log likelihood by which noise of first order has to be likelier than white (5 % by chance).
+constexpr double kOfStatedSize = 1.5, kLikelierByChance = 3.84;
+
+/// Where the first searches leave what is not noise: searches and points of the screening in all, in units of theirs,
+/// and the correlation of neighbouring residuals from which they are motion.
+constexpr int kFurtherStarts = 3, kFurtherScreened = 8;
+constexpr double kLooksLikeMotion = 0.3;
 
 /// View of one estimation.
 class TaskEstimation {
@@ -45,6 +56,7 @@ class TaskEstimation {
   TaskEstimate run() {
     const auto begun = std::chrono::steady_clock::now();
     search();
+    if (result_.usable() && options_.correlated_noise && noise_.size() > 0) allow_for_correlated_noise();
     if (result_.usable()) describe();
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     return std::move(result_);
@@ -101,14 +113,14 @@ class TaskEstimation {
     return start;
   }
 
-  /// The model's values, then points of the screening, the best fits first; all that can be simulated.
-  std::vector<std::pair<double, Eigen::VectorXd>> starting_points() {
-    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
-    std::vector<std::pair<double, Eigen::VectorXd>> points{{residual(start), start}};
-    if (options_.starts < 2) return points;
-    const Eigen::MatrixXd sobol =
-        numerics::sobol_points(static_cast<std::size_t>(options_.screened), at(start.size()), options_.seed);
-    for (Eigen::Index k = 0; k < sobol.rows() && !progress_.interrupted(); ++k) {
+  using StartingPoints = std::vector<std::pair<double, Eigen::VectorXd>>;
+
+  /// The best fits, `wanted` of them, of the points `from` to `to` of the screening; all that can be simulated.
+  StartingPoints screened_points(int from, int to, int wanted) {
+    StartingPoints points;
+    const Eigen::VectorXd start = own_values();
+    const Eigen::MatrixXd sobol = numerics::sobol_points(static_cast<std::size_t>(to), at(start.size()), options_.seed);
+    for (Eigen::Index k = from; k < sobol.rows() && !progress_.interrupted(); ++k) {
       Eigen::VectorXd theta = start;
       for (Eigen::Index i = 0; i < start.size(); ++i) {
         const estimation::ModelParameter& p = model_.parameters()[at(i)];
@@ -117,8 +129,8 @@ class TaskEstimation {
       const double fit = residual(theta);
       if (std::isfinite(fit)) points.emplace_back(fit, theta);
     }
-    std::stable_sort(points.begin() + 1, points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (points.size() > at(options_.starts)) points.resize(at(options_.starts));
+    std::stable_sort(points.begin(), points.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    if (points.size() > at(wanted)) points.resize(at(wanted));
     return points;
   }
 
@@ -174,12 +186,57 @@ class TaskEstimation {
   }
 
   void search() {
-    const auto points = starting_points();
+    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
+    StartingPoints points{{residual(start), start}};
+    if (options_.starts > 1) {
+      for (auto& point : screened_points(0, options_.screened, options_.starts - 1)) points.push_back(std::move(point));
+    }
+    search_from(points);
+    // A minimum that leaves motion unexplained may be one of several.
+    if (options_.starts > 1 && options_.search_further && result_.usable() && !explained()) {
+      search_from(
+          screened_points(options_.screened, kFurtherScreened * options_.screened, kFurtherStarts * options_.starts));
+    }
+    if (!result_.usable()) return;
+    const double best = result_.searches[result_.chosen].cost;
+    for (std::size_t i = 0; i < finished_.size(); ++i) {
+      TaskSearch& s = result_.searches[i];
+      if (!finished_[i] || !finished_[i]->usable()) {
+        if (s.message.empty()) s.message = "left after the coarse fit: others were better";
+        continue;
+      }
+      s.agrees = same_place(*finished_[i]);
+      if (s.agrees || !(s.cost - best < as_good())) continue;
+      result_.ambiguous = true;
+      rivals_.push_back(finished_[i]->theta);
+    }
+  }
+
+  /// Half the 95 % quantile of chi-square with as many degrees of freedom as parameters.
+  [[nodiscard]] double as_good() const {
+    double n = 0.0;
+    for (const estimation::ModelParameter& p : model_.parameters()) n += p.fixed ? 0.0 : 1.0;
+    return n > 0.0 ? std::max(kAsGood, 0.5 * numerics::chi_square_quantile(0.95, n)) : kAsGood;
+  }
+
+  /// Whether the best fit leaves no more than the noise; where that is not known, nothing that looks like motion.
+  [[nodiscard]] bool explained() const {
+    const std::vector<RowMatrix> e = residuals();
+    if (noise_.size() == 0) return lag1_of(e) < kLooksLikeMotion || share_of_motion(e, measured_) < kIntegrationShare;
+    const double values = static_cast<double>(values_);
+    return squares_of(e) / values < 1.0 + 4.0 * std::sqrt(2.0 / values);
+  }
+
+  /// Searches from some points coarsely, finishes the best two, and keeps the best of all searches so far.
+  void search_from(const StartingPoints& points) {
+    const std::size_t first = result_.searches.size();
     std::vector<Eigen::VectorXd> ends(points.size());
     std::vector<double> rms(points.size(), kInfinity);
-    result_.searches.resize(points.size());
+    result_.searches.resize(first + points.size());
+    finished_.resize(result_.searches.size());
+    const double steps = static_cast<double>(points.size() + 2);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      TaskSearch& s = result_.searches[i];
+      TaskSearch& s = result_.searches[first + i];
       s.rms_start = points[i].first;
       s.cost = kNaN;
       if (!std::isfinite(s.rms_start)) {
@@ -189,48 +246,61 @@ class TaskEstimation {
       ends[i] = coarse(points[i].second, points[i].first, s);
       const double end = residual(ends[i]);
       if (std::isfinite(end)) rms[i] = end;
-      if (!progress_.update(static_cast<double>(i + 1) / static_cast<double>(points.size() + 2))) break;
+      if (!progress_.update(static_cast<double>(i + 1) / steps)) break;
     }
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rms[a] < rms[b]; });
-    std::vector<std::optional<OutputErrorEstimate>> finished(points.size());
-    double best = kInfinity;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, order.size()); ++k) {
       const std::size_t i = order[k];
       if (!std::isfinite(rms[i]) || progress_.interrupted()) continue;
-      finished[i] = fine(ends[i], k > 0);
-      TaskSearch& s = result_.searches[i];
-      s.steps += finished[i]->steps;
-      s.message = finished[i]->message;
-      if (!finished[i]->usable()) continue;
-      s.cost = cost(*finished[i]);
-      if (s.cost < best) {
-        best = s.cost;
-        result_.chosen = i;
+      std::optional<OutputErrorEstimate>& fit = finished_[first + i];
+      fit = fine(ends[i], k > 0);
+      TaskSearch& s = result_.searches[first + i];
+      s.steps += fit->steps;
+      s.message = fit->message;
+      if (!fit->usable()) continue;
+      s.cost = cost(*fit);
+      if (!result_.usable() || s.cost < result_.searches[result_.chosen].cost) {
+        result_.best = *fit;
+        result_.chosen = first + i;
       }
-      if (!progress_.update(static_cast<double>(points.size() + k + 1) / static_cast<double>(points.size() + 2))) break;
+      if (!progress_.update(static_cast<double>(points.size() + k + 1) / steps)) break;
     }
-    if (!std::isfinite(best)) {
-      result_.best = why_nothing(finished, order.empty() ? 0 : order.front());
-      return;
-    }
-    result_.best = *finished[result_.chosen];
-    for (std::size_t i = 0; i < finished.size(); ++i) {
-      if (!finished[i] || !finished[i]->usable()) {
-        if (result_.searches[i].message.empty())
-          result_.searches[i].message = "left after the coarse fit: others were better";
-        continue;
-      }
-      result_.searches[i].agrees = same_place(*finished[i]);
-      result_.ambiguous =
-          result_.ambiguous || (!result_.searches[i].agrees && result_.searches[i].cost - best < kAsGood);
+    if (!result_.usable()) result_.best = why_nothing(first + (order.empty() ? 0 : order.front()));
+  }
+
+  /// Fits again with noise of first order until its correlation rests.
+  void allow_for_correlated_noise() {
+    constexpr int kCorrelatedRounds = 3;
+    constexpr double kCorrelationRests = 0.02;
+    const double rms = residual(result_.best.theta);
+    if (!(rms * rms < kOfStatedSize)) return;
+    for (int round = 0; round < kCorrelatedRounds && !progress_.interrupted(); ++round) {
+      const auto found = estimation::noise_correlation(model_, measured_, result_.best, noise_, progress_.threads());
+      result_.simulations.with_derivatives += model_.segments();
+      if (!found || (round == 0 && !(found->gain > kLikelierByChance))) return;
+      const Eigen::VectorXd& before = result_.noise_correlation;
+      if (round > 0 && (found->correlation - before).cwiseAbs().maxCoeff() < kCorrelationRests) return;
+      const estimation::CorrelatedNoiseModel white(model_, measured_, found->correlation);
+      OutputErrorOptions o = options_of(result_.best.theta);
+      // Each round goes on where the one before stopped.
+      o.tolerance = 0.5;
+      o.noise = estimation::OutputNoise::kGiven;
+      o.noise_start = noise_;
+      o.max_relaxations = 1;
+      OutputErrorEstimate e = estimation::output_error(white, white.whitened(measured_), o, quiet_);
+      result_.simulations += e.simulations;
+      if (!e.usable()) return;
+      for (std::size_t s = 0; s < e.predicted.size(); ++s) e.predicted[s] = white.restored(s, e.predicted[s]);
+      result_.searches[result_.chosen].steps += e.steps;
+      result_.best = std::move(e);
+      result_.noise_correlation = found->correlation;
     }
   }
 
-  [[nodiscard]] OutputErrorEstimate why_nothing(const std::vector<std::optional<OutputErrorEstimate>>& finished,
-                                                std::size_t first) {
-    if (first < finished.size() && finished[first]) return *finished[first];
+  [[nodiscard]] OutputErrorEstimate why_nothing(std::size_t first) {
+    if (first < finished_.size() && finished_[first]) return *finished_[first];
     OutputErrorOptions o = options_of(own_values());
     if (noise_.size() > 0) o.noise_start = noise_;
     o.max_relaxations = 1;
@@ -248,41 +318,57 @@ class TaskEstimation {
     return true;
   }
 
-  void residual_statistics() {
-    const std::vector<RowMatrix>& y = result_.best.predicted;
+  /// Predicted less measured.
+  [[nodiscard]] std::vector<RowMatrix> residuals() const {
+    std::vector<RowMatrix> e;
+    for (std::size_t s = 0; s < measured_.size(); ++s) e.push_back(result_.best.predicted[s] - measured_[s]);
+    return e;
+  }
+
+  /// Sum of squares, each output in units of its noise.
+  [[nodiscard]] double squares_of(const std::vector<RowMatrix>& e) const {
     double sum = 0.0;
-    result_.lag1 = 0.0;
-    for (Eigen::Index j = 0; j < signed_index(model_.outputs().size()); ++j) {
-      double cross = 0.0, squares = 0.0;
-      for (std::size_t s = 0; s < y.size(); ++s) {
-        for (Eigen::Index k = 0; k < y[s].rows(); ++k) {
-          const double e = y[s](k, j) - measured_[s](k, j);
-          if (std::isnan(e)) continue;
-          squares += e * e;
-          sum += e * e / (scale()(j) * scale()(j));
-          const double before = k > 0 ? y[s](k - 1, j) - measured_[s](k - 1, j) : kNaN;
-          if (!std::isnan(before)) cross += e * before;
-        }
-      }
-      if (squares > 0.0) result_.lag1 = std::max(result_.lag1, cross / squares);
+    for (const RowMatrix& r : e) {
+      for (Eigen::Index k = 0; k < r.rows(); ++k)
+        for (Eigen::Index j = 0; j < r.cols(); ++j)
+          if (!std::isnan(r(k, j))) sum += std::pow(r(k, j) / scale()(j), 2);
+    }
+    return sum;
+  }
+
+  /// Sets what the residual is; returns the correlation of neighbours that is left in it.
+  double residual_statistics() {
+    std::vector<RowMatrix> e = residuals();
+    double left = result_.lag1 = lag1_of(e);
+    if (result_.noise_correlation.size() > 0) {
+      const estimation::CorrelatedNoiseModel white(model_, measured_, result_.noise_correlation);
+      e = white.whitened(e);
+      left = lag1_of(e);
     }
     result_.freedom = std::max(1.0, static_cast<double>(values_) - std::max(0.0, result_.learned.sum()));
-    result_.chi_square = noise_.size() > 0 ? sum / result_.freedom : kNaN;
+    result_.chi_square = noise_.size() > 0 ? squares_of(e) / result_.freedom : kNaN;
+    return left;
   }
 
   void describe() {
     OutputErrorEstimate& e = result_.best;
     const std::size_t n = model_.parameters().size();
     result_.learned = Eigen::VectorXd::Zero(signed_index(n));
+    double squares = 0.0, count = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       const estimation::ModelParameter& p = model_.parameters()[i];
-      if (!p.fixed)
-        result_.learned(signed_index(i)) =
-            std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
+      if (p.fixed) continue;
+      if (p.start != 0.0) {
+        squares += std::pow(e.theta(signed_index(i)) / p.start - 1.0, 2);
+        count += 1.0;
+      }
+      result_.learned(signed_index(i)) =
+          std::clamp(1.0 - std::pow(e.parameters[i].sigma_white / p.prior_sigma, 2), 0.0, 1.0);
     }
-    residual_statistics();
+    result_.distance = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+    const double left = residual_statistics();
     // Correcting white residuals for chance correlations would only add the correction's own error.
-    const bool white = result_.lag1 < kCorrelated;
+    const bool white = left < kCorrelated;
     if (white) e.covariance = e.covariance_white;
     for (std::size_t i = 0; i < n; ++i) {
       estimation::Parameter& p = e.parameters[i];
@@ -295,13 +381,21 @@ class TaskEstimation {
       result_.verdicts.push_back(verdict_of(i));
       p.status = status_of(result_.verdicts.back());
     }
-    find_null_directions();
+    const NullDirections null = null_directions(model_.parameters(), e.covariance_white, 1.0 - kWeakShareOfPrior);
+    result_.null_directions = null.texts;
+    result_.null_vectors = null.vectors;
   }
 
   [[nodiscard]] TaskVerdict verdict_of(std::size_t i) const {
     const estimation::Parameter& p = result_.best.parameters[i];
     if (p.status == ParameterStatus::kAtBound) return TaskVerdict::kAtBound;
     const double learned = result_.learned(signed_index(i));
+    // What explains the motion as well with a value outside the interval does not leave the interval known.
+    for (const Eigen::VectorXd& rival : rivals_) {
+      const double other = rival(signed_index(i));
+      if (learned >= kWeakShareOfPrior && !(other >= p.low95 && other <= p.high95))
+        return TaskVerdict::kNotIdentifiable;
+    }
     if (learned >= kIdentifiedShare) return TaskVerdict::kIdentified;
     if (learned >= kWeakShareOfPrior) return TaskVerdict::kWeak;
     // Were all others known: the variance inflation says by how much they spread it.
@@ -327,49 +421,6 @@ class TaskEstimation {
     return ParameterStatus::kNotExcited;
   }
 
-  /// Eigenvectors of the posterior covariance in units of the priors: one is what the prior says, zero is known.
-  void find_null_directions() {
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < model_.parameters().size(); ++i)
-      if (!model_.parameters()[i].fixed) free.push_back(i);
-    const auto n = signed_index(free.size());
-    Eigen::MatrixXd scaled(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const std::size_t a = free[at(i)], b = free[at(j)];
-        scaled(i, j) = result_.best.covariance_white(signed_index(a), signed_index(b)) /
-                       (model_.parameters()[a].prior_sigma * model_.parameters()[b].prior_sigma);
-      }
-    }
-    if (!scaled.allFinite()) return;
-    const auto eigen = numerics::symmetric_eigen(scaled);
-    std::vector<Eigen::VectorXd> found;
-    for (Eigen::Index j = n - 1; j >= 0; --j) {
-      if (!(eigen.values(j) > 1.0 - kWeakShareOfPrior)) continue;
-      const Eigen::VectorXd v = eigen.vectors.col(j);
-      result_.null_directions.push_back(words_of(v, free));
-      Eigen::VectorXd all = Eigen::VectorXd::Zero(signed_index(model_.parameters().size()));
-      for (Eigen::Index i = 0; i < n; ++i) all(signed_index(free[at(i)])) = v(i);
-      found.push_back(all);
-    }
-    result_.null_vectors.resize(signed_index(model_.parameters().size()), signed_index(found.size()));
-    for (std::size_t j = 0; j < found.size(); ++j) result_.null_vectors.col(signed_index(j)) = found[j];
-  }
-
-  /// The parameters that a direction raises against those that it lowers; those with a third of the largest part.
-  [[nodiscard]] std::string words_of(const Eigen::VectorXd& v, const std::vector<std::size_t>& free) const {
-    Eigen::Index largest = 0;
-    v.cwiseAbs().maxCoeff(&largest);
-    const double sign = v(largest) < 0.0 ? -1.0 : 1.0;
-    std::string raised, lowered;
-    for (Eigen::Index i = 0; i < v.size(); ++i) {
-      if (std::abs(v(i)) < std::abs(v(largest)) / 3.0) continue;
-      std::string& side = sign * v(i) > 0.0 ? raised : lowered;
-      side += (side.empty() ? "" : ", ") + model_.parameters()[free[at(i)]].name;
-    }
-    return lowered.empty() ? raised : fmt::format("{} against {}", raised, lowered);
-  }
-
   /// Searches within a stage show no progress of their own.
   class Watched : public Progress {
    public:
@@ -389,6 +440,8 @@ class TaskEstimation {
   Progress& progress_;
   Watched quiet_{progress_};
   Eigen::Index values_ = 0;
+  std::vector<std::optional<OutputErrorEstimate>> finished_;  ///< by search
+  std::vector<Eigen::VectorXd> rivals_;                       ///< where other searches ended with as good a fit
   TaskEstimate result_;
 };
 

@@ -37,7 +37,8 @@ struct TaskFindings {
 inline constexpr const char* kDetermined = "what the tasks determine";
 
 /// The rows, one function a check: residual against the noise, its correlation, hold-out against the standard model and
-/// the noise, bounds, searches that agree, what is determined at all, tasks, wraps, reserves, what is taken as given.
+/// the noise, bounds, searches that agree, distance from the standard model, what is determined at all, tasks, wraps,
+/// reserves, what is taken as given.
 [[nodiscard]] std::vector<estimation::Evidence> judge_tasks(const TaskFindings& findings);
 
 /// "task 8: flexion 0-130 deg" against the noise and the standard model: rows about tasks that no estimate saw.

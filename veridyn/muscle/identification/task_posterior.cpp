@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/estimation/output_error/correlated_noise_model.hpp"
+
 namespace veridyn::muscle {
 
 estimation::PosteriorSample sample_tasks(const estimation::ParametricModel& model,
@@ -10,8 +12,11 @@ estimation::PosteriorSample sample_tasks(const estimation::ParametricModel& mode
                                          const TaskEstimate& estimate, const estimation::EnsembleOptions& options,
                                          Progress& progress, numerics::ValueLog* log) {
   const double dispersion = std::isfinite(estimate.chi_square) ? std::max(1.0, estimate.chi_square) : 1.0;
-  return estimation::sample_posterior(model, measured, estimate.best, {.ensemble = options, .dispersion = dispersion},
-                                      progress, log);
+  const estimation::PosteriorOptions drawn{.ensemble = options, .dispersion = dispersion};
+  if (estimate.noise_correlation.size() == 0)
+    return estimation::sample_posterior(model, measured, estimate.best, drawn, progress, log);
+  const estimation::CorrelatedNoiseModel white(model, measured, estimate.noise_correlation);
+  return estimation::sample_posterior(white, white.whitened(measured), estimate.best, drawn, progress, log);
 }
 
 }  // namespace veridyn::muscle

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "veridyn/estimation/output_error/correlated_noise_model.hpp"
+
 namespace veridyn::muscle {
 
 estimation::ProfileResult profile_tasks(const estimation::ParametricModel& model,
@@ -24,7 +26,10 @@ estimation::ProfileResult profile_tasks(const estimation::ParametricModel& model
     for (std::size_t i = 0; i < model.parameters().size(); ++i)
       if (model.parameters()[i].name == name) which.push_back(i);
   }
-  return estimation::profile_likelihood(model, measured, estimate.best, which, options, progress);
+  if (estimate.noise_correlation.size() == 0)
+    return estimation::profile_likelihood(model, measured, estimate.best, which, options, progress);
+  const estimation::CorrelatedNoiseModel white(model, measured, estimate.noise_correlation);
+  return estimation::profile_likelihood(white, white.whitened(measured), estimate.best, which, options, progress);
 }
 
 }  // namespace veridyn::muscle
