@@ -124,7 +124,7 @@ TEST(IdentifyMuscles, AWrongModelIsSaidToBeWrong) {
 
 /// The built-in arm with its elbow's axis turned about the direction of the motion by three degrees, as a file.
 std::string turned_arm() {
-  const std::string path = ::testing::TempDir() + "/turned_arm.osim";
+  std::string path = ::testing::TempDir() + "/turned_arm.osim";
   std::string text;
   for (const EmbeddedText& model : builtin_models())
     if (model.name == "arm") text = model.text;
@@ -208,7 +208,7 @@ struct Recoveries {
 Recoveries recoveries(int persons, const std::string& person) {
   Recoveries all;
   for (int seed = 1; seed <= persons; ++seed) {
-    const MuscleAnalysis a = recovered(seed, kFour + "[person]\nspread = \"5 %\"\n" + person);
+    const MuscleAnalysis a = recovered(seed, fmt::format("{}[person]\nspread = \"5 %\"\n{}", kFour, person));
     all.seconds.push_back(a.result.seconds);
     all.failed += row_of(a, "residual against the noise").outcome == estimation::Outcome::kFailed ? 1 : 0;
     for (std::size_t i = 0; i < a.result.verdicts.size(); ++i) {

@@ -15,8 +15,9 @@ struct NullDirections {
   Eigen::MatrixXd vectors;         ///< parameters x directions, in units of the priors, unit length; 0 of fixed ones
 };
 
-/// Eigenvectors of a posterior covariance in units of the priors, of which every free parameter has one, the least known
-/// first: those along which more than `share` of the prior's variance is left. None where the covariance is not finite.
+/// Eigenvectors of a posterior covariance in units of the priors, of which every free parameter has one, the least
+/// known first: those along which more than `share` of the prior's variance is left. None where the covariance is not
+/// finite.
 [[nodiscard]] NullDirections null_directions(std::span<const estimation::ModelParameter> parameters,
                                              const Eigen::MatrixXd& covariance, double share);
 
