@@ -93,6 +93,33 @@ TEST(IdentifyMuscles, ThePublishedRouteEndsWhereTheGradientDoes) {
 }
 
 // Two samples of noise that are alike say little more than one: as many seconds of it tell less.
+TEST(IdentifyMuscles, FarFromTheStandardModelWithParametersOpenTheyAreNoPhysicalConstants) {
+  // One task hardly tells two of these apart; the person's forces are far from the model's.
+  const std::string unknowns =
+      "[[parameter]]\nmuscles = [\"triceps_long\"]\nfields = [\"tendon_slack_length\"]\nbounds = \"20 %\"\n"
+      "[[parameter]]\nmuscles = [\"triceps_lateral\"]\nfields = [\"max_isometric_force\"]\nbounds = \"16 %\"\n"
+      "[[parameter]]\nmuscles = [\"triceps_medial\"]\nfields = [\"max_isometric_force\"]\nbounds = \"16 %\"\n";
+  const std::string tasks = "[tasks]\nnumbers = [8]\nhold_out = [29]\n";
+  const auto person = [](double share) {
+    const auto value = [&](const char* name, double own) {
+      return fmt::format("\"{}\" = {}\n", name, (1.0 + share) * own);
+    };
+    return "[person]\n[person.parameters]\n\"triceps_long.tendon_slack_length\" = 0.14\n" +
+           value("triceps_lateral.max_isometric_force", 600.0) + value("triceps_medial.max_isometric_force", 600.0);
+  };
+  const std::string search = "[identify]\nstarts = 1\nadvice = true\n";
+  const MuscleAnalysis near = recovered(1, tasks + unknowns + person(0.03) + search);
+  EXPECT_EQ(row_of(near, kDistance).outcome, estimation::Outcome::kPassed);
+  EXPECT_EQ(near.groups.front().verdict, estimation::GroupVerdict::kIdentified);
+  const MuscleAnalysis far = recovered(1, tasks + unknowns + person(0.15) + search);
+  EXPECT_EQ(row_of(far, kDistance).outcome, estimation::Outcome::kFailed);
+  EXPECT_EQ(far.estimate.judgement.parameters.grade, estimation::Grade::kNo);
+  EXPECT_NE(far.groups.front().verdict, estimation::GroupVerdict::kIdentified);
+  // More tasks are what helps: they are advised all the same.
+  EXPECT_EQ(far.advice.withheld, "");
+  EXPECT_FALSE(far.estimate.next_measurements.empty());
+}
+
 TEST(IdentifyMuscles, CorrelatedNoiseIsFoundAndWidensIntervals) {
   const std::string person = kFour + kForces + "[person]\nspread = \"5 %\"\n";
   const MuscleAnalysis white = recovered(1, person + "[identify]\nstarts = 1\n");

@@ -221,7 +221,8 @@ void advise_next(const TaskStudy& study, const MuscleParametricModel& model, con
   const auto begun = std::chrono::steady_clock::now();
   const auto determined = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.name == kDetermined; });
   for (const estimation::Evidence& row : rows) {
-    if (row.name == kDetermined || row.outcome != estimation::Outcome::kFailed) continue;
+    // More tasks mend these.
+    if (row.name == kDetermined || row.name == kDistance || row.outcome != estimation::Outcome::kFailed) continue;
     if (row.bears_on.contains(estimation::Purpose::kParameters)) a.advice.withheld = row.text;
   }
   if (!a.advice.withheld.empty()) return;

@@ -206,8 +206,8 @@ Evidence check_distance(const TaskFindings& f) {
   });
   const double distance = f.estimate.distance;
   const bool far = distance > kFar && open;
-  Evidence row{.name = "distance from the standard model",
-               .outcome = passed_or(!far, Outcome::kCare),
+  Evidence row{.name = kDistance,
+               .outcome = passed_or(!far, Outcome::kFailed),
                .value = distance,
                .limit = kFar,
                .scale = "root mean square of the parameters' changes",

@@ -35,6 +35,8 @@ struct TaskFindings {
 
 /// Name of the row that says how many parameters the tasks determine.
 inline constexpr const char* kDetermined = "what the tasks determine";
+/// Name of the row that refuses parameters far from where the intervals' line was laid.
+inline constexpr const char* kDistance = "distance from the standard model";
 
 /// The rows, one function a check: residual against the noise, its correlation, hold-out against the standard model and
 /// the noise, bounds, searches that agree, distance from the standard model, what is determined at all, tasks, wraps,
