@@ -16,7 +16,8 @@ namespace veridyn::app {
 namespace {
 
 void refuse_checkpoint(const StudyRun& run) {
-  if (!run.arguments.text("--checkpoint").empty())
+  // `demo`, which identifies too, has no such option.
+  if (run.arguments.values.contains("--checkpoint") && !run.arguments.text("--checkpoint").empty())
     throw InputError("--checkpoint", "is for a person's tasks; identify of other studies begins anew");
 }
 
