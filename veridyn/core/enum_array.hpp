@@ -9,7 +9,7 @@ namespace veridyn {
 /// A value for each enumerator of an enumeration that counts from 0 to below `kCount`: an array that takes the
 /// enumerator, or its number in loops over all.
 template <typename Enum, typename T, std::size_t kCount>
-  requires std::is_enum_v<Enum>
+requires std::is_enum_v<Enum>
 struct EnumArray : std::array<T, kCount> {
   using std::array<T, kCount>::operator[];
   [[nodiscard]] constexpr T& operator[](Enum which) { return (*this)[static_cast<std::size_t>(which)]; }

@@ -72,7 +72,7 @@ std::vector<Evidence> plausibility(std::span<const Parameter> parameters, const 
 std::vector<Evidence> bound_rows(std::span<const Parameter> parameters) {
   std::vector<Evidence> rows;
   for (const Parameter& p : parameters) {
-    constexpr double kNoError = 1e-12; // a share of the value
+    constexpr double kNoError = 1e-12;  // a share of the value
     if (p.status == ParameterStatus::kFixed || p.status == ParameterStatus::kNotExcited) continue;
     const bool at_bound = p.status == ParameterStatus::kAtBound;
     if (!at_bound && (!(p.sigma <= kNoError * std::abs(p.value)) || p.value == 0.0)) continue;
