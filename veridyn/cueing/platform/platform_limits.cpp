@@ -1,0 +1,83 @@
+#include "veridyn/cueing/platform/platform_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+
+namespace veridyn::cueing {
+namespace {
+
+constexpr std::array<std::string_view, kPlatformAxes> kNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
+
+void read_axis(const StudyTable& table, PlatformAxis axis, AxisLimits& limits) {
+  const std::string name(name_of(axis)), unit = turns(axis) ? "rad" : "m";
+  const std::vector<double> range = table.numbers(name, unit);
+  if (range.size() != 2) table.fail(name, fmt::format("has {} values; takes lowest and highest", range.size()));
+  limits.lowest = range[0];
+  limits.highest = range[1];
+  const auto limit = [&](const char* what, const char* per, double& value) {
+    value = table.number_or(fmt::format("{}_{}", name, what), unit + per, value);
+    if (!(value > 0.0)) table.fail(fmt::format("{}_{}", name, what), fmt::format("is {}; must be above 0", value));
+  };
+  limit("rate", "/s", limits.rate);
+  limit("acceleration", "/s^2", limits.acceleration);
+  limit("jerk", "/s^3", limits.jerk);
+  if (!(limits.lowest <= 0.0 && limits.highest >= 0.0 && limits.highest > limits.lowest))
+    table.fail(name, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between", range[0],
+                                 range[1], unit));
+}
+
+AxisLimits symmetric(double position, double rate, double acceleration) {
+  return {.lowest = -position, .highest = position, .rate = rate, .acceleration = acceleration};
+}
+
+}  // namespace
+
+std::string_view name_of(PlatformAxis axis) { return kNames[static_cast<std::size_t>(axis)]; }
+
+PlatformLimits PlatformLimits::read(const StudyTable& table) {
+  PlatformLimits limits;
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    if (table.has(std::string(kNames[i]))) read_axis(table, static_cast<PlatformAxis>(i), limits.axes[i]);
+  }
+  limits.validate();
+  return limits;
+}
+
+void PlatformLimits::validate() const {
+  bool any = false;
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    const AxisLimits& a = axes[i];
+    if (!(a.lowest <= 0.0 && a.highest >= 0.0 && std::isfinite(a.highest - a.lowest)))
+      throw InputError(
+          fmt::format("platform.{}", kNames[i]),
+          fmt::format("goes from {:g} to {:g}; the neutral position, 0, has to lie between", a.lowest, a.highest));
+    if (!(a.rate > 0.0 && a.acceleration > 0.0 && a.jerk > 0.0))
+      throw InputError(fmt::format("platform.{}", kNames[i]), "has a limit that is not above 0");
+    any = any || a.moves();
+  }
+  if (!any) throw InputError("platform", "has no axis that moves; give roll = [-20, 20] deg and the like");
+}
+
+PlatformLimits three_axis_limits() {
+  PlatformLimits limits;
+  limits[PlatformAxis::kHeave] = symmetric(0.1, 0.3, 3.0);
+  limits[PlatformAxis::kRoll] = symmetric(20.0 * kDegree, 30.0 * kDegree, 200.0 * kDegree);
+  limits[PlatformAxis::kPitch] = limits[PlatformAxis::kRoll];
+  limits[PlatformAxis::kPitch].lowest = -15.0 * kDegree;
+  return limits;
+}
+
+PlatformLimits hexapod_limits() {
+  PlatformLimits limits;
+  for (const PlatformAxis axis : {PlatformAxis::kSurge, PlatformAxis::kSway}) limits[axis] = symmetric(0.5, 0.6, 6.0);
+  limits[PlatformAxis::kHeave] = symmetric(0.4, 0.6, 6.0);
+  for (const PlatformAxis axis : {PlatformAxis::kRoll, PlatformAxis::kPitch, PlatformAxis::kYaw})
+    limits[axis] = symmetric(20.0 * kDegree, 35.0 * kDegree, 200.0 * kDegree);
+  return limits;
+}
+
+}  // namespace veridyn::cueing

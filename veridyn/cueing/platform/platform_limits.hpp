@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/study.hpp"
+
+namespace veridyn::cueing {
+
+/// The axes of a platform, in platform axes as `PlatformCommand` has them.
+enum class PlatformAxis { kSurge, kSway, kHeave, kRoll, kPitch, kYaw };
+inline constexpr std::size_t kPlatformAxes = 6;
+template <class T>
+using PerPlatformAxis = EnumArray<PlatformAxis, T, kPlatformAxes>;
+
+/// "surge", "sway", ...
+[[nodiscard]] std::string_view name_of(PlatformAxis axis);
+/// Whether the axis turns: its unit is rad, else m.
+[[nodiscard]] constexpr bool turns(PlatformAxis axis) { return axis >= PlatformAxis::kRoll; }
+
+/// What one axis can do [m or rad, s]. An axis that cannot move has lowest = highest = 0.
+struct AxisLimits {
+  double lowest = 0.0, highest = 0.0;  ///< position against neutral; zero lies between
+  double rate = kInfinity;             ///< largest in either direction, like the next two
+  double acceleration = kInfinity;
+  double jerk = kInfinity;
+
+  [[nodiscard]] bool moves() const { return highest > lowest; }
+};
+
+/// What a platform can do, axis by axis.
+struct PlatformLimits {
+  PerPlatformAxis<AxisLimits> axes = {};
+
+  /// Reads `[platform]`: `roll`, `pitch`, `heave`, ... = [lowest, highest]; `NAME_rate`, `NAME_acceleration`,
+  /// `NAME_jerk`; an axis that is not named cannot move. @throws InputError with file, line and key.
+  [[nodiscard]] static PlatformLimits read(const StudyTable& table);
+  /// @throws InputError where a range does not hold zero, a limit is not above zero, or no axis moves.
+  void validate() const;
+
+  [[nodiscard]] const AxisLimits& operator[](PlatformAxis axis) const { return axes[axis]; }
+  [[nodiscard]] AxisLimits& operator[](PlatformAxis axis) { return axes[axis]; }
+};
+
+/// Three axes, one above the other: roll +-20 deg, pitch +20/-15 deg, heave +-100 mm, 30 deg/s and 0.3 m/s,
+/// 200 deg/s^2 and 3 m/s^2. Positions are those that the source of the reproduced experiments gives, the others are
+/// usual of such platforms.
+[[nodiscard]] PlatformLimits three_axis_limits();
+/// A hexapod of medium size: +-0.5 m (heave +-0.4 m), +-20 deg, 0.6 m/s and 35 deg/s, 6 m/s^2 and 200 deg/s^2.
+[[nodiscard]] PlatformLimits hexapod_limits();
+
+}  // namespace veridyn::cueing
