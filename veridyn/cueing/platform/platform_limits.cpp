@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "veridyn/core/error.hpp"
 
@@ -12,26 +13,35 @@ namespace {
 
 constexpr std::array<std::string_view, kPlatformAxes> kNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
+/// Jerk over acceleration where nothing else is known [1/s].
+constexpr double kUsualJerk = 20.0;
+
 void read_axis(const StudyTable& table, PlatformAxis axis, AxisLimits& limits) {
   const std::string name(name_of(axis)), unit = turns(axis) ? "rad" : "m";
   const std::vector<double> range = table.numbers(name, unit);
   if (range.size() != 2) table.fail(name, fmt::format("has {} values; takes lowest and highest", range.size()));
   limits.lowest = range[0];
   limits.highest = range[1];
-  const auto limit = [&](const char* what, const char* per, double& value) {
-    value = table.number_or(fmt::format("{}_{}", name, what), unit + per, value);
-    if (!(value > 0.0)) table.fail(fmt::format("{}_{}", name, what), fmt::format("is {}; must be above 0", value));
+  const auto limit = [&](const char* what, const char* per, std::optional<double> otherwise) {
+    const std::string key = fmt::format("{}_{}", name, what);
+    const double value = otherwise ? table.number_or(key, unit + per, *otherwise) : table.number(key, unit + per);
+    if (!(value > 0.0) || !std::isfinite(value)) table.fail(key, fmt::format("is {}; must be above 0", value));
+    return value;
   };
-  limit("rate", "/s", limits.rate);
-  limit("acceleration", "/s^2", limits.acceleration);
-  limit("jerk", "/s^3", limits.jerk);
+  limits.rate = limit("rate", "/s", std::nullopt);
+  limits.acceleration = limit("acceleration", "/s^2", std::nullopt);
+  limits.jerk = limit("jerk", "/s^3", kUsualJerk * limits.acceleration);
   if (!(limits.lowest <= 0.0 && limits.highest >= 0.0 && limits.highest > limits.lowest))
     table.fail(name, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between", range[0],
                                  range[1], unit));
 }
 
 AxisLimits symmetric(double position, double rate, double acceleration) {
-  return {.lowest = -position, .highest = position, .rate = rate, .acceleration = acceleration};
+  return {.lowest = -position,
+          .highest = position,
+          .rate = rate,
+          .acceleration = acceleration,
+          .jerk = kUsualJerk * acceleration};
 }
 
 }  // namespace
@@ -55,8 +65,11 @@ void PlatformLimits::validate() const {
       throw InputError(
           fmt::format("platform.{}", kNames[i]),
           fmt::format("goes from {:g} to {:g}; the neutral position, 0, has to lie between", a.lowest, a.highest));
-    if (!(a.rate > 0.0 && a.acceleration > 0.0 && a.jerk > 0.0))
-      throw InputError(fmt::format("platform.{}", kNames[i]), "has a limit that is not above 0");
+    for (const double limit : {a.rate, a.acceleration, a.jerk}) {
+      if (!(limit > 0.0) || !std::isfinite(limit))
+        throw InputError(fmt::format("platform.{}", kNames[i]),
+                         fmt::format("has a limit of {:g}; rate, acceleration and jerk must be above 0", limit));
+    }
     any = any || a.moves();
   }
   if (!any) throw InputError("platform", "has no axis that moves; give roll = [-20, 20] deg and the like");

@@ -23,9 +23,9 @@ using PerPlatformAxis = EnumArray<PlatformAxis, T, kPlatformAxes>;
 /// What one axis can do [m or rad, s]. An axis that cannot move has lowest = highest = 0.
 struct AxisLimits {
   double lowest = 0.0, highest = 0.0;  ///< position against neutral; zero lies between
-  double rate = kInfinity;             ///< largest in either direction, like the next two
-  double acceleration = kInfinity;
-  double jerk = kInfinity;
+  double rate = 1.0;                   ///< largest in either direction, like the next two
+  double acceleration = 10.0;
+  double jerk = 200.0;
 
   [[nodiscard]] bool moves() const { return highest > lowest; }
 };
@@ -34,8 +34,9 @@ struct AxisLimits {
 struct PlatformLimits {
   PerPlatformAxis<AxisLimits> axes = {};
 
-  /// Reads `[platform]`: `roll`, `pitch`, `heave`, ... = [lowest, highest]; `NAME_rate`, `NAME_acceleration`,
-  /// `NAME_jerk`; an axis that is not named cannot move. @throws InputError with file, line and key.
+  /// Reads `[platform]`: `roll`, `pitch`, `heave`, ... = [lowest, highest]; `NAME_rate` and `NAME_acceleration`
+  /// of each; `NAME_jerk` (what reaches the acceleration in 50 ms where it is not given). An axis that is not named
+  /// cannot move. @throws InputError with file, line and key.
   [[nodiscard]] static PlatformLimits read(const StudyTable& table);
   /// @throws InputError where a range does not hold zero, a limit is not above zero, or no axis moves.
   void validate() const;

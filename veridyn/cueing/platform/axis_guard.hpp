@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+
+#include "veridyn/cueing/platform/platform_limits.hpp"
+
+namespace veridyn::cueing {
+
+/// Where an axis is and how it moves [m or rad, s].
+struct AxisState {
+  double position = 0.0, rate = 0.0, acceleration = 0.0;
+};
+
+/// Leads one axis after the positions that are wanted and never past its limits. The axis moves on pieces of constant
+/// jerk. Of every piece it is made sure, before it begins, that the fastest stop from its end stays within position and
+/// rate: so there is always a way to stay within the limits, and the nearer one the earlier the axis brakes. Wanted
+/// positions that the limits allow are followed without delay.
+///
+/// Nothing is allocated or thrown after construction; a copy saves the state.
+class AxisGuard {
+ public:
+  AxisGuard() = default;
+  /// @throws InputError as `PlatformLimits::validate`.
+  explicit AxisGuard(const AxisLimits& limits);
+
+  /// At rest at a position, or at the nearest within the limits.
+  AxisState reset(double position);
+  /// @param wanted position; beyond the limits: the limit; not finite: the last one
+  /// @param step since the last one [s]; below zero or not finite: none. In a gap longer than `kLongestStep` nobody
+  ///   knows what was wanted: the axis stops, and follows again from the next step on.
+  AxisState step(double wanted, double step);
+  /// Other limits. Those before stay in force until the axis has been led to where the new ones hold.
+  /// @throws InputError as the constructor; then the limits before stay.
+  void change_limits(const AxisLimits& limits);
+
+  [[nodiscard]] const AxisState& state() const { return state_; }
+  [[nodiscard]] const AxisLimits& limits() const { return limits_; }  ///< in force
+  /// Whether the last step was held back by a limit.
+  [[nodiscard]] bool limited() const { return limited_; }
+
+  static constexpr double kLongestStep = 0.1;  ///< [s]
+
+ private:
+  void follow(double wanted, double step, double rate, double acceleration);
+  [[nodiscard]] double wanted_acceleration(double wanted, double rate, double acceleration, double step) const;
+  /// The end of a piece of constant jerk, where the piece is allowed.
+  [[nodiscard]] std::optional<AxisState> piece(double jerk, double step) const;
+  void stop(double step);
+  void take_new_limits();
+
+  AxisLimits limits_;
+  std::optional<AxisLimits> new_limits_;
+  AxisState state_;
+  double wanted_ = 0.0, wanted_rate_ = 0.0, wanted_acceleration_ = 0.0;
+  double last_step_ = 0.0;
+  bool limited_ = false;
+};
+
+}  // namespace veridyn::cueing
