@@ -2,14 +2,9 @@
 
 #include <optional>
 
-#include "veridyn/cueing/platform/platform_limits.hpp"
+#include "veridyn/cueing/platform/platform_state.hpp"
 
 namespace veridyn::cueing {
-
-/// Where an axis is and how it moves [m or rad, s].
-struct AxisState {
-  double position = 0.0, rate = 0.0, acceleration = 0.0;
-};
 
 /// Leads one axis after the positions that are wanted and never past its limits. The axis moves on pieces of constant
 /// jerk. Of every piece it is made sure, before it begins, that the fastest stop from its end stays within position and

@@ -2,11 +2,6 @@
 
 namespace veridyn::cueing {
 
-double position(const PlatformCommand& command, PlatformAxis axis) {
-  const auto i = static_cast<Eigen::Index>(axis);
-  return turns(axis) ? command.angle(i - 3) : command.shift(i);
-}
-
 PlatformGuard::PlatformGuard(const PlatformLimits& limits) {
   limits.validate();
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
@@ -15,18 +10,18 @@ PlatformGuard::PlatformGuard(const PlatformLimits& limits) {
   }
 }
 
-PlatformCommand PlatformGuard::reset(const PlatformCommand& at) {
+PlatformState PlatformGuard::reset(const PlatformCommand& at) {
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
     if (moves_[i]) axes_[i].reset(position(at, static_cast<PlatformAxis>(i)));
   }
-  return command();
+  return state();
 }
 
-PlatformCommand PlatformGuard::step(const PlatformCommand& wanted, double step) {
+PlatformState PlatformGuard::step(const PlatformCommand& wanted, double step) {
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
     if (moves_[i]) axes_[i].step(position(wanted, static_cast<PlatformAxis>(i)), step);
   }
-  return command();
+  return state();
 }
 
 void PlatformGuard::change_limits(const PlatformLimits& limits) {
@@ -42,16 +37,10 @@ std::bitset<kPlatformAxes> PlatformGuard::limited() const {
   return which;
 }
 
-PlatformCommand PlatformGuard::command() const {
-  PlatformCommand c;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    c.shift(axis) = axes_[i].state().position;
-    c.acceleration(axis) = axes_[i].state().acceleration;
-    c.angle(axis) = axes_[i + 3].state().position;
-    c.rate(axis) = axes_[i + 3].state().rate;
-  }
-  return c;
+PlatformState PlatformGuard::state() const {
+  PlatformState s;
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) set_axis(s, static_cast<PlatformAxis>(i), axes_[i].state());
+  return s;
 }
 
 }  // namespace veridyn::cueing

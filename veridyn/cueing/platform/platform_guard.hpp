@@ -3,7 +3,6 @@
 #include <bitset>
 
 #include "veridyn/cueing/platform/axis_guard.hpp"
-#include "veridyn/cueing/platform/platform_command.hpp"
 
 namespace veridyn::cueing {
 
@@ -15,26 +14,21 @@ class PlatformGuard {
   explicit PlatformGuard(const PlatformLimits& limits);
 
   /// At rest where the command is, or at the nearest within the limits.
-  PlatformCommand reset(const PlatformCommand& command = {});
-  /// @param command only its shift and angle are read; those of the answer are where the platform is to be, with the
-  ///   acceleration of its shift and the rate of its angles
+  PlatformState reset(const PlatformCommand& command = {});
+  /// Where the platform is to be. @param command only its shift and angle are read
   /// @param step as `AxisGuard::step`
-  PlatformCommand step(const PlatformCommand& command, double step);
+  PlatformState step(const PlatformCommand& command, double step);
   /// As `AxisGuard::change_limits`, every axis by itself.
   void change_limits(const PlatformLimits& limits);
 
   [[nodiscard]] const AxisGuard& axis(PlatformAxis which) const { return axes_[which]; }
+  [[nodiscard]] PlatformState state() const;
   /// The axes whose last step was held back, by their number.
   [[nodiscard]] std::bitset<kPlatformAxes> limited() const;
 
  private:
-  [[nodiscard]] PlatformCommand command() const;
-
   PerPlatformAxis<AxisGuard> axes_ = {};
   PerPlatformAxis<bool> moves_ = {};
 };
-
-/// Shift and angle of a command, axis by axis.
-[[nodiscard]] double position(const PlatformCommand& command, PlatformAxis axis);
 
 }  // namespace veridyn::cueing

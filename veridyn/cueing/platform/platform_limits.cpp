@@ -18,22 +18,28 @@ constexpr double kUsualJerk = 20.0;
 
 void read_axis(const StudyTable& table, PlatformAxis axis, AxisLimits& limits) {
   const std::string name(name_of(axis)), unit = turns(axis) ? "rad" : "m";
-  const std::vector<double> range = table.numbers(name, unit);
-  if (range.size() != 2) table.fail(name, fmt::format("has {} values; takes lowest and highest", range.size()));
-  limits.lowest = range[0];
-  limits.highest = range[1];
+  const bool known = limits.moves();
+  if (table.has(name)) {
+    const std::vector<double> range = table.numbers(name, unit);
+    if (range.size() != 2) table.fail(name, fmt::format("has {} values; takes lowest and highest", range.size()));
+    limits.lowest = range[0];
+    limits.highest = range[1];
+    if (!(limits.lowest <= 0.0 && limits.highest >= 0.0 && limits.highest > limits.lowest))
+      table.fail(name, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between", range[0],
+                                   range[1], unit));
+  }
+  if (!limits.moves()) return;
   const auto limit = [&](const char* what, const char* per, std::optional<double> otherwise) {
     const std::string key = fmt::format("{}_{}", name, what);
     const double value = otherwise ? table.number_or(key, unit + per, *otherwise) : table.number(key, unit + per);
-    if (!(value > 0.0) || !std::isfinite(value)) table.fail(key, fmt::format("is {}; must be above 0", value));
+    if (!(value > 0.0)) table.fail(key, fmt::format("is {}; must be above 0", value));
     return value;
   };
-  limits.rate = limit("rate", "/s", std::nullopt);
-  limits.acceleration = limit("acceleration", "/s^2", std::nullopt);
-  limits.jerk = limit("jerk", "/s^3", kUsualJerk * limits.acceleration);
-  if (!(limits.lowest <= 0.0 && limits.highest >= 0.0 && limits.highest > limits.lowest))
-    table.fail(name, fmt::format("goes from {:g} to {:g} {}; the neutral position, 0, has to lie between", range[0],
-                                 range[1], unit));
+  const auto otherwise = [known](double value) { return known ? std::optional(value) : std::nullopt; };
+  const bool other = !known || table.has(name + "_acceleration");
+  limits.rate = limit("rate", "/s", otherwise(limits.rate));
+  limits.acceleration = limit("acceleration", "/s^2", otherwise(limits.acceleration));
+  limits.jerk = limit("jerk", "/s^3", other ? kUsualJerk * limits.acceleration : limits.jerk);
 }
 
 AxisLimits symmetric(double position, double rate, double acceleration) {
@@ -50,11 +56,13 @@ std::string_view name_of(PlatformAxis axis) { return kNames[static_cast<std::siz
 
 PlatformLimits PlatformLimits::read(const StudyTable& table) {
   PlatformLimits limits;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (table.has(std::string(kNames[i]))) read_axis(table, static_cast<PlatformAxis>(i), limits.axes[i]);
-  }
-  limits.validate();
+  limits.read_over(table);
   return limits;
+}
+
+void PlatformLimits::read_over(const StudyTable& table) {
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) read_axis(table, static_cast<PlatformAxis>(i), axes[i]);
+  validate();
 }
 
 void PlatformLimits::validate() const {

@@ -38,6 +38,8 @@ struct PlatformLimits {
   /// of each; `NAME_jerk` (what reaches the acceleration in 50 ms where it is not given). An axis that is not named
   /// cannot move. @throws InputError with file, line and key.
   [[nodiscard]] static PlatformLimits read(const StudyTable& table);
+  /// The same over what is there already.
+  void read_over(const StudyTable& table);
   /// @throws InputError where a range does not hold zero, a limit is not above zero, or no axis moves.
   void validate() const;
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/cueing/platform/legs.hpp"
+#include "veridyn/cueing/platform/platform_limits.hpp"
+
+namespace veridyn::cueing {
+
+/// How an actuator follows what it is told: second order, behind a delay.
+struct ActuatorOptions {
+  double omega = 30.0;  ///< natural frequency [rad/s]; 0: it follows at once
+  double zeta = 1.0;    ///< damping ratio
+  double delay = 0.01;  ///< [s]
+};
+
+/// Where an axis comes to rest when it is told to go somewhere: points of lines, in order; beyond them at the end's.
+struct StaticReach {
+  std::vector<double> commanded, reached;  ///< [m or rad]
+
+  [[nodiscard]] bool empty() const { return commanded.empty(); }
+  /// What is reached and its derivative.
+  struct Point {
+    double reached = 0.0, slope = 1.0;
+  };
+  [[nodiscard]] Point at(double command) const;
+};
+
+/// A platform as data.
+struct Platform {
+  std::string name;
+  PlatformLimits limits;
+  std::optional<LegGeometry> legs;  ///< nothing: each axis has an actuator of its own
+  ActuatorOptions actuators;
+  PerPlatformAxis<StaticReach> reach = {};  ///< empty: it comes to rest where it is told to
+  Eigen::Vector3d rider = {0.0, 0.0,
+                           -0.8};  ///< the driver's head from the centre of rotation: forward, right, down [m]
+
+  /// Reads `[platform]`: `subject` names a built-in one, whose values other keys replace; limits as
+  /// `PlatformLimits::read`; `legs` = "none"; `leg_stroke` = [shortest, longest] against neutral, `leg_rate`,
+  /// `leg_acceleration`, `feet` and `heads` (numbers in threes: forward, right, down); `omega`, `zeta`, `delay` of the
+  /// actuators; `NAME_commanded` and `NAME_reached`; `rider`.
+  /// @throws InputError with file, line and key.
+  [[nodiscard]] static Platform read(const StudyTable& table);
+  /// @throws InputError naming what cannot be: limits, legs that do not reach, a delay of half a second or more.
+  void validate() const;
+};
+
+/// "three_axis": roll, pitch and heave on three upright actuators. "three_axis_measured": the same with the resting
+/// places that were measured of such a platform, which reaches less than it is told at large angles. "hexapod": six
+/// axes on six legs. "ideal": six axes, 10 m and 60 deg each way, at once where they are told to be: what an algorithm
+/// does by itself. @throws InputError with the nearest name.
+[[nodiscard]] const Platform& built_in_platform(std::string_view name);
+[[nodiscard]] const std::vector<Platform>& built_in_platforms();
+
+}  // namespace veridyn::cueing
