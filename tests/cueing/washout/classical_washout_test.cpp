@@ -33,7 +33,7 @@ MotionSample level(const Eigen::Vector3d& acceleration, const Eigen::Vector3d& r
 /// and cosine.
 Complex response(double omega, double rate, const std::function<MotionSample(double)>& input,
                  const std::function<double(const PlatformCommand&, const ClassicalWashout&)>& output) {
-  ClassicalWashout washout({});
+  ClassicalWashout washout(ClassicalDesign{});
   const double step = 1.0 / rate, settle = 80.0, end = settle + 2.0 + 2.0 * kPi / omega;
   washout.reset(input(0.0));
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
@@ -113,7 +113,7 @@ TEST(ClassicalWashout, ResponsesAreThoseOfItsFilters) {
 }
 
 TEST(ClassicalWashout, ASteadyForceBecomesTiltAtTheLimitOfItsRate) {
-  ClassicalWashout washout({});
+  ClassicalWashout washout(ClassicalDesign{});
   washout.reset(level(Eigen::Vector3d::Zero()));
   PlatformCommand command;
   double fastest = 0.0, before = 0.0;
@@ -131,7 +131,7 @@ TEST(ClassicalWashout, ASteadyForceBecomesTiltAtTheLimitOfItsRate) {
 }
 
 TEST(ClassicalWashout, NothingJumpsAtTheBeginningAndRestIsRest) {
-  ClassicalWashout washout({});
+  ClassicalWashout washout(ClassicalDesign{});
   MotionSample braking = level({-6.0, 3.0, 1.0}, {0.3, -0.2, 0.4});
   braking.attitude = numerics::quaternion_from_euler(0.1, -0.05, 2.0);
   const PlatformCommand first = washout.reset(braking);
@@ -146,7 +146,7 @@ TEST(ClassicalWashout, NothingJumpsAtTheBeginningAndRestIsRest) {
 }
 
 TEST(ClassicalWashout, ReturnsToNeutralAfterAManoeuvre) {
-  ClassicalWashout washout({});
+  ClassicalWashout washout(ClassicalDesign{});
   washout.reset(level(Eigen::Vector3d::Zero()));
   for (int k = 0; k < 300; ++k) washout.step(level({5.0, 4.0, -3.0}, {0.5, 0.3, 0.8}), 0.01);
   PlatformCommand command;
@@ -158,7 +158,7 @@ TEST(ClassicalWashout, ReturnsToNeutralAfterAManoeuvre) {
 TEST(ClassicalWashout, MirroredMotionGivesTheMirroredCommandBitForBit) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  ClassicalWashout one({}), other({});
+  ClassicalWashout one(ClassicalDesign{}), other(ClassicalDesign{});
   const auto mirrored = [](const MotionSample& s) {
     MotionSample m = s;
     m.force.y() = -s.force.y();
@@ -181,7 +181,7 @@ TEST(ClassicalWashout, MirroredMotionGivesTheMirroredCommandBitForBit) {
 }
 
 TEST(ClassicalWashout, ACopyGoesOnAlikeAndBadValuesStandForTheLast) {
-  ClassicalWashout washout({});
+  ClassicalWashout washout(ClassicalDesign{});
   washout.reset(level(Eigen::Vector3d::Zero()));
   for (int k = 0; k < 100; ++k) washout.step(level({1.0, 2.0, 0.0}, {0.1, 0.0, 0.2}), 0.01);
   const std::unique_ptr<Washout> copy = washout.clone();
@@ -195,7 +195,7 @@ TEST(ClassicalWashout, ACopyGoesOnAlikeAndBadValuesStandForTheLast) {
 }
 
 TEST(ClassicalWashout, RefusesFiltersThatAreNone) {
-  ClassicalOptions o;
+  ClassicalDesign o;
   o.onset[1] = 0.0;
   try {
     const ClassicalWashout washout(o);
@@ -203,14 +203,15 @@ TEST(ClassicalWashout, RefusesFiltersThatAreNone) {
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), ::testing::HasSubstr("washout.onset"));
   }
-  o = {};
+  o = ClassicalDesign{};
   o.tilt_rate = -1.0;
   EXPECT_THROW(ClassicalWashout{o}, InputError);
 }
 
-TEST(ClassicalOptions, AreReadFromAStudy) {
+TEST(ClassicalDesign, IsReadFromAStudy) {
   const Study study = Study::parse("[washout]\nforce_gain = [0.5, 0.4, 0.3]\ntilt_rate = \"6 deg/s\"\n", "s.toml");
-  const ClassicalOptions o = ClassicalOptions::read(study.root().table("washout"));
+  ClassicalDesign o;
+  read_knobs(study.root().table("washout"), o.knobs());
   EXPECT_EQ(o.force_gain[1], 0.4);
   EXPECT_NEAR(o.tilt_rate, 6.0 * kDegree, 1e-15);
   EXPECT_EQ(o.onset[0], 0.8);

@@ -70,8 +70,9 @@ Legs::Legs(const LegGeometry& geometry, const PlatformLimits& limits) : geometry
     if (!(neutral_.back() > 1e-3))
       throw InputError("platform.legs", fmt::format("leg {} has its foot at its head", i + 1));
   }
-  const Eigen::FullPivLU<Square> lu(jacobian({}));
-  if (!(lu.rcond() >= 1e-4))
+  Eigen::FullPivLU<Square> lu;
+  lu.setThreshold(1e-4);
+  if (!lu.compute(jacobian({})).isInvertible())
     throw InputError("platform.legs",
                      "do not hold the platform in its neutral position: it can move with every leg at "
                      "rest");

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "veridyn/cueing/platform/platform.hpp"
+#include "veridyn/cueing/washout/knob.hpp"
+#include "veridyn/cueing/washout/washout.hpp"
+
+namespace veridyn::cueing {
+
+/// The numbers of an algorithm, before it runs: what a study sets and the automatic tuning turns.
+class WashoutDesign {
+ public:
+  virtual ~WashoutDesign() = default;
+  /// They point into this design.
+  [[nodiscard]] virtual std::vector<Knob> knobs() = 0;
+  /// The algorithm for a platform. @throws InputError as `check_knobs`, and where the platform lacks what it needs.
+  [[nodiscard]] virtual std::unique_ptr<Washout> make(const Platform& platform) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<WashoutDesign> clone() const = 0;
+
+ protected:
+  WashoutDesign() = default;
+  WashoutDesign(const WashoutDesign&) = default;
+  WashoutDesign& operator=(const WashoutDesign&) = default;
+};
+
+/// An algorithm by its name.
+struct WashoutAlgorithm {
+  std::string_view name;
+  std::string_view summary;  ///< in one line, with its source
+  std::unique_ptr<WashoutDesign> (*design)();
+};
+
+/// All of them.
+[[nodiscard]] std::span<const WashoutAlgorithm> washout_algorithms();
+/// @throws InputError with the nearest name.
+[[nodiscard]] const WashoutAlgorithm& washout_algorithm(std::string_view name);
+
+}  // namespace veridyn::cueing
