@@ -3,7 +3,6 @@
 namespace veridyn::cueing {
 
 using numerics::CausalFilter;
-using recording::MotionSample;
 
 std::vector<Knob> ClassicalDesign::knobs() {
   return {
@@ -23,15 +22,6 @@ std::unique_ptr<Washout> ClassicalDesign::make(const Platform&) const {
 }
 std::unique_ptr<WashoutDesign> ClassicalDesign::clone() const { return std::make_unique<ClassicalDesign>(*this); }
 
-namespace {
-
-ClassicalDesign checked(ClassicalDesign design) {
-  check_knobs(design.knobs());
-  return design;
-}
-
-}  // namespace
-
 ClassicalWashout::ClassicalWashout(const ClassicalDesign& d)
     : design_(checked(d)),
       shift_{ShiftChannel(d.onset[0], d.zeta, d.recentre[0]), ShiftChannel(d.onset[1], d.zeta, d.recentre[1]),
@@ -39,9 +29,8 @@ ClassicalWashout::ClassicalWashout(const ClassicalDesign& d)
       turn_{TurnChannel(d.turn[0], d.zeta), TurnChannel(d.turn[1], d.zeta), TurnChannel(d.turn[2], d.zeta)},
       low_pass_{CausalFilter(numerics::low_pass(d.tilt, d.zeta)), CausalFilter(numerics::low_pass(d.tilt, d.zeta))} {}
 
-PlatformCommand ClassicalWashout::next(const MotionSample& given, SampleStep step) {
-  const MotionSample sample = recording::in_frame(given, Frame::kFrd);
-  const Eigen::Vector3d a = recording::acceleration(sample);
+PlatformCommand ClassicalWashout::next(const VehicleMotion& motion, SampleStep step) {
+  const Eigen::Vector3d& a = motion.acceleration;
   Eigen::Vector3d shift, change;
   PlatformCommand command;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -49,13 +38,13 @@ PlatformCommand ClassicalWashout::next(const MotionSample& given, SampleStep ste
     const ChannelOutput s = shift_[i].step(design_.force_gain[i] * a(axis), step);
     shift(axis) = s.place;
     change(axis) = s.change;
-    const ChannelOutput t = turn_[i].step(design_.rate_gain[i] * sample.rate(axis), step);
+    const ChannelOutput t = turn_[i].step(design_.rate_gain[i] * motion.rate(axis), step);
     command.angle(axis) = t.place;
     command.rate(axis) = t.change;
   }
   command.shift = shift_from_frd(shift);
   command.acceleration = shift_from_frd(change);
-  const Eigen::Vector2d force = tilted_force(sample.force);
+  const Eigen::Vector2d force = tilted_force(motion.force);
   for (std::size_t i = 0; i < 2; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const double gain = design_.force_gain[1 - i];

@@ -39,17 +39,13 @@ class ClassicalWashout final : public Washout {
   /// @throws InputError as `check_knobs`.
   explicit ClassicalWashout(const ClassicalDesign& design);
 
-  PlatformCommand reset(const recording::MotionSample& sample) override { return next(sample, std::nullopt); }
-  PlatformCommand step(const recording::MotionSample& sample, double step) override {
-    return next(sample, usable(step));
-  }
   [[nodiscard]] std::unique_ptr<Washout> clone() const override { return std::make_unique<ClassicalWashout>(*this); }
 
   /// Roll and pitch of tilt coordination alone [rad].
   [[nodiscard]] std::array<double, 2> tilt() const { return {tilt_[0].tilt(), tilt_[1].tilt()}; }
 
  private:
-  [[nodiscard]] PlatformCommand next(const recording::MotionSample& sample, SampleStep step);
+  PlatformCommand next(const VehicleMotion& motion, SampleStep step) override;
 
   ClassicalDesign design_;
   std::array<ShiftChannel, 3> shift_;

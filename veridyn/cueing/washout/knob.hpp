@@ -23,4 +23,11 @@ void read_knobs(const StudyTable& table, std::span<const Knob> knobs);
 /// @throws InputError "washout.onset: is 0; must be above 0".
 void check_knobs(std::span<const Knob> knobs);
 
+/// The design, its knobs checked.
+template <typename Design>
+[[nodiscard]] Design checked(Design design) {
+  check_knobs(design.knobs());
+  return design;
+}
+
 }  // namespace veridyn::cueing

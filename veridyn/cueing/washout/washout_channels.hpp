@@ -1,18 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "veridyn/cueing/washout/washout.hpp"
 #include "veridyn/numerics/linear_systems/causal_filter.hpp"
+#include "veridyn/numerics/ode.hpp"
 
 namespace veridyn::cueing {
-
-/// Time since the last sample [s]; nothing: the beginning.
-using SampleStep = std::optional<double>;
-
-/// A step as it may come: below zero and not finite count as none.
-[[nodiscard]] inline double usable(double step) { return step >= 0.0 && std::isfinite(step) ? step : 0.0; }
 
 /// The forces that a platform renders by roll and by pitch [m/s^2], of a specific force forward, right, down: the
 /// right side down brings one to the left, the nose up one forward.
@@ -63,6 +59,21 @@ class TiltCoordination {
  private:
   double tilt_ = 0.0;
 };
+
+/// A state and its inputs over a step during which the inputs go on lines, by the Runge-Kutta method of fourth order on
+/// pieces of no more than 5 ms.
+/// @param rate the state's derivative, of state and inputs
+template <typename State, typename Input, typename Rate>
+[[nodiscard]] State integrated(State x, const Input& before, const Input& now, double step, const Rate& rate) {
+  constexpr double kLongestPiece = 0.005;
+  const double pieces = std::max(1.0, std::ceil(step / kLongestPiece * (1.0 - 1e-9)));
+  const double h = step / pieces;
+  const auto derivative = [&](double part, const State& at) {
+    return State(rate(at, Input(before + part / pieces * (now - before))) * h);
+  };
+  for (double k = 0.0; k < pieces; ++k) x = numerics::runge_kutta_4_step(derivative, k, x, 1.0);
+  return x;
+}
 
 /// From one value towards another by no more than `most`.
 [[nodiscard]] double step_towards(double from, double to, double most);

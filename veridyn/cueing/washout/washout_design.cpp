@@ -7,7 +7,14 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/washout/adaptive_washout.hpp"
 #include "veridyn/cueing/washout/classical_washout.hpp"
+#include "veridyn/cueing/washout/fuzzy_washout.hpp"
+#include "veridyn/cueing/washout/moving_origin_washout.hpp"
+#include "veridyn/cueing/washout/optimal_washout.hpp"
+#include "veridyn/cueing/washout/return_washout.hpp"
+#include "veridyn/cueing/washout/three_axis_washout.hpp"
+#include "veridyn/cueing/washout/tilt_washout.hpp"
 
 namespace veridyn::cueing {
 namespace {
@@ -19,7 +26,14 @@ std::unique_ptr<WashoutDesign> design() {
 
 /// A new algorithm is a line here.
 constexpr std::array kAlgorithms = {
+    WashoutAlgorithm{"tilt", "tilt coordination alone", &design<TiltDesign>},
     WashoutAlgorithm{"classical", "filters and tilt coordination (Reid & Nahon 1985)", &design<ClassicalDesign>},
+    WashoutAlgorithm{"three_axis", "the same where tilt renders the onset too", &design<ThreeAxisDesign>},
+    WashoutAlgorithm{"return", "tilt without a low-pass, and a way home (You et al. 2005)", &design<ReturnDesign>},
+    WashoutAlgorithm{"optimal", "least perceived error of a linear rider (Sivan 1982)", &design<OptimalDesign>},
+    WashoutAlgorithm{"adaptive", "gains by steepest descent (Nahon & Reid 1990)", &design<AdaptiveDesign>},
+    WashoutAlgorithm{"fuzzy", "gains by the room that is left (Hwang et al. 2009)", &design<FuzzyDesign>},
+    WashoutAlgorithm{"moving_origin", "the neutral place makes room for what is foreseen", &design<MovingOriginDesign>},
 };
 
 }  // namespace

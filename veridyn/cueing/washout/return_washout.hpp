@@ -1,0 +1,53 @@
+#pragma once
+
+#include "veridyn/cueing/washout/shared_channels.hpp"
+
+namespace veridyn::cueing {
+
+/// Numbers of the algorithm with a return mode.
+class ReturnDesign final : public WashoutDesign {
+ public:
+  SharedKnobs shared;
+  double onset = 1.0;        ///< high-pass of surge and sway, second order [rad/s]
+  double threshold = 0.17;   ///< a force below this brings the platform home [m/s^2]
+  double home = 2.0;         ///< how fast it comes home: critically damped [rad/s]
+  double home_force = 0.15;  ///< greatest acceleration on the way home, below what is felt [m/s^2]
+
+  [[nodiscard]] std::vector<Knob> knobs() override;
+  [[nodiscard]] std::unique_ptr<Washout> make(const Platform& platform) const override;
+  [[nodiscard]] std::unique_ptr<WashoutDesign> clone() const override { return std::make_unique<ReturnDesign>(*this); }
+};
+
+/// Tilt coordination without a low-pass and a mode that brings the platform home, after You, Lee, Kang & Yoo 2005 (J
+/// Mech Sci Technol 19:272). The tilt stands for all of the force that the shift does not render at the moment, and
+/// goes there at once, no faster than tilt_rate:
+///
+///     onset mode   shift'' = high-pass(gain a); tilt -> asin((gain f - shift'') / g)
+///     return mode  while |gain f| is below the threshold: shift'' = -2 w shift' - w^2 shift within home_force, tilt ->
+///     0
+///
+/// After a return the shift is led back to where the high-pass would have it, in the same way.
+class ReturnWashout final : public Washout {
+ public:
+  /// @throws InputError as `check_knobs`.
+  ReturnWashout(const ReturnDesign& design, const Platform& platform);
+  [[nodiscard]] std::unique_ptr<Washout> clone() const override { return std::make_unique<ReturnWashout>(*this); }
+
+ private:
+  PlatformCommand next(const VehicleMotion& motion, SampleStep step) override;
+
+  /// Surge with pitch or sway with roll.
+  struct Pair {
+    bool shifts = false;                              ///< whether the platform can
+    Eigen::Vector4d state = Eigen::Vector4d::Zero();  ///< shift, its rate; the same of the high-pass
+    PairedInput input = PairedInput::Zero();
+    TiltCoordination tilt;
+    PairedOutput step(const PairedInput& now, const ReturnDesign& design, SampleStep step);
+  };
+
+  ReturnDesign design_;
+  SharedChannels shared_;
+  std::array<Pair, 2> pairs_;
+};
+
+}  // namespace veridyn::cueing
