@@ -1,0 +1,71 @@
+#include "veridyn/cueing/chain/cueing_chain.hpp"
+
+#include <cmath>
+
+namespace veridyn::cueing {
+
+CueingChain::CueingChain(std::unique_ptr<Washout> washout, const Platform& platform)
+    : washout_(std::move(washout)), guard_((platform.validate(), platform.limits)), simulator_(platform) {}
+
+CueingChain::CueingChain(const CueingChain& other)
+    : washout_(other.washout_->clone()),
+      guard_(other.guard_),
+      simulator_(other.simulator_),
+      joined_at_(other.joined_at_),
+      since_joined_(other.since_joined_) {}
+
+CueingStep CueingChain::reset(const recording::MotionSample& sample) {
+  joined_at_ = {};
+  since_joined_ = 0.0;
+  CueingStep s;
+  s.wanted = washout_->reset(sample);
+  s.told = guard_.reset(s.wanted);
+  s.reached = simulator_.reset(s.told);
+  return s;
+}
+
+void CueingChain::take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample) {
+  washout_ = std::move(washout);
+  const PlatformCommand begins = washout_->reset(sample);
+  const PlatformState at = guard_.state();
+  joined_at_.shift = at.shift - begins.shift;
+  joined_at_.angle = at.angle - begins.angle;
+  since_joined_ = 0.0;
+}
+
+CueingStep CueingChain::step(const recording::MotionSample& sample, double step) {
+  constexpr double kJoins = 0.5;  // time constant, of second order [s]
+  CueingStep s;
+  s.wanted = washout_->step(sample, step);
+  if (step > 0.0 && std::isfinite(step)) since_joined_ += step;
+  const double t = since_joined_ / kJoins, left = (1.0 + t) * std::exp(-t);
+  s.wanted.shift += left * joined_at_.shift;
+  s.wanted.angle += left * joined_at_.angle;
+  s.told = guard_.step(s.wanted, step);
+  s.limited = guard_.limited();
+  s.reached = simulator_.step(s.told, step);
+  if (simulator_.leg_rates().size() > 0) s.leg_speed = simulator_.leg_rates().cwiseAbs().maxCoeff();
+  return s;
+}
+
+CueingRun drive_platform(const std::vector<recording::MotionSample>& vehicle, const Washout& washout,
+                         const Platform& platform, Progress& progress) {
+  CueingRun run;
+  if (vehicle.empty()) return run;
+  CueingChain chain(washout.clone(), platform);
+  run.vehicle.reserve(vehicle.size());
+  run.rider.reserve(vehicle.size());
+  run.steps.reserve(vehicle.size());
+  for (std::size_t k = 0; k < vehicle.size(); ++k) {
+    run.steps.push_back(k == 0 ? chain.reset(vehicle[0])
+                               : chain.step(vehicle[k], vehicle[k].time - vehicle[k - 1].time));
+    run.vehicle.push_back(recording::in_frame(vehicle[k], Frame::kFrd));
+    run.rider.push_back(rider_motion(run.steps.back().reached, platform.rider));
+    run.rider.back().time = vehicle[k].time;
+    constexpr std::size_t kBetweenLooks = 1000;
+    if (k % kBetweenLooks == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(vehicle.size()))) break;
+  }
+  return run;
+}
+
+}  // namespace veridyn::cueing

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <bitset>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/cueing/platform/platform_guard.hpp"
+#include "veridyn/cueing/platform/platform_simulator.hpp"
+#include "veridyn/cueing/washout/washout.hpp"
+
+namespace veridyn::cueing {
+
+/// What became of one sample.
+struct CueingStep {
+  PlatformCommand wanted;                   ///< by the algorithm
+  PlatformState told;                       ///< by the guard
+  PlatformState reached;                    ///< by the platform
+  std::bitset<kPlatformAxes> limited = {};  ///< axes that the guard held back
+  double leg_speed = 0.0;                   ///< of the fastest leg [m/s]; 0 of a platform without
+};
+
+/// Everything between the vehicle's motion and the rider: algorithm, guard, legs and actuators, one sample at a time.
+/// An algorithm that takes over from another, or begins again, joins where the platform is: the difference dies away
+/// within two seconds. Nothing is allocated or thrown by `step`.
+class CueingChain {
+ public:
+  /// @throws InputError as `Platform::validate`.
+  CueingChain(std::unique_ptr<Washout> washout, const Platform& platform);
+  CueingChain(const CueingChain& other);
+  CueingChain(CueingChain&&) = default;
+  CueingChain& operator=(CueingChain&&) = default;
+  CueingChain& operator=(const CueingChain&) = delete;
+  ~CueingChain() = default;
+
+  /// The platform at rest in its neutral position.
+  CueingStep reset(const recording::MotionSample& sample);
+  CueingStep step(const recording::MotionSample& sample, double step);
+  /// Another algorithm, which begins with this sample, from where the platform is.
+  void take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample);
+  [[nodiscard]] const PlatformGuard& guard() const { return guard_; }
+  [[nodiscard]] const Washout& washout() const { return *washout_; }
+
+ private:
+  std::unique_ptr<Washout> washout_;
+  PlatformGuard guard_;
+  PlatformSimulator simulator_;
+  PlatformCommand joined_at_;  ///< by how much the command differed where the algorithm began
+  double since_joined_ = 0.0;  ///< [s]
+};
+
+/// A drive on a platform: a value a sample of the vehicle.
+struct CueingRun {
+  std::string algorithm;
+  std::vector<recording::MotionSample> vehicle;  ///< at the driver's head, frd
+  std::vector<recording::MotionSample> rider;    ///< at the rider's head, platform's axes (frd)
+  std::vector<CueingStep> steps;
+};
+
+/// The samples of a drive through the chain. @param vehicle at the driver's head, stamps growing
+/// @return up to where `progress` was interrupted
+[[nodiscard]] CueingRun drive_platform(const std::vector<recording::MotionSample>& vehicle, const Washout& washout,
+                                       const Platform& platform, Progress& progress);
+
+}  // namespace veridyn::cueing

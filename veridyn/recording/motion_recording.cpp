@@ -1,0 +1,201 @@
+#include "veridyn/recording/motion_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/rotation.hpp"
+#include "veridyn/numerics/statistics.hpp"
+#include "veridyn/recording/channel_map.hpp"
+
+namespace veridyn::recording {
+namespace {
+
+constexpr double kSlowest = 5.0;       // [Hz]
+constexpr double kFastestTurn = 20.0;  // [rad/s]
+
+/// A channel at the stamps; before its first and after its last sample those values. Nothing where it is not recorded.
+std::optional<std::vector<double>> held(const Recording& recording, std::initializer_list<const char*> names,
+                                        std::span<const double> at) {
+  for (const char* name : names) {
+    const Channel* channel = recording.find(name);
+    if (channel == nullptr || channel->empty()) continue;
+    std::vector<double> values = interpolated(*channel, at);
+    const auto finite = [](double v) { return std::isfinite(v); };
+    const auto first = std::find_if(values.begin(), values.end(), finite);
+    if (first == values.end()) continue;
+    std::fill(values.begin(), first, *first);
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) values[i] = values[i - 1];
+    }
+    return values;
+  }
+  return std::nullopt;
+}
+
+/// Attitude angles are continued over full turns, so that no line between two samples leads through the wrong side.
+std::optional<std::vector<double>> held_angle(const Recording& recording, const char* name,
+                                              std::span<const double> at) {
+  const Channel* channel = recording.find(name);
+  if (channel == nullptr || channel->empty()) return std::nullopt;
+  Recording unwrapped;
+  Channel copy = *channel;
+  for (std::size_t i = 1; i < copy.value.size(); ++i) {
+    if (std::isfinite(copy.value[i]) && std::isfinite(copy.value[i - 1]))
+      copy.value[i] = copy.value[i - 1] + numerics::wrap_angle(copy.value[i] - copy.value[i - 1]);
+  }
+  unwrapped.add(std::move(copy));
+  return held(unwrapped, {name}, at);
+}
+
+/// Decides what the accelerations hold. Nothing: accel_z is not recorded.
+bool holds_gravity(const Recording& recording, const std::vector<std::array<double, 3>>& a, GravityIn given, bool has_z,
+                   std::vector<std::string>& notes) {
+  const auto refuse = [&](const std::string& what) { throw InputError(recording.source, what); };
+  if (!has_z) {
+    notes.emplace_back(
+        "accel_z is not recorded: 1 g is taken for it; accel_x and accel_y are taken for an "
+        "accelerometer's, gravity in");
+    return true;
+  }
+  std::vector<double> size, up;
+  for (const auto& v : a) {
+    size.push_back(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    up.push_back(v[2]);
+  }
+  const double middle = numerics::median(size), along = numerics::median(up);
+  const double up_sign = recording.frame == Frame::kFrd ? -1.0 : 1.0;
+  if (given == GravityIn::kNo) return false;
+  if (middle > 1.6 * kGravity && middle < 2.4 * kGravity && std::abs(along) > 1.5 * kGravity)
+    refuse(fmt::format("accel_x, accel_y, accel_z are {:.2f} g long in the median: gravity seems to be in them twice",
+                       middle / kGravity));
+  const bool about_one_g = std::abs(along) > 0.7 * kGravity && std::abs(along) < 1.3 * kGravity;
+  if (about_one_g && along * up_sign < 0.0)
+    refuse(
+        fmt::format("accel_z is {:+.2f} m/s^2 in the median; an accelerometer that rests shows {:+.2f} in frame {}: "
+                    "set `frame`, or turn its sign in [data.map]",
+                    along, up_sign * kGravity, recording.frame == Frame::kFrd ? "frd" : "flu"));
+  if (about_one_g || given == GravityIn::kYes) return true;
+  if (std::abs(along) > 0.9 && std::abs(along) < 1.1)
+    refuse(
+        fmt::format("accel_z is {:+.2f} m/s^2 in the median: it seems to be in g; give its unit in [data.map]", along));
+  if (std::abs(along) < 0.3 * kGravity) {
+    notes.push_back(
+        fmt::format("accel_z is {:+.2f} m/s^2 in the median: accelerations are taken to be without gravity, "
+                    "and it is put in",
+                    along));
+    return false;
+  }
+  refuse(fmt::format("accel_z is {:+.2f} m/s^2 in the median, neither 1 g nor none; say `gravity = \"in\"` or \"out\"",
+                     along));
+  return true;
+}
+
+}  // namespace
+
+RecordedMotion motion_samples(const Recording& recording, const MotionOptions& options) {
+  if (recording.frame == Frame::kUnspecified)
+    throw InputError(recording.source, "has no frame; say `frame = \"flu\"` or \"frd\" in [data]");
+  RecordedMotion motion;
+  const Channel& forward = recording.at("accel_x");
+  static_cast<void>(recording.at("accel_y"));
+  if (forward.rate_Hz() < kSlowest)
+    throw InputError(recording.source,
+                     fmt::format("accel_x has {:.2g} samples a second; a platform needs {:g} at least",
+                                 forward.rate_Hz(), kSlowest));
+  std::vector<double> at;
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    if (std::isfinite(forward.value[i]) && (at.empty() || forward.times()[i] > at.back()))
+      at.push_back(forward.times()[i]);
+  }
+  if (at.size() < 2) throw InputError(recording.source, "accel_x has fewer than two samples");
+  const auto x = held(recording, {"accel_x"}, at), y = held(recording, {"accel_y"}, at),
+             z = held(recording, {"accel_z"}, at);
+  if (!y) throw InputError(recording.source, "accel_y has no sample in the time of accel_x");
+  const std::array<std::optional<std::vector<double>>, 3> rates = {held(recording, {"gyro_x", "roll_rate"}, at),
+                                                                   held(recording, {"gyro_y"}, at),
+                                                                   held(recording, {"gyro_z", "yaw_rate"}, at)};
+  const std::array<std::optional<std::vector<double>>, 3> angles = {
+      held_angle(recording, "roll", at), held_angle(recording, "pitch", at), held_angle(recording, "yaw", at)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    constexpr std::array kNames = {"gyro_x", "gyro_y", "gyro_z"};
+    if (!rates[i]) continue;
+    const double fastest = *std::max_element(rates[i]->begin(), rates[i]->end(),
+                                             [](double a, double b) { return std::abs(a) < std::abs(b); });
+    if (std::abs(fastest) > kFastestTurn)
+      throw InputError(recording.source, fmt::format("{} reaches {:.3g} rad/s: it seems to be in deg/s; give its unit "
+                                                     "in [data.map]",
+                                                     kNames[i], fastest));
+  }
+  const Eigen::Vector3d at_rest = force_at_rest(recording.frame);
+  std::vector<std::array<double, 3>> a(at.size());
+  for (std::size_t k = 0; k < at.size(); ++k) a[k] = {(*x)[k], (*y)[k], z ? (*z)[k] : at_rest.z()};
+  const bool gravity = holds_gravity(recording, a, options.gravity, z.has_value(), motion.notes);
+  const bool attitude = angles[0].has_value() || angles[1].has_value();
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    MotionSample s;
+    s.time = at[k];
+    s.frame = recording.frame;
+    s.place = options.place;
+    const auto angle = [&](std::size_t i) { return angles[i] ? (*angles[i])[k] : 0.0; };
+    s.attitude = numerics::quaternion_from_euler(angle(0), angle(1), angle(2));
+    s.attitude_from = attitude ? Origin::kMeasured : Origin::kAbsent;
+    s.force = {a[k][0], a[k][1], a[k][2]};
+    if (!gravity) s.force += s.attitude.conjugate() * at_rest;
+    s.force_from = gravity && z ? Origin::kMeasured : Origin::kDerived;
+    for (std::size_t i = 0; i < 3; ++i) s.rate(static_cast<Eigen::Index>(i)) = rates[i] ? (*rates[i])[k] : 0.0;
+    s.rate_from = rates[0] || rates[1] || rates[2] ? Origin::kMeasured : Origin::kAbsent;
+    motion.samples.push_back(s);
+  }
+  std::string absent;
+  for (std::size_t i = 0; i < 3; ++i) {
+    constexpr std::array kTurns = {"roll rate", "pitch rate", "yaw rate"};
+    if (!rates[i]) absent += fmt::format("{}{}", absent.empty() ? "" : ", ", kTurns[i]);
+  }
+  if (!absent.empty()) motion.notes.push_back(fmt::format("not recorded and taken for zero: {}", absent));
+  if (!attitude)
+    motion.notes.emplace_back("no attitude is recorded: the vehicle is taken for level where gravity is taken out");
+  for (std::size_t k = 0; k < motion.samples.size() && motion.samples[0].rate_from != Origin::kAbsent; ++k) {
+    const MotionSample &before = motion.samples[k > 0 ? k - 1 : 0],
+                       &after = motion.samples[std::min(k + 1, motion.samples.size() - 1)];
+    motion.samples[k].angular_acceleration = (after.rate - before.rate) / (after.time - before.time);
+    motion.samples[k].angular_acceleration_from = Origin::kDerived;
+  }
+  return motion;
+}
+
+Recording to_recording(const std::vector<MotionSample>& samples) {
+  Recording recording;
+  if (samples.empty()) return recording;
+  recording.frame = samples.front().frame;
+  std::vector<double> stamps;
+  for (const MotionSample& s : samples) stamps.push_back(s.time);
+  const TimeBase time = make_time_base(std::move(stamps));
+  const auto add = [&](const char* name, const char* unit, auto&& value) {
+    Channel c{.name = name, .unit = parse_unit(unit), .recorded_unit = unit, .time = time, .value = {}};
+    for (const MotionSample& s : samples) c.value.push_back(value(s));
+    recording.add(std::move(c));
+  };
+  constexpr std::array kForces = {"accel_x", "accel_y", "accel_z"}, kRates = {"gyro_x", "gyro_y", "gyro_z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    if (samples.front().force_from != Origin::kAbsent)
+      add(kForces[i], "m/s^2", [&](const MotionSample& s) { return s.force(axis); });
+    if (samples.front().rate_from != Origin::kAbsent)
+      add(kRates[i], "rad/s", [&](const MotionSample& s) { return s.rate(axis); });
+  }
+  if (samples.front().attitude_from != Origin::kAbsent) {
+    const auto euler = [](const MotionSample& s) { return numerics::euler_from_quaternion(s.attitude); };
+    add("roll", "rad", [&](const MotionSample& s) { return euler(s).phi; });
+    add("pitch", "rad", [&](const MotionSample& s) { return euler(s).theta; });
+    add("yaw", "rad", [&](const MotionSample& s) { return euler(s).psi; });
+  }
+  return recording;
+}
+
+}  // namespace veridyn::recording
