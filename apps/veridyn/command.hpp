@@ -80,6 +80,7 @@ struct Command {
 };
 
 // Each command is made in the file of its name.
+[[nodiscard]] Command cue_command();
 [[nodiscard]] Command demo_command();
 [[nodiscard]] Command export_command();
 [[nodiscard]] Command identify_command();

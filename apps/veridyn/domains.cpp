@@ -34,24 +34,30 @@ constexpr const char* kIdentifiesIt = "`veridyn identify` analyses it";
 constexpr const char* kIdentifiesDrive = "`veridyn identify` prepares the signals of a drive itself";
 constexpr const char* kMovesMuscles = "`veridyn simulate` runs it";
 
+constexpr const char* kCuesIt = "`veridyn cue` drives the platform";
+constexpr const char* kNamesPlatform = "a study with [cue] and [platform] puts a drive on one: see docs/cueing.md";
+
 constexpr std::array kTable = {
-    // aircraft, vehicle, muscle, swing test, calibration
-    Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt}},
-    Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
-    Row{"identify", {identify_aircraft, identify_vehicle, identify_muscles, identify_swing_test, identify_calibration}},
+    // aircraft, vehicle, muscle, swing test, calibration, motion platform
+    Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
+    Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
+    Row{"identify",
+        {identify_aircraft, identify_vehicle, identify_muscles, identify_swing_test, identify_calibration, kCuesIt}},
     Row{"validate",
         {validate_aircraft, validate_vehicle, validate_muscles,
          "`veridyn identify` says in its report how well each swing is described",
-         "`veridyn identify` writes the residuals of each point"}},
-    Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt}},
-    Row{"sensitivity", {sensitivity_aircraft, sensitivity_vehicle, sensitivity_muscle, kIdentifiesIt, kIdentifiesIt}},
+         "`veridyn identify` writes the residuals of each point", kCuesIt}},
+    Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
+    Row{"sensitivity",
+        {sensitivity_aircraft, sensitivity_vehicle, sensitivity_muscle, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"export",
         {export_aircraft, "`veridyn simulate` and `veridyn identify` write the vehicle to subject.toml",
          "`veridyn simulate` writes the model to model.osim", "`veridyn identify` writes the inertia to subject.toml",
-         "`veridyn identify` writes calibration.toml"}},
+         "`veridyn identify` writes calibration.toml", kCuesIt}},
     Row{"scale",
         {"the model of an aircraft is dimensionless already: `veridyn export` writes it", scale_vehicle, kMovesMuscles,
-         kIdentifiesIt, kIdentifiesIt}},
+         kIdentifiesIt, kIdentifiesIt, kCuesIt}},
+    Row{"cue", {kNamesPlatform, kNamesPlatform, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, cue_platform}},
 };
 
 /// The command that several processes of a launcher run together.
@@ -67,10 +73,12 @@ struct Names {
   const char* one;   ///< "a study of an aircraft"
   const char* many;  ///< "identify is for aircraft"
 };
-constexpr std::array<Names, kDomains> kNames = {Names{"an aircraft", "aircraft"}, Names{"a vehicle", "vehicles"},
+constexpr std::array<Names, kDomains> kNames = {Names{"an aircraft", "aircraft"},
+                                                Names{"a vehicle", "vehicles"},
                                                 Names{"a musculoskeletal model", "musculoskeletal models"},
                                                 Names{"a swing test", "swing tests"},
-                                                Names{"an air-data calibration", "air-data calibrations"}};
+                                                Names{"an air-data calibration", "air-data calibrations"},
+                                                Names{"a motion platform", "motion platforms"}};
 
 /// "aircraft", "aircraft and vehicles", "aircraft, vehicles and swing tests".
 std::string domains_with(const Row& row) {
@@ -92,6 +100,7 @@ Domain domain_of(const Study& study) {
   const auto named = [&](const char* key) { return std::find(tables.begin(), tables.end(), key) != tables.end(); };
   if (named("swing_test")) return Domain::kSwingTest;
   if (named("calibration")) return Domain::kCalibration;
+  if (named("cue")) return Domain::kCueing;
   if (vehicle::is_vehicle_study(root)) return Domain::kVehicle;
   if (muscle::is_muscle_study(root)) return Domain::kMuscle;
   if (root.is_table("subject")) {

@@ -19,8 +19,9 @@ enum class Domain {
   kMuscle,       ///< a musculoskeletal model: [subject] with `model`
   kSwingTest,    ///< inertia on the ground: [swing_test]
   kCalibration,  ///< air data in a wind tunnel: [calibration]
+  kCueing,       ///< a drive on a motion platform: [cue]
 };
-inline constexpr int kDomains = 5;
+inline constexpr int kDomains = 6;
 
 /// Decides which domain a study is of.
 /// @throws InputError for a `kind` of subject that there is not, and for a [drive] or [motion] whose [subject] does not
@@ -71,5 +72,6 @@ int sensitivity_vehicle(const StudyRun& run);
 int sensitivity_muscle(const StudyRun& run);
 int export_aircraft(const StudyRun& run);
 int scale_vehicle(const StudyRun& run);
+int cue_platform(const StudyRun& run);
 
 }  // namespace veridyn::app

@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
   using namespace veridyn::app;
   const std::array commands = {demo_command(),        init_command(),        inspect_command(),   simulate_command(),
                                reconstruct_command(), identify_command(),    track_command(),     validate_command(),
-                               scale_command(),       sensitivity_command(), reproduce_command(), export_command()};
+                               scale_command(),       sensitivity_command(), reproduce_command(), export_command(),
+                               cue_command()};
   const veridyn::Interruption interruption;
   veridyn::request_on_signals(interruption);
   return run_program(commands, interruption, argc, argv);

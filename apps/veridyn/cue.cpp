@@ -1,0 +1,154 @@
+// veridyn cue STUDY: a drive on a motion platform, by one or several washout algorithms, scored.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/version.hpp"
+#include "veridyn/cueing/cueing_study.hpp"
+#include "veridyn/report/cueing_report.hpp"
+#include "veridyn/report/document/html.hpp"
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::cueing;
+
+/// Where the platform is told to be and where it is, sample by sample.
+std::string motion_csv(const CueingRun& run, const Platform& platform) {
+  std::string text = "time[s]";
+  std::vector<PlatformAxis> axes;
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    if (platform.limits.axes[i].moves()) axes.push_back(static_cast<PlatformAxis>(i));
+  }
+  for (const char* what : {"told", "reached"}) {
+    for (const PlatformAxis a : axes) text += fmt::format(",{}_{}[{}]", what, name_of(a), turns(a) ? "rad" : "m");
+  }
+  text += "\n";
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    text += fmt::format("{}", run.vehicle[k].time);
+    for (const PlatformState* s : {&run.steps[k].told, &run.steps[k].reached}) {
+      for (const PlatformAxis a : axes) text += fmt::format(",{}", axis(*s, a).position);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string score_csv(const CueingResult& result) {
+  std::string text = "algorithm,cue,figure,value,low,high,unit\n";
+  for (const AlgorithmResult& a : result.algorithms) {
+    for (std::size_t i = 0; i < kCues; ++i) {
+      const auto cue = static_cast<Cue>(i);
+      const CueScore& s = a.score.cues[i];
+      const auto line = [&](const char* figure, const Measured& m, std::string_view unit) {
+        text +=
+            fmt::format("{},{},{},{},{},{},{}\n", a.run.algorithm, name_of(cue), figure, m.value, m.low, m.high, unit);
+      };
+      line("rms_error", s.rmse, unit_of(cue));
+      line("pearson", s.pearson, "1");
+      line("lag", s.lag, "s");
+      line("correlation_at_lag", s.at_lag, "1");
+      line("time_above_threshold", s.above, "1");
+      line("physical_pearson", s.physical_pearson, "1");
+      line("physical_lag", s.physical_lag, "s");
+    }
+  }
+  return text;
+}
+
+std::string false_cues_csv(const CueingResult& result) {
+  std::string text = "algorithm,cue,kind,begin[s],end[s],size,unit\n";
+  for (const AlgorithmResult& a : result.algorithms) {
+    for (const FalseCue& f : a.score.false_cues)
+      text += fmt::format("{},{},{},{:.2f},{:.2f},{},{}\n", a.run.algorithm, name_of(f.cue), name_of(f.kind), f.begin,
+                          f.end, f.size, unit_of(f.cue));
+  }
+  return text;
+}
+
+std::string response_csv(const CueingResult& result) {
+  std::string text = "algorithm,cue,frequency[rad/s],gain,phase[rad]\n";
+  for (const AlgorithmResult& a : result.algorithms) {
+    for (const auto& [cue, points] : a.response) {
+      for (const ResponsePoint& p : points)
+        text += fmt::format("{},{},{},{},{}\n", a.run.algorithm, name_of(cue), p.frequency, p.gain, p.phase);
+    }
+  }
+  return text;
+}
+
+Summary measured(const Measured& m) { return Summary::object({{"value", m.value}, {"low", m.low}, {"high", m.high}}); }
+
+Summary summary_of(const OutputFolder& folder, const CueingStudy& study, const CueingResult& result) {
+  Summary s;
+  s["folder"] = folder.path().string();
+  s["platform"] = study.platform.name;
+  s["notes"] = study.notes;
+  s["algorithms"] = Summary::array();
+  for (const AlgorithmResult& a : result.algorithms) {
+    Summary of;
+    of["name"] = a.run.algorithm;
+    for (std::size_t i = 0; i < kCues; ++i) {
+      const std::string cue(name_of(static_cast<Cue>(i)));
+      of["cues"][cue]["pearson"] = measured(a.score.cues[i].pearson);
+      of["cues"][cue]["lag_s"] = measured(a.score.cues[i].lag);
+      of["cues"][cue]["rms_error"] = measured(a.score.cues[i].rmse);
+    }
+    of["false_cues"] = a.score.false_cues.size();
+    s["algorithms"].push_back(of);
+  }
+  return s;
+}
+
+void print_scores(const CommonOptions& options, const CueingStudy& study, const CueingResult& result) {
+  for (const std::string& note : study.notes) print_line(options, "note: " + note);
+  for (const std::string& note : result.algorithms.front().score.notes) print_line(options, "note: " + note);
+  print_line(options,
+             fmt::format("{:<14} {:>18} {:>18} {:>12}", "", "surge r / lag [s]", "sway r / lag [s]", "false cues"));
+  for (const AlgorithmResult& a : result.algorithms) {
+    const auto cell = [&](Cue cue) {
+      const CueScore& s = a.score.cues[cue];
+      return std::isfinite(s.pearson.value) ? fmt::format("{:.3f} / {:.2f}", s.pearson.value, s.lag.value) : "-";
+    };
+    print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}", a.run.algorithm, cell(Cue::kSurge), cell(Cue::kSway),
+                                    a.score.false_cues.size()));
+  }
+}
+
+}  // namespace
+
+int cue_platform(const StudyRun& run) {
+  OutputFolder folder(run.options().out);
+  TerminalProgress progress = progress_of(run.options());
+  const CueingStudy study = cueing::read_study(run.study, progress);
+  run.study.root().finish();
+  const CueingResult result = cueing::cue(study, progress);
+  if (result.interrupted) throw Interrupted();
+  for (const AlgorithmResult& a : result.algorithms)
+    folder.write(fmt::format("platform_{}.csv", a.run.algorithm), motion_csv(a.run, study.platform));
+  folder.write("score.csv", score_csv(result));
+  folder.write("false_cues.csv", false_cues_csv(result));
+  if (study.response) folder.write("omct.csv", response_csv(result));
+  folder.write("report.html", report::to_html(report::cueing_report(study, result, program_name())));
+  const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
+  folder.publish(run.record(study.seed, study.inputs), run.options(), summary_of(folder, study, result));
+  print_scores(run.options(), study, result);
+  print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
+  return kDone;
+}
+
+Command cue_command() {
+  return {
+      .name = "cue",
+      .summary = "a drive on a motion platform: washout algorithms, limits, and how it feels",
+      .arguments = {{.name = "STUDY", .help = "study file; its table [cue] names the algorithms", .required = true}},
+      .default_out = "out/cue",
+      .example = "veridyn cue examples/studies/cueing/double_lane_change.toml --out out/cue",
+      .run = [](const Arguments& arguments) { return run_on_study("cue", arguments); }};
+}
+
+}  // namespace veridyn::app

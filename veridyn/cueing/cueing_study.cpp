@@ -1,0 +1,231 @@
+#include "veridyn/cueing/cueing_study.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+#include "veridyn/recording/motion_recording.hpp"
+#include "veridyn/vehicle/identification/drive_log.hpp"
+#include "veridyn/vehicle/simulation/trajectory_motion.hpp"
+#include "veridyn/vehicle/simulation_study.hpp"
+
+namespace veridyn::cueing {
+namespace {
+
+using recording::MotionSample;
+
+Eigen::Vector3d place(const StudyTable& table, std::string_view key) {
+  if (!table.has(key)) return Eigen::Vector3d::Zero();
+  const std::vector<double> v = table.numbers(key, "m");
+  if (v.size() != 3) table.fail(key, fmt::format("has {} numbers; takes forward, left, up", v.size()));
+  return {v[0], v[1], v[2]};
+}
+
+recording::MotionOptions motion_options(const StudyTable& cue) {
+  recording::MotionOptions o{.place = place(cue, "sensor")};
+  const std::vector<std::string> choices = {"in", "out", "decide"};
+  const std::string gravity = cue.choice_or("gravity", choices, "decide");
+  if (gravity == "in") o.gravity = recording::GravityIn::kYes;
+  if (gravity == "out") o.gravity = recording::GravityIn::kNo;
+  return o;
+}
+
+std::vector<MotionSample> at_driver(std::vector<MotionSample> samples, const Eigen::Vector3d& driver) {
+  for (MotionSample& s : samples) s = recording::at_place(s, driver);
+  return samples;
+}
+
+/// The recorded drive of a `[data]`, at the driver's head.
+std::vector<MotionSample> recorded(const StudyTable& data, const recording::MotionOptions& options,
+                                   const Eigen::Vector3d& driver, CueingStudy& study) {
+  const vehicle::DriveLog log = vehicle::read_drive_log(data);
+  study.inputs.insert(study.inputs.end(), log.inputs.begin(), log.inputs.end());
+  const recording::RecordedMotion motion = recording::motion_samples(log.mapped.recording, options);
+  for (const auto* notes : {&log.mapped.notes, &motion.notes}) {
+    for (const std::string& note : *notes) {
+      if (std::find(study.notes.begin(), study.notes.end(), note) == study.notes.end()) study.notes.push_back(note);
+    }
+  }
+  return at_driver(motion.samples, driver);
+}
+
+void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& study, Progress& progress) {
+  const Eigen::Vector3d driver = place(cue, "driver");
+  const recording::MotionOptions options = motion_options(cue);
+  if (root.has("data")) {
+    study.vehicle = recorded(root.table("data"), options, driver, study);
+    study.drive = study.inputs.empty() ? "drive" : study.inputs.front().filename().string();
+    return;
+  }
+  if (!root.has("drive"))
+    throw InputError(root.place("data"),
+                     "is missing: name a recorded drive, or simulate one with [subject] and [drive]");
+  const vehicle::SimulationStudy simulation = vehicle::read_simulation_study(root, progress);
+  progress.stage(fmt::format("driving {:.0f} s of {}", simulation.simulation.duration, simulation.vehicle.name));
+  const vehicle::SimulationRun driven = vehicle::run_simulation_study(simulation, progress);
+  if (!driven.trajectory.usable()) throw std::runtime_error(driven.trajectory.message());
+  study.inputs = simulation.inputs;
+  study.drive = fmt::format("{} of {}", to_string(simulation.manoeuvre.kind), simulation.vehicle.name);
+  study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, simulation.four_wheel.gravity), driver);
+}
+
+/// Gains of the preset language of motion platforms: overall force in percent.
+void apply_preset(WashoutDesign& design, const std::string& preset) {
+  if (preset.empty()) return;
+  const double overall = preset == "low" ? 0.3 : preset == "medium" ? 0.68 : 1.0;
+  for (Knob& knob : design.knobs()) {
+    if (knob.name.ends_with("_gain") && knob.name != "most_gain")
+      std::fill(knob.values.begin(), knob.values.end(), overall);
+  }
+}
+
+void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
+  const std::vector<std::string> presets = {"low", "medium", "high"};
+  const std::string preset = cue.has("preset") ? cue.choice_or("preset", presets, "") : "";
+  const std::vector<std::string> names =
+      cue.has("algorithms") ? cue.texts("algorithms") : std::vector<std::string>{"classical"};
+  if (names.empty()) cue.fail("algorithms", "names none");
+  const StudyTable washouts = root.table_or_empty("washout");
+  std::vector<std::string> known;
+  for (const WashoutAlgorithm& a : washout_algorithms()) known.emplace_back(a.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      cue.fail("algorithms", fmt::format("there is no algorithm '{}'{}", name, suggestion(name, known)));
+    StudyAlgorithm algorithm{name, washout_algorithm(name).design()};
+    apply_preset(*algorithm.design, preset);
+    read_knobs(washouts.table_or_empty(name), algorithm.design->knobs());
+    static_cast<void>(algorithm.design->make(study.platform));  // refuses what cannot be made
+    study.algorithms.push_back(std::move(algorithm));
+  }
+  // Numbers of algorithms that are not driven this time are read all the same: a misspelt one is refused.
+  for (const std::string& name : known) {
+    if (washouts.has(name) && std::find(names.begin(), names.end(), name) == names.end())
+      read_knobs(washouts.table(name), washout_algorithm(name).design()->knobs());
+  }
+}
+
+Cue read_cue(const StudyTable& table) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kCues; ++i) names.emplace_back(name_of(static_cast<Cue>(i)));
+  const std::string name = table.choice_or("cue", names, names.front());
+  return static_cast<Cue>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+ResponseStudy read_response(const StudyTable& table) {
+  ResponseStudy r;
+  r.options.force = table.positive_or("force", "m/s^2", r.options.force);
+  r.options.rate = table.positive_or("rate", "rad/s", r.options.rate);
+  if (table.has("frequencies")) {
+    r.options.frequencies = table.numbers("frequencies", "rad/s");
+    for (const double f : r.options.frequencies) {
+      if (!(f > 0.0 && f <= 50.0))
+        table.fail("frequencies", fmt::format("holds {}; takes more than 0 and up to 50 rad/s", f));
+    }
+  }
+  for (const StudyTable& of : table.tables("mask")) {
+    const std::vector<double> at = of.numbers("frequency", "rad/s");
+    std::vector<MaskPoint> points(at.size());
+    const auto column = [&](const char* key, const char* unit, double MaskPoint::*member) {
+      if (!of.has(key)) return;
+      const std::vector<double> values = of.numbers(key, unit);
+      if (values.size() != at.size())
+        of.fail(key, fmt::format("has {} values for {} frequencies", values.size(), at.size()));
+      for (std::size_t i = 0; i < at.size(); ++i) points[i].*member = values[i];
+    };
+    for (std::size_t i = 0; i < at.size(); ++i) points[i].frequency = at[i];
+    if (at.size() < 2 || !std::is_sorted(at.begin(), at.end(), std::less_equal<>()))
+      of.fail("frequency", "takes two frequencies at least, growing");
+    column("least_gain", "1", &MaskPoint::least_gain);
+    column("most_gain", "1", &MaskPoint::most_gain);
+    column("least_phase", "rad", &MaskPoint::least_phase);
+    column("most_phase", "rad", &MaskPoint::most_phase);
+    r.mask[read_cue(of)] = points;
+  }
+  return r;
+}
+
+/// Whether the platform has an axis that renders the cue.
+bool renders(const Platform& platform, Cue cue) {
+  const PlatformLimits& l = platform.limits;
+  if (cue == Cue::kSurge) return l[PlatformAxis::kSurge].moves() || l[PlatformAxis::kPitch].moves();
+  if (cue == Cue::kSway) return l[PlatformAxis::kSway].moves() || l[PlatformAxis::kRoll].moves();
+  return l.axes[static_cast<std::size_t>(cue)].moves();
+}
+
+std::vector<std::string> described(WashoutDesign& design) {
+  std::vector<std::string> all;
+  for (const Knob& knob : design.knobs())
+    all.push_back(fmt::format("{} = {:.4g} {}", knob.name, fmt::join(knob.values, ", "), knob.unit));
+  return all;
+}
+
+}  // namespace
+
+CueingStudy read_study(const Study& study, Progress& progress) {
+  const StudyTable& root = study.root();
+  CueingStudy s;
+  s.title = root.text_or("title", "");
+  s.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
+  const StudyTable cue = root.table_or_empty("cue");
+  s.platform = root.has("platform") ? Platform::read(root.table("platform")) : built_in_platform("three_axis");
+  read_algorithms(root, cue, s);
+  std::vector<std::string> models;
+  for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);
+  s.perception = cue.choice_or("perception", models, s.perception);
+  const std::vector<std::string> thresholds = {"usual", "reid_nahon"};
+  if (cue.choice_or("thresholds", thresholds, "usual") == "reid_nahon") s.thresholds = reid_nahon_thresholds();
+  if (root.has("omct")) s.response = read_response(root.table("omct"));
+  if (root.has("tune")) {
+    const StudyTable tune = root.table("tune");
+    s.tune.emplace();
+    const long long evaluations = tune.integer_or("evaluations", static_cast<long long>(s.tune->evaluations));
+    if (evaluations < 1) tune.fail("evaluations", fmt::format("is {}; must be above 0", evaluations));
+    s.tune->evaluations = static_cast<std::size_t>(evaluations);
+    if (tune.has("data")) s.tune_on = recorded(tune.table("data"), motion_options(cue), place(cue, "driver"), s);
+  }
+  read_drive(root, cue, s, progress);
+  return s;
+}
+
+CueingResult cue(const CueingStudy& study, Progress& progress) {
+  CueingResult result;
+  const VestibularModel& model = vestibular_model(study.perception);
+  for (const StudyAlgorithm& of : study.algorithms) {
+    AlgorithmResult a;
+    std::unique_ptr<WashoutDesign> design = of.design->clone();
+    if (study.tune) {
+      progress.stage(fmt::format("tuning {}", of.name));
+      a.tuning = tuned(*design, study.platform, study.tune_on.empty() ? study.vehicle : study.tune_on, model,
+                       study.thresholds, *study.tune, progress);
+      design = a.tuning->design->clone();
+    }
+    progress.stage(fmt::format("driving the platform with {}", of.name));
+    const std::unique_ptr<Washout> washout = design->make(study.platform);
+    a.run = drive_platform(study.vehicle, *washout, study.platform, progress);
+    a.run.algorithm = of.name;
+    if (progress.interrupted()) {
+      result.interrupted = true;
+      return result;
+    }
+    a.felt = felt_motion(a.run, model, study.thresholds);
+    a.score = score(a.run, a.felt, study.platform, study.seed);
+    a.knobs = described(*design);
+    for (std::size_t i = 0; study.response && i < kCues; ++i) {
+      const auto which = static_cast<Cue>(i);
+      if (!renders(study.platform, which)) continue;
+      progress.stage(fmt::format("response of {} in {}", of.name, name_of(which)));
+      a.response[which] = frequency_response(*washout, study.platform, which, study.response->options, progress);
+      const auto mask = study.response->mask.find(which);
+      if (mask != study.response->mask.end()) a.outside_mask[which] = outside(a.response[which], mask->second);
+    }
+    result.algorithms.push_back(std::move(a));
+  }
+  result.interrupted = progress.interrupted();
+  return result;
+}
+
+}  // namespace veridyn::cueing

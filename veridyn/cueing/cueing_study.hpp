@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/cueing/platform/platform.hpp"
+#include "veridyn/cueing/score/cueing_score.hpp"
+#include "veridyn/cueing/score/frequency_response.hpp"
+#include "veridyn/cueing/score/tuning.hpp"
+
+namespace veridyn::cueing {
+
+/// An algorithm of a study with its numbers.
+struct StudyAlgorithm {
+  std::string name;
+  std::unique_ptr<WashoutDesign> design;
+};
+
+/// How the response of the chain is measured and what it has to be.
+struct ResponseStudy {
+  ResponseOptions options;
+  std::map<Cue, std::vector<MaskPoint>> mask;
+};
+
+/// A study of how a platform renders a drive.
+///
+///     seed = 1
+///     [cue]
+///     algorithms = ["classical", "optimal"]   # see washout_algorithms; "classical" when left out
+///     preset = "medium"                        # "low", "medium", "high": 30, 68, 100 % of the vehicle's motion,
+///     instead
+///                                              # of the algorithms' own gains
+///     perception = "young_meiry"               # see vestibular_models
+///     thresholds = "usual"                     # or "reid_nahon"
+///     driver = [0.1, 0.35, 0.5]                # driver's head from the centre of gravity: forward, left, up [m]
+///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
+///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
+///     [data]                                   # a recorded drive, see vehicle::read_drive_log; or
+///     [subject], [drive], [road]               # a simulated one, see vehicle::read_simulation_study
+///     [platform]                               # see Platform::read
+///     [washout.classical]                      # numbers of that algorithm: its knobs
+///     [omct]                                   # measure gain and phase of the chain
+///     force = 0.5, rate = "2 deg/s", frequencies = [0.1, 1, 10]
+///     [[omct.mask]]                            # where the response has to be; lines between its frequencies
+///     cue = "surge", frequency = [0.1, 10], least_gain = [0.5, 0.5], most_gain = [1, 1], least_phase = ["-45 deg",
+///     ...] [tune]                                   # turn the knobs on this drive, or on another one: evaluations =
+///     150 [tune.data]                              # as [data]
+struct CueingStudy {
+  std::string title;
+  std::uint64_t seed = 1;
+  std::vector<StudyAlgorithm> algorithms;
+  std::string perception = "young_meiry";
+  MotionThresholds thresholds = usual_thresholds();
+  Platform platform;
+  std::string drive;                             ///< what drove, for reports
+  std::vector<recording::MotionSample> vehicle;  ///< at the driver's head
+  std::optional<ResponseStudy> response;
+  std::optional<TuningOptions> tune;
+  std::vector<recording::MotionSample> tune_on;  ///< empty: on the drive itself
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> notes;  ///< what was assumed
+};
+
+/// Reads a study and its drive; a simulated one is driven. All keys of the study are read: call
+/// `study.root().finish()`.
+/// @throws InputError for anything that is wrong in either.
+[[nodiscard]] CueingStudy read_study(const Study& study, Progress& progress);
+
+/// What one algorithm made of the drive.
+struct AlgorithmResult {
+  CueingRun run;
+  FeltMotion felt;
+  CueingScore score;
+  std::optional<Tuning> tuning;                        ///< where the study asked for it
+  std::map<Cue, std::vector<ResponsePoint>> response;  ///< of cues that the platform can render
+  std::map<Cue, std::vector<ResponsePoint>> outside_mask;
+  std::vector<std::string> knobs;  ///< "onset = 0.8, 1, 1 rad/s"
+};
+
+/// All of them.
+struct CueingResult {
+  std::vector<AlgorithmResult> algorithms;
+  bool interrupted = false;
+};
+
+/// Tunes where asked, drives the platform with every algorithm, scores, and measures responses.
+[[nodiscard]] CueingResult cue(const CueingStudy& study, Progress& progress);
+
+}  // namespace veridyn::cueing

@@ -1,0 +1,127 @@
+#include "veridyn/cueing/score/tuning.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/estimation/search/pattern_search.hpp"
+
+namespace veridyn::cueing {
+namespace {
+
+/// One coordinate of the search: a number of a knob.
+struct Coordinate {
+  std::size_t knob, index;
+  bool logarithmic;
+  double low, high;
+};
+
+std::vector<Coordinate> coordinates(const std::vector<Knob>& knobs) {
+  std::vector<Coordinate> all;
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    const Knob& knob = knobs[k];
+    if (!(knob.tune_to > knob.tune_from)) continue;
+    const bool logarithmic = knob.tune_from > 0.0;
+    const auto scaled = [&](double v) { return logarithmic ? std::log(v) : v; };
+    for (std::size_t i = 0; i < knob.values.size(); ++i)
+      all.push_back({k, i, logarithmic, scaled(knob.tune_from), scaled(knob.tune_to)});
+  }
+  return all;
+}
+
+void turn(WashoutDesign& design, const std::vector<Coordinate>& to, const Eigen::VectorXd& x) {
+  const std::vector<Knob> knobs = design.knobs();
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const double v = x(static_cast<Eigen::Index>(i));
+    knobs[to[i].knob].values[to[i].index] = to[i].logarithmic ? std::exp(v) : v;
+  }
+}
+
+/// A drive's run does not report of itself while many go on at once.
+class Silent : public Progress {
+ public:
+  explicit Silent(const Progress& of) : of_(&of) {}
+  [[nodiscard]] bool interrupted() const override { return of_->interrupted(); }
+
+ private:
+  const Progress* of_;
+};
+
+}  // namespace
+
+double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOptions& options) {
+  constexpr double kMost = 4.0;
+  double cost = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < kCues; ++i) {
+    const CuePair& pair = felt.felt[i];
+    double off = 0.0, own = 0.0, largest = 0.0;
+    for (std::size_t k = 0; k < pair.vehicle.size(); ++k) {
+      off += std::pow(pair.platform[k] - pair.vehicle[k], 2);
+      own += pair.vehicle[k] * pair.vehicle[k];
+      largest = std::max(largest, std::abs(pair.vehicle[k]));
+    }
+    if (largest < felt.threshold[i]) continue;
+    cost += options.weights[i] * std::min(off / own, kMost);
+    weights += options.weights[i];
+  }
+  double limited = 0.0;
+  for (const CueingStep& s : run.steps) limited += s.limited.any() ? 1.0 : 0.0;
+  const double samples = std::max(1.0, static_cast<double>(run.steps.size()));
+  return (weights > 0.0 ? cost / weights : 0.0) + options.limited * limited / samples;
+}
+
+Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::vector<recording::MotionSample>& drive,
+             const VestibularModel& model, const MotionThresholds& thresholds, const TuningOptions& options,
+             Progress& progress) {
+  Tuning result;
+  result.design = design.clone();
+  const std::vector<Knob> knobs = result.design->knobs();
+  const std::vector<Coordinate> to = coordinates(knobs);
+  const auto n = static_cast<Eigen::Index>(to.size());
+  const auto cost_of = [&](const WashoutDesign& of) {
+    Silent silent(progress);
+    const CueingRun run = drive_platform(drive, *of.make(platform), platform, silent);
+    return tuning_cost(run, felt_motion(run, model, thresholds), options);
+  };
+  result.cost_before = result.cost_after = cost_of(design);
+  if (n == 0) return result;
+  estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
+  Eigen::VectorXd start(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Coordinate& c = to[static_cast<std::size_t>(i)];
+    problem.names.push_back(fmt::format("{}[{}]", knobs[c.knob].name, c.index));
+    problem.low(i) = c.low;
+    problem.high(i) = c.high;
+    const double now = knobs[c.knob].values[c.index];
+    start(i) = std::clamp(c.logarithmic ? std::log(std::max(now, 1e-9)) : now, c.low, c.high);
+  }
+  problem.evaluate = [&](const Eigen::VectorXd& x) {
+    const std::unique_ptr<WashoutDesign> turned = design.clone();
+    turn(*turned, to, x);
+    try {
+      return estimation::SearchValues{.objective = cost_of(*turned)};
+    } catch (const InputError&) {
+      return estimation::SearchValues{};  // no such filter
+    }
+  };
+  estimation::BatchEvaluator evaluator(problem, {.max_evaluations = options.evaluations}, progress);
+  const estimation::SearchResult found =
+      estimation::pattern_search(evaluator, start, {.initial_mesh = 0.15, .tolerance = 1e-3});
+  result.evaluations = found.evaluations;
+  result.interrupted = found.termination == estimation::SearchTermination::kInterrupted;
+  if (!(found.values.objective < result.cost_before)) return result;
+  result.cost_after = found.values.objective;
+  turn(*result.design, to, found.x);
+  const std::unique_ptr<WashoutDesign> before = design.clone();
+  const std::vector<Knob> old = before->knobs();
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    const std::vector<double> was(old[k].values.begin(), old[k].values.end()),
+        is(knobs[k].values.begin(), knobs[k].values.end());
+    if (was != is) result.knobs.push_back({knobs[k].name, knobs[k].unit, was, is});
+  }
+  return result;
+}
+
+}  // namespace veridyn::cueing

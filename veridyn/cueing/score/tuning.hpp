@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/cueing/score/felt_motion.hpp"
+#include "veridyn/cueing/washout/washout_design.hpp"
+
+namespace veridyn::cueing {
+
+/// What the automatic tuning minimises, and how long it looks.
+struct TuningOptions {
+  /// Weight of each cue's squared error over its threshold; of cues that the vehicle never shows none.
+  PerCue<double> weights = {{1.0, 1.0, 0.3, 0.3, 0.3, 0.1}};
+  /// Weight of the share of time in which an axis is held back by a limit.
+  double limited = 1.0;
+  std::size_t evaluations = 150;
+};
+
+/// A knob before and after.
+struct TunedKnob {
+  std::string name, unit;
+  std::vector<double> before, after;
+};
+
+/// What tuning found.
+struct Tuning {
+  std::unique_ptr<WashoutDesign> design;
+  std::vector<TunedKnob> knobs;  ///< that changed
+  double cost_before = 0.0, cost_after = 0.0;
+  std::size_t evaluations = 0;
+  bool interrupted = false;
+};
+
+/// Cost of a run: mean over the cues of min(mean square of (platform - vehicle) felt, over the vehicle's own mean
+/// square; 4), weighted, plus the weighted share of time at limits. A platform that stands still costs 1.
+[[nodiscard]] double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOptions& options);
+
+/// Turns the knobs that have a range for it, by the pattern search on logarithms of their values, until the drive costs
+/// least on the platform, its limits and actuators included. Knobs with a zero in their range are turned as they are.
+[[nodiscard]] Tuning tuned(const WashoutDesign& design, const Platform& platform,
+                           const std::vector<recording::MotionSample>& drive, const VestibularModel& model,
+                           const MotionThresholds& thresholds, const TuningOptions& options, Progress& progress);
+
+}  // namespace veridyn::cueing

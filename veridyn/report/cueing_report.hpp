@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "veridyn/cueing/cueing_study.hpp"
+#include "veridyn/report/document/document.hpp"
+
+namespace veridyn::report {
+
+/// The report of `veridyn cue`: how like the drive each algorithm felt, with intervals; where they differ beyond them;
+/// false cues; what the platform used; time histories; gain and phase with their mask; tuned knobs.
+[[nodiscard]] Document cueing_report(const cueing::CueingStudy& study, const cueing::CueingResult& result,
+                                     const std::string& program);
+
+}  // namespace veridyn::report
