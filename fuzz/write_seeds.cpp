@@ -30,7 +30,16 @@ int main(int count, char** arguments) {
     std::string array = std::string("\x93NUMPY\x01\0\x46\0", 10);
     array += "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1), }";
     array.resize(80, ' ');
-    write("npy", array + std::string("\x00\x00\xc0\x3f\x00\x00\x00\xc0", 8));
+    array += std::string("\x00\x00\xc0\x3f\x00\x00\x00\xc0", 8);
+    write("npy", array);
+    // One stored member, its checksum left out: the reader goes as far as that.
+    std::string zip("PK\x03\x04\x14\0\0\0\0\0\0\0\0\0\0\0\0\0", 18), sizes = std::string("\x58\0\0\0\x58\0\0\0", 8);
+    const std::string name = std::string("\x05\0\0\0", 4) + "t.npy";
+    zip += sizes + name + array;
+    const std::string directory = std::string("PK\x01\x02\x14\0\x14\0\0\0\0\0\0\0\0\0\0\0\0\0", 20) + sizes +
+                                  std::string("\x05\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 18) + "t.npy";
+    zip += directory + std::string("PK\x05\x06\0\0\0\0\x01\0\x01\0", 12) + std::string("\x33\0\0\0\x7b\0\0\0\0\0", 10);
+    write("npz", zip);
     write("tir", veridyn::vehicle::testing::small_tir());
     const std::string road =
         "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";

@@ -35,7 +35,7 @@ constexpr const char* kIdentifiesDrive = "`veridyn identify` prepares the signal
 constexpr const char* kMovesMuscles = "`veridyn simulate` runs it";
 
 constexpr const char* kCuesIt = "`veridyn cue` drives the platform";
-constexpr const char* kNamesPlatform = "a study with [cue] and [platform] puts a drive on one: see docs/cueing.md";
+constexpr const char* kNamesPlatform = "`veridyn init cueing` writes a study that puts a drive on one";
 
 constexpr std::array kTable = {
     // aircraft, vehicle, muscle, swing test, calibration, motion platform

@@ -31,6 +31,11 @@ class Table : public ProgramTest, public testing::WithParamInterface<Cell> {
                   "[subject]\nmodel = \"arm\"\n[motion]\nduration = 0.02\n[tasks]\nnumbers = [8]\n[person]\n"
                   "[[parameter]]\nname = \"strength\"\nmuscles = [\"all\"]\nfields = [\"max_isometric_force\"]\n"
                   "factor = true\n[identify]\nstarts = 1\n");
+    if (domain == "cueing")
+      return file("cueing.toml",
+                  "[cue]\nalgorithms = [\"classical\", \"optimal\"]\n[subject]\nkind = \"vehicle\"\n"
+                  "builtin = \"reference\"\n[drive]\nmodel = \"bicycle\"\nmanoeuvre = \"step steer\"\n"
+                  "amplitude = \"2 deg\"\nduration = 8\n");
     return test::source_folder().string() + "/examples/studies/" + domain + "/study.toml";
   }
   /// An estimate of what a validation needs.
@@ -100,7 +105,17 @@ INSTANTIATE_TEST_SUITE_P(
         Cell{"scale", "aircraft", " is for vehicles; this study is of an aircraft; "}, Cell{"scale", "vehicle", kWorks},
         Cell{"scale", "muscle", " is for vehicles; this study is of a musculoskeletal model; "},
         Cell{"scale", "swing_test", " is for vehicles; this study is of a swing test; "},
-        Cell{"scale", "calibration", " is for vehicles; this study is of an air-data calibration; "}),
+        Cell{"scale", "calibration", " is for vehicles; this study is of an air-data calibration; "},
+        Cell{"cue", "aircraft", " is for motion platforms; this study is of an aircraft; "},
+        Cell{"cue", "vehicle", " is for motion platforms; this study is of a vehicle; "},
+        Cell{"cue", "muscle", " is for motion platforms; this study is of a musculoskeletal model; "},
+        Cell{"cue", "cueing", kWorks},
+        Cell{"identify", "cueing",
+             " is for aircraft, vehicles, musculoskeletal models, swing tests and air-data calibrations; this study is "
+             "of "
+             "a motion platform; "},
+        Cell{"simulate", "cueing",
+             " is for aircraft, vehicles and musculoskeletal models; this study is of a motion platform; "}),
     [](const auto& cell) { return std::string(cell.param.command) + "_" + cell.param.domain; });
 
 using Domains = ProgramTest;

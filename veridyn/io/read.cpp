@@ -12,13 +12,15 @@
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
 #include "veridyn/io/opensim/storage.hpp"
+#include "veridyn/io/tables/codemasters.hpp"
 #include "veridyn/io/tables/npy.hpp"
+#include "veridyn/io/tables/npz.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
 
 namespace veridyn::io {
 namespace {
 
-enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kCsv };
+enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kCodemasters, kCsv };
 
 Format by_extension(const std::filesystem::path& path) {
   const std::string extension = lower(path.extension().string());
@@ -26,6 +28,7 @@ Format by_extension(const std::filesystem::path& path) {
   if (extension == ".log") return Format::kDataFlashText;
   if (extension == ".ulg" || extension == ".ulog") return Format::kULog;
   if (extension == ".mat") return Format::kMat;
+  if (extension == ".npz") return Format::kNpz;
   if (extension == ".sto" || extension == ".mot") return Format::kStorage;
   if (extension == ".csv" || extension == ".tsv" || extension == ".txt") return Format::kCsv;
   return Format::kUnknown;
@@ -34,9 +37,11 @@ Format by_extension(const std::filesystem::path& path) {
 Format by_content(std::string_view bytes) {
   if (is_ulog(bytes)) return Format::kULog;
   if (is_mat(bytes)) return Format::kMat;
+  if (is_npz(bytes)) return Format::kNpz;
   if (is_dataflash(bytes)) return Format::kDataFlash;
   if (is_dataflash_text(bytes)) return Format::kDataFlashText;
   if (is_storage(bytes)) return Format::kStorage;
+  if (is_codemasters(bytes)) return Format::kCodemasters;
   return Format::kUnknown;
 }
 
@@ -60,6 +65,10 @@ const char* name_of(Format format) {
       return "MATLAB";
     case Format::kStorage:
       return "OpenSim storage";
+    case Format::kNpz:
+      return "NumPy arrays";
+    case Format::kCodemasters:
+      return "Codemasters telemetry";
     case Format::kCsv:
       return "CSV";
     case Format::kUnknown:
@@ -86,9 +95,11 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
                                   : fmt::format(" (its name promises {}, its content is not)", name_of(expected));
     throw InputError(
         path.string(),
-        fmt::format("not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
-                    "(.mat), OpenSim storage (.sto, .mot), CSV and folders of NumPy arrays",
-                    claim));
+        fmt::format(
+            "not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
+            "(.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), telemetry packets of "
+            "Codemasters games and CSV",
+            claim));
   }
   Log log;
   switch (format) {
@@ -106,6 +117,12 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
       break;
     case Format::kStorage:
       log = read_storage_log(bytes, path.string());
+      break;
+    case Format::kNpz:
+      log = read_npz(bytes, path.string());
+      break;
+    case Format::kCodemasters:
+      log = codemasters_log(bytes, path.string());
       break;
     case Format::kCsv:
     case Format::kUnknown:

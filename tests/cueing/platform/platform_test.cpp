@@ -10,16 +10,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Platform read(const std::string& text) {
+Platform read_rig(const std::string& text) {
   const Study study = Study::parse("[platform]\n" + text, "rig.toml");
   const Platform p = Platform::read(study.root().table("platform"));
   study.root().finish();
   return p;
 }
 
-std::string refusal(const std::string& text) {
+std::string rig_refusal(const std::string& text) {
   try {
-    static_cast<void>(read(text));
+    static_cast<void>(read_rig(text));
   } catch (const InputError& e) {
     return e.what();
   }
@@ -27,7 +27,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Platform, ReadsABuiltInOneWithOtherLimits) {
-  const Platform p = read("subject = \"three_axis\"\nroll = [\"-10 deg\", \"12 deg\"]\nheave_rate = 0.2\n");
+  const Platform p = read_rig("subject = \"three_axis\"\nroll = [\"-10 deg\", \"12 deg\"]\nheave_rate = 0.2\n");
   EXPECT_NEAR(p.limits[PlatformAxis::kRoll].highest, 12.0 * kDegree, 1e-15);
   EXPECT_EQ(p.limits[PlatformAxis::kHeave].rate, 0.2);
   EXPECT_NEAR(p.limits[PlatformAxis::kPitch].lowest, -15.0 * kDegree, 1e-15);
@@ -35,7 +35,7 @@ TEST(Platform, ReadsABuiltInOneWithOtherLimits) {
 }
 
 TEST(Platform, ReadsAnOwnOne) {
-  const Platform p = read(
+  const Platform p = read_rig(
       "roll = [\"-10 deg\", \"10 deg\"]\nroll_rate = \"20 deg/s\"\nroll_acceleration = 3\n"
       "roll_commanded = [\"-10 deg\", \"10 deg\"]\nroll_reached = [\"-9 deg\", \"8 deg\"]\nomega = 20\ndelay = \"30 "
       "ms\"\n");
@@ -46,14 +46,14 @@ TEST(Platform, ReadsAnOwnOne) {
 }
 
 TEST(Platform, SaysWhatIsWrongAndWhere) {
-  EXPECT_THAT(refusal("subject = \"hexapot\""), HasSubstr("hexapod"));
-  EXPECT_THAT(refusal("roll = [\"2 deg\", \"10 deg\"]\nroll_rate = 1\nroll_acceleration = 3\n"),
+  EXPECT_THAT(rig_refusal("subject = \"hexapot\""), HasSubstr("hexapod"));
+  EXPECT_THAT(rig_refusal("roll = [\"2 deg\", \"10 deg\"]\nroll_rate = 1\nroll_acceleration = 3\n"),
               HasSubstr("rig.toml:2: platform.roll"));
-  EXPECT_THAT(refusal("subject = \"three_axis\"\nroll_rate = 0\n"), HasSubstr("rig.toml:3: platform.roll_rate"));
-  EXPECT_THAT(refusal("roll = [-0.1, 0.1]\n"), HasSubstr("roll_rate"));
-  EXPECT_THAT(refusal("omega = 20\n"), HasSubstr("no axis that moves"));
-  EXPECT_THAT(refusal("subject = \"hexapod\"\nleg_stroke = [-0.3, 0.3]\n"), HasSubstr("neutral length"));
-  EXPECT_THAT(refusal("subject = \"three_axis\"\ndelay = 1\n"), HasSubstr("platform.delay"));
+  EXPECT_THAT(rig_refusal("subject = \"three_axis\"\nroll_rate = 0\n"), HasSubstr("rig.toml:3: platform.roll_rate"));
+  EXPECT_THAT(rig_refusal("roll = [-0.1, 0.1]\n"), HasSubstr("roll_rate"));
+  EXPECT_THAT(rig_refusal("omega = 20\n"), HasSubstr("no axis that moves"));
+  EXPECT_THAT(rig_refusal("subject = \"hexapod\"\nleg_stroke = [-0.3, 0.3]\n"), HasSubstr("neutral length"));
+  EXPECT_THAT(rig_refusal("subject = \"three_axis\"\ndelay = 1\n"), HasSubstr("platform.delay"));
 }
 
 TEST(BuiltInPlatforms, AreValid) {

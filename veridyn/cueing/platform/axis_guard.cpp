@@ -121,6 +121,11 @@ void AxisGuard::change_limits(const AxisLimits& limits) {
   new_limits_ = limits;
 }
 
+bool AxisGuard::limited() const {
+  constexpr double kNoticed = 1e-3;
+  return limited_ && std::abs(state_.position - wanted_) > kNoticed * (limits_.highest - limits_.lowest);
+}
+
 void AxisGuard::take_new_limits() {
   if (new_limits_) limits_ = *std::exchange(new_limits_, std::nullopt);
 }

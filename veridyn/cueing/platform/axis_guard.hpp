@@ -30,8 +30,8 @@ class AxisGuard {
 
   [[nodiscard]] const AxisState& state() const { return state_; }
   [[nodiscard]] const AxisLimits& limits() const { return limits_; }  ///< in force
-  /// Whether the last step was held back by a limit.
-  [[nodiscard]] bool limited() const { return limited_; }
+  /// Whether a limit held the last step back, and the axis is off what is wanted by more than a thousandth of its range.
+  [[nodiscard]] bool limited() const;
 
   static constexpr double kLongestStep = 0.1;  ///< [s]
 

@@ -80,6 +80,13 @@ class Column {
         },
         storage_);
   }
+  /// The numbers of these rows.
+  [[nodiscard]] Column picked(const std::vector<std::uint64_t>& rows) const {
+    std::vector<double> chosen;
+    chosen.reserve(rows.size());
+    for (const std::uint64_t row : rows) chosen.push_back(number(row));
+    return Column(std::move(chosen));
+  }
   /// Keeps the first `count` rows.
   void shorten(std::size_t count) {
     std::visit([count](auto& values) { values.resize(count); }, storage_);

@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are copied as they lie in the file");
 
-constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 struct ArrayHeader {
   std::string type;
@@ -151,7 +151,7 @@ constexpr std::array<KnownType, 11> kTypes{{{"f8", 8, columns_of<double>},
 
 }  // namespace
 
-bool is_npy(std::string_view bytes) { return bytes.starts_with(kMagic); }
+bool is_npy(std::string_view bytes) { return bytes.starts_with(kNpyMagic); }
 
 NpyArray read_npy(std::string_view bytes, const std::string& source) {
   if (!is_npy(bytes)) throw InputError(source, "is no NumPy array file");

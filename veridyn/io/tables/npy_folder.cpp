@@ -169,14 +169,7 @@ class FolderReader {
         LogField field;
         field.name = count > 1 ? fmt::format("{}[{}]", one.name, c) : one.name;
         Column& column = one.array.columns[c];
-        if (all) {
-          field.values = std::move(column);
-        } else {
-          std::vector<double> chosen;
-          chosen.reserve(ordered.row.size());
-          for (const std::uint64_t row : ordered.row) chosen.push_back(column.number(row));
-          field.values = Column(std::move(chosen));
-        }
+        field.values = all ? std::move(column) : column.picked(ordered.row);
         topic.fields.push_back(std::move(field));
       }
     }

@@ -17,7 +17,7 @@
 namespace veridyn::io {
 namespace {
 
-constexpr std::string_view kMagic{"\x55\x4C\x6F\x67\x01\x12\x35", 7};
+constexpr std::string_view kULogMagic{"\x55\x4C\x6F\x67\x01\x12\x35", 7};
 constexpr std::string_view kSync{"\x2F\x73\x13\x20\x25\x0C\xBB\x12", 8};
 constexpr std::size_t kHeader = 16;
 constexpr std::size_t kIds = 65536;
@@ -434,7 +434,7 @@ void tell_story(Log& log) {
 
 }  // namespace
 
-bool is_ulog(std::string_view bytes) { return bytes.substr(0, kMagic.size()) == kMagic; }
+bool is_ulog(std::string_view bytes) { return bytes.substr(0, kULogMagic.size()) == kULogMagic; }
 
 Log read_ulog(std::string_view bytes, std::string source) {
   Log log;

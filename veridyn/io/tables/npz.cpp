@@ -1,0 +1,154 @@
+#include "veridyn/io/tables/npz.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/io/log/time_stamps.hpp"
+#include "veridyn/io/tables/codemasters.hpp"
+
+namespace veridyn::io {
+namespace {
+
+constexpr std::uint64_t kLargest = std::uint64_t{2} << 30U;  // of one array, and of all together
+constexpr zip_int64_t kMostArrays = 10000;
+
+std::string text_of(zip_error_t& error) {
+  std::string text = zip_error_strerror(&error);
+  zip_error_fini(&error);
+  return text;
+}
+
+struct CloseArchive {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+using Archive = std::unique_ptr<zip_t, CloseArchive>;
+
+struct CloseMember {
+  void operator()(zip_file_t* member) const { zip_fclose(member); }
+};
+
+Archive open_archive(std::string_view bytes, const std::string& source) {
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* buffer = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+  if (buffer == nullptr) throw InputError(source, "cannot be read as ZIP: " + text_of(error));
+  zip_t* archive = zip_open_from_source(buffer, ZIP_RDONLY | ZIP_CHECKCONS, &error);
+  if (archive == nullptr) {
+    zip_source_free(buffer);
+    throw InputError(source, "is a damaged ZIP archive: " + text_of(error));
+  }
+  zip_error_fini(&error);
+  return Archive(archive);
+}
+
+std::string member_bytes(zip_t* archive, zip_uint64_t index, const zip_stat_t& stat, const std::string& place) {
+  const std::unique_ptr<zip_file_t, CloseMember> member(zip_fopen_index(archive, index, 0));
+  if (!member) throw InputError(place, fmt::format("cannot be opened: {}", zip_strerror(archive)));
+  std::string content(stat.size, '\0');
+  std::size_t at = 0;
+  while (at < content.size()) {
+    const zip_int64_t read = zip_fread(member.get(), content.data() + at, content.size() - at);
+    if (read <= 0) throw InputError(place, fmt::format("is damaged: {}", zip_file_strerror(member.get())));
+    at += static_cast<std::size_t>(read);
+  }
+  // The checksum is compared at the end of the member.
+  char end = 0;
+  if (zip_fread(member.get(), &end, 1) != 0)
+    throw InputError(place, fmt::format("is damaged: {}", zip_file_strerror(member.get())));
+  return content;
+}
+
+bool holds_stamps(const std::string& name, const NpyArray& array) {
+  constexpr std::array<std::string_view, 5> kNames = {"t", "time", "times", "timestamp", "timestamps"};
+  return array.columns.size() == 1 && std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
+}  // namespace
+
+bool is_npz(std::string_view bytes) { return bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"); }
+
+NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source) {
+  const Archive archive = open_archive(bytes, source);
+  const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
+  if (count > kMostArrays) throw InputError(source, fmt::format("holds {} files: is this a recording?", count));
+  NpzArrays read;
+  std::uint64_t total = 0;
+  for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
+    zip_stat_t stat;
+    if (zip_stat_index(archive.get(), i, 0, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0U || stat.name == nullptr)
+      throw InputError(source, fmt::format("has a damaged entry, number {}", i + 1));
+    std::string name = internal::printable(stat.name);
+    const std::string place = fmt::format("{}: {}", source, name);
+    total += stat.size;
+    if (stat.size > kLargest || total > kLargest) throw InputError(place, "is larger than 2 GiB");
+    const std::string content = member_bytes(archive.get(), i, stat, place);
+    try {
+      NpyArray array = read_npy(content, name);
+      if (name.ends_with(".npy")) name.resize(name.size() - 4);
+      read.arrays.emplace_back(std::move(name), std::move(array));
+    } catch (const InputError& other) {
+      read.left_out.emplace_back(other.what());
+    }
+  }
+  return read;
+}
+
+Log read_npz(std::string_view bytes, const std::string& source) {
+  NpzArrays read = read_npz_arrays(bytes, source);
+  auto& arrays = read.arrays;
+  for (const auto& [name, array] : arrays) {
+    if (is_codemasters(array)) return codemasters_log(array, source);
+  }
+  const auto stamps =
+      std::find_if(arrays.begin(), arrays.end(), [](const auto& a) { return holds_stamps(a.first, a.second); });
+  if (stamps == arrays.end()) {
+    if (arrays.empty() && !read.left_out.empty())
+      throw InputError(source, "holds no array of numbers: " + read.left_out.front());
+    std::vector<std::string> names;
+    for (const auto& [name, array] : arrays) names.push_back(name);
+    throw InputError(source, fmt::format("holds no array of stamps (t, time or timestamps); it has {}",
+                                         names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+  }
+  Log log;
+  log.source = source;
+  log.format = "NumPy arrays";
+  log.damage.notes = std::move(read.left_out);
+  const std::size_t rows = stamps->second.rows();
+  OrderedStamps ordered = order_stamps(stamps->second.columns.front().numbers());
+  LogTopic topic;
+  topic.spikes = ordered.spikes;
+  topic.reordered = ordered.reordered;
+  topic.doubled = ordered.doubled;
+  const bool all = ordered.row.empty() && !ordered.time.empty();
+  std::vector<std::string> unused;
+  for (auto& [name, array] : arrays) {
+    if (&array == &stamps->second) continue;
+    if (array.rows() != rows) {
+      unused.push_back(name);
+      continue;
+    }
+    const std::size_t count = array.columns.size();
+    for (std::size_t c = 0; c < count; ++c) {
+      LogField field;
+      field.name = count > 1 ? fmt::format("{}[{}]", name, c) : name;
+      field.values = all ? std::move(array.columns[c]) : array.columns[c].picked(ordered.row);
+      topic.fields.push_back(std::move(field));
+    }
+  }
+  topic.time = make_time_base(std::move(ordered.time));
+  if (!unused.empty())
+    log.damage.notes.push_back(
+        fmt::format("arrays without a row for each of the {} stamps were left out: {}", rows, fmt::join(unused, ", ")));
+  log.topics.push_back(std::move(topic));
+  internal::finish(log);
+  return log;
+}
+
+}  // namespace veridyn::io

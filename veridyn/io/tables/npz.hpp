@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "veridyn/io/log/log.hpp"
+#include "veridyn/io/tables/npy.hpp"
+
+namespace veridyn::io {
+
+/// Whether bytes start as a ZIP archive does, which is what `numpy.savez` writes.
+[[nodiscard]] bool is_npz(std::string_view bytes);
+
+/// The arrays of a `.npz`.
+struct NpzArrays {
+  std::vector<std::pair<std::string, NpyArray>> arrays;  ///< by name
+  std::vector<std::string> left_out;                     ///< what is no array of numbers, in words
+};
+
+/// Reads a `.npz`, stored or deflated. Its checksums tell damage from arrays of another kind (texts, objects), which
+/// are left out.
+/// @throws InputError naming source and array: a damaged archive, a wrong checksum, encrypted or too large members
+/// (2 GiB).
+[[nodiscard]] NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source);
+
+/// A `.npz` as a log. An array of stamps named `t`, `time`, `times`, `timestamp` or `timestamps` [s] gives its time to
+/// every array with as many rows: `acc` with three columns makes `acc[0]`, `acc[1]`, `acc[2]`. A single array of 66
+/// rows that are telemetry of a Codemasters game is read as such, see codemasters.hpp.
+/// @throws InputError as `read_npz_arrays`, and where no array holds stamps.
+[[nodiscard]] Log read_npz(std::string_view bytes, const std::string& source);
+
+}  // namespace veridyn::io
