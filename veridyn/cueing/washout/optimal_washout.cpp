@@ -98,7 +98,8 @@ OptimalChannel::OptimalChannel(const Options& o) : turns_(o.turns), shifts_(o.sh
   }
   K_.setZero(2, n);
   K_vehicle_.setZero();
-  x_.setZero(n);
+  by_force_.setZero(n);
+  by_rate_.setZero(n);
   if (m == 0) return;
   const numerics::LinearQuadratic lq = numerics::linear_quadratic(A, B, Q, R);
   residual_ = lq.residual;
@@ -110,31 +111,41 @@ OptimalChannel::OptimalChannel(const Options& o) : turns_(o.turns), shifts_(o.sh
 }
 
 OptimalChannel::Input OptimalChannel::control(const State& x, const Input& vehicle) const {
-  Input u = -(K_.lazyProduct(x) + K_vehicle_ * vehicle);
-  const double most = most_rate_ + std::abs(vehicle(1));
-  u(0) = std::clamp(u(0), -most, most);
-  return u;
+  return -(K_.lazyProduct(x) + K_vehicle_ * vehicle);
+}
+
+OptimalChannel::State OptimalChannel::next(const State& x, const Input& before, const Input& now, double step,
+                                           bool limited) const {
+  return integrated(x, before, now, step, [&](const State& at, const Input& vehicle) {
+    Input u = control(at, vehicle);
+    if (limited) u(0) = std::clamp(u(0), -most_rate_, most_rate_);
+    return State(A_.lazyProduct(at) + of_platform_.lazyProduct(u) + of_vehicle_.lazyProduct(vehicle));
+  });
 }
 
 PairedOutput OptimalChannel::step(const Input& input, SampleStep step) {
+  const auto force = [](const Input& v) { return Input(v(0), 0.0); };
+  const auto rate = [](const Input& v) { return Input(0.0, v(1)); };
   if (!step) {
-    x_.setZero();
+    by_force_.setZero();
+    by_rate_.setZero();
   } else {
-    x_ = integrated(x_, vehicle_, input, *step, [this](const State& x, const Input& vehicle) {
-      return State(A_.lazyProduct(x) + of_platform_.lazyProduct(control(x, vehicle)) +
-                   of_vehicle_.lazyProduct(vehicle));
-    });
+    by_force_ = next(by_force_, force(vehicle_), force(input), *step, true);
+    by_rate_ = next(by_rate_, rate(vehicle_), rate(input), *step, false);
   }
   vehicle_ = input;
-  const Input u = control(x_, input);
+  Input of_force = control(by_force_, force(input));
+  of_force(0) = std::clamp(of_force(0), -most_rate_, most_rate_);
+  const Input u = of_force + control(by_rate_, rate(input));
+  const State x = by_force_ + by_rate_;
   PairedOutput out;
-  const Eigen::Index n = x_.size();
+  const Eigen::Index n = x.size();
   if (shifts_) {
-    out.shift = x_(n - 3);
+    out.shift = x(n - 3);
     out.acceleration = u(1);
   }
   if (turns_) {
-    out.tilt = x_(n - 1 - (shifts_ ? 3 : 0));
+    out.tilt = x(n - 1 - (shifts_ ? 3 : 0));
     out.tilt_rate = u(0);
   }
   return out;

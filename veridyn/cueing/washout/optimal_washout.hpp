@@ -18,7 +18,7 @@ class OptimalDesign final : public WashoutDesign {
   double shift_weight = 30.0;                    ///< of the squared shift over the platform's range
   double tilt_weight = 1.0;                      ///< of the squared angle over the platform's range
   double force_change = 1.0, rate_change = 2.0;  ///< how fast forces and rates of the vehicle change [rad/s]
-  double tilt_rate = 3.0 * kDegree;              ///< greatest rate of tilt beyond the vehicle's own turns [rad/s]
+  double tilt_rate = 3.0 * kDegree;              ///< greatest rate of the angle that stands for a force [rad/s]
   std::string perception = "young_meiry";
 
   [[nodiscard]] std::vector<Knob> knobs() override;
@@ -43,7 +43,7 @@ class OptimalChannel {
     std::size_t canal = 0;                           ///< the axis that turns
     bool turns = true, shifts = true, tilts = true;  ///< what moves; whether the angle stands for a force
     double angle_range = 1.0, shift_range = 1.0;     ///< [rad], [m]
-    double most_rate = kInfinity;                    ///< of the angle beyond the vehicle's own rate [rad/s]
+    double most_rate = kInfinity;                    ///< of the angle that stands for the force [rad/s]
     double felt_rate = 1.0, felt_force = 1.0;        ///< thresholds [rad/s], [m/s^2]
     OptimalDesign weights;
   };
@@ -60,6 +60,7 @@ class OptimalChannel {
 
  private:
   [[nodiscard]] Input control(const State& x, const Input& vehicle) const;
+  [[nodiscard]] State next(const State& x, const Input& before, const Input& now, double step, bool limited) const;
 
   bool turns_, shifts_;
   double most_rate_;
@@ -68,7 +69,9 @@ class OptimalChannel {
   Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMostStates> K_;
   Eigen::Matrix2d K_vehicle_;
   double residual_ = 0.0;
-  State x_;
+  // The system is linear: what the vehicle's force brings and what its rate brings are followed separately, so that the
+  // rate of the tilt alone can be limited.
+  State by_force_, by_rate_;
   Input vehicle_ = Input::Zero();
 };
 
