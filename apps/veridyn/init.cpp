@@ -1,9 +1,10 @@
-// veridyn init aircraft|vehicle|swing-test|calibration|muscle: a commented study file to start from.
+// veridyn init aircraft|vehicle|swing-test|calibration|muscle|cueing: a commented study file to start from.
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/cueing_template.hpp"
 #include "apps/veridyn/ground_templates.hpp"
 #include "apps/veridyn/muscle_template.hpp"
 #include "apps/veridyn/output_folder.hpp"
@@ -180,6 +181,13 @@ int init_muscle(const Arguments& arguments) {
                      "choose method and motion", "simulate");
 }
 
+int init_cueing(const Arguments& arguments) {
+  const bool log = !arguments.text("--log").empty();
+  const std::string data =
+      log ? filled(kCueingRecorded, "@LOG@", quoted_argument(arguments, "--log")) : kCueingSimulated;
+  return write_study(arguments, filled(kCueingStudy, "@DATA@", data), "choose platform and algorithms", "cue");
+}
+
 const Argument kForce = {.name = "--force", .help = "replace an existing study.toml", .value = false};
 
 Command init_ground(const std::string& name, const std::string& summary, const char* text) {
@@ -201,6 +209,12 @@ Command init_command() {
       .commands = {
           init_ground("swing-test", "study of an inertia swing test: study.toml in --out", kSwingTestStudy),
           init_ground("calibration", "study of a wind-tunnel calibration of pitot tube and vanes", kCalibrationStudy),
+          {.name = "cueing",
+           .summary = "study of a drive on a motion platform: study.toml in --out",
+           .arguments = {{.name = "--log", .help = "a recorded drive; none: it is simulated", .type = "FILE"}, kForce},
+           .default_out = ".",
+           .example = "veridyn init cueing --log drive.csv --out my_rig",
+           .run = init_cueing},
           {.name = "muscle",
            .summary = "study of a musculoskeletal model: study.toml in --out",
            .arguments = {{.name = "--model",

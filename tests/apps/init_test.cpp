@@ -18,7 +18,7 @@ TEST_F(Init, WritesNothingButTheStudy) {
 
 TEST_F(Init, LeavesNothingWhereItCannotWrite) {
   file("x", "a file");
-  for (const char* kind : {"aircraft", "vehicle", "muscle", "swing-test", "calibration"}) {
+  for (const char* kind : {"aircraft", "vehicle", "muscle", "cueing", "swing-test", "calibration"}) {
     expect_refusal(std::string("init ") + kind + " --out " + (folder_ / "x" / "y").string(), "y: cannot be made");
     // A limit of size stands for the full disk.
     const Outcome full = run_in_shell("ulimit -f 1", std::string("init ") + kind + out() + "/deep");
