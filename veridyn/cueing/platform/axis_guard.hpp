@@ -30,7 +30,8 @@ class AxisGuard {
 
   [[nodiscard]] const AxisState& state() const { return state_; }
   [[nodiscard]] const AxisLimits& limits() const { return limits_; }  ///< in force
-  /// Whether a limit held the last step back, and the axis is off what is wanted by more than a thousandth of its range.
+  /// Whether a limit held the last step back, and the axis is off what is wanted by more than a thousandth of its
+  /// range.
   [[nodiscard]] bool limited() const;
 
   static constexpr double kLongestStep = 0.1;  ///< [s]

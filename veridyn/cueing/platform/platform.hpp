@@ -53,6 +53,7 @@ struct Platform {
 /// axes on six legs. "ideal": six axes, 10 m and 60 deg each way, at once where they are told to be: what an algorithm
 /// does by itself. @throws InputError with the nearest name.
 [[nodiscard]] const Platform& built_in_platform(std::string_view name);
+/// All of them.
 [[nodiscard]] const std::vector<Platform>& built_in_platforms();
 
 }  // namespace veridyn::cueing

@@ -11,7 +11,9 @@ namespace veridyn::cueing {
 
 /// The axes of a platform, in platform axes as `PlatformCommand` has them.
 enum class PlatformAxis { kSurge, kSway, kHeave, kRoll, kPitch, kYaw };
+/// How many axes there are.
 inline constexpr std::size_t kPlatformAxes = 6;
+/// A value for each axis.
 template <class T>
 using PerPlatformAxis = EnumArray<PlatformAxis, T, kPlatformAxes>;
 

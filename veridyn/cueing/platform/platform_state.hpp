@@ -16,7 +16,9 @@ struct PlatformState : PlatformCommand {
 struct AxisState {
   double position = 0.0, rate = 0.0, acceleration = 0.0;
 };
+/// What a platform does along an axis.
 [[nodiscard]] AxisState axis(const PlatformState& state, PlatformAxis which);
+/// Makes it do that.
 void set_axis(PlatformState& state, PlatformAxis which, const AxisState& to);
 /// Shift or angle of a command along an axis.
 [[nodiscard]] double position(const PlatformCommand& command, PlatformAxis axis);

@@ -20,6 +20,7 @@ struct FalseCue {
   double begin = 0.0, end = 0.0;  ///< [s]
   double size = 0.0;              ///< largest deviation of what is felt [m/s^2 or rad/s]
 };
+/// "wrong sign", "too strong", "missing".
 [[nodiscard]] std::string_view name_of(FalseCue::Kind kind);
 
 /// Of one cue. All but the last two are of what is felt.

@@ -11,7 +11,9 @@ namespace veridyn::cueing {
 
 /// What a driver can feel: forces forward, right, down, and turns.
 enum class Cue { kSurge, kSway, kHeave, kRoll, kPitch, kYaw };
+/// How many cues there are.
 inline constexpr std::size_t kCues = 6;
+/// A value for each cue.
 template <class T>
 using PerCue = EnumArray<Cue, T, kCues>;
 

@@ -39,6 +39,7 @@ class SharedChannels {
 /// [m/s^2]. Pairs are surge with pitch, and sway with roll; both are written as if the force pointed forward: of sway
 /// and roll everything is to the left.
 using PairedInput = Eigen::Vector2d;
+/// What a pair of axes is to do, written like its input.
 struct PairedOutput {
   double shift = 0.0, acceleration = 0.0;  ///< [m], [m/s^2]
   double tilt = 0.0, tilt_rate = 0.0;      ///< [rad], [rad/s]
@@ -47,10 +48,11 @@ struct PairedOutput {
 [[nodiscard]] PairedInput paired_input(const Eigen::Vector3d& force, const Eigen::Vector3d& a, Eigen::Index pair);
 /// Adds it to the command's angle and sets its shift.
 void add_paired(PlatformCommand& command, const PairedOutput& output, Eigen::Index pair);
-/// The pair's axes.
+/// The axis of the pair that shifts.
 [[nodiscard]] constexpr PlatformAxis shift_axis(Eigen::Index pair) {
   return pair == 0 ? PlatformAxis::kSway : PlatformAxis::kSurge;
 }
+/// The axis of the pair that turns.
 [[nodiscard]] constexpr PlatformAxis tilt_axis(Eigen::Index pair) {
   return pair == 0 ? PlatformAxis::kRoll : PlatformAxis::kPitch;
 }

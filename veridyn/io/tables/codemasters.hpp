@@ -24,6 +24,7 @@ namespace veridyn::io {
 /// suspension as the game has them. Packets that repeat a stamp, or go back, are left out and counted.
 /// @throws InputError with fewer than ten samples.
 [[nodiscard]] Log codemasters_log(const NpyArray& array, const std::string& source);
+/// The same of packets one after the other. @throws as above
 [[nodiscard]] Log codemasters_log(std::string_view bytes, const std::string& source);
 
 }  // namespace veridyn::io
