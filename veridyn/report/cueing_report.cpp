@@ -210,7 +210,7 @@ void add_responses(const CueingStudy& study, const CueingResult& result, Documen
     for (const AlgorithmResult& a : result.algorithms) {
       const auto found = a.response.find(cue);
       if (found == a.response.end()) continue;
-      XYSeries g{.name = a.run.algorithm, .style = Style::kLine}, p = g;
+      XYSeries g{.name = a.run.algorithm, .style = Style::kLine}, p{.name = a.run.algorithm, .style = Style::kLine};
       for (const ResponsePoint& r : found->second) {
         g.x.push_back(std::log10(r.frequency));
         g.y.push_back(r.gain);

@@ -52,18 +52,23 @@ class Silent : public Progress {
 }  // namespace
 
 double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOptions& options) {
-  constexpr double kMost = 4.0;
   double cost = 0.0, weights = 0.0;
   for (std::size_t i = 0; i < kCues; ++i) {
     const CuePair& pair = felt.felt[i];
-    double off = 0.0, own = 0.0, largest = 0.0;
+    const auto n = static_cast<double>(pair.vehicle.size());
+    double v = 0.0, p = 0.0, vv = 0.0, pp = 0.0, vp = 0.0, largest = 0.0;
     for (std::size_t k = 0; k < pair.vehicle.size(); ++k) {
-      off += std::pow(pair.platform[k] - pair.vehicle[k], 2);
-      own += pair.vehicle[k] * pair.vehicle[k];
+      v += pair.vehicle[k] / n;
+      p += pair.platform[k] / n;
       largest = std::max(largest, std::abs(pair.vehicle[k]));
     }
     if (largest < felt.threshold[i]) continue;
-    cost += options.weights[i] * std::min(off / own, kMost);
+    for (std::size_t k = 0; k < pair.vehicle.size(); ++k) {
+      vv += std::pow(pair.vehicle[k] - v, 2);
+      pp += std::pow(pair.platform[k] - p, 2);
+      vp += (pair.vehicle[k] - v) * (pair.platform[k] - p);
+    }
+    cost += options.weights[i] * (1.0 - 2.0 * vp / (vv + pp + n * (v - p) * (v - p)));
     weights += options.weights[i];
   }
   double limited = 0.0;

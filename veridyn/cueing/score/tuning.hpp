@@ -11,7 +11,7 @@ namespace veridyn::cueing {
 
 /// What the automatic tuning minimises, and how long it looks.
 struct TuningOptions {
-  /// Weight of each cue's squared error over its threshold; of cues that the vehicle never shows none.
+  /// Weight of each cue; of cues that the driver never feels none.
   PerCue<double> weights = {{1.0, 1.0, 0.3, 0.3, 0.3, 0.1}};
   /// Weight of the share of time in which an axis is held back by a limit.
   double limited = 1.0;
@@ -33,8 +33,9 @@ struct Tuning {
   bool interrupted = false;
 };
 
-/// Cost of a run: mean over the cues of min(mean square of (platform - vehicle) felt, over the vehicle's own mean
-/// square; 4), weighted, plus the weighted share of time at limits. A platform that stands still costs 1.
+/// Cost of a run: mean over the cues, weighted, of one less the concordance of what is felt on the platform with what
+/// is felt in the vehicle (Lin 1989, Biometrics 45:255: correlation that falls with a wrong size too), plus the
+/// weighted share of time at limits. A platform that stands still costs 1, one that does as the vehicle does 0.
 [[nodiscard]] double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOptions& options);
 
 /// Turns the knobs that have a range for it, by the pattern search on logarithms of their values, until the drive costs
