@@ -12,6 +12,7 @@
 #include "veridyn/cueing/washout/fuzzy_washout.hpp"
 #include "veridyn/cueing/washout/moving_origin_washout.hpp"
 #include "veridyn/cueing/washout/optimal_washout.hpp"
+#include "veridyn/cueing/washout/predictive_washout.hpp"
 #include "veridyn/cueing/washout/return_washout.hpp"
 #include "veridyn/cueing/washout/three_axis_washout.hpp"
 #include "veridyn/cueing/washout/tilt_washout.hpp"
@@ -34,6 +35,8 @@ constexpr std::array kAlgorithms = {
     WashoutAlgorithm{"adaptive", "gains by steepest descent (Nahon & Reid 1990)", &design<AdaptiveDesign>},
     WashoutAlgorithm{"fuzzy", "gains by the room that is left (Hwang et al. 2009)", &design<FuzzyDesign>},
     WashoutAlgorithm{"moving_origin", "the neutral place makes room for what is foreseen", &design<MovingOriginDesign>},
+    WashoutAlgorithm{"mpc", "plans ahead within the platform's limits (Dagdelen et al. 2009)",
+                     &design<PredictiveDesign>},
 };
 
 }  // namespace

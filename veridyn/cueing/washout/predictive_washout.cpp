@@ -1,0 +1,247 @@
+#include "veridyn/cueing/washout/predictive_washout.hpp"
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_systems/discretisation.hpp"
+
+namespace veridyn::cueing {
+namespace {
+
+using numerics::StateSpace;
+
+constexpr Eigen::Index kOtolithStates = 2, kFeltStates = 5, kAtAngle = 5, kAtAngleRate = 6, kAtShift = 7,
+                       kAtShiftRate = 8;
+
+/// Costs of the inputs over the platform's own limits, and of the shift's rate: small, they only settle what the rest
+/// leaves open.
+constexpr double kAngleEffort = 0.02, kShiftEffort = 0.02, kShiftSpeed = 0.05;
+/// Iterations of one plan.
+constexpr int kIterations = 20;
+
+StateSpace felt_model(const PredictiveDesign& d, Eigen::Index pair, bool shifts) {
+  const VestibularModel& model = vestibular_model(d.perception);
+  const StateSpace otoliths = numerics::realise(model.otoliths),
+                   canal = numerics::realise(model.canals[static_cast<std::size_t>(pair)]);
+  if (otoliths.states() != kOtolithStates || canal.states() != kFeltStates - kOtolithStates)
+    throw InputError("washout.perception", "takes otoliths of second and canals of third order, as \"young_meiry\"");
+  const Eigen::Index n = shifts ? 9 : 7;
+  StateSpace s;
+  s.A.setZero(n, n);
+  s.B.setZero(n, 3);  // second derivatives of angle and shift; the vehicle's force
+  s.A.topLeftCorner(kOtolithStates, kOtolithStates) = otoliths.A;
+  s.A.block(kOtolithStates, kOtolithStates, 3, 3) = canal.A;
+  s.A.block(0, kAtAngle, kOtolithStates, 1) = kGravity * otoliths.B;
+  s.A.block(kOtolithStates, kAtAngleRate, 3, 1) = canal.B;
+  s.A(kAtAngle, kAtAngleRate) = 1.0;
+  s.B(kAtAngleRate, 0) = 1.0;
+  s.B.block(0, 2, kOtolithStates, 1) = -otoliths.B;
+  if (shifts) {
+    s.A(kAtShift, kAtShiftRate) = 1.0;
+    s.B(kAtShiftRate, 1) = 1.0;
+    s.B.block(0, 1, kOtolithStates, 1) = otoliths.B;
+  }
+  // Outputs: what is felt, over its thresholds.
+  const MotionThresholds felt = usual_thresholds();
+  s.C.setZero(2, n);
+  s.C.block(0, 0, 1, kOtolithStates) = otoliths.C / felt.force[static_cast<std::size_t>(1 - pair)];
+  s.C.block(1, kOtolithStates, 1, 3) = canal.C / felt.rate[static_cast<std::size_t>(pair)];
+  s.D.setZero(2, 3);
+  return s;
+}
+
+}  // namespace
+
+std::vector<Knob> PredictiveDesign::knobs() {
+  std::vector<Knob> all = {
+      {"force_weight", "1", {&force_weight, 1}, "forces more like the vehicle's, with more tilting", false, 0.05, 20.0},
+      {"rate_weight", "1", {&rate_weight, 1}, "less of a turn where the vehicle does not turn", false, 0.01, 20.0},
+      {"shift_weight", "1", {&shift_weight, 1}, "less travel", false, 0.1, 100.0},
+      {"tilt_weight", "1", {&tilt_weight, 1}, "weaker lasting forces", false, 0.01, 10.0},
+      {"fades", "s", {&fades, 1}, "more made of long pushes, less of short ones", false, 0.1, 10.0},
+      {"use", "1", {&use, 1}, "less room kept at the ends"}};
+  shared.add_to(all);
+  return all;
+}
+
+std::unique_ptr<Washout> PredictiveDesign::make(const Platform& platform) const {
+  return std::make_unique<PredictiveWashout>(*this, platform);
+}
+
+template <int kStates, int kInputs>
+PlannedPair<kStates, kInputs>::PlannedPair(const PredictiveDesign& d, const Platform& platform, Eigen::Index pair)
+    : programme_(kSteps), tail_(kSteps, Input::Zero()) {
+  constexpr bool shifts = kInputs == 2;
+  const StateSpace model = felt_model(d, pair, shifts);
+  const numerics::HeldSystem held = numerics::held(model, kStep, numerics::Hold::kZeroOrder);
+  A_ = model.A;
+  B_ = model.B.leftCols(kInputs);
+  of_force_ = model.B.col(2);
+  held_force_ = held.Gamma.col(2);
+  fade_ = std::exp(-kStep / d.fades);
+  const AxisLimits& angle = platform.limits[tilt_axis(pair)];
+  const AxisLimits& shift = platform.limits[shift_axis(pair)];
+  typename Programme::Stage stage;
+  stage.A = held.Phi;
+  stage.B = held.Gamma.leftCols(kInputs);
+  constexpr double kShare = 1.0 / static_cast<double>(kSteps);
+  stage.Q = kShare * (d.force_weight * model.C.row(0).transpose() * model.C.row(0) +
+                      d.rate_weight * model.C.row(1).transpose() * model.C.row(1));
+  const auto squared = [](double v) { return v * v; };
+  const double angle_range = 0.5 * (angle.highest - angle.lowest), most_rate = std::min(d.shared.tilt_rate, angle.rate);
+  stage.Q(kAtAngle, kAtAngle) += kShare * d.tilt_weight / squared(angle_range);
+  stage.R.setZero();
+  stage.R(0, 0) = kShare * kAngleEffort / squared(angle.acceleration);
+  stage.x_low(kAtAngle) = d.use * angle.lowest;
+  stage.x_high(kAtAngle) = d.use * angle.highest;
+  stage.x_low(kAtAngleRate) = -most_rate;
+  stage.x_high(kAtAngleRate) = most_rate;
+  stage.u_low(0) = -angle.acceleration;
+  stage.u_high(0) = angle.acceleration;
+  if constexpr (shifts) {
+    const double range = 0.5 * (shift.highest - shift.lowest);
+    stage.Q(kAtShift, kAtShift) += kShare * d.shift_weight / squared(range);
+    stage.Q(kAtShiftRate, kAtShiftRate) += kShare * d.shift_weight * kShiftSpeed / squared(range);
+    stage.R(1, 1) = kShare * kShiftEffort / squared(shift.acceleration);
+    // Of sway everything is to the left.
+    stage.x_low(kAtShift) = d.use * (pair == 0 ? -shift.highest : shift.lowest);
+    stage.x_high(kAtShift) = d.use * (pair == 0 ? -shift.lowest : shift.highest);
+    stage.x_low(kAtShiftRate) = -shift.rate;
+    stage.x_high(kAtShiftRate) = shift.rate;
+    stage.u_low(1) = -shift.acceleration;
+    stage.u_high(1) = shift.acceleration;
+  }
+  std::fill(programme_.stages.begin(), programme_.stages.end(), stage);
+  // It ends slowly: what comes after the horizon can still be stopped.
+  programme_.stages.back().Q *= 3.0;
+}
+
+template <int kStates, int kInputs>
+void PlannedPair<kStates, kInputs>::plan(double force) {
+  double then = force;
+  for (typename Programme::Stage& s : programme_.stages) {
+    s.b = held_force_ * then;
+    then *= fade_;
+  }
+  // The state may lie a rounding beyond a bound that the plan before touched.
+  if (x_.isZero(0.0) && force == 0.0) {
+    std::fill(tail_.begin(), tail_.end(), Input::Zero());
+    since_plan_ = 0.0;
+    has_plan_ = true;
+    return;
+  }
+  const numerics::ProgrammeResult r =
+      programme_.solve(x_, {.iterations = kIterations, .tolerance = 1e-6}, has_plan_ && counts_.plans > 0);
+  ++counts_.plans;
+  counts_.iterations += r.iterations;
+  counts_.most = std::max<long>(counts_.most, r.iterations);
+  constexpr double kGoodEnough = 1e-4;  // of a plan that ran out of iterations: its bounds hold
+  if (r.end == numerics::ProgrammeEnd::kInfeasible || r.violation > kGoodEnough) return;
+  std::copy(programme_.inputs().begin(), programme_.inputs().end(), tail_.begin());
+  since_plan_ = 0.0;
+  has_plan_ = true;
+}
+
+template <int kStates, int kInputs>
+typename PlannedPair<kStates, kInputs>::Input PlannedPair<kStates, kInputs>::planned(const PairedOutput& fallback) {
+  const auto at = static_cast<std::size_t>(since_plan_ / kStep);
+  if (since_plan_ > 0.0) ++counts_.tails;
+  if (has_plan_ && at < kSteps) return tail_[at];
+  ++counts_.classical;
+  constexpr double kFollows = 4.0;  // [rad/s], critically damped
+  const auto follow = [&](double to, double is, double speed) {
+    return kFollows * kFollows * (to - is) - 2.0 * kFollows * speed;
+  };
+  const typename Programme::Stage& s = programme_.stages.front();
+  Input u;
+  u(0) = follow(fallback.tilt, x_(kAtAngle), x_(kAtAngleRate));
+  if constexpr (kInputs == 2) u(1) = follow(fallback.shift, x_(kAtShift), x_(kAtShiftRate));
+  return u.cwiseMax(s.u_low).cwiseMin(s.u_high);
+}
+
+template <int kStates, int kInputs>
+PairedOutput PlannedPair<kStates, kInputs>::step(double force, const PairedOutput& fallback, SampleStep step) {
+  if (!step) {
+    x_.setZero();
+    force_ = since_plan_ = 0.0;
+    has_plan_ = false;
+    counts_ = {};
+  } else if (*step > 0.0) {
+    // Long steps in pieces of the plan's, each with its own input.
+    const double pieces = std::ceil(*step / kStep * (1.0 - 1e-9)), h = *step / pieces;
+    for (double k = 0.0; k < pieces; ++k) {
+      if (!has_plan_ || since_plan_ >= kReplan) plan(force_);
+      const Input u = planned(fallback);
+      const Eigen::Matrix<double, 1, 1> before(force_ + k / pieces * (force - force_)),
+          now(force_ + (k + 1.0) / pieces * (force - force_));
+      x_ = integrated(x_, before, now, h, [&](const State& x, const Eigen::Matrix<double, 1, 1>& f) {
+        return State(A_ * x + B_ * u + of_force_ * f(0));
+      });
+      const typename Programme::Stage& s = programme_.stages.front();
+      x_ = x_.cwiseMax(s.x_low).cwiseMin(s.x_high);
+      since_plan_ += h;
+    }
+    force_ = force;
+  }
+  PairedOutput out{.tilt = x_(kAtAngle), .tilt_rate = x_(kAtAngleRate)};
+  if constexpr (kInputs == 2) {
+    out.shift = x_(kAtShift);
+    out.acceleration = has_plan_ ? tail_[0](1) : 0.0;
+  }
+  return out;
+}
+
+PredictiveWashout::PredictiveWashout(const PredictiveDesign& d, const Platform& platform)
+    : design_(checked(d)),
+      shared_(d.shared),
+      low_pass_{numerics::CausalFilter(numerics::low_pass(2.0, 1.0)),
+                numerics::CausalFilter(numerics::low_pass(2.0, 1.0))},
+      shift_{ShiftChannel(1.0, 1.0, 0.0), ShiftChannel(1.0, 1.0, 0.0)} {
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const auto pair = static_cast<std::size_t>(i);
+    shifts_[pair] = platform.limits[shift_axis(i)].moves();
+    if (shifts_[pair]) {
+      shifting_.emplace_back(d, platform, i);
+    } else {
+      tilting_.emplace_back(d, platform, i);
+    }
+  }
+}
+
+PlanCounts PredictiveWashout::counts() const {
+  PlanCounts all;
+  const auto add = [&](const PlanCounts& c) {
+    all.plans += c.plans;
+    all.iterations += c.iterations;
+    all.most = std::max(all.most, c.most);
+    all.tails += c.tails;
+    all.classical += c.classical;
+  };
+  for (const auto& p : tilting_) add(p.counts());
+  for (const auto& p : shifting_) add(p.counts());
+  return all;
+}
+
+PlatformCommand PredictiveWashout::next(const VehicleMotion& motion, SampleStep step) {
+  PlatformCommand command;
+  shared_.add_to(command, motion.acceleration, motion.rate, step);
+  std::size_t tilting = 0, shifting = 0;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const auto pair = static_cast<std::size_t>(i);
+    const PairedInput now = design_.shared.force_gain[1 - pair] * paired_input(motion.force, motion.acceleration, i);
+    const ChannelOutput s = shift_[pair].step(now(1), step);
+    const ChannelOutput t =
+        tilt_[pair].step(cueing::next(low_pass_[pair], now(0), step), design_.shared.tilt_rate, step);
+    const PairedOutput classical{s.place, s.change, t.place, t.change};
+    // The plan takes g times the angle for the force.
+    const double force = kGravity * std::asin(std::clamp(now(0) / kGravity, -1.0, 1.0));
+    add_paired(command,
+               shifts_[pair] ? shifting_[shifting++].step(force, classical, step)
+                             : tilting_[tilting++].step(force, classical, step),
+               i);
+  }
+  return command;
+}
+
+template class PlannedPair<7, 1>;
+template class PlannedPair<9, 2>;
+
+}  // namespace veridyn::cueing

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <string>
+
+#include "veridyn/cueing/perception/vestibular_model.hpp"
+#include "veridyn/cueing/washout/classical_washout.hpp"
+#include "veridyn/cueing/washout/shared_channels.hpp"
+#include "veridyn/numerics/optimal_control/horizon_programme.hpp"
+
+namespace veridyn::cueing {
+
+/// Numbers of the model predictive washout.
+class PredictiveDesign final : public WashoutDesign {
+ public:
+  SharedKnobs shared;
+  double force_weight = 1.0;  ///< of the squared error of felt force over its threshold
+  double rate_weight = 1.0;   ///< of the squared felt rate of the tilt over its threshold
+  double shift_weight = 3.0;  ///< of the squared shift over the platform's range
+  double tilt_weight = 0.3;   ///< of the squared angle over the platform's range
+  double fades = 3.0;         ///< time constant with which a force is foreseen to fade [s]
+  double use = 0.95;          ///< share of the platform's range that is planned with
+  std::string perception = "young_meiry";
+
+  [[nodiscard]] std::vector<Knob> knobs() override;
+  [[nodiscard]] std::unique_ptr<Washout> make(const Platform& platform) const override;
+  [[nodiscard]] std::unique_ptr<WashoutDesign> clone() const override {
+    return std::make_unique<PredictiveDesign>(*this);
+  }
+};
+
+/// How the plans of a drive went.
+struct PlanCounts {
+  long plans = 0;       ///< that were made
+  long iterations = 0;  ///< of all of them
+  long most = 0;        ///< iterations of one
+  long tails = 0;       ///< moments at which no new plan was there in time and the last one's tail was followed
+  long classical = 0;   ///< moments at which there was no tail either, and the classical algorithm was followed
+};
+
+/// Surge with pitch, or sway with roll, planned ahead. States: what the rider feels less what the driver feels by the
+/// otoliths (2), what of the tilt the canals feel (3), angle and its rate; of a platform that shifts: shift and its
+/// rate. Inputs: the angle's second derivative, and the shift's.
+template <int kStates, int kInputs>
+class PlannedPair {
+ public:
+  using Programme = numerics::HorizonProgramme<kStates, kInputs>;
+  static constexpr std::size_t kSteps = 24;  ///< of a plan
+  static constexpr double kStep = 0.05;      ///< of a plan [s]: 1.2 s ahead
+  static constexpr double kReplan = 0.0095;  ///< plans are no older than the sample after this [s]
+
+  PlannedPair(const PredictiveDesign& design, const Platform& platform, Eigen::Index pair);
+  /// @param fallback where the classical algorithm would have the angle and the shift
+  PairedOutput step(double force, const PairedOutput& fallback, SampleStep step);
+  [[nodiscard]] const PlanCounts& counts() const { return counts_; }
+
+ private:
+  using State = typename Programme::State;
+  using Input = typename Programme::Input;
+  void plan(double force);
+  [[nodiscard]] Input planned(const PairedOutput& fallback);
+
+  typename Programme::StateMatrix A_;
+  typename Programme::Map B_;
+  State of_force_;     ///< continuous: how the vehicle's force drives the error
+  State held_force_;   ///< the same over a step of the plan
+  double fade_ = 1.0;  ///< of a force over a step of the plan
+  Programme programme_;
+  std::vector<Input> tail_;
+  double since_plan_ = 0.0;
+  bool has_plan_ = false;
+  State x_ = State::Zero();
+  double force_ = 0.0;
+  PlanCounts counts_;
+};
+
+/// Model predictive control (Dagdelen, Reymond, Kemeny, Bordier & Maizi 2009, Control Eng Pract 17:995; Beghi,
+/// Bruschetta & Maran 2012, IEEE CDC): at every sample, and no more than 100 times a second, a quadratic programme over
+/// the next 1.2 s finds the accelerations of angle and shift with the least perceived error, the platform's range,
+/// rates and accelerations being bounds. The vehicle's force is foreseen to fade; its own turns and heave are rendered
+/// as by the classical algorithm. Where a plan is not ready in its iterations the last one's tail is followed, then the
+/// classical algorithm, from wherever the platform is.
+class PredictiveWashout final : public Washout {
+ public:
+  /// @throws InputError as `check_knobs`.
+  PredictiveWashout(const PredictiveDesign& design, const Platform& platform);
+  [[nodiscard]] std::unique_ptr<Washout> clone() const override { return std::make_unique<PredictiveWashout>(*this); }
+
+  /// Of both pairs together.
+  [[nodiscard]] PlanCounts counts() const;
+
+ private:
+  PlatformCommand next(const VehicleMotion& motion, SampleStep step) override;
+
+  PredictiveDesign design_;
+  SharedChannels shared_;
+  std::array<numerics::CausalFilter, 2> low_pass_;  ///< of the classical algorithm that stands by
+  std::array<TiltCoordination, 2> tilt_;
+  std::array<ShiftChannel, 2> shift_;
+  std::vector<PlannedPair<7, 1>> tilting_;   ///< of pairs that do not shift
+  std::vector<PlannedPair<9, 2>> shifting_;  ///< of those that do
+  std::array<bool, 2> shifts_ = {};
+};
+
+}  // namespace veridyn::cueing
