@@ -13,7 +13,7 @@ title = "my drive on my platform"
 seed = 1
 
 [cue]
-algorithms = ["tilt", "classical", "three_axis", "return", "optimal", "adaptive"]  # also "fuzzy", "moving_origin"
+algorithms = ["tilt", "classical", "three_axis", "return", "optimal", "adaptive"]  # also "fuzzy", "moving_origin", "mpc"
 driver = [0.2, 0.35, 0.5]          # driver's head from the centre of gravity: forward, left, up [m]
 # sensor = [0, 0, 0]               # the same of the recorded accelerometer
 # gravity = "in"                   # or "out": whether recorded accelerations hold gravity; decided by accel_z
