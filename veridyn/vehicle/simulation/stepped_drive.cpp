@@ -151,10 +151,21 @@ void SteppedDrive<Tyre>::slow_step(double h) noexcept {
   slow_rates(start, from, rates, change);
   sum_of_states = rates.derivative;
   sum = change;
+  // Friction stops a wheel for one part at least. One that crosses zero in a stage stops too: with friction of both
+  // signs in one part it would tremble on.
+  std::array<bool, kWheels> stopped{};
+  const auto stop = [&](State& at) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const auto w = kWheelSpin + static_cast<Eigen::Index>(i);
+      stopped[i] = stopped[i] || start(w) * at(w) < 0.0;
+      if (stopped[i]) at(w) = 0.0;
+    }
+  };
   constexpr double kReach[] = {0.5, 0.5, 1.0}, kWeight[] = {2.0, 2.0, 1.0};
   for (int stage = 0; stage < 3; ++stage) {
     const double reach = kReach[stage] * h, weight = kWeight[stage];
-    const State at = start + reach * rates.derivative;
+    State at = start + reach * rates.derivative;
+    stop(at);
     const Standing there{from.x + reach * change.x, from.y + reach * change.y};
     slow_rates(at, there, rates, change);
     sum_of_states += weight * rates.derivative;
@@ -165,9 +176,7 @@ void SteppedDrive<Tyre>::slow_step(double h) noexcept {
   const WheelArray<double> most_x = sigma_ * most_ratio_, most_y = sigma_ * most_tangent_;
   state_.deflection_x = (from.x + h / 6.0 * sum.x).max(-most_x).min(most_x);
   state_.deflection_y = (from.y + h / 6.0 * sum.y).max(-most_y).min(most_y);
-  for (Eigen::Index i = kWheelSpin; i < kWheelSpin + 4; ++i) {
-    if (start(i) * state_.vehicle(i) < 0.0) state_.vehicle(i) = 0.0;  // friction stops a wheel for one part at least
-  }
+  stop(state_.vehicle);
 }
 
 template <typename Tyre>
