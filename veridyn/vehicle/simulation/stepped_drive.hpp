@@ -11,8 +11,11 @@
 
 namespace veridyn::vehicle {
 
-/// Contact speeds of a wheel [m/s] between which a stepped drive goes over from deflected tyres to steady slip.
-inline constexpr double kStandingSpeed = 0.5, kRollingSpeed = 2.0;
+/// Contact speed of a wheel [m/s] up to which its slip is that of its deflection; from there it goes over to the
+/// steady one.
+inline constexpr double kStandingSpeed = 0.5;
+/// The upper one: from here on a step is that of `simulate`.
+inline constexpr double kRollingSpeed = 2.0;
 
 /// All that a stepped drive remembers: a copy restores it bit for bit.
 struct DriveState {
