@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "tests/support/counting_new.hpp"
+#include "veridyn/vehicle/simulation/stepped_drive.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
@@ -41,6 +43,23 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
   check([&](const SimulationOptions& o) { return simulate(constant_speed, driver, &road, o, silent); });
   check([&](const SimulationOptions& o) { return simulate(driven, driver, &road, o, silent); });
   check([&](const SimulationOptions& o) { return simulate(bicycle, driver, o, silent); });
+}
+
+TEST(SteppedDrive, DoesNotAllocate) {
+  const VehicleParameters<double> p;
+  const LinearTyre<double> tyre{.stiffness = p.C_f};
+  FourWheelOptions longitudinal;
+  longitudinal.longitudinal.emplace();
+  SteppedDrive<LinearTyre<double>> drive({p, {tyre, tyre, tyre, tyre}, longitudinal}, std::make_shared<const Waves>());
+  const long before = allocations;
+  for (int k = 0; k < 5000; ++k) {
+    drive.step({.steer = 1e-5 * k, .drive_torque = k < 4000 ? 800.0 : 0.0, .brake_torque = k < 4000 ? 0.0 : 3000.0},
+               1e-3);
+    static_cast<void>(drive.motion({0.0, 0.4, 0.7}));
+  }
+  const long after = allocations;
+  EXPECT_EQ(after, before);
+  EXPECT_GT(drive.state().vehicle(kX), 1.0);
 }
 
 }  // namespace

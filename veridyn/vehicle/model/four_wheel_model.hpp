@@ -147,6 +147,12 @@ class FourWheelModel {
   void rates(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
              FourWheelRates<Scalar>& out) const;
 
+  /// The same with other slips than those of steady rolling, near standstill: `change(out)` gets contact velocities and
+  /// steady slips in `out` and may set `slip_angle` and `slip_ratio`, at which the tyres then work.
+  template <typename ChangeSlips>
+  void rates_at_slips(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
+                      const ChangeSlips& change, FourWheelRates<Scalar>& out) const;
+
   /// Position of the wheels from the vehicle's centre of gravity, x forward, y left [m].
   [[nodiscard]] const WheelArray<Scalar>& wheel_x() const { return x_; }
   [[nodiscard]] const WheelArray<Scalar>& wheel_y() const { return y_; }
@@ -172,7 +178,7 @@ class FourWheelModel {
     Wheels X, Y;  ///< in vehicle axes [N]
   };
   /// Each also fills what it knows of `out`.
-  Slips slips(const State& s, const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
+  void slips(const State& s, const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
   VerticalForces vertical_forces(const State& s, const PerWheel<double>& road, FourWheelRates<Scalar>& out) const;
   PlaneForces plane_forces(const Slips& slips, const Wheels& load, const Scalar& camber,
                            const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
@@ -277,8 +283,8 @@ template <typename Scalar, typename Tyre>
 }
 
 template <typename Scalar, typename Tyre>
-auto FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Scalar>& controls,
-                                         FourWheelRates<Scalar>& out) const -> Slips {
+void FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Scalar>& controls,
+                                         FourWheelRates<Scalar>& out) const {
   // The velocity of the contact points in vehicle axes, then in wheel axes.
   const Wheels contact_x = (s(kU) - contact_height_ * s(kPitchRate)) - s(kR) * y_;
   const Wheels contact_y = (s(kV) + contact_height_ * s(kRollRate)) + s(kR) * x_;
@@ -307,7 +313,6 @@ auto FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Sca
   out.slip_angle = slip_angle;
   out.slip_ratio = slip_ratio;
   out.derivative.template segment<4>(kLaggedSlip) = lag.matrix();
-  return {slip_angle, slip_ratio};
 }
 
 template <typename Scalar, typename Tyre>
@@ -373,11 +378,24 @@ template <typename Scalar, typename Tyre>
 [[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates(const State& s, const WheelControls<Scalar>& controls,
                                                           const PerWheel<double>& road,
                                                           FourWheelRates<Scalar>& out) const {
+  rates_at_slips(
+      s, controls, road, [](const FourWheelRates<Scalar>& /*steady*/) {}, out);
+}
+
+template <typename Scalar, typename Tyre>
+template <typename ChangeSlips>
+[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::rates_at_slips(const State& s,
+                                                                   const WheelControls<Scalar>& controls,
+                                                                   const PerWheel<double>& road,
+                                                                   const ChangeSlips& change,
+                                                                   FourWheelRates<Scalar>& out) const {
   using std::sqrt;
   const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
   State& d = out.derivative;
   const Scalar u = s(kU), v = s(kV), r = s(kR), roll = s(kRoll), pitch = s(kPitch);
-  const Slips slip = slips(s, controls, out);
+  slips(s, controls, out);
+  change(out);
+  const Slips slip{out.slip_angle, out.slip_ratio};
   const VerticalForces vertical = vertical_forces(s, road, out);
   const Wheels& lift = vertical.lift;
   const Scalar sum_lift = sum_of_wheels<Scalar>(lift);

@@ -221,6 +221,32 @@ class LatestControls {
   WheelControls<double> at_wheels_;
 };
 
+/// From `begin` over `step` in equal parts: the step of every drive, recorded or stepped from outside. `rates` and
+/// `controls[0]` are those of the beginning; `controls_at(time)` gives the wheels' within the step.
+template <typename Tyre, typename Heights, typename ControlsAt>
+void advance(const FourWheelModel<double, Tyre>& model, const Heights& heights, const ControlsAt& controls_at,
+             double begin, double step, int parts, std::array<WheelControls<double>, 3>& controls,
+             FourWheelRates<double>& rates, FourWheelState<double>& state) {
+  const bool spins = model.options().longitudinal.has_value();
+  const double h = step / parts;
+  for (int part = 0; part < parts; ++part) {
+    const double t = begin + part * h;
+    if (part > 0) {
+      controls[0] = controls[2];
+      model.rates(state, controls[0], heights(state), rates);
+    }
+    controls[1] = controls_at(t + 0.5 * h);
+    controls[2] = controls_at(part + 1 == parts ? begin + step : t + h);
+    const WheelArray<double> before = state.segment<4>(kWheelSpin).array();
+    four_wheel_step(model, heights, controls, h, rates, state);
+    if (!spins) continue;
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      // Friction stops a wheel and never turns it the other way.
+      if (before[i] * state(kWheelSpin + i) < 0.0) state(kWheelSpin + i) = 0.0;
+    }
+  }
+}
+
 /// Whether the vehicle's motion ends here, and how; kCompleted: it goes on.
 [[nodiscard]] SimulationEnd ended(const FourWheelState<double>& state, bool speed_varies);
 
@@ -273,23 +299,8 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
     const double step = plan.time(k + 1) - begin;
     const int parts =
         spins ? internal::parts_of_step(step * fastest.spins * options.speed, model.parameters(), state) : 1;
-    const double h = step / parts;
-    for (int part = 0; part < parts; ++part) {
-      const double t = begin + part * h;
-      if (part > 0) {
-        controls[0] = controls[2];
-        model.rates(state, controls[0], heights(state), rates);
-      }
-      controls[1] = at_wheels(internal::controls_at(driver, t + 0.5 * h, spins));
-      controls[2] = at_wheels(internal::controls_at(driver, part + 1 == parts ? begin + step : t + h, spins));
-      const WheelArray<double> before = state.segment<4>(kWheelSpin).array();
-      four_wheel_step(model, heights, controls, h, rates, state);
-      if (!spins) continue;
-      for (Eigen::Index i = 0; i < 4; ++i) {
-        // Friction stops a wheel and never turns it the other way.
-        if (before[i] * state(kWheelSpin + i) < 0.0) state(kWheelSpin + i) = 0.0;
-      }
-    }
+    const auto within = [&](double t) { return at_wheels(internal::controls_at(driver, t, spins)); };
+    internal::advance(model, heights, within, begin, step, parts, controls, rates, state);
   }
   lift_offs.end(out.end_time, out.lift_offs);
   return out;

@@ -1,0 +1,296 @@
+#include "veridyn/vehicle/simulation/stepped_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
+#include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
+
+namespace veridyn::vehicle {
+
+namespace {
+
+/// Step times rate that is followed well inside the stability of the Runge-Kutta method.
+constexpr double kRateOfPart = 1.25;
+constexpr double kMostTilt = 45.0 * kDegree;
+
+double contact_speed(const FourWheelRates<double>& rates, Eigen::Index i) {
+  return std::hypot(rates.contact_x[i], rates.contact_y[i]);
+}
+
+/// Share of steady slip at a contact speed: 0 standing, 1 rolling, with continuous slope.
+double share_of_steady(double speed) {
+  const double s = std::clamp((speed - kStandingSpeed) / (kRollingSpeed - kStandingSpeed), 0.0, 1.0);
+  return s * s * (3.0 - 2.0 * s);
+}
+
+}  // namespace
+
+template <typename Tyre>
+SteppedDrive<Tyre>::SteppedDrive(const Model& model, std::shared_ptr<const Road> road, double usual_speed)
+    : model_(model), road_(std::move(road)), spins_(model.options().longitudinal.has_value()) {
+  const VehicleParameters<double>& p = model_.parameters();
+  internal::check_parameters(p);
+  if (!(usual_speed > 0.0 && usual_speed < kInfinity)) throw InputError("drive", "usual speed must be > 0");
+  if (spins_ && model_.options().geometry != BicycleGeometry::kExact) {
+    throw InputError("vehicle",
+                     "geometry is for small angles, whose slip has no value at rest; a stepped drive with "
+                     "longitudinal dynamics needs the exact one");
+  }
+  const internal::FastestRates fastest = internal::fastest_rates(model_, usual_speed);
+  internal::check_step(1e-6, fastest.all);
+  longest_step_ = 2.5 / fastest.all;
+  spins_rate_speed_ = fastest.spins * usual_speed;
+  most_ratio_ = most_tangent_ = damping_x_ = damping_y_ = WheelArray<double>::Zero();
+  if (spins_) {
+    const LongitudinalParameters& l = *model_.options().longitudinal;
+    const double lag = model_.options().relaxation_length;
+    sigma_ = lag > 0.0 ? lag : l.wheel_radius / 3.0;
+    double stiffest_x = 0.0, stiffest_y = 0.0;
+    WheelArray<double> along, across;
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      constexpr double kSmall = 1e-4;
+      const Tyre& tyre = model_.tyres()[static_cast<std::size_t>(i)];
+      const double load = model_.rest_loads()[i];
+      along[i] = (tyre.forces(load, kSmall, 0.0, 0.0).Fx - tyre.forces(load, -kSmall, 0.0, 0.0).Fx) / (2.0 * kSmall);
+      across[i] = tyre.cornering_stiffness(load);
+      stiffest_x = std::max(stiffest_x, along[i]);
+      stiffest_y = std::max(stiffest_y, across[i]);
+      if (!(along[i] > 0.0 && across[i] > 0.0)) {
+        throw InputError("vehicle", "a tyre without stiffness at its static load cannot hold a standing car");
+      }
+    }
+    most_ratio_ = 3.0 * model_.rest_loads() / along;
+    most_tangent_ = 3.0 * model_.rest_loads() / across;
+    damping_x_.setConstant(std::sqrt(p.mass / (sigma_ * along.sum())));
+    damping_y_.setConstant(std::sqrt(p.mass / (sigma_ * across.sum())));
+    const double stiffness = std::max(stiffest_x, stiffest_y);
+    const double reach = std::max(p.a, p.b), r = l.wheel_radius;
+    // What moves a contact patch under a unit force: the body with its yaw and tilt, and the wheel's spin. Four patches
+    // at most move it together.
+    const double body = 4.0 * (1.0 / p.mass + (reach * reach + 0.25 * p.track_f * p.track_f) / p.I_z +
+                               p.cg_height * p.cg_height / std::min(p.I_x, p.I_y));
+    const double mobility = body + r * r / l.wheel_inertia;
+    standing_rate_ = std::max(std::sqrt(stiffness / sigma_ * mobility),
+                              stiffness * mobility * std::max(damping_x_[0], damping_y_[0]));
+  }
+  reset();
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::reset(double speed) {
+  DriveState start;
+  start.vehicle = model_.steady_start(speed);
+  reset(start);
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::reset(const DriveState& state) {
+  state_ = state;
+  evaluate();
+}
+
+template <typename Tyre>
+PerWheel<double> SteppedDrive<Tyre>::under(const FourWheelState<double>& state) const {
+  return RoadUnderWheels<Model>{model_, road_.get()}(state);
+}
+
+template <typename Tyre>
+bool SteppedDrive<Tyre>::rolls() const {
+  if (!spins_) return true;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (!(contact_speed(rates_, i) >= kRollingSpeed)) return false;
+  }
+  return true;
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::evaluate() noexcept {
+  at_wheels_ = model_.wheel_controls(state_.controls);
+  model_.rates(state_.vehicle, at_wheels_, under(state_.vehicle), rates_);
+  if (rolls()) return;
+  Standing unused;
+  slow_rates(state_.vehicle, {state_.deflection_x, state_.deflection_y}, rates_, unused);
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::slow_rates(const FourWheelState<double>& state, const Standing& standing,
+                                    FourWheelRates<double>& rates, Standing& change) const {
+  const double radius = model_.options().longitudinal->wheel_radius;
+  const auto deflected = [&](FourWheelRates<double>& out) {
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      const double c = at_wheels_.cos[i], s = at_wheels_.sin[i];
+      const double along = c * out.contact_x[i] + s * out.contact_y[i];
+      const double across = c * out.contact_y[i] - s * out.contact_x[i];
+      const double slide = radius * state(kWheelSpin + i) - along;
+      const double leak = std::abs(along) / sigma_;
+      change.x[i] = slide - leak * standing.x[i];
+      change.y[i] = -across - leak * standing.y[i];
+      const double steady = share_of_steady(contact_speed(out, i));
+      const double ratio = std::clamp(standing.x[i] / sigma_, -most_ratio_[i], most_ratio_[i]) + damping_x_[i] * slide;
+      const double tangent =
+          std::clamp(standing.y[i] / sigma_, -most_tangent_[i], most_tangent_[i]) - damping_y_[i] * across;
+      out.slip_ratio[i] = steady * out.slip_ratio[i] + (1.0 - steady) * ratio;
+      out.slip_angle[i] = steady * out.slip_angle[i] + (1.0 - steady) * std::atan(tangent);
+    }
+  };
+  model_.rates_at_slips(state, at_wheels_, under(state), deflected, rates);
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::slow_step(double h) noexcept {
+  using State = FourWheelState<double>;
+  const State start = state_.vehicle;
+  const Standing from{state_.deflection_x, state_.deflection_y};
+  FourWheelRates<double> rates;
+  Standing change, sum;
+  State sum_of_states;
+  slow_rates(start, from, rates, change);
+  sum_of_states = rates.derivative;
+  sum = change;
+  // Friction stops a wheel for one part at least. One that crosses zero in a stage stops too: with friction of both
+  // signs in one part it would tremble on.
+  std::array<bool, kWheels> stopped{};
+  const auto stop = [&](State& at) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const auto w = kWheelSpin + static_cast<Eigen::Index>(i);
+      stopped[i] = stopped[i] || start(w) * at(w) < 0.0;
+      if (stopped[i]) at(w) = 0.0;
+    }
+  };
+  constexpr double kReach[] = {0.5, 0.5, 1.0}, kWeight[] = {2.0, 2.0, 1.0};
+  for (int stage = 0; stage < 3; ++stage) {
+    const double reach = kReach[stage] * h, weight = kWeight[stage];
+    State at = start + reach * rates.derivative;
+    stop(at);
+    const Standing there{from.x + reach * change.x, from.y + reach * change.y};
+    slow_rates(at, there, rates, change);
+    sum_of_states += weight * rates.derivative;
+    sum.x += weight * change.x;
+    sum.y += weight * change.y;
+  }
+  state_.vehicle = start + h / 6.0 * sum_of_states;
+  const WheelArray<double> most_x = sigma_ * most_ratio_, most_y = sigma_ * most_tangent_;
+  state_.deflection_x = (from.x + h / 6.0 * sum.x).max(-most_x).min(most_x);
+  state_.deflection_y = (from.y + h / 6.0 * sum.y).max(-most_y).min(most_y);
+  stop(state_.vehicle);
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::follow_steady_slip() noexcept {
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    state_.deflection_x[i] = sigma_ * std::clamp(rates_.slip_ratio[i], -most_ratio_[i], most_ratio_[i]);
+    const double tangent = std::tan(std::clamp(rates_.slip_angle[i], -1.5, 1.5));
+    state_.deflection_y[i] = sigma_ * std::clamp(tangent, -most_tangent_[i], most_tangent_[i]);
+  }
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::part(double h) noexcept {
+  const DriveState before = state_;
+  FourWheelState<double>& s = state_.vehicle;
+  if (rolls()) {
+    int parts = 1;
+    if (spins_) {
+      FourWheelState<double> forward = s;
+      forward(kU) = std::abs(s(kU));
+      parts = internal::parts_of_step(h * spins_rate_speed_, model_.parameters(), forward);
+    }
+    std::array<WheelControls<double>, 3> controls{at_wheels_, at_wheels_, at_wheels_};
+    const auto heights = [this](const FourWheelState<double>& at) { return under(at); };
+    const auto held = [this](double /*time*/) -> const WheelControls<double>& { return at_wheels_; };
+    internal::advance(model_, heights, held, state_.time, h, parts, controls, rates_, s);
+    if (spins_) follow_steady_slip();
+  } else {
+    const double fastest = std::max(standing_rate_, spins_rate_speed_ / kLeastSpeedOfRatio);
+    const int parts = std::clamp(static_cast<int>(std::ceil(h * fastest / kRateOfPart)), 1, 256);
+    for (int i = 0; i < parts; ++i) slow_step(h / parts);
+  }
+  state_.time = before.time + h;
+  hold_limits(before);
+  evaluate();
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::hold_limits(const DriveState& before) noexcept {
+  FourWheelState<double>& s = state_.vehicle;
+  if (!(std::abs(s.sum() + state_.deflection_x.sum() + state_.deflection_y.sum()) < kInfinity)) {
+    // Nothing can be said of such a motion but that it must end: the vehicle stands where it was last known.
+    const double time = state_.time;
+    state_ = before;
+    state_.time = time;
+    ++state_.refused;
+    for (const Eigen::Index i : {kU, kV, kR, kHeaveRate, kRollRate, kPitchRate}) s(i) = 0.0;
+    s.segment<4>(kWheelHeightRate).setZero();
+    s.segment<4>(kWheelSpin).setZero();
+  }
+  state_.rolled_over = false;
+  for (const auto& [angle, rate] : {std::pair{kRoll, kRollRate}, std::pair{kPitch, kPitchRate}}) {
+    if (!(std::abs(s(angle)) >= kMostTilt)) continue;
+    state_.rolled_over = true;
+    s(angle) = std::copysign(kMostTilt, s(angle));
+    if (s(rate) * s(angle) > 0.0) s(rate) = 0.0;
+  }
+}
+
+template <typename Tyre>
+void SteppedDrive<Tyre>::step(const Controls& controls, double dt) noexcept {
+  if (!(dt > 0.0 && dt <= 1.0)) {
+    ++state_.refused;
+    if (!(dt > 1.0)) return;
+    dt = 1.0;
+  }
+  if (!internal::admissible(controls)) {
+    ++state_.refused;
+  } else if (controls.steer != state_.controls.steer || controls.drive_torque != state_.controls.drive_torque ||
+             controls.brake_torque != state_.controls.brake_torque) {
+    state_.controls = controls;
+    evaluate();
+  }
+  const int parts = static_cast<int>(std::ceil(dt / longest_step_));
+  const double end = state_.time + dt;
+  for (int i = 0; i < parts; ++i) part(dt / parts);
+  state_.time = end;
+}
+
+template <typename Tyre>
+recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place) const {
+  using Eigen::Vector3d;
+  const FourWheelState<double>& s = state_.vehicle;
+  const FourWheelState<double>& d = rates_.derivative;
+  const double grade = spins_ ? model_.options().longitudinal->grade : 0.0;
+  const double gravity = model_.options().gravity;
+  const Eigen::Quaterniond leans(Eigen::AngleAxisd(s(kPitch), Vector3d::UnitY()) *
+                                 Eigen::AngleAxisd(s(kRoll), Vector3d::UnitX()));
+  recording::MotionSample out;
+  out.time = state_.time;
+  out.frame = Frame::kFlu;
+  out.attitude = Eigen::AngleAxisd(s(kYaw), Vector3d::UnitZ()) * Eigen::AngleAxisd(-grade, Vector3d::UnitY()) * leans;
+  // In the axes of the road under the vehicle, where the equations of motion are written.
+  const Vector3d force(rates_.longitudinal_acceleration + gravity * std::sin(grade), rates_.lateral_acceleration,
+                       d(kHeaveRate) + gravity * std::cos(grade));
+  const Vector3d across(0.0, 1.0, 0.0);  // the axis of pitch, which no other turn has moved
+  const Vector3d forward(std::cos(s(kPitch)), 0.0, -std::sin(s(kPitch)));  // that of roll, turned by pitch
+  const Vector3d up = Vector3d::UnitZ();
+  const Vector3d rate = s(kR) * up + s(kPitchRate) * across + s(kRollRate) * forward;
+  // These axes turn themselves: pitch's with yaw, roll's with yaw and pitch.
+  const Vector3d yaw_rate = s(kR) * up;
+  const Vector3d turning = d(kR) * up + d(kPitchRate) * across + s(kPitchRate) * yaw_rate.cross(across) +
+                           d(kRollRate) * forward + s(kRollRate) * (yaw_rate + s(kPitchRate) * across).cross(forward);
+  const Eigen::Quaterniond to_body = leans.conjugate();
+  out.force = to_body * force;
+  out.rate = to_body * rate;
+  out.angular_acceleration = to_body * turning;
+  out.force_from = out.rate_from = out.angular_acceleration_from = out.attitude_from = recording::Origin::kMeasured;
+  return recording::at_place(out, place);
+}
+
+template class SteppedDrive<LinearTyre<double>>;
+template class SteppedDrive<FialaTyre<double>>;
+template class SteppedDrive<SimpleMagicFormulaTyre<double>>;
+template class SteppedDrive<MagicFormulaTyre<double>>;
+
+}  // namespace veridyn::vehicle
