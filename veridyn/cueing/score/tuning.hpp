@@ -14,7 +14,7 @@ struct TuningOptions {
   /// Weight of each cue; of cues that the driver never feels none.
   PerCue<double> weights = {{1.0, 1.0, 0.3, 0.3, 0.3, 0.1}};
   /// Weight of the share of time in which an axis is held back by a limit.
-  double limited = 1.0;
+  double limited = 0.2;
   std::size_t evaluations = 150;
 };
 

@@ -17,8 +17,10 @@ std::unique_ptr<Washout> ReturnDesign::make(const Platform& platform) const {
 }
 
 ReturnWashout::ReturnWashout(const ReturnDesign& d, const Platform& platform) : design_(checked(d)), shared_(d.shared) {
-  for (Eigen::Index i = 0; i < 2; ++i)
-    pairs_[static_cast<std::size_t>(i)].shifts = platform.limits[shift_axis(i)].moves();
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const AxisLimits& axis = platform.limits[shift_axis(i)];
+    if (axis.moves()) pairs_[static_cast<std::size_t>(i)].reach = 0.8 * std::min(-axis.lowest, axis.highest);
+  }
 }
 
 PairedOutput ReturnWashout::Pair::step(const PairedInput& now, const ReturnDesign& d, SampleStep step) {
@@ -31,11 +33,17 @@ PairedOutput ReturnWashout::Pair::step(const PairedInput& now, const ReturnDesig
     state.setZero();
     input.setZero();
   }
+  // A speed home that half of the force can brake, critically damped close to home; more force only where the speed
+  // would otherwise not end within reach.
   const auto homeward = [&](double off, double speed) {
-    return std::clamp(-2.0 * home * speed - home * home * off, -d.home_force, d.home_force);
+    const double near = d.home_force / home;
+    const double wanted = std::copysign(std::sqrt(near * near + d.home_force * std::abs(off)) - near, -off);
+    const double room = std::max(reach - std::copysign(1.0, speed) * off, 0.1 * reach);
+    const double force = std::max(d.home_force, speed * speed / (2.0 * room));
+    return std::clamp(2.0 * home * (wanted - speed), -force, force);
   };
   const auto shift_acceleration = [&](const Eigen::Vector4d& x, const PairedInput& u) {
-    if (!shifts) return 0.0;
+    if (reach == 0.0) return 0.0;
     const double share = onset_share(u), passed = u(1) - 2.0 * zeta * onset * x(3) - onset * onset * x(2);
     return share * (passed + homeward(x(0) - x(2), x(1) - x(3))) + (1.0 - share) * homeward(x(0), x(1));
   };

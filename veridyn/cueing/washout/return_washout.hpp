@@ -23,8 +23,10 @@ class ReturnDesign final : public WashoutDesign {
 /// goes there at once, no faster than tilt_rate:
 ///
 ///     onset mode   shift'' = high-pass(gain a); tilt -> asin((gain f - shift'') / g)
-///     return mode  while |gain f| is below the threshold: shift'' = -2 w shift' - w^2 shift within home_force, tilt ->
-///     0
+///     return mode  while |gain f| is below the threshold: shift'' = 2 w (v - shift') within home_force, tilt -> 0,
+///                  v the speed home that half of home_force can brake, -w/2 shift close to home
+///
+/// A shift so fast that home_force would not end it within four fifths of the range is braked harder, and that is felt.
 ///
 /// After a return the shift is led back to where the high-pass would have it, in the same way.
 class ReturnWashout final : public Washout {
@@ -38,7 +40,7 @@ class ReturnWashout final : public Washout {
 
   /// Surge with pitch or sway with roll.
   struct Pair {
-    bool shifts = false;                              ///< whether the platform can
+    double reach = 0.0;                               ///< of the shift to either side [m]; 0: it cannot
     Eigen::Vector4d state = Eigen::Vector4d::Zero();  ///< shift, its rate; the same of the high-pass
     PairedInput input = PairedInput::Zero();
     TiltCoordination tilt;
