@@ -54,6 +54,36 @@ Table score_table(const CueingResult& result, Cue cue) {
   return t;
 }
 
+/// Perceived errors of both pairs of axes beside the least that is possible.
+Table perceived_table(const CueingResult& result) {
+  Table t{.title = "Perceived error",
+          .caption =
+              "Of force and turn together, in thresholds. Least: with the whole drive known beforehand, within "
+              "range, rates and accelerations of the platform; no algorithm can be better."};
+  t.columns = {{.name = "algorithm", .align = Align::kLeft},
+               {.name = "surge and pitch", .align = Align::kLeft},
+               {.name = "over the least"},
+               {.name = "sway and roll", .align = Align::kLeft},
+               {.name = "over the least"}};
+  const auto over = [&](double error, std::size_t pair) {
+    return number_cell(result.least[pair] ? error / result.least[pair]->error : NAN, 3);
+  };
+  for (const AlgorithmResult& a : result.algorithms) {
+    const std::array<Measured, 2>& e = a.score.pairs;
+    t.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(with_interval(e[1])), over(e[1].value, 1),
+                                text_cell(with_interval(e[0])), over(e[0].value, 0)}});
+  }
+  if (const auto& [sway, surge] = result.least; surge && sway) {
+    t.rows.push_back(
+        {.cells = {text_cell("a platform that stands"), text_cell(fmt::format("{:.3f}", surge->still)),
+                   over(surge->still, 1), text_cell(fmt::format("{:.3f}", sway->still)), over(sway->still, 0)}});
+    t.rows.push_back(
+        {.cells = {text_cell("least"), text_cell(fmt::format("{:.3f}", surge->error)), over(surge->error, 1),
+                   text_cell(fmt::format("{:.3f}", sway->error)), over(sway->error, 0)}});
+  }
+  return t;
+}
+
 /// Pairs of algorithms that differ beyond their intervals, in words.
 List differences(const CueingResult& result) {
   List list;
@@ -302,6 +332,7 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
   d.verdict.lines = study.notes;
   const CueingScore& first = result.algorithms.front().score;
   d.verdict.lines.insert(d.verdict.lines.end(), first.notes.begin(), first.notes.end());
+  d.verdict.lines.insert(d.verdict.lines.end(), result.notes.begin(), result.notes.end());
   std::vector<std::string> names;
   for (const AlgorithmResult& a : result.algorithms) names.push_back(a.run.algorithm);
   d.facts = {{"Drive", study.drive},
@@ -313,6 +344,7 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
   for (std::size_t i = 0; i < kCues; ++i) {
     if (is_moved(result, static_cast<Cue>(i))) score.blocks.emplace_back(score_table(result, static_cast<Cue>(i)));
   }
+  score.blocks.emplace_back(perceived_table(result));
   if (List list = differences(result); !list.items.empty()) score.blocks.emplace_back(std::move(list));
   d.sections.push_back(std::move(score));
   d.sections.push_back({.title = "Felt", .blocks = {felt_histories(result)}});

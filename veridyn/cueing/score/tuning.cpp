@@ -68,7 +68,8 @@ double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOpt
       pp += std::pow(pair.platform[k] - p, 2);
       vp += (pair.vehicle[k] - v) * (pair.platform[k] - p);
     }
-    cost += options.weights[i] * (1.0 - 2.0 * vp / (vv + pp + n * (v - p) * (v - p)));
+    const double r = pp > 0.0 ? vp / std::sqrt(vv * pp) : 0.0, s = std::sqrt(pp / vv);
+    cost += options.weights[i] * (1.0 - r + 0.5 * std::max({0.0, 1.0 - s / options.strength, s - 1.0}));
     weights += options.weights[i];
   }
   double limited = 0.0;
