@@ -96,6 +96,7 @@ void PlannedPair<kStates, kInputs>::plan(double force) {
     has_plan_ = true;
     return;
   }
+  planned_from_ = x_;
   const numerics::ProgrammeResult r =
       programme_.solve(x_, {.iterations = kIterations, .tolerance = 1e-6}, has_plan_ && counts_.plans > 0);
   ++counts_.plans;
