@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/read.hpp"
+#include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 
 namespace veridyn::app {
@@ -38,17 +39,96 @@ double gap_time(const Channel& channel) {
   return total;
 }
 
+/// Which channels a study would take.
+std::string mapping_section(const recording::MappedRecording& mapped, bool vehicle, Summary& summary) {
+  std::string text;
+  summary["mapping"] = Summary::object();
+  if (!mapped.origins.empty()) {
+    text += fmt::format("\nfor {} study ({} log):\n", vehicle ? "a vehicle" : "an aircraft", mapped.log_kind);
+    for (const recording::ChannelOrigin& origin : mapped.origins) {
+      summary["mapping"][origin.channel] = origin.source;
+      text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
+                          origin.note.empty() ? "" : ", " + origin.note);
+    }
+  }
+  for (const std::string& note : mapped.notes) text += fmt::format("  note: {}\n", note);
+  return text;
+}
+
+/// Signs, axes and units of a drive by what its channels say of each other.
+std::string axis_section(const recording::MappedRecording& mapped, Summary& summary) {
+  const recording::DriveAxisCheck check =
+      recording::check_drive_axes(recording::drive_motion(mapped.recording), mapped.origins);
+  if (check.relations.empty()) return {};
+  std::string text = fmt::format("\nsigns and units:\n  {:<38} {:>7} {:>20} {:>12} {:>6}\n", "", "slope", "95 %",
+                                 "correlation", "[s]");
+  Summary json = Summary::object();
+  json["relations"] = Summary::array();
+  for (const recording::DriveRelation& r : check.relations) {
+    text += r.seconds > 0.0 && std::isfinite(r.low)
+                ? fmt::format("  {:<38} {:>7.3g} {:>20} {:>12.2f} {:>6.0f}{}\n", r.text, r.slope,
+                              fmt::format("{:.3g} to {:.3g}", r.low, r.high), r.correlation, r.seconds,
+                              r.fits ? "  fits" : "")
+                : fmt::format("  {:<38} nothing to compare\n", r.text);
+    json["relations"].push_back(Summary::object({{"relation", r.text},
+                                                 {"slope", r.slope},
+                                                 {"correlation", r.correlation},
+                                                 {"seconds", r.seconds},
+                                                 {"fits", r.fits}}));
+  }
+  json["faults"] = Summary::array();
+  const auto describe = [&](const std::vector<recording::DriveFault>& faults, const char* begin) {
+    for (const recording::DriveFault& f : faults) {
+      text += fmt::format("  {} {} (correlation {:.2f})\n", begin, f.text, f.correlation);
+      for (const std::string& line : f.lines)
+        text += fmt::format("      mend it in [{}]: {}\n", line.starts_with("frame") ? "data" : "data.map", line);
+      Summary one = Summary::object({{"fault", f.text}, {"correlation", f.correlation}});
+      one["mend"] = f.lines;
+      one["sure"] = check.or_else.empty();
+      json["faults"].push_back(std::move(one));
+    }
+  };
+  describe(check.faults, check.or_else.empty() ? "wrong:" : "either:");
+  for (const auto& faults : check.or_else) describe(faults, "or:");
+  for (const std::string& note : check.notes) text += fmt::format("  note: {}\n", note);
+  const auto any = [&](auto what) { return std::any_of(check.relations.begin(), check.relations.end(), what); };
+  const bool fits = any([](const auto&r) { return r.fits; }),
+             misfits = any([](const auto&r) { return r.judged && !r.fits; });
+  if (check.faults.empty() && fits && !misfits) text += "  nothing contradicts the channels' names and units\n";
+  summary["signs_and_units"] = std::move(json);
+  return text;
+}
+
+/// The drive of a study, with its `[data.map]`.
+int inspect_drive(const Arguments& arguments, const std::string& file) {
+  const Study study = Study::load(file, arguments.common.overrides);
+  const vehicle::DriveLog log = vehicle::read_drive_log(study.root().table("data"));
+  Summary summary;
+  summary["file"] = file;
+  std::string text = fmt::format("{}: drive of a study, {} channels\n", file, log.mapped.recording.channels().size());
+  text += mapping_section(log.mapped, true, summary);
+  text += axis_section(log.mapped, summary);
+  if (arguments.common.json) {
+    print_summary(summary, arguments.common);
+  } else {
+    print_text(text);
+  }
+  return kDone;
+}
+
 int inspect(const Arguments& arguments) {
   const std::string& file = arguments.text("FILE");
   const std::string& pose = arguments.text("--pose");
+  if (std::filesystem::path(file).extension() == ".toml") return inspect_drive(arguments, file);
   if (is_model(file)) return inspect_model(file, pose, arguments.flag("--as-opensim"), arguments.common);
   io::Log log = io::read_log(file);
   const std::string format = log.format;
   const io::LogDamage damage = log.damage;
   const std::size_t topics = log.topics.size();
   const Recording recording = io::to_recording(std::move(log));
-  // The frame distinguishes vehicles from aircraft.
-  const bool vehicle = recording.frame == Frame::kFlu;
+  // The frame distinguishes vehicles from aircraft; a table that does not say it, its speed.
+  const bool vehicle =
+      recording.frame == Frame::kFlu || (recording.find("speed") != nullptr && recording.find("airspeed") == nullptr);
   const recording::MappedRecording mapped = vehicle ? vehicle::map_drive_channels(recording, StudyTable("data.map"))
                                                     : aircraft::map_channels(recording, StudyTable("data.map"), {});
   const TimeSpan span = recording.span();
@@ -88,16 +168,8 @@ int inspect(const Arguments& arguments) {
                     channel.size(), channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
                     std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numbers");
   }
-  summary["mapping"] = Summary::object();
-  if (!mapped.origins.empty()) {
-    text += fmt::format("\nfor {} study ({} log):\n", vehicle ? "a vehicle" : "an aircraft", mapped.log_kind);
-    for (const recording::ChannelOrigin& origin : mapped.origins) {
-      summary["mapping"][origin.channel] = origin.source;
-      text += fmt::format("  {:<18} <- {} ({:.1f} Hz){}\n", origin.channel, origin.source, origin.rate_Hz,
-                          origin.note.empty() ? "" : ", " + origin.note);
-    }
-  }
-  for (const std::string& note : mapped.notes) text += fmt::format("  note: {}\n", note);
+  text += mapping_section(mapped, vehicle, summary);
+  if (vehicle) text += axis_section(mapped, summary);
   if (arguments.flag("--events")) {
     text += "\nevents:\n";
     for (const Event& event : recording.events)
@@ -123,7 +195,8 @@ Command inspect_command() {
       .summary = "what a log or a model file holds: channels, rates, gaps, damage; bodies, joints, muscles",
       .arguments =
           {{.name = "FILE",
-            .help = "ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto or .mot, CSV, a folder of NumPy "
+            .help = "a study whose [data] names a drive; ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto "
+                    "or .mot, CSV, a folder of NumPy "
                     "arrays; OpenSim model .osim, or the built-in model 'arm'",
             .required = true},
            {.name = "--events", .help = "list flight modes and messages", .value = false},
@@ -133,7 +206,8 @@ Command inspect_command() {
                     "a .csv, .mot or .sto file or for one pose 'elbow_flexion=90 deg,...'"},
            {.name = "--as-opensim", .help = "with --pose: wrap paths as OpenSim does, jumps included", .value = false}},
       .example =
-          "veridyn inspect flight.bin\n  veridyn inspect arm26.osim\n  veridyn inspect arm --pose "
+          "veridyn inspect flight.bin\n  veridyn inspect drive.csv\n  veridyn inspect arm26.osim\n  veridyn inspect "
+          "arm --pose "
           "\"elbow_flexion=90 deg\"",
       .run = inspect};
 }

@@ -198,5 +198,25 @@ TEST_F(VehicleProgram, StraightDrivingIsNoErrorAndIdentifiesNothing) {
   EXPECT_NE(nlohmann::json::parse(identified.text)["verdict"], "identified");
 }
 
+TEST_F(VehicleProgram, InspectSaysWhichUnitIsWrongAndItsLineMendsIt) {
+  // Speed in km/h under the name of m/s.
+  const std::string study = logged("kmh", [](double t) {
+    const double speed = 15.0 + 3.0 * std::sin(0.8 * t), rate = 0.2 * std::sin(0.5 * t);
+    return std::array<double, 4>{2.7 * rate / speed, 3.6 * speed, rate, speed * rate};
+  });
+  const Outcome wrong = run("inspect " + (folder_ / "kmh.csv").string());
+  ASSERT_EQ(wrong.exit_code, 0) << wrong.text;
+  EXPECT_THAT(wrong.text, HasSubstr("speed is in km/h, not m/s"));
+  const std::string line = "speed = { channel = \"speed\", scale = 0.277778 }";
+  EXPECT_THAT(wrong.text, HasSubstr("mend it in [data.map]: " + line));
+  EXPECT_THAT(run("inspect " + study).text, HasSubstr("speed is in km/h"));
+  const Outcome mended =
+      run("inspect " + file("mended.toml", "[data]\nfile = \"kmh.csv\"\n[data.map]\n" + line + "\n"));
+  ASSERT_EQ(mended.exit_code, 0) << mended.text;
+  EXPECT_THAT(mended.text, HasSubstr("nothing contradicts"));
+  EXPECT_EQ(nlohmann::json::parse(run("inspect " + study + " --json").text)["signs_and_units"]["faults"].size(), 1U);
+  expect_refusal("inspect " + file("none.toml", "title = \"nothing\"\n"), "data: is missing");
+}
+
 }  // namespace
 }  // namespace veridyn

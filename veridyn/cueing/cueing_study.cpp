@@ -9,6 +9,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/cueing/washout/shared_channels.hpp"
+#include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/motion_recording.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 #include "veridyn/vehicle/simulation/trajectory_motion.hpp"
@@ -46,6 +47,12 @@ std::vector<MotionSample> recorded(const StudyTable& data, const recording::Moti
   const vehicle::DriveLog log = vehicle::read_drive_log(data);
   study.inputs.insert(study.inputs.end(), log.inputs.begin(), log.inputs.end());
   const recording::RecordedMotion motion = recording::motion_samples(log.mapped.recording, options);
+  for (const recording::DriveFault& f :
+       recording::check_drive_axes(recording::drive_motion(log.mapped.recording), log.mapped.origins).faults) {
+    study.notes.push_back(
+        fmt::format("wrong: {} (correlation {:.2f}); {}", f.text, f.correlation,
+                    f.lines.empty() ? "" : "mend it by " + fmt::format("{}", fmt::join(f.lines, "; "))));
+  }
   for (const auto* notes : {&log.mapped.notes, &motion.notes}) {
     for (const std::string& note : *notes) {
       if (std::find(study.notes.begin(), study.notes.end(), note) == study.notes.end()) study.notes.push_back(note);
