@@ -10,6 +10,7 @@ namespace veridyn::cueing {
 /// What an experiment shows over time.
 struct Experiment {
   std::vector<double> time;  ///< [s]
+  /// One line of it.
   struct Curve {
     std::string name;
     std::vector<double> values;  ///< [rad]
