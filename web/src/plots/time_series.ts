@@ -213,6 +213,7 @@ function panel_hooks({ figure, group, windows }: Shared, drawing: DrawnPanel, fi
     ],
     draw: [
       (plot) => {
+        group.place(plot);
         for (const line of drawing.ordinate.off_scale) draw_beyond(plot, line);
         drawing.mark(drawing.ordinate.off_scale);
       },
@@ -221,7 +222,7 @@ function panel_hooks({ figure, group, windows }: Shared, drawing: DrawnPanel, fi
     setCursor: [
       (plot) => {
         const left = plot.cursor.left ?? -1;
-        drawing.read(left >= 0 ? plot.posToVal(left, 'x') : null);
+        drawing.read(left >= 0 ? plot.posToVal(left, 'x') : group.moment);
       },
     ],
   };
@@ -283,8 +284,9 @@ function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean)
   };
   shown.on_change(() => {
     plot?.batch(() => drawn.forEach(({ line }, k) => plot?.setSeries(k + 1, { show: shown.shows(line.name, line.role) })));
-    drawing.read(null);
+    drawing.read(group.moment);
   });
+  group.on_mark(drawing.read);
   shared.pictures.push(() => ({ panel, drawn: drawing.visible(), y: drawing.view.y ?? drawing.ordinate.range }));
   const host = h('div', { class: 'plot' });
   queueMicrotask(() => {
