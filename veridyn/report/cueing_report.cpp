@@ -26,7 +26,14 @@ std::string with_interval(const Measured& m, double scale = 1.0, int decimals = 
   if (!std::isfinite(m.value)) return "-";
   const auto text = [&](double v) { return format_decimals(scale * v, decimals); };
   if (!std::isfinite(m.low)) return text(m.value);
-  return fmt::format("{} ({} to {})", text(m.value), text(m.low), text(m.high));
+  // Spaces that do not break keep the interval on one line, the value's or the next.
+  return fmt::format("{} ({}\u00a0to\u00a0{})", text(m.value), text(m.low), text(m.high));
+}
+
+double three_digits(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return unit * std::round(value / unit);
 }
 
 std::string capitalised(std::string text) {
@@ -141,10 +148,10 @@ Table workspace_table(const CueingStudy& study, const CueingResult& result) {
     const int decimals = turns(axis) ? 2 : 1;
     for (const AlgorithmResult& a : result.algorithms) {
       const AxisScore& s = a.score.axes[i];
-      t.rows.push_back(
-          {.cells = {text_cell(fmt::format("{} [{}]", name_of(axis), shown_unit(axis))), text_cell(a.run.algorithm),
-                     number_cell(shown(axis, s.lowest), decimals), number_cell(shown(axis, s.highest), decimals),
-                     percent(s.used), percent(s.limited), percent(s.rate), number_cell(shown(axis, s.rms_jerk))}});
+      t.rows.push_back({.cells = {text_cell(fmt::format("{} [{}]", name_of(axis), shown_unit(axis))),
+                                  text_cell(a.run.algorithm), number_cell(shown(axis, s.lowest), decimals),
+                                  number_cell(shown(axis, s.highest), decimals), percent(s.used), percent(s.limited),
+                                  percent(s.rate), number_cell(three_digits(shown(axis, s.rms_jerk)))}});
     }
   }
   return t;
@@ -249,35 +256,60 @@ TimeSeries platform_histories(const CueingStudy& study, const CueingResult& resu
 }
 
 void add_tuning(const CueingResult& result, Document& document) {
-  Section section{.title = "Tuned knobs"};
+  Table costs{.title = "What tuning gained",
+              .caption = "Cost of a drive: 1 is that of a platform that stands still. Drives: how many were tried."};
+  costs.columns = {{.name = "algorithm", .align = Align::kLeft},
+                   {.name = "cost before"},
+                   {.name = "cost after"},
+                   {.name = "drives"}};
+  Table knobs{.title = "Knobs that were turned"};
+  knobs.columns = {{.name = "algorithm", .align = Align::kLeft},
+                   {.name = "knob", .align = Align::kLeft},
+                   {.name = "before", .align = Align::kLeft},
+                   {.name = "after", .align = Align::kLeft},
+                   {.name = "unit", .align = Align::kLeft}};
   for (const AlgorithmResult& a : result.algorithms) {
     if (!a.tuning) continue;
-    Table t{.title = fmt::format("{}: cost {:.4f} before, {:.4f} after {} drives", a.run.algorithm,
-                                 a.tuning->cost_before, a.tuning->cost_after, a.tuning->evaluations)};
-    t.columns = {{.name = "knob", .align = Align::kLeft},
-                 {.name = "before", .align = Align::kLeft},
-                 {.name = "after", .align = Align::kLeft},
-                 {.name = "unit", .align = Align::kLeft}};
+    costs.rows.push_back(
+        {.cells = {text_cell(a.run.algorithm), number_cell(a.tuning->cost_before, 3),
+                   number_cell(a.tuning->cost_after, 3), number_cell(static_cast<double>(a.tuning->evaluations), 0)}});
     for (const TunedKnob& k : a.tuning->knobs)
-      t.rows.push_back({.cells = {text_cell(k.name), text_cell(fmt::format("{:.4g}", fmt::join(k.before, ", "))),
-                                  text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))), text_cell(k.unit)}});
-    section.blocks.emplace_back(std::move(t));
+      knobs.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(k.name),
+                                      text_cell(fmt::format("{:.4g}", fmt::join(k.before, ", "))),
+                                      text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))), text_cell(k.unit)}});
+  }
+  Section section{.title = "Tuned knobs", .blocks = {std::move(costs)}};
+  if (knobs.rows.empty()) {
+    section.blocks.emplace_back(Paragraph{"No knob was turned: none of the drives that were tried was better."});
+  } else {
+    section.blocks.emplace_back(std::move(knobs));
   }
   document.sections.push_back(std::move(section));
 }
 
 Verdict cueing_verdict(const CueingResult& result) {
   Verdict v{.level = Level::kCaution, .word = "Scored"};
-  std::vector<std::string> parts;
+  std::vector<std::string> named, bare;
+  const AlgorithmResult* only = nullptr;
+  bool same = true;
   for (const Cue cue : {Cue::kSurge, Cue::kSway}) {
     const AlgorithmResult& best = best_of(result, cue);
     if (!is_moved(result, cue) || correlation(best, cue) < -1.0) continue;
-    parts.push_back(fmt::format("{} is felt {}with {}, at a correlation of {}", name_of(cue),
-                                result.algorithms.size() > 1 ? "best " : "", best.run.algorithm,
-                                format_decimals(correlation(best, cue), 2)));
+    same = same && (only == nullptr || only == &best);
+    only = &best;
+    const std::string value = format_decimals(correlation(best, cue), 2);
+    named.push_back(fmt::format("{} in {} (correlation {})", best.run.algorithm, name_of(cue), value));
+    bare.push_back(fmt::format("{} in {}", value, name_of(cue)));
   }
-  v.headline = parts.empty() ? "The drive holds no force that is felt."
-                             : capitalised(fmt::format("{}.", fmt::join(parts, "; ")));
+  if (only == nullptr) {
+    v.headline = "The drive holds no force that is felt.";
+  } else if (!same) {
+    v.headline = fmt::format("Most like the drive: {}.", fmt::join(named, ", "));
+  } else {
+    v.headline =
+        fmt::format("{}{}: correlation {}.", result.algorithms.size() > 1 ? "Most like the drive is " : "With ",
+                    only->run.algorithm, fmt::join(bare, ", "));
+  }
   return v;
 }
 

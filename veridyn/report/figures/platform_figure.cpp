@@ -88,34 +88,39 @@ void add_actuators(Scene& scene, const cueing::Platform& platform, double floor)
 void add_shapes(Scene& scene, const cueing::Platform& platform) {
   using Kind = SceneShape::Kind;
   const bool legs = platform.legs.has_value();
-  double floor = legs ? -kInfinity : kPedestal, plate_down = legs ? -kInfinity : 0.0, front = kHalfPlate;
+  double floor = legs ? -kInfinity : kPedestal, plate_down = legs ? -kInfinity : 0.0, far = 0.0;
   if (legs) {
     for (const Place& foot : platform.legs->feet) floor = std::max(floor, foot.z());
     for (const Place& head : platform.legs->heads) plate_down = std::max(plate_down, head.z());
   }
   const std::vector<Place> base = outline(legs ? platform.legs->feet : std::vector<Place>{}, floor);
   const std::vector<Place> plate = outline(legs ? platform.legs->heads : std::vector<Place>{}, plate_down);
-  double far = 0.0;
-  for (const Place& p : base) {
-    front = std::max(front, p.x());
-    far = std::max({far, std::abs(p.x()), std::abs(p.y())});
+  for (const std::vector<Place>* each : {&base, &plate}) {
+    for (const Place& p : *each) far = std::max(far, std::hypot(p.x(), p.y()));
   }
   const auto add = [&](Kind kind, SceneTone tone, std::vector<ScenePoint> at, double size) {
     scene.shapes.push_back({.kind = kind, .tone = tone, .points = std::move(at), .size = size});
   };
-  const double half = 1.25 * far;
-  add(Kind::kFace, SceneTone::kGround, points(rectangle(-half, half, half, floor), false), 0.0);
+  const double radius = 1.15 * far;
+  std::vector<Place> ground;
+  constexpr int kCorners = 36;
+  for (int k = 0; k < kCorners; ++k) {
+    const double turn = 2.0 * kPi * k / kCorners;
+    ground.emplace_back(radius * std::cos(turn), radius * std::sin(turn), floor);
+  }
+  add(Kind::kFace, SceneTone::kGround, points(ground, false), 0.0);
+  const double tip = 1.22 * radius, wing = 0.07 * radius;
   add(Kind::kLine, SceneTone::kGround,
-      points({{1.05 * half, 0.0, floor},
-              {1.3 * half, 0.0, floor},
-              {1.2 * half, -0.06 * half, floor},
-              {1.3 * half, 0.0, floor},
-              {1.2 * half, 0.06 * half, floor}},
+      points({{0.85 * radius, 0.0, floor},
+              {tip, 0.0, floor},
+              {tip - 1.5 * wing, -wing, floor},
+              {tip, 0.0, floor},
+              {tip - 1.5 * wing, wing, floor}},
              false),
       2.5);
   scene.shapes.push_back({.kind = Kind::kLabel,
                           .tone = SceneTone::kGround,
-                          .points = {point({1.4 * half, 0.0, floor}, false)},
+                          .points = {point({1.42 * radius, 0.0, floor}, false)},
                           .text = "front"});
   std::vector<ScenePoint> rest = points(plate, false);
   rest.push_back(rest.front());

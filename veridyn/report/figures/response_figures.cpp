@@ -74,9 +74,10 @@ XYPlot empty_plot(Cue cue, const char* what, const char* unit) {
 
 Section response_section(const cueing::ResponseStudy& study, const cueing::CueingResult& result) {
   Section section{.title = "Gain and phase"};
-  section.blocks.emplace_back(
-      Paragraph{fmt::format("Of the whole chain, algorithm to rider, on sines of {:g} m/s^2 and {:g} deg/s.",
-                            study.options.force, study.options.rate / kDegree)});
+  section.blocks.emplace_back(Paragraph{
+      fmt::format("Of the whole chain, algorithm to rider, on sines of {:g} m/s^2 and {:g} deg/s. Markers are "
+                  "where it was measured.",
+                  study.options.force, study.options.rate / kDegree)});
   List outside{.tone = Tone::kWarning};
   std::vector<Block> plots;
   for (std::size_t i = 0; i < cueing::kCues; ++i) {
@@ -96,8 +97,12 @@ Section response_section(const cueing::ResponseStudy& study, const cueing::Cuein
         p.x.push_back(r.frequency);
         p.y.push_back(last / kDegree);
       }
-      gain.series.push_back(std::move(g));
-      phase.series.push_back(std::move(p));
+      // Points where it was measured: between them the response may be anything.
+      for (auto [plot, line] : {std::pair(&gain, &g), std::pair(&phase, &p)}) {
+        plot->series.push_back(*line);
+        line->style = Style::kMarkers;
+        plot->series.push_back(std::move(*line));
+      }
       const auto out = a.outside_mask.find(cue);
       if (out == a.outside_mask.end() || out->second.empty()) continue;
       std::vector<std::string> at;
@@ -116,7 +121,8 @@ Section response_section(const cueing::ResponseStudy& study, const cueing::Cuein
   if (!outside.items.empty()) {
     section.blocks.emplace_back(std::move(outside));
   } else if (!study.mask.empty()) {
-    section.blocks.emplace_back(Paragraph{"Every algorithm is within the mask.", Tone::kNote});
+    section.blocks.emplace_back(
+        Paragraph{"Every algorithm is within the mask at the frequencies that were measured.", Tone::kNote});
   }
   for (Block& plot : plots) section.blocks.push_back(std::move(plot));
   return section;

@@ -133,7 +133,7 @@ function readings(scene: Scene): { element: HTMLElement; show: (values: number[]
   const decimals = scene.joints.map((_, k) => {
     let most = 0;
     for (const motion of scene.motions) for (const value of motion.values[k] ?? []) most = Math.max(most, Math.abs(value ?? 0));
-    return most > 0 ? Math.min(3, Math.max(0, 2 - Math.floor(Math.log10(most)))) : 0;
+    return most > 0 ? Math.min(2, Math.max(0, 2 - Math.floor(Math.log10(most)))) : 1;
   });
   return {
     element: h('dl', { class: 'scene-values' }, ...scene.joints.map((joint, k) => h('div', {}, h('dt', {}, with_unit(joint.name, joint.unit)), outputs[k]))),

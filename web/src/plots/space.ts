@@ -91,7 +91,7 @@ export function seen(scene: Scene, values: number[], view: View, extent: { middl
   const eye: Place = [Math.cos(view.elevation) * Math.cos(view.azimuth), Math.cos(view.elevation) * Math.sin(view.azimuth), Math.sin(view.elevation)];
   const right: Place = [-Math.sin(view.azimuth), Math.cos(view.azimuth), 0];
   const up = cross(eye, right);
-  const scale = Math.min(width, 1.25 * height) / (2 * radius);
+  const scale = Math.min(width, 1.1 * height) / (2 * radius);
   const project = (place: Place): { at: [number, number]; near: number; scale: number } => {
     const from: Place = [place[0] - middle[0], place[1] - middle[1], place[2] - middle[2]];
     const near = dot(eye, from);
