@@ -276,7 +276,8 @@ void add_tuning(const CueingResult& result, Document& document) {
     for (const TunedKnob& k : a.tuning->knobs)
       knobs.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(k.name),
                                       text_cell(fmt::format("{:.4g}", fmt::join(k.before, ", "))),
-                                      text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))), text_cell(k.unit)}});
+                                      text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))),
+                                      text_cell(k.unit == "1" ? "" : k.unit)}});
   }
   Section section{.title = "Tuned knobs", .blocks = {std::move(costs)}};
   if (knobs.rows.empty()) {
@@ -344,9 +345,10 @@ Section knob_section(const CueingResult& result) {
   for (const AlgorithmResult& a : result.algorithms) {
     for (const std::string& knob : a.knobs) {
       const std::size_t at = knob.find(" = ");
-      const bool split = at != std::string::npos;
-      t.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(knob.substr(0, at)),
-                                  text_cell(split ? knob.substr(at + 3) : "")}});
+      std::string value = at == std::string::npos ? "" : knob.substr(at + 3);
+      if (value.ends_with(" 1")) value.resize(value.size() - 2);  // the unit of a plain number
+      t.rows.push_back(
+          {.cells = {text_cell(a.run.algorithm), text_cell(knob.substr(0, at)), text_cell(std::move(value))}});
     }
   }
   return {.title = "Numbers of the algorithms", .blocks = {std::move(t)}, .folded = true};

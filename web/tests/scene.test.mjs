@@ -99,7 +99,6 @@ describe('a scene', { skip }, () => {
       }),
     );
     for (const share of shares) assert.ok(Math.abs(share - 0.4) < 0.01, String(shares));
-    assert.deepEqual(await page.locator('.legend .value').allInnerTexts(), ['40.00', '5.400']);
     assert.match(await page.locator('.scene-clock').innerText(), /^4(\.0*)? s$/);
     assert.deepEqual((await page.locator('.scene-values dd').allInnerTexts()).at(-1), '8.0');
 
@@ -110,7 +109,6 @@ describe('a scene', { skip }, () => {
     await page.mouse.move(5, 5);
     await page.waitForTimeout(100);
     assert.ok(Math.abs((await time_of(page)) - 7) < 0.1, 'it stays there');
-    assert.match((await page.locator('.legend .value').allInnerTexts())[0], /^(69|70)\.\d+$/);
     await close();
   });
 

@@ -217,7 +217,7 @@ Scene platform_figure(const cueing::Platform& platform, const cueing::CueingResu
       "turn the view; point at the histories to go to a moment.";
   if (scene.samples.size() < time.size())
     scene.caption +=
-        fmt::format(" A pose every {:.2g} s, {} in all.",
+        fmt::format(" A pose every {:.2g} s, {} in all; the histories are finer.",
                     (time.back() - time.front()) / static_cast<double>(scene.samples.size() - 1), scene.samples.size());
   return scene;
 }

@@ -16,6 +16,9 @@ const kHighest = (88 * Math.PI) / 180;
 /** Distance of the eye over the radius of the scene: some perspective, no distortion. */
 const kEyeDistance = 5;
 
+/** Share of the picture that the scene takes; the rest is for what a turn adds, and for perspective. */
+const kFilled = 0.95;
+
 export function turned(view: View, azimuth: number, elevation: number): View {
   return { azimuth: view.azimuth + azimuth, elevation: Math.min(kHighest, Math.max(kLowest, view.elevation + elevation)) };
 }
@@ -69,8 +72,9 @@ export function bounds(scene: Scene): { middle: Place; radius: number } {
     travel += most * most;
   });
   let radius = 0;
-  for (const { points } of scene.shapes) {
-    for (const [x, y, z, moves] of points) radius = Math.max(radius, Math.hypot(x - middle[0], y - middle[1], z - middle[2]) + (moves ? Math.sqrt(travel) : 0));
+  for (const { kind, points, size } of scene.shapes) {
+    const around = kind === 'ball' ? size : 0;
+    for (const [x, y, z, moves] of points) radius = Math.max(radius, Math.hypot(x - middle[0], y - middle[1], z - middle[2]) + around + (moves ? Math.sqrt(travel) : 0));
   }
   return { middle, radius: Math.max(radius, 1e-3) };
 }
@@ -91,7 +95,7 @@ export function seen(scene: Scene, values: number[], view: View, extent: { middl
   const eye: Place = [Math.cos(view.elevation) * Math.cos(view.azimuth), Math.cos(view.elevation) * Math.sin(view.azimuth), Math.sin(view.elevation)];
   const right: Place = [-Math.sin(view.azimuth), Math.cos(view.azimuth), 0];
   const up = cross(eye, right);
-  const scale = Math.min(width, 1.1 * height) / (2 * radius);
+  const scale = (kFilled * Math.min(width, height)) / (2 * radius);
   const project = (place: Place): { at: [number, number]; near: number; scale: number } => {
     const from: Place = [place[0] - middle[0], place[1] - middle[1], place[2] - middle[2]];
     const near = dot(eye, from);

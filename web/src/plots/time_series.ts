@@ -222,7 +222,7 @@ function panel_hooks({ figure, group, windows }: Shared, drawing: DrawnPanel, fi
     setCursor: [
       (plot) => {
         const left = plot.cursor.left ?? -1;
-        drawing.read(left >= 0 ? plot.posToVal(left, 'x') : group.moment);
+        drawing.read(left >= 0 ? plot.posToVal(left, 'x') : null);
       },
     ],
   };
@@ -284,9 +284,8 @@ function draw_panel(shared: Shared, panel: Panel, first: boolean, last: boolean)
   };
   shown.on_change(() => {
     plot?.batch(() => drawn.forEach(({ line }, k) => plot?.setSeries(k + 1, { show: shown.shows(line.name, line.role) })));
-    drawing.read(group.moment);
+    drawing.read(null);
   });
-  group.on_mark(drawing.read);
   shared.pictures.push(() => ({ panel, drawn: drawing.visible(), y: drawing.view.y ?? drawing.ordinate.range }));
   const host = h('div', { class: 'plot' });
   queueMicrotask(() => {

@@ -18,11 +18,10 @@ export class ZoomGroup implements Zoomable {
   private high = -Infinity;
   private zoomed = false;
   private shown: [number, number] | null = null;
-  private readonly readers = new Set<(at: number) => void>();
   private readonly pointed = new Set<(at: number) => void>();
   private readonly lines = new Map<uPlot, HTMLElement>();
   /** The moment that is marked in all plots; null: none. */
-  moment: number | null = null;
+  private moment: number | null = null;
   /** The plot on which the button went down last. */
   grasped: uPlot | null = null;
 
@@ -60,16 +59,10 @@ export class ZoomGroup implements Zoomable {
     this.pointed.add(follow);
   }
 
-  /** Calls `read` whenever another moment is marked. */
-  on_mark(read: (at: number) => void): void {
-    this.readers.add(read);
-  }
-
   /** Marks a moment by a line across all plots. */
   mark(at: number): void {
     this.moment = at;
     for (const plot of this.plots.keys()) this.place(plot);
-    for (const read of this.readers) read(at);
   }
 
   /** Puts the line where the moment is now. */
