@@ -148,7 +148,7 @@ Table workspace_table(const CueingStudy& study, const CueingResult& result) {
     const int decimals = turns(axis) ? 2 : 1;
     for (const AlgorithmResult& a : result.algorithms) {
       const AxisScore& s = a.score.axes[i];
-      t.rows.push_back({.cells = {text_cell(fmt::format("{} [{}]", name_of(axis), shown_unit(axis))),
+      t.rows.push_back({.cells = {text_cell(fmt::format("{}\u00a0[{}]", name_of(axis), shown_unit(axis))),
                                   text_cell(a.run.algorithm), number_cell(shown(axis, s.lowest), decimals),
                                   number_cell(shown(axis, s.highest), decimals), percent(s.used), percent(s.limited),
                                   percent(s.rate), number_cell(three_digits(shown(axis, s.rms_jerk)))}});
