@@ -56,6 +56,11 @@ std::string score_csv(const CueingResult& result) {
       line("physical_pearson", s.physical_pearson, "1");
       line("physical_lag", s.physical_lag, "s");
     }
+    for (const std::size_t pair : {1U, 0U}) {
+      const Measured& e = a.score.pairs[pair];
+      text += fmt::format("{},{},perceived_error,{},{},{},1\n", a.run.algorithm,
+                          pair == 0 ? "sway and roll" : "surge and pitch", e.value, e.low, e.high);
+    }
   }
   return text;
 }
@@ -88,6 +93,13 @@ Summary summary_of(const OutputFolder& folder, const CueingStudy& study, const C
   s["folder"] = folder.path().string();
   s["platform"] = study.platform.name;
   s["notes"] = study.notes;
+  for (const std::size_t pair : {1U, 0U}) {
+    if (!result.least[pair]) continue;
+    s["least_error"][pair == 0 ? "sway and roll" : "surge and pitch"] =
+        Summary::object({{"error", result.least[pair]->error},
+                         {"platform_that_stands", result.least[pair]->still},
+                         {"residual", result.least[pair]->residual}});
+  }
   s["algorithms"] = Summary::array();
   for (const AlgorithmResult& a : result.algorithms) {
     Summary of;
@@ -98,6 +110,8 @@ Summary summary_of(const OutputFolder& folder, const CueingStudy& study, const C
       of["cues"][cue]["lag_s"] = measured(a.score.cues[i].lag);
       of["cues"][cue]["rms_error"] = measured(a.score.cues[i].rmse);
     }
+    of["perceived_error"]["surge and pitch"] = measured(a.score.pairs[1]);
+    of["perceived_error"]["sway and roll"] = measured(a.score.pairs[0]);
     of["false_cues"] = a.score.false_cues.size();
     s["algorithms"].push_back(of);
   }
@@ -107,15 +121,24 @@ Summary summary_of(const OutputFolder& folder, const CueingStudy& study, const C
 void print_scores(const CommonOptions& options, const CueingStudy& study, const CueingResult& result) {
   for (const std::string& note : study.notes) print_line(options, "note: " + note);
   for (const std::string& note : result.algorithms.front().score.notes) print_line(options, "note: " + note);
-  print_line(options,
-             fmt::format("{:<14} {:>18} {:>18} {:>12}", "", "surge r / lag [s]", "sway r / lag [s]", "false cues"));
+  for (const std::string& note : result.notes) print_line(options, "note: " + note);
+  print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}  {}", "", "surge r / lag [s]", "sway r / lag [s]",
+                                  "false cues", "perceived error, surge / sway"));
   for (const AlgorithmResult& a : result.algorithms) {
     const auto cell = [&](Cue cue) {
       const CueScore& s = a.score.cues[cue];
       return std::isfinite(s.pearson.value) ? fmt::format("{:.3f} / {:.2f}", s.pearson.value, s.lag.value) : "-";
     };
-    print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}", a.run.algorithm, cell(Cue::kSurge), cell(Cue::kSway),
-                                    a.score.false_cues.size()));
+    print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}  {:.3g} / {:.3g}", a.run.algorithm, cell(Cue::kSurge),
+                                    cell(Cue::kSway), a.score.false_cues.size(), a.score.pairs[1].value,
+                                    a.score.pairs[0].value));
+  }
+  const auto& [sway, surge] = result.least;
+  if (surge && sway) {
+    print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}  {:.3g} / {:.3g}", "(stands still)", "", "", "",
+                                    surge->still, sway->still));
+    print_line(options, fmt::format("{:<14} {:>18} {:>18} {:>12}  {:.3g} / {:.3g}", "(least)", "", "", "", surge->error,
+                                    sway->error));
   }
 }
 

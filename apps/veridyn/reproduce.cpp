@@ -1,4 +1,4 @@
-// veridyn reproduce aircraft|vehicle|muscle: published results alongside ours, one study per row.
+// veridyn reproduce aircraft|vehicle|muscle|cueing: published results alongside ours, one study per row.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/report/aircraft_reproduction.hpp"
+#include "veridyn/report/cueing_reproduction_report.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/muscle_reproduction_report.hpp"
 #include "veridyn/report/vehicle_reproduction_report.hpp"
@@ -118,6 +119,13 @@ std::optional<report::ReproducedRow> run_muscle(const Study& study, Progress& pr
   return report::reproduced_row(row);
 }
 
+std::optional<report::ReproducedRow> run_cueing(const Study& study, Progress& progress) {
+  const cueing::CueingReproduction row = cueing::reproduce_cueing(study.root(), progress);
+  if (row.interrupted) return std::nullopt;
+  study.root().finish();
+  return report::reproduced_row(row);
+}
+
 Command reproduce_domain(const std::string& domain, const std::string& summary, const std::string& example,
                          std::span<const EmbeddedText> (*studies)(), Run run) {
   return {.name = domain,
@@ -138,14 +146,17 @@ Command reproduce_domain(const std::string& domain, const std::string& summary, 
 }  // namespace
 
 Command reproduce_command() {
-  return {.name = "reproduce",
-          .summary = "published results alongside ours, in one report",
-          .commands = {reproduce_domain("aircraft", "regression, total least squares, recursion, stall: eleven rows",
-                                        "Cm_change", aircraft_studies, run_aircraft),
-                       reproduce_domain("vehicle", "a car and its model of one fifth the size: four rows", "bicycle",
-                                        vehicle_studies, run_vehicle),
-                       reproduce_domain("muscle", "hidden persons from one task and from several: four rows",
-                                        "one_task", muscle_studies, run_muscle)}};
+  return {
+      .name = "reproduce",
+      .summary = "published results alongside ours, in one report",
+      .commands = {reproduce_domain("aircraft", "regression, total least squares, recursion, stall: eleven rows",
+                                    "Cm_change", aircraft_studies, run_aircraft),
+                   reproduce_domain("vehicle", "a car and its model of one fifth the size: four rows", "bicycle",
+                                    vehicle_studies, run_vehicle),
+                   reproduce_domain("muscle", "hidden persons from one task and from several: four rows", "one_task",
+                                    muscle_studies, run_muscle),
+                   reproduce_domain("cueing", "ramp, false pitch, static tilt, thresholds, golden steps: seven rows",
+                                    "ramp", cueing_studies, run_cueing)}};
 }
 
 }  // namespace veridyn::app

@@ -12,5 +12,7 @@ namespace veridyn::app {
 [[nodiscard]] std::span<const EmbeddedText> vehicle_studies();
 /// examples/reproduce/muscle, in order.
 [[nodiscard]] std::span<const EmbeddedText> muscle_studies();
+/// examples/reproduce/cueing, in order.
+[[nodiscard]] std::span<const EmbeddedText> cueing_studies();
 
 }  // namespace veridyn::app

@@ -17,13 +17,13 @@ TEST_F(CommandLine, NamesTheNearestCommandForAMistypedOne) {
   expect_refusal("simulat study.toml" + out(), "(did you mean 'simulate'?)");
   expect_refusal("init aircaft" + out(), "veridyn: init aircaft: there is no such command (did you mean 'aircraft'?)");
   expect_refusal("reproduce limb" + out(),
-                 "reproduce limb: there is no such command (known: aircraft, vehicle, muscle)");
+                 "reproduce limb: there is no such command (known: aircraft, vehicle, muscle, cueing)");
   expect_refusal("--quiet identify study.toml" + out(), "--quiet: is no option here");
 }
 
 TEST_F(CommandLine, NamesAllCommandsWhereNoneIsGiven) {
   expect_refusal("", "veridyn: command line: a command is missing (known: demo, init, inspect, ");
-  expect_refusal("reproduce", "veridyn: reproduce: a command is missing (known: aircraft, vehicle, muscle)");
+  expect_refusal("reproduce", "veridyn: reproduce: a command is missing (known: aircraft, vehicle, muscle, cueing)");
 }
 
 TEST_F(CommandLine, RefusesWrongArgumentsInOneLine) {

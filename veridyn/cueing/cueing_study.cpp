@@ -8,6 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/washout/shared_channels.hpp"
 #include "veridyn/recording/motion_recording.hpp"
 #include "veridyn/vehicle/identification/drive_log.hpp"
 #include "veridyn/vehicle/simulation/trajectory_motion.hpp"
@@ -177,6 +178,7 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   std::vector<std::string> models;
   for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);
   s.perception = cue.choice_or("perception", models, s.perception);
+  s.optimum = cue.flag_or("optimum", true);
   const std::vector<std::string> thresholds = {"usual", "reid_nahon"};
   if (cue.choice_or("thresholds", thresholds, "usual") == "reid_nahon") s.thresholds = reid_nahon_thresholds();
   if (root.has("omct")) s.response = read_response(root.table("omct"));
@@ -186,6 +188,7 @@ CueingStudy read_study(const Study& study, Progress& progress) {
     const long long evaluations = tune.integer_or("evaluations", static_cast<long long>(s.tune->evaluations));
     if (evaluations < 1) tune.fail("evaluations", fmt::format("is {}; must be above 0", evaluations));
     s.tune->evaluations = static_cast<std::size_t>(evaluations);
+    s.tune->strength = tune.positive_or("strength", "1", s.tune->strength);
     if (tune.has("data")) s.tune_on = recorded(tune.table("data"), motion_options(cue), place(cue, "driver"), s);
   }
   read_drive(root, cue, s, progress);
@@ -225,6 +228,20 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
     }
     result.algorithms.push_back(std::move(a));
   }
+  for (const Eigen::Index pair : {0, 1}) {
+    if (!study.optimum || progress.interrupted() || !study.platform.limits[tilt_axis(pair)].moves()) continue;
+    progress.stage(pair == 0 ? "least error in sway and roll" : "least error in surge and pitch");
+    try {
+      auto& least = result.least[static_cast<std::size_t>(pair)];
+      least = least_error(study.vehicle, study.platform, model, study.thresholds, pair);
+      if (!least)
+        result.notes.push_back(fmt::format("no least error: the drive is longer than {:g} s, or the search did not end",
+                                           kLongestForLeastError));
+    } catch (const InputError& error) {
+      result.notes.push_back(fmt::format("no least error: {}", error.what()));
+    }
+  }
+  result.notes.erase(std::unique(result.notes.begin(), result.notes.end()), result.notes.end());
   result.interrupted = progress.interrupted();
   return result;
 }

@@ -12,6 +12,7 @@
 #include "veridyn/cueing/platform/platform.hpp"
 #include "veridyn/cueing/score/cueing_score.hpp"
 #include "veridyn/cueing/score/frequency_response.hpp"
+#include "veridyn/cueing/score/least_error.hpp"
 #include "veridyn/cueing/score/tuning.hpp"
 
 namespace veridyn::cueing {
@@ -39,6 +40,7 @@ struct ResponseStudy {
 ///     perception = "young_meiry"               # see vestibular_models
 ///     thresholds = "usual"                     # or "reid_nahon"
 ///     driver = [0.1, 0.35, 0.5]                # driver's head from the centre of gravity: forward, left, up [m]
+///     optimum = true                           # how small the perceived error could be with the drive known before
 ///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
 ///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
 ///     [data]                                   # a recorded drive, see vehicle::read_drive_log; or
@@ -57,6 +59,7 @@ struct CueingStudy {
   std::vector<StudyAlgorithm> algorithms;
   std::string perception = "young_meiry";
   MotionThresholds thresholds = usual_thresholds();
+  bool optimum = true;
   Platform platform;
   std::string drive;                             ///< what drove, for reports
   std::vector<recording::MotionSample> vehicle;  ///< at the driver's head
@@ -86,6 +89,9 @@ struct AlgorithmResult {
 /// All of them.
 struct CueingResult {
   std::vector<AlgorithmResult> algorithms;
+  /// Of sway with roll and surge with pitch, where the platform renders them and the perception's orders allow.
+  std::array<std::optional<LeastError>, 2> least = {};
+  std::vector<std::string> notes;  ///< why something is not there
   bool interrupted = false;
 };
 

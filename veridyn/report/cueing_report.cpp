@@ -103,6 +103,35 @@ IntervalPlot correlation_figure(const CueingResult& result) {
   return plot;
 }
 
+/// Perceived errors of both pairs of axes beside the least that is possible.
+Table perceived_table(const CueingResult& result) {
+  Table t{.title = "Perceived error",
+          .caption =
+              "Of force and turn together, in thresholds. Least: with the whole drive known beforehand, within "
+              "range, rates and accelerations of the platform; no algorithm can be better."};
+  t.columns = {{.name = "algorithm", .align = Align::kLeft},
+               {.name = "error", .align = Align::kLeft, .group = "surge and pitch"},
+               {.name = "over the least", .group = "surge and pitch"},
+               {.name = "error", .align = Align::kLeft, .group = "sway and roll"},
+               {.name = "over the least", .group = "sway and roll"}};
+  const auto over = [&](double error, std::size_t pair) {
+    return number_cell(result.least[pair] ? error / result.least[pair]->error : kNaN, 2);
+  };
+  for (const AlgorithmResult& a : result.algorithms) {
+    const std::array<Measured, 2>& e = a.score.pairs;
+    t.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(with_interval(e[1])), over(e[1].value, 1),
+                                text_cell(with_interval(e[0])), over(e[0].value, 0)}});
+  }
+  if (const auto& [sway, surge] = result.least; surge && sway) {
+    t.rows.push_back(
+        {.cells = {text_cell("a platform that stands"), text_cell(format_decimals(surge->still, 2)),
+                   over(surge->still, 1), text_cell(format_decimals(sway->still, 2)), over(sway->still, 0)}});
+    t.rows.push_back({.cells = {text_cell("least"), text_cell(format_decimals(surge->error, 2)), over(surge->error, 1),
+                                text_cell(format_decimals(sway->error, 2)), over(sway->error, 0)}});
+  }
+  return t;
+}
+
 /// The best algorithm of a cue against each other one, in words.
 List differences(const CueingResult& result) {
   List list;
@@ -364,6 +393,7 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
   d.verdict.lines = study.notes;
   const CueingScore& first = result.algorithms.front().score;
   d.verdict.lines.insert(d.verdict.lines.end(), first.notes.begin(), first.notes.end());
+  d.verdict.lines.insert(d.verdict.lines.end(), result.notes.begin(), result.notes.end());
   std::vector<std::string> names;
   for (const AlgorithmResult& a : result.algorithms) names.push_back(a.run.algorithm);
   d.facts = {{"Drive", study.drive},
@@ -374,6 +404,7 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
   if (IntervalPlot glance = correlation_figure(result); !glance.rows.empty()) {
     Section score{.title = "Score", .blocks = {std::move(glance)}};
     if (List list = differences(result); !list.items.empty()) score.blocks.emplace_back(std::move(list));
+    score.blocks.emplace_back(perceived_table(result));
     d.sections.push_back(std::move(score));
   }
   d.sections.push_back({.title = "What the platform does",

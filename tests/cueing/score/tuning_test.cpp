@@ -43,7 +43,7 @@ TEST(Tuning, LowersTheCostOnItsDriveAndOnAnotherOne) {
   EXPECT_LE(t.evaluations, 80u);
 }
 
-TEST(Tuning, OfAPlatformThatStandsStillCostsOne) {
+TEST(Tuning, OfAPlatformThatStandsStillCostsMostAndOfOneThatMovesAsTheVehicleNothing) {
   const auto drive = lap(0.0);
   CueingRun run;
   for (const auto& s : drive) {
@@ -52,7 +52,20 @@ TEST(Tuning, OfAPlatformThatStandsStillCostsOne) {
     run.rider.back().force = recording::force_at_rest(Frame::kFrd);
     run.steps.emplace_back();
   }
-  EXPECT_NEAR(tuning_cost(run, felt_motion(run, vestibular_model("young_meiry"), usual_thresholds()), {}), 1.0, 1e-12);
+  const auto cost = [&] {
+    return tuning_cost(run, felt_motion(run, vestibular_model("young_meiry"), usual_thresholds()), {});
+  };
+  EXPECT_NEAR(cost(), 1.5, 1e-12);
+  // A scale is not noticed; too little is.
+  const auto scaled = [&](double share) {
+    for (std::size_t k = 0; k < drive.size(); ++k)
+      run.rider[k].force = (1.0 - share) * recording::force_at_rest(Frame::kFrd) + share * drive[k].force;
+    return cost();
+  };
+  EXPECT_NEAR(scaled(1.0), 0.0, 1e-12);
+  EXPECT_NEAR(scaled(0.3), 0.0, 1e-12);
+  EXPECT_NEAR(scaled(0.1), 0.25, 1e-12);
+  EXPECT_NEAR(scaled(1.2), 0.1, 1e-12);
 }
 
 }  // namespace

@@ -101,6 +101,15 @@ CueingScore score(const CueingRun& run, const FeltMotion& felt, const Platform& 
         false_cues(cue, vehicle, platform_felt, felt.threshold[cue], felt.time.front(), kGrid);
     s.false_cues.insert(s.false_cues.end(), found.begin(), found.end());
   }
+  for (const std::size_t pair : {0U, 1U}) {
+    const auto force = static_cast<std::size_t>(pair == 0 ? Cue::kSway : Cue::kSurge),
+               turn = static_cast<std::size_t>(pair == 0 ? Cue::kRoll : Cue::kPitch);
+    s.pairs[pair] = bootstrapped(
+        s.felt_blocks[force].blocks(), seed, 1, [&](std::span<const double> weights, std::span<double> out) {
+          out[0] = std::hypot(s.felt_blocks[force].figures(weights).rmse / felt.threshold[force],
+                              s.felt_blocks[turn].figures(weights).rmse / felt.threshold[turn]);
+        })[0];
+  }
   std::stable_sort(s.false_cues.begin(), s.false_cues.end(),
                    [](const FalseCue& a, const FalseCue& b) { return a.begin < b.begin; });
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {

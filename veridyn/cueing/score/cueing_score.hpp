@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ struct AxisScore {
 struct CueingScore {
   std::string algorithm;
   PerCue<CueScore> cues = {};
+  /// Of sway with roll and surge with pitch: e of `LeastError`, in thresholds.
+  std::array<Measured, 2> pairs = {};
   std::vector<FalseCue> false_cues;      ///< by time
   PerPlatformAxis<AxisScore> axes = {};  ///< of axes that move
   double leg_speed = 0.0;                ///< largest share of the legs' rate; 0 of a platform without

@@ -11,22 +11,27 @@
 namespace veridyn::cueing {
 namespace {
 
-/// One coordinate of the search: a number of a knob.
+/// One coordinate of the search: a number of a knob, or all of its numbers, then all the same.
 struct Coordinate {
-  std::size_t knob, index;
+  std::size_t knob, first, count;
   bool logarithmic;
   double low, high;
+  [[nodiscard]] double of(double value) const { return logarithmic ? std::log(std::max(value, 1e-9)) : value; }
 };
 
-std::vector<Coordinate> coordinates(const std::vector<Knob>& knobs) {
+std::vector<Coordinate> coordinates(const std::vector<Knob>& knobs, bool together) {
   std::vector<Coordinate> all;
   for (std::size_t k = 0; k < knobs.size(); ++k) {
     const Knob& knob = knobs[k];
     if (!(knob.tune_to > knob.tune_from)) continue;
     const bool logarithmic = knob.tune_from > 0.0;
-    const auto scaled = [&](double v) { return logarithmic ? std::log(v) : v; };
-    for (std::size_t i = 0; i < knob.values.size(); ++i)
-      all.push_back({k, i, logarithmic, scaled(knob.tune_from), scaled(knob.tune_to)});
+    const std::size_t count = together ? knob.values.size() : 1;
+    for (std::size_t i = 0; i < knob.values.size(); i += count) {
+      Coordinate c{k, i, count, logarithmic, 0.0, 0.0};
+      c.low = c.of(knob.tune_from);
+      c.high = c.of(knob.tune_to);
+      all.push_back(c);
+    }
   }
   return all;
 }
@@ -35,7 +40,8 @@ void turn(WashoutDesign& design, const std::vector<Coordinate>& to, const Eigen:
   const std::vector<Knob> knobs = design.knobs();
   for (std::size_t i = 0; i < to.size(); ++i) {
     const double v = x(static_cast<Eigen::Index>(i));
-    knobs[to[i].knob].values[to[i].index] = to[i].logarithmic ? std::exp(v) : v;
+    const auto values = knobs[to[i].knob].values.subspan(to[i].first, to[i].count);
+    std::fill(values.begin(), values.end(), to[i].logarithmic ? std::exp(v) : v);
   }
 }
 
@@ -68,7 +74,8 @@ double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOpt
       pp += std::pow(pair.platform[k] - p, 2);
       vp += (pair.vehicle[k] - v) * (pair.platform[k] - p);
     }
-    cost += options.weights[i] * (1.0 - 2.0 * vp / (vv + pp + n * (v - p) * (v - p)));
+    const double r = pp > 0.0 ? vp / std::sqrt(vv * pp) : 0.0, s = std::sqrt(pp / vv);
+    cost += options.weights[i] * (1.0 - r + 0.5 * std::max({0.0, 1.0 - s / options.strength, s - 1.0}));
     weights += options.weights[i];
   }
   double limited = 0.0;
@@ -82,43 +89,48 @@ Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::v
              Progress& progress) {
   Tuning result;
   result.design = design.clone();
-  const std::vector<Knob> knobs = result.design->knobs();
-  const std::vector<Coordinate> to = coordinates(knobs);
-  const auto n = static_cast<Eigen::Index>(to.size());
   const auto cost_of = [&](const WashoutDesign& of) {
     Silent silent(progress);
     const CueingRun run = drive_platform(drive, *of.make(platform), platform, silent);
     return tuning_cost(run, felt_motion(run, model, thresholds), options);
   };
   result.cost_before = result.cost_after = cost_of(design);
-  if (n == 0) return result;
-  estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
-  Eigen::VectorXd start(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Coordinate& c = to[static_cast<std::size_t>(i)];
-    problem.names.push_back(fmt::format("{}[{}]", knobs[c.knob].name, c.index));
-    problem.low(i) = c.low;
-    problem.high(i) = c.high;
-    const double now = knobs[c.knob].values[c.index];
-    start(i) = std::clamp(c.logarithmic ? std::log(std::max(now, 1e-9)) : now, c.low, c.high);
-  }
-  problem.evaluate = [&](const Eigen::VectorXd& x) {
-    const std::unique_ptr<WashoutDesign> turned = design.clone();
-    turn(*turned, to, x);
-    try {
-      return estimation::SearchValues{.objective = cost_of(*turned)};
-    } catch (const InputError&) {
-      return estimation::SearchValues{};  // no such filter
+  // All numbers of a knob together first: gains of three axes are wrong by the same factor more often than not, and the
+  // search is shorter by half. Then each by itself.
+  for (const bool together : {true, false}) {
+    const std::vector<Knob> knobs = result.design->knobs();
+    const std::vector<Coordinate> to = coordinates(knobs, together);
+    const auto n = static_cast<Eigen::Index>(to.size());
+    const std::size_t allowed = together ? options.evaluations / 2 : options.evaluations - result.evaluations;
+    if (n == 0 || allowed == 0 || result.interrupted) break;
+    estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
+    Eigen::VectorXd start(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Coordinate& c = to[static_cast<std::size_t>(i)];
+      problem.names.push_back(fmt::format("{}[{}]", knobs[c.knob].name, c.first));
+      problem.low(i) = c.low;
+      problem.high(i) = c.high;
+      start(i) = std::clamp(c.of(knobs[c.knob].values[c.first]), c.low, c.high);
     }
-  };
-  estimation::BatchEvaluator evaluator(problem, {.max_evaluations = options.evaluations}, progress);
-  const estimation::SearchResult found =
-      estimation::pattern_search(evaluator, start, {.initial_mesh = 0.15, .tolerance = 1e-3});
-  result.evaluations = found.evaluations;
-  result.interrupted = found.termination == estimation::SearchTermination::kInterrupted;
-  if (!(found.values.objective < result.cost_before)) return result;
-  result.cost_after = found.values.objective;
-  turn(*result.design, to, found.x);
+    problem.evaluate = [&](const Eigen::VectorXd& x) {
+      const std::unique_ptr<WashoutDesign> turned = result.design->clone();
+      turn(*turned, to, x);
+      try {
+        return estimation::SearchValues{.objective = cost_of(*turned)};
+      } catch (const InputError&) {
+        return estimation::SearchValues{};  // no such filter
+      }
+    };
+    estimation::BatchEvaluator evaluator(problem, {.max_evaluations = allowed}, progress);
+    const estimation::SearchResult found =
+        estimation::pattern_search(evaluator, start, {.initial_mesh = together ? 0.25 : 0.12, .tolerance = 1e-3});
+    result.evaluations += found.evaluations;
+    result.interrupted = found.termination == estimation::SearchTermination::kInterrupted;
+    if (!(found.values.objective < result.cost_after)) continue;
+    result.cost_after = found.values.objective;
+    turn(*result.design, to, found.x);
+  }
+  const std::vector<Knob> knobs = result.design->knobs();
   const std::unique_ptr<WashoutDesign> before = design.clone();
   const std::vector<Knob> old = before->knobs();
   for (std::size_t k = 0; k < knobs.size(); ++k) {

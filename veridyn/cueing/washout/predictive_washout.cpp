@@ -1,52 +1,19 @@
 #include "veridyn/cueing/washout/predictive_washout.hpp"
 
-#include "veridyn/core/error.hpp"
+#include "veridyn/cueing/perception/felt_pair.hpp"
 #include "veridyn/numerics/linear_systems/discretisation.hpp"
 
 namespace veridyn::cueing {
 namespace {
 
-using numerics::StateSpace;
-
-constexpr Eigen::Index kOtolithStates = 2, kFeltStates = 5, kAtAngle = 5, kAtAngleRate = 6, kAtShift = 7,
-                       kAtShiftRate = 8;
+constexpr Eigen::Index kAtAngle = FeltPair::kAngle, kAtAngleRate = FeltPair::kAngleRate, kAtShift = FeltPair::kShift,
+                       kAtShiftRate = FeltPair::kShiftRate;
 
 /// Costs of the inputs over the platform's own limits, and of the shift's rate: small, they only settle what the rest
 /// leaves open.
 constexpr double kAngleEffort = 0.02, kShiftEffort = 0.02, kShiftSpeed = 0.05;
 /// Iterations of one plan.
 constexpr int kIterations = 20;
-
-StateSpace felt_model(const PredictiveDesign& d, Eigen::Index pair, bool shifts) {
-  const VestibularModel& model = vestibular_model(d.perception);
-  const StateSpace otoliths = numerics::realise(model.otoliths),
-                   canal = numerics::realise(model.canals[static_cast<std::size_t>(pair)]);
-  if (otoliths.states() != kOtolithStates || canal.states() != kFeltStates - kOtolithStates)
-    throw InputError("washout.perception", "takes otoliths of second and canals of third order, as \"young_meiry\"");
-  const Eigen::Index n = shifts ? 9 : 7;
-  StateSpace s;
-  s.A.setZero(n, n);
-  s.B.setZero(n, 3);  // second derivatives of angle and shift; the vehicle's force
-  s.A.topLeftCorner(kOtolithStates, kOtolithStates) = otoliths.A;
-  s.A.block(kOtolithStates, kOtolithStates, 3, 3) = canal.A;
-  s.A.block(0, kAtAngle, kOtolithStates, 1) = kGravity * otoliths.B;
-  s.A.block(kOtolithStates, kAtAngleRate, 3, 1) = canal.B;
-  s.A(kAtAngle, kAtAngleRate) = 1.0;
-  s.B(kAtAngleRate, 0) = 1.0;
-  s.B.block(0, 2, kOtolithStates, 1) = -otoliths.B;
-  if (shifts) {
-    s.A(kAtShift, kAtShiftRate) = 1.0;
-    s.B(kAtShiftRate, 1) = 1.0;
-    s.B.block(0, 1, kOtolithStates, 1) = otoliths.B;
-  }
-  // Outputs: what is felt, over its thresholds.
-  const MotionThresholds felt = usual_thresholds();
-  s.C.setZero(2, n);
-  s.C.block(0, 0, 1, kOtolithStates) = otoliths.C / felt.force[static_cast<std::size_t>(1 - pair)];
-  s.C.block(1, kOtolithStates, 1, 3) = canal.C / felt.rate[static_cast<std::size_t>(pair)];
-  s.D.setZero(2, 3);
-  return s;
-}
 
 }  // namespace
 
@@ -70,12 +37,13 @@ template <int kStates, int kInputs>
 PlannedPair<kStates, kInputs>::PlannedPair(const PredictiveDesign& d, const Platform& platform, Eigen::Index pair)
     : programme_(kSteps), tail_(kSteps, Input::Zero()) {
   constexpr bool shifts = kInputs == 2;
-  const StateSpace model = felt_model(d, pair, shifts);
+  const numerics::StateSpace model =
+      felt_pair(vestibular_model(d.perception), usual_thresholds(), pair, shifts, -platform.rider.z()).system;
   const numerics::HeldSystem held = numerics::held(model, kStep, numerics::Hold::kZeroOrder);
   A_ = model.A;
   B_ = model.B.leftCols(kInputs);
-  of_force_ = model.B.col(2);
-  held_force_ = held.Gamma.col(2);
+  of_force_ = model.B.col(FeltPair::kForce);
+  held_force_ = held.Gamma.col(FeltPair::kForce);
   fade_ = std::exp(-kStep / d.fades);
   const AxisLimits& angle = platform.limits[tilt_axis(pair)];
   const AxisLimits& shift = platform.limits[shift_axis(pair)];
@@ -128,6 +96,7 @@ void PlannedPair<kStates, kInputs>::plan(double force) {
     has_plan_ = true;
     return;
   }
+  planned_from_ = x_;
   const numerics::ProgrammeResult r =
       programme_.solve(x_, {.iterations = kIterations, .tolerance = 1e-6}, has_plan_ && counts_.plans > 0);
   ++counts_.plans;

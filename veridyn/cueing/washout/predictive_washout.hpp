@@ -52,6 +52,9 @@ class PlannedPair {
   /// @param fallback where the classical algorithm would have the angle and the shift
   PairedOutput step(double force, const PairedOutput& fallback, SampleStep step);
   [[nodiscard]] const PlanCounts& counts() const { return counts_; }
+  /// The last plan's programme, to solve it by something else, and where it began.
+  [[nodiscard]] const Programme& programme() const { return programme_; }
+  [[nodiscard]] const typename Programme::State& planned_from() const { return planned_from_; }
 
  private:
   using State = typename Programme::State;
@@ -68,7 +71,7 @@ class PlannedPair {
   std::vector<Input> tail_;
   double since_plan_ = 0.0;
   bool has_plan_ = false;
-  State x_ = State::Zero();
+  State x_ = State::Zero(), planned_from_ = State::Zero();
   double force_ = 0.0;
   PlanCounts counts_;
 };
