@@ -358,6 +358,36 @@ Table validation() {
                     .status = Status::kBad}}};
 }
 
+/// A box on a pole that turns and rises over the time of the flight.
+Scene scene() {
+  Scene figure{.title = "A box on a pole",
+               .caption = "Drag to turn the view.",
+               .joints = {{.name = "height", .unit = "m", .direction = {0.0, 0.0, 1.0}},
+                          {.name = "roll", .unit = "deg", .turns = true, .scale = kDegree}},
+               .choice = "variant"};
+  using Kind = SceneShape::Kind;
+  const auto square = [](double half, double z, bool moves) -> std::vector<ScenePoint> {
+    return {{-half, -half, z, moves}, {half, -half, z, moves}, {half, half, z, moves}, {-half, half, z, moves}};
+  };
+  figure.shapes = {{.kind = Kind::kFace, .tone = SceneTone::kGround, .points = square(1.0, 0.0, false)},
+                   {.kind = Kind::kActuator,
+                    .tone = SceneTone::kLink,
+                    .points = {{0.0, 0.0, 0.0, false}, {0.0, 0.0, 1.0, true}},
+                    .size = 0.5},
+                   {.kind = Kind::kFace, .tone = SceneTone::kBody, .points = square(0.5, 1.0, true)},
+                   {.kind = Kind::kBall, .tone = SceneTone::kPerson, .points = {{0.0, 0.0, 1.2, true}}, .size = 0.1},
+                   {.kind = Kind::kLabel, .points = {{1.2, 0.0, 0.0, false}}, .text = kHostileText}};
+  figure.motions = {{.name = "slow", .values = {{}, {}}}, {.name = "fast", .values = {{}, {}}}};
+  for (int k = 0; k <= 90; ++k) {
+    figure.samples.push_back(2.0 * k - (k == 90 ? 0.02 : 0.0));
+    for (std::size_t m = 0; m < 2; ++m) {
+      figure.motions[m].values[0].push_back(0.2 * std::sin(0.1 * k));
+      figure.motions[m].values[1].push_back(20.0 * std::sin((m == 0 ? 0.05 : 0.3) * k));
+    }
+  }
+  return figure;
+}
+
 }  // namespace
 
 Document sample_document() {
@@ -392,6 +422,7 @@ Document sample_document() {
                            .tone = Tone::kWarning},
                       Paragraph{.text = std::string("A text from a log: ") + kHostileText, .tone = Tone::kNote}}},
           {.title = "The whole log", .blocks = {whole_log()}},
+          {.title = "In space", .blocks = {scene()}},
           {.title = "How it was done",
            .blocks = {FactList{.facts = {{.name = "Program", .value = "veridyn 0.1.0"},
                                          {.name = "Seed", .value = "1"},

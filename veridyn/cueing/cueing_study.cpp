@@ -65,8 +65,9 @@ void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& stud
   const Eigen::Vector3d driver = place(cue, "driver");
   const recording::MotionOptions options = motion_options(cue);
   if (root.has("data")) {
+    const std::size_t before = study.inputs.size();  // files of the drive that is tuned on
     study.vehicle = recorded(root.table("data"), options, driver, study);
-    study.drive = study.inputs.empty() ? "drive" : study.inputs.front().filename().string();
+    study.drive = study.inputs.size() == before ? "drive" : study.inputs[before].filename().string();
     return;
   }
   if (!root.has("drive"))

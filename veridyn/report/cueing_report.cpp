@@ -4,7 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+
+#include "veridyn/report/document/number_format.hpp"
+#include "veridyn/report/figures/platform_figure.hpp"
+#include "veridyn/report/figures/response_figures.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -17,10 +22,23 @@ const char* shown_unit(Cue cue) { return cue < Cue::kRoll ? "m/s^2" : "deg/s"; }
 double shown(PlatformAxis axis, double value) { return turns(axis) ? value / kDegree : 1000.0 * value; }
 const char* shown_unit(PlatformAxis axis) { return turns(axis) ? "deg" : "mm"; }
 
-std::string with_interval(const Measured& m, double scale = 1.0) {
+std::string with_interval(const Measured& m, double scale = 1.0, int decimals = 2) {
   if (!std::isfinite(m.value)) return "-";
-  if (!std::isfinite(m.low)) return fmt::format("{:.3f}", scale * m.value);
-  return fmt::format("{:.3f} ({:.3f} to {:.3f})", scale * m.value, scale * m.low, scale * m.high);
+  const auto text = [&](double v) { return format_decimals(scale * v, decimals); };
+  if (!std::isfinite(m.low)) return text(m.value);
+  // Spaces that do not break keep the interval on one line, the value's or the next.
+  return fmt::format("{} ({}\u00a0to\u00a0{})", text(m.value), text(m.low), text(m.high));
+}
+
+double three_digits(double value) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return unit * std::round(value / unit);
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 bool is_moved(const CueingResult& result, Cue cue) {
@@ -31,27 +49,58 @@ bool is_moved(const CueingResult& result, Cue cue) {
 
 Table score_table(const CueingResult& result, Cue cue) {
   const FeltMotion& felt = result.algorithms.front().felt;
-  Table t{.title = fmt::format("{}", name_of(cue)),
-          .caption =
-              fmt::format("What is felt on the platform against what was felt in the vehicle, threshold {:.2g} {}. In "
-                          "brackets 95 % intervals over blocks of 10 s.",
-                          shown(cue, felt.threshold[cue]), shown_unit(cue))};
-  t.columns = {{.name = "algorithm", .align = Align::kLeft},
-               {.name = "Pearson correlation", .align = Align::kLeft},
-               {.name = "lag", .unit = "s", .align = Align::kLeft},
-               {.name = "correlation at the lag", .align = Align::kLeft},
-               {.name = "RMS error", .unit = shown_unit(cue), .align = Align::kLeft},
-               {.name = "time above threshold", .align = Align::kLeft},
-               {.name = "Pearson, not felt but physical", .align = Align::kLeft}};
+  Table t{.title = capitalised(std::string(name_of(cue)))};
+  t.columns = {
+      {.name = "algorithm", .align = Align::kLeft},
+      {.name = "correlation", .align = Align::kLeft},
+      {.name = "lag", .unit = "s", .align = Align::kLeft},
+      {.name = "at the lag", .align = Align::kLeft},
+      {.name = "RMS error", .unit = shown_unit(cue), .align = Align::kLeft},
+      {.name = fmt::format("off > {:.2g}", shown(cue, felt.threshold[cue])), .unit = "%", .align = Align::kLeft},
+      {.name = "physical", .align = Align::kLeft}};
   const double scale = cue < Cue::kRoll ? 1.0 : 1.0 / kDegree;
   for (const AlgorithmResult& a : result.algorithms) {
     const CueScore& s = a.score.cues[cue];
     t.rows.push_back(
         {.cells = {text_cell(a.run.algorithm), text_cell(with_interval(s.pearson)), text_cell(with_interval(s.lag)),
                    text_cell(with_interval(s.at_lag)), text_cell(with_interval(s.rmse, scale)),
-                   text_cell(with_interval(s.above)), text_cell(with_interval(s.physical_pearson))}});
+                   text_cell(with_interval(s.above, 100.0, 0)), text_cell(with_interval(s.physical_pearson))}});
   }
   return t;
+}
+
+/// The correlation of a cue, and where there is none: below all others.
+double correlation(const AlgorithmResult& a, Cue cue) {
+  const double p = a.score.cues[cue].pearson.value;
+  return std::isfinite(p) ? p : -2.0;
+}
+
+const AlgorithmResult& best_of(const CueingResult& result, Cue cue) {
+  return *std::max_element(
+      result.algorithms.begin(), result.algorithms.end(),
+      [&](const AlgorithmResult& a, const AlgorithmResult& b) { return correlation(a, cue) < correlation(b, cue); });
+}
+
+/// Correlations of all cues and algorithms at a glance.
+IntervalPlot correlation_figure(const CueingResult& result) {
+  IntervalPlot plot{
+      .title = "Correlation of what is felt with what was felt in the vehicle",
+      .caption =
+          "1: as in the vehicle. 0: nothing to do with it. Below 0: rather the other way. With 95 % intervals over "
+          "blocks of 10 s, where the drive has four blocks or more.",
+      .shared_scale = true};
+  for (const AlgorithmResult& a : result.algorithms) plot.methods.push_back(a.run.algorithm);
+  for (std::size_t i = 0; i < kCues; ++i) {
+    const auto cue = static_cast<Cue>(i);
+    if (!is_moved(result, cue)) continue;
+    IntervalRow row{.name = std::string(name_of(cue))};
+    for (const AlgorithmResult& a : result.algorithms) {
+      const Measured& m = a.score.cues[cue].pearson;
+      row.estimates.push_back({.value = m.value, .low = m.low, .high = m.high});
+    }
+    plot.rows.push_back(std::move(row));
+  }
+  return plot;
 }
 
 /// Perceived errors of both pairs of axes beside the least that is possible.
@@ -61,12 +110,12 @@ Table perceived_table(const CueingResult& result) {
               "Of force and turn together, in thresholds. Least: with the whole drive known beforehand, within "
               "range, rates and accelerations of the platform; no algorithm can be better."};
   t.columns = {{.name = "algorithm", .align = Align::kLeft},
-               {.name = "surge and pitch", .align = Align::kLeft},
-               {.name = "over the least"},
-               {.name = "sway and roll", .align = Align::kLeft},
-               {.name = "over the least"}};
+               {.name = "error", .align = Align::kLeft, .group = "surge and pitch"},
+               {.name = "over the least", .group = "surge and pitch"},
+               {.name = "error", .align = Align::kLeft, .group = "sway and roll"},
+               {.name = "over the least", .group = "sway and roll"}};
   const auto over = [&](double error, std::size_t pair) {
-    return number_cell(result.least[pair] ? error / result.least[pair]->error : NAN, 3);
+    return number_cell(result.least[pair] ? error / result.least[pair]->error : kNaN, 2);
   };
   for (const AlgorithmResult& a : result.algorithms) {
     const std::array<Measured, 2>& e = a.score.pairs;
@@ -75,36 +124,38 @@ Table perceived_table(const CueingResult& result) {
   }
   if (const auto& [sway, surge] = result.least; surge && sway) {
     t.rows.push_back(
-        {.cells = {text_cell("a platform that stands"), text_cell(fmt::format("{:.3f}", surge->still)),
-                   over(surge->still, 1), text_cell(fmt::format("{:.3f}", sway->still)), over(sway->still, 0)}});
-    t.rows.push_back(
-        {.cells = {text_cell("least"), text_cell(fmt::format("{:.3f}", surge->error)), over(surge->error, 1),
-                   text_cell(fmt::format("{:.3f}", sway->error)), over(sway->error, 0)}});
+        {.cells = {text_cell("a platform that stands"), text_cell(format_decimals(surge->still, 2)),
+                   over(surge->still, 1), text_cell(format_decimals(sway->still, 2)), over(sway->still, 0)}});
+    t.rows.push_back({.cells = {text_cell("least"), text_cell(format_decimals(surge->error, 2)), over(surge->error, 1),
+                                text_cell(format_decimals(sway->error, 2)), over(sway->error, 0)}});
   }
   return t;
 }
 
-/// Pairs of algorithms that differ beyond their intervals, in words.
+/// The best algorithm of a cue against each other one, in words.
 List differences(const CueingResult& result) {
   List list;
-  for (std::size_t i = 0; i < result.algorithms.size(); ++i) {
-    for (std::size_t j = i + 1; j < result.algorithms.size(); ++j) {
-      const CueingScore &a = result.algorithms[i].score, &b = result.algorithms[j].score;
-      for (const Cue cue : {Cue::kSurge, Cue::kSway}) {
-        if (!is_moved(result, cue)) continue;
-        const Measured d = difference(a, b, cue, CueFigure::kPearson);
-        if (!std::isfinite(d.low)) continue;
-        if (d.low <= 0.0 && d.high >= 0.0) {
-          list.items.push_back(fmt::format("{}: {} and {} do not differ beyond their intervals ({:+.3f} to {:+.3f})",
-                                           name_of(cue), a.algorithm, b.algorithm, d.low, d.high));
-        } else {
-          list.items.push_back(fmt::format(
-              "{}: {} correlates better than {} by {:.3f} ({:.3f} to {:.3f})", name_of(cue),
-              d.low > 0.0 ? a.algorithm : b.algorithm, d.low > 0.0 ? b.algorithm : a.algorithm, std::abs(d.value),
-              std::min(std::abs(d.low), std::abs(d.high)), std::max(std::abs(d.low), std::abs(d.high))));
-        }
+  for (const Cue cue : {Cue::kSurge, Cue::kSway}) {
+    if (!is_moved(result, cue)) continue;
+    const AlgorithmResult& best = best_of(result, cue);
+    std::vector<std::string> worse, alike;
+    for (const AlgorithmResult& other : result.algorithms) {
+      if (&other == &best) continue;
+      const Measured d = difference(best.score, other.score, cue, CueFigure::kPearson);
+      if (!std::isfinite(d.low)) continue;
+      if (d.low <= 0.0) {
+        alike.push_back(other.run.algorithm);
+      } else {
+        worse.push_back(fmt::format("{} by {:.2f} ({:.2f} to {:.2f})", other.run.algorithm, d.value, d.low, d.high));
       }
     }
+    std::vector<std::string> parts;
+    if (!worse.empty()) parts.push_back(fmt::format("better than {}", fmt::join(worse, ", ")));
+    if (!alike.empty())
+      parts.push_back(fmt::format("no different beyond the intervals from {}", fmt::join(alike, ", ")));
+    if (!parts.empty())
+      list.items.push_back(fmt::format("{}: {} correlates best; {}.", capitalised(std::string(name_of(cue))),
+                                       best.run.algorithm, fmt::join(parts, "; ")));
   }
   return list;
 }
@@ -112,63 +163,65 @@ List differences(const CueingResult& result) {
 Table workspace_table(const CueingStudy& study, const CueingResult& result) {
   Table t{.title = "What the platform used",
           .caption =
-              "Share of the range on the side that was used most; share of time that the guard held the axis back; "
-              "largest share of the rate."};
-  t.columns = {{.name = "algorithm", .align = Align::kLeft},
-               {.name = "axis", .align = Align::kLeft},
-               {.name = "lowest"},
-               {.name = "highest"},
-               {.name = "unit", .align = Align::kLeft},
-               {.name = "range", .unit = "%", .digits = 3},
-               {.name = "held back", .unit = "%", .digits = 3},
-               {.name = "rate", .unit = "%", .digits = 3},
-               {.name = "RMS jerk", .digits = 3}};
-  for (const AlgorithmResult& a : result.algorithms) {
-    for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-      if (!study.platform.limits.axes[i].moves()) continue;
-      const auto axis = static_cast<PlatformAxis>(i);
+              "Range: share of it on the side that was used most. Held back: share of time in which the guard kept "
+              "the axis from what the algorithm wanted. Rate: the largest, over what is allowed. Jerk in the "
+              "axis's unit over s^3."};
+  t.columns = {{.name = "axis", .align = Align::kLeft}, {.name = "algorithm", .align = Align::kLeft},
+               {.name = "lowest", .digits = 3},         {.name = "highest", .digits = 3},
+               {.name = "range", .unit = "%"},          {.name = "held back", .unit = "%"},
+               {.name = "rate", .unit = "%"},           {.name = "RMS jerk", .digits = 3}};
+  const auto percent = [](double share) { return number_cell(100.0 * share, share < 0.0995 ? 1 : 0); };
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    if (!study.platform.limits.axes[i].moves()) continue;
+    const auto axis = static_cast<PlatformAxis>(i);
+    const int decimals = turns(axis) ? 2 : 1;
+    for (const AlgorithmResult& a : result.algorithms) {
       const AxisScore& s = a.score.axes[i];
-      t.rows.push_back(
-          {.cells = {text_cell(a.run.algorithm), text_cell(std::string(name_of(axis))),
-                     number_cell(shown(axis, s.lowest)), number_cell(shown(axis, s.highest)),
-                     text_cell(shown_unit(axis)), number_cell(100.0 * s.used), number_cell(100.0 * s.limited),
-                     number_cell(100.0 * s.rate), number_cell(shown(axis, s.rms_jerk))}});
+      t.rows.push_back({.cells = {text_cell(fmt::format("{}\u00a0[{}]", name_of(axis), shown_unit(axis))),
+                                  text_cell(a.run.algorithm), number_cell(shown(axis, s.lowest), decimals),
+                                  number_cell(shown(axis, s.highest), decimals), percent(s.used), percent(s.limited),
+                                  percent(s.rate), number_cell(three_digits(shown(axis, s.rms_jerk)))}});
     }
   }
   return t;
 }
 
 Table false_cue_table(const CueingResult& result) {
-  Table t{.title = "False cues",
-          .caption =
-              "Stretches of a tenth of a second and more. Wrong sign: felt the other way, above threshold. Too strong: "
-              "more than twice. Missing: not felt, where more than twice the threshold was felt in the vehicle. The "
-              "largest ones of each algorithm."};
-  t.columns = {{.name = "algorithm", .align = Align::kLeft}, {.name = "from", .unit = "s", .digits = 5},
-               {.name = "lasts", .unit = "s", .digits = 3},  {.name = "cue", .align = Align::kLeft},
-               {.name = "kind", .align = Align::kLeft},      {.name = "off by, over threshold", .digits = 3}};
-  constexpr std::size_t kMost = 12;
+  // About as many rows as a screen has, however many algorithms there are.
+  const std::size_t most = std::max<std::size_t>(3, 30 / result.algorithms.size());
+  Table t{.title = "The largest false cues",
+          .caption = fmt::format("At most {} of each algorithm; all are in false_cues.csv.", most)};
+  t.columns = {{.name = "algorithm", .align = Align::kLeft},
+               {.name = "from", .unit = "s"},
+               {.name = "lasts", .unit = "s"},
+               {.name = "cue", .align = Align::kLeft},
+               {.name = "kind", .align = Align::kLeft},
+               {.name = "off by, over threshold"}};
   for (const AlgorithmResult& a : result.algorithms) {
     std::vector<FalseCue> all = a.score.false_cues;
     const auto over = [&](const FalseCue& f) { return f.size / a.felt.threshold[f.cue]; };
     std::sort(all.begin(), all.end(), [&](const FalseCue& x, const FalseCue& y) { return over(x) > over(y); });
-    for (std::size_t i = 0; i < std::min(kMost, all.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(most, all.size()); ++i) {
       const FalseCue& f = all[i];
-      t.rows.push_back({.cells = {text_cell(a.run.algorithm), number_cell(f.begin), number_cell(f.end - f.begin),
+      t.rows.push_back({.cells = {text_cell(a.run.algorithm), number_cell(f.begin, 2), number_cell(f.end - f.begin, 2),
                                   text_cell(std::string(name_of(f.cue))), text_cell(std::string(name_of(f.kind))),
-                                  number_cell(over(f))}});
+                                  number_cell(over(f), 1)}});
     }
   }
   return t;
 }
 
 Table false_cue_counts(const CueingResult& result) {
-  Table t{.title = "Number of false cues, and their time"};
+  Table t{.title = "Number of false cues, and their time",
+          .caption =
+              "Stretches of a tenth of a second and more, of all cues together. Wrong sign: felt the other way, above "
+              "threshold. Too strong: more than twice. Missing: not felt, where more than twice the threshold was "
+              "felt in the vehicle."};
   t.columns = {{.name = "algorithm", .align = Align::kLeft},
                {.name = "wrong sign"},
                {.name = "too strong"},
                {.name = "missing"},
-               {.name = "all together", .unit = "s", .digits = 4}};
+               {.name = "all together", .unit = "s"}};
   for (const AlgorithmResult& a : result.algorithms) {
     std::array<double, 3> count{};
     double time = 0.0;
@@ -177,13 +230,13 @@ Table false_cue_counts(const CueingResult& result) {
       time += f.end - f.begin;
     }
     t.rows.push_back({.cells = {text_cell(a.run.algorithm), number_cell(count[0], 0), number_cell(count[1], 0),
-                                number_cell(count[2], 0), number_cell(time)}});
+                                number_cell(count[2], 0), number_cell(time, 1)}});
   }
   return t;
 }
 
 TimeSeries felt_histories(const CueingResult& result) {
-  TimeSeries figure{.title = "What is felt",
+  TimeSeries figure{.title = "Felt force and rate",
                     .caption = "Grey: in the vehicle. Coloured: on the platform, after canals and otoliths."};
   figure.samples = result.algorithms.front().felt.time;
   for (std::size_t i = 0; i < kCues; ++i) {
@@ -204,8 +257,8 @@ TimeSeries felt_histories(const CueingResult& result) {
 }
 
 TimeSeries platform_histories(const CueingStudy& study, const CueingResult& result) {
-  TimeSeries figure{.title = "What the platform does",
-                    .caption = "Where it is after legs and actuators. Dashed: its limits."};
+  TimeSeries figure{.title = "Position over time",
+                    .caption = "Where it is after legs and actuators. Dashed: limits, where more than half is used."};
   figure.samples = result.algorithms.front().felt.time;
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
     const AxisLimits& limits = study.platform.limits.axes[i];
@@ -219,9 +272,10 @@ TimeSeries platform_histories(const CueingStudy& study, const CueingResult& resu
       most = std::max(most, a.score.axes[i].used);
       panel.lines.push_back(std::move(line));
     }
-    for (const double limit : {limits.lowest, limits.highest}) {
-      if (most > 0.5)
-        panel.lines.push_back({.name = "limit",
+    if (most > 0.5) {
+      for (const auto& [name, limit] :
+           {std::pair("upper limit", limits.highest), std::pair("lower limit", limits.lowest)})
+        panel.lines.push_back({.name = name,
                                .y = std::vector<double>(figure.samples.size(), shown(which, limit)),
                                .role = Role::kReference});
     }
@@ -230,96 +284,103 @@ TimeSeries platform_histories(const CueingStudy& study, const CueingResult& resu
   return figure;
 }
 
-void add_responses(const CueingStudy& study, const CueingResult& result, Document& document) {
-  Section section{.title = "Gain and phase"};
-  for (std::size_t i = 0; i < kCues; ++i) {
-    const auto cue = static_cast<Cue>(i);
-    XYPlot gain{.title = fmt::format("{}: gain", name_of(cue)), .x = {"log10 frequency", "rad/s"}, .y = {"gain", ""}},
-        phase{
-            .title = fmt::format("{}: phase", name_of(cue)), .x = {"log10 frequency", "rad/s"}, .y = {"phase", "deg"}};
-    for (const AlgorithmResult& a : result.algorithms) {
-      const auto found = a.response.find(cue);
-      if (found == a.response.end()) continue;
-      XYSeries g{.name = a.run.algorithm, .style = Style::kLine}, p{.name = a.run.algorithm, .style = Style::kLine};
-      for (const ResponsePoint& r : found->second) {
-        g.x.push_back(std::log10(r.frequency));
-        g.y.push_back(r.gain);
-        p.x.push_back(std::log10(r.frequency));
-        p.y.push_back(r.phase / kDegree);
-      }
-      gain.series.push_back(std::move(g));
-      phase.series.push_back(std::move(p));
-    }
-    if (gain.series.empty()) continue;
-    const auto mask = study.response->mask.find(cue);
-    if (mask != study.response->mask.end()) {
-      const auto add = [&](XYPlot& plot, double MaskPoint::*limit, double unit) {
-        XYSeries s{.name = "mask", .role = Role::kReference, .style = Style::kLine};
-        for (const MaskPoint& m : mask->second) {
-          if (!std::isfinite(m.*limit)) continue;
-          s.x.push_back(std::log10(m.frequency));
-          s.y.push_back(m.*limit / unit);
-        }
-        if (!s.x.empty()) plot.series.push_back(std::move(s));
-      };
-      add(gain, &MaskPoint::least_gain, 1.0);
-      add(gain, &MaskPoint::most_gain, 1.0);
-      add(phase, &MaskPoint::least_phase, kDegree);
-      add(phase, &MaskPoint::most_phase, kDegree);
-      for (const AlgorithmResult& a : result.algorithms) {
-        const auto out = a.outside_mask.find(cue);
-        if (out == a.outside_mask.end() || out->second.empty()) continue;
-        std::vector<std::string> at;
-        for (const ResponsePoint& r : out->second) at.push_back(fmt::format("{:g}", r.frequency));
-        section.blocks.emplace_back(Paragraph{
-            fmt::format("{}, {}: outside the mask at {} rad/s.", name_of(cue), a.run.algorithm, fmt::join(at, ", ")),
-            Tone::kWarning});
-      }
-    }
-    section.blocks.emplace_back(std::move(gain));
-    section.blocks.emplace_back(std::move(phase));
-  }
-  document.sections.push_back(std::move(section));
-}
-
 void add_tuning(const CueingResult& result, Document& document) {
-  Section section{.title = "Tuned"};
+  Table costs{.title = "What tuning gained",
+              .caption = "Cost of a drive: 1 is that of a platform that stands still. Drives: how many were tried."};
+  costs.columns = {{.name = "algorithm", .align = Align::kLeft},
+                   {.name = "cost before"},
+                   {.name = "cost after"},
+                   {.name = "drives"}};
+  Table knobs{.title = "Knobs that were turned"};
+  knobs.columns = {{.name = "algorithm", .align = Align::kLeft},
+                   {.name = "knob", .align = Align::kLeft},
+                   {.name = "before", .align = Align::kLeft},
+                   {.name = "after", .align = Align::kLeft},
+                   {.name = "unit", .align = Align::kLeft}};
   for (const AlgorithmResult& a : result.algorithms) {
     if (!a.tuning) continue;
-    Table t{.title = fmt::format("{}: cost {:.4f} before, {:.4f} after {} drives", a.run.algorithm,
-                                 a.tuning->cost_before, a.tuning->cost_after, a.tuning->evaluations)};
-    t.columns = {{.name = "knob", .align = Align::kLeft},
-                 {.name = "before", .align = Align::kLeft},
-                 {.name = "after", .align = Align::kLeft},
-                 {.name = "unit", .align = Align::kLeft}};
+    costs.rows.push_back(
+        {.cells = {text_cell(a.run.algorithm), number_cell(a.tuning->cost_before, 3),
+                   number_cell(a.tuning->cost_after, 3), number_cell(static_cast<double>(a.tuning->evaluations), 0)}});
     for (const TunedKnob& k : a.tuning->knobs)
-      t.rows.push_back({.cells = {text_cell(k.name), text_cell(fmt::format("{:.4g}", fmt::join(k.before, ", "))),
-                                  text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))), text_cell(k.unit)}});
-    section.blocks.emplace_back(std::move(t));
+      knobs.rows.push_back({.cells = {text_cell(a.run.algorithm), text_cell(k.name),
+                                      text_cell(fmt::format("{:.4g}", fmt::join(k.before, ", "))),
+                                      text_cell(fmt::format("{:.4g}", fmt::join(k.after, ", "))),
+                                      text_cell(k.unit == "1" ? "" : k.unit)}});
+  }
+  Section section{.title = "Tuned knobs", .blocks = {std::move(costs)}};
+  if (knobs.rows.empty()) {
+    section.blocks.emplace_back(Paragraph{"No knob was turned: none of the drives that were tried was better."});
+  } else {
+    section.blocks.emplace_back(std::move(knobs));
   }
   document.sections.push_back(std::move(section));
 }
 
 Verdict cueing_verdict(const CueingResult& result) {
-  const auto best = [&](Cue cue) {
-    const auto value = [&](const AlgorithmResult& a) {
-      const double p = a.score.cues[cue].pearson.value;
-      return std::isfinite(p) ? p : -2.0;
-    };
-    return std::max_element(result.algorithms.begin(), result.algorithms.end(),
-                            [&](const AlgorithmResult& a, const AlgorithmResult& b) { return value(a) < value(b); })
-        ->score.cues[cue]
-        .pearson.value;
-  };
   Verdict v{.level = Level::kCaution, .word = "Scored"};
-  std::vector<std::string> parts;
+  std::vector<std::string> named, bare;
+  const AlgorithmResult* only = nullptr;
+  bool same = true;
   for (const Cue cue : {Cue::kSurge, Cue::kSway}) {
-    if (is_moved(result, cue) && std::isfinite(best(cue)))
-      parts.push_back(fmt::format("{} felt with a correlation of {:.2f}", name_of(cue), best(cue)));
+    const AlgorithmResult& best = best_of(result, cue);
+    if (!is_moved(result, cue) || correlation(best, cue) < -1.0) continue;
+    same = same && (only == nullptr || only == &best);
+    only = &best;
+    const std::string value = format_decimals(correlation(best, cue), 2);
+    named.push_back(fmt::format("{} in {} (correlation {})", best.run.algorithm, name_of(cue), value));
+    bare.push_back(fmt::format("{} in {}", value, name_of(cue)));
   }
-  v.headline =
-      parts.empty() ? "The drive holds no force that is felt." : fmt::format("At best {}.", fmt::join(parts, ", "));
+  if (only == nullptr) {
+    v.headline = "The drive holds no force that is felt.";
+  } else if (!same) {
+    v.headline = fmt::format("Most like the drive: {}.", fmt::join(named, ", "));
+  } else {
+    v.headline =
+        fmt::format("{}{}: correlation {}.", result.algorithms.size() > 1 ? "Most like the drive is " : "With ",
+                    only->run.algorithm, fmt::join(bare, ", "));
+  }
   return v;
+}
+
+Section score_tables(const CueingResult& result) {
+  Section section{.title = "Cue by cue"};
+  section.blocks.emplace_back(Paragraph{
+      "What is felt on the platform against what was felt in the vehicle. Correlation: Pearson's, at the same time. "
+      "Lag: by "
+      "how much the platform is late where they are most alike, with the correlation there. Off: share of time in "
+      "which "
+      "they differ by more than the threshold. Physical: the correlation of force or rate itself. In brackets 95 % "
+      "intervals over blocks of 10 s.",
+      Tone::kPlain});
+  for (std::size_t i = 0; i < kCues; ++i) {
+    if (is_moved(result, static_cast<Cue>(i))) section.blocks.emplace_back(score_table(result, static_cast<Cue>(i)));
+  }
+  return section;
+}
+
+Section false_cue_section(const CueingResult& result) {
+  Section section{.title = "False cues", .blocks = {false_cue_counts(result)}};
+  if (Table largest = false_cue_table(result); !largest.rows.empty()) section.blocks.emplace_back(std::move(largest));
+  return section;
+}
+
+/// "onset = 0.8, 1, 1 rad/s" as knob and value.
+Section knob_section(const CueingResult& result) {
+  Table t{};
+  t.columns = {{.name = "algorithm", .align = Align::kLeft},
+               {.name = "knob", .align = Align::kLeft},
+               {.name = "value", .align = Align::kLeft}};
+  for (const AlgorithmResult& a : result.algorithms) {
+    for (const std::string& knob : a.knobs) {
+      const std::size_t at = knob.find(" = ");
+      std::string value = at == std::string::npos ? "" : knob.substr(at + 3);
+      if (value.ends_with(" 1")) value.resize(value.size() - 2);  // the unit of a plain number
+      t.rows.push_back(
+          {.cells = {text_cell(a.run.algorithm), text_cell(knob.substr(0, at)), text_cell(std::move(value))}});
+    }
+  }
+  return {.title = "Numbers of the algorithms", .blocks = {std::move(t)}, .folded = true};
 }
 
 }  // namespace
@@ -340,25 +401,23 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
              {"Platform", study.platform.name},
              {"Algorithms", fmt::format("{}", fmt::join(names, ", "))},
              {"Perception", study.perception}};
-  Section score{.title = "Score"};
-  for (std::size_t i = 0; i < kCues; ++i) {
-    if (is_moved(result, static_cast<Cue>(i))) score.blocks.emplace_back(score_table(result, static_cast<Cue>(i)));
+  if (IntervalPlot glance = correlation_figure(result); !glance.rows.empty()) {
+    Section score{.title = "Score", .blocks = {std::move(glance)}};
+    if (List list = differences(result); !list.items.empty()) score.blocks.emplace_back(std::move(list));
+    score.blocks.emplace_back(perceived_table(result));
+    d.sections.push_back(std::move(score));
   }
-  score.blocks.emplace_back(perceived_table(result));
-  if (List list = differences(result); !list.items.empty()) score.blocks.emplace_back(std::move(list));
-  d.sections.push_back(std::move(score));
-  d.sections.push_back({.title = "Felt", .blocks = {felt_histories(result)}});
-  d.sections.push_back(
-      {.title = "Platform", .blocks = {platform_histories(study, result), workspace_table(study, result)}});
-  d.sections.push_back({.title = "False cues", .blocks = {false_cue_counts(result), false_cue_table(result)}});
-  if (study.response) add_responses(study, result, d);
+  d.sections.push_back({.title = "What the platform does",
+                        .blocks = {platform_figure(study.platform, result), platform_histories(study, result),
+                                   workspace_table(study, result)}});
+  if (TimeSeries felt = felt_histories(result); !felt.panels.empty()) {
+    d.sections.push_back({.title = "What is felt", .blocks = {std::move(felt)}});
+    d.sections.push_back(score_tables(result));
+  }
+  d.sections.push_back(false_cue_section(result));
+  if (study.response) d.sections.push_back(response_section(*study.response, result));
   if (study.tune) add_tuning(result, d);
-  Section numbers{.title = "Numbers of the algorithms", .folded = true};
-  for (const AlgorithmResult& a : result.algorithms) {
-    numbers.blocks.emplace_back(Paragraph{a.run.algorithm});
-    numbers.blocks.emplace_back(List{.items = a.knobs});
-  }
-  d.sections.push_back(std::move(numbers));
+  d.sections.push_back(knob_section(result));
   return d;
 }
 

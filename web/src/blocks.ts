@@ -3,6 +3,7 @@ import { h, icon } from './dom';
 import { draw_interval_plot } from './plots/interval_plot';
 import { draw_matrix } from './plots/matrix';
 import { save_buttons } from './plots/save';
+import { draw_scene } from './plots/scene';
 import { draw_time_series, type DrawnFigure } from './plots/time_series';
 import { draw_xy_plot } from './plots/xy_plot';
 import { copy_button, draw_table } from './table';
@@ -70,15 +71,25 @@ function draw_block(block: Block): HTMLElement {
       return picture_figure('intervals-figure', block, draw_interval_plot(block));
     case 'matrix':
       return picture_figure('matrix-figure', block, draw_matrix(block));
+    case 'scene':
+      return picture_figure('scene-figure', block, draw_scene(block));
   }
 }
 
-/** Blocks in their order; plots over a free abscissa that follow each other stand side by side where there is room. */
+/**
+ * Blocks in their order; plots over a free abscissa that follow each other stand side by side where there is room, and
+ * so do a scene and the time series after it.
+ */
 function draw_blocks(blocks: Block[]): HTMLElement[] {
   const elements: HTMLElement[] = [];
   let grid: HTMLElement | null = null;
   blocks.forEach((block, k) => {
     const element = draw_block(block);
+    if (block.kind === 'time_series' && blocks[k - 1]?.kind === 'scene') {
+      elements.push(h('div', { class: 'beside' }, elements.pop(), element));
+      grid = null;
+      return;
+    }
     const beside = block.kind === 'xy' && (blocks[k - 1]?.kind === 'xy' || blocks[k + 1]?.kind === 'xy');
     if (!beside) {
       grid = null;
@@ -94,7 +105,7 @@ function draw_blocks(blocks: Block[]): HTMLElement[] {
 /** "2 tables, 1 figure": what a folded section holds. */
 function summary_of(blocks: Block[]): string {
   const tables = blocks.filter((block) => block.kind === 'table').length;
-  const figures = blocks.filter((block) => ['time_series', 'xy', 'intervals', 'matrix'].includes(block.kind)).length;
+  const figures = blocks.filter((block) => ['time_series', 'xy', 'intervals', 'matrix', 'scene'].includes(block.kind)).length;
   const counted = (count: number, word: string) => (count === 0 ? [] : [`${count} ${word}${count === 1 ? '' : 's'}`]);
   return [...counted(tables, 'table'), ...counted(figures, 'figure')].join(', ');
 }

@@ -130,7 +130,11 @@ export interface XYPlot {
   height: number;
   equal_axes: boolean;
   equal_scale: boolean;
+  /** Decades along the abscissa. */
+  log_x?: boolean;
   series: XYSeries[];
+  /** Shaded between two lines; a missing end: as far as the plot goes. */
+  areas?: { name: string; x: Samples; low: Samples; high: Samples }[];
   guides: { direction: 'horizontal' | 'vertical'; value: number; label: string }[];
 }
 
@@ -164,7 +168,41 @@ export interface Matrix {
   decimals: number;
 }
 
-export type Block = Paragraph | List | Facts | Table | TimeSeries | XYPlot | IntervalPlot | Matrix;
+export type SceneTone = 'ground' | 'body' | 'link' | 'person' | 'outline';
+
+/** Points: forward, left, up [m], and whether they move with the body. */
+export interface SceneShape {
+  kind: 'line' | 'face' | 'ball' | 'actuator' | 'label';
+  tone: SceneTone;
+  points: [number, number, number, 0 | 1][];
+  size: number;
+  text: string;
+}
+
+export interface SceneJoint {
+  name: string;
+  unit: string;
+  turns: boolean;
+  direction: [number, number, number];
+  scale: number;
+}
+
+/** A drawing in space that moves; `values` by joint and sample. */
+export interface Scene {
+  kind: 'scene';
+  title: string;
+  caption: string;
+  axis: string;
+  x: Axis;
+  samples: number[];
+  shapes: SceneShape[];
+  joints: SceneJoint[];
+  motions: { name: string; values: Samples[] }[];
+  choice: string;
+  height: number;
+}
+
+export type Block = Paragraph | List | Facts | Table | TimeSeries | XYPlot | IntervalPlot | Matrix | Scene;
 
 export interface Section {
   title: string;

@@ -44,3 +44,20 @@ export function nice_ticks(low: number, high: number, count: number): { ticks: n
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; ++k) ticks.push(k * step);
   return { ticks, step };
 }
+
+/** Ticks of an axis of decades, by their logarithms: the decades, and 2 and 5 between them where these are few. */
+export function decade_ticks(low: number, high: number, count: number): { positions: number[]; labels: string[] } {
+  const decades: number[] = [];
+  const wide = Math.max(1, Math.ceil((high - low) / Math.max(1, count)));
+  for (let k = Math.ceil(low - 1e-9); k <= high + 1e-9; k += wide) decades.push(k);
+  const fine: number[] = [];
+  for (let k = Math.floor(low); k <= high; ++k) for (const each of [1, 2, 5]) fine.push(k + Math.log10(each));
+  const within = fine.filter((each) => each >= low - 1e-9 && each <= high + 1e-9);
+  const positions = within.length <= Math.max(count, 3) ? within : decades;
+  if (positions.length < 2) {
+    const { ticks, step } = nice_ticks(10 ** low, 10 ** high, count);
+    const above = ticks.filter((tick) => tick > 0);
+    return { positions: above.map(Math.log10), labels: format_ticks(above, step) };
+  }
+  return { positions, labels: positions.map((each) => String(Number((10 ** each).toPrecision(3)))) };
+}

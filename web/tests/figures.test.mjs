@@ -217,6 +217,47 @@ describe('a figure', { skip }, () => {
     await close();
   });
 
+  test('draws decades and the area of a mask', async () => {
+    const series = (name, style) => ({ name, role: 'estimate', style, width: 0, opacity: 1, x: [0.1, 1, 10, 0], y: [1, 0.8, 0.4, 5] });
+    const plot = {
+      kind: 'xy', title: 'Gain', caption: '', footnote: '', x: { label: 'frequency', unit: 'rad/s' }, y: { label: 'gain', unit: '' },
+      height: 260, equal_axes: false, equal_scale: false, log_x: true, guides: [],
+      series: [series('a', 'line'), series('a', 'markers')],
+      areas: [{ name: 'mask', x: [0.2, 5], low: [0.2, 0.1], high: [null, null] }],
+    };
+    const { page, close } = await open_sections(one(plot));
+    await page.waitForTimeout(200);
+    const [low, high] = await scale(page, 'x');
+    assert.ok(Math.abs(low + 1) < 0.2 && Math.abs(high - 1) < 0.2, `${low} ${high}`);
+    const labels = await page.evaluate(() => document.querySelector('.plot').uplot.axes[0]._values);
+    for (const label of ['0.1', '1', '10']) assert.ok(labels.includes(label), String(labels));
+    assert.equal(await page.locator('.legend li').count(), 2, 'the line with its markers, and the mask');
+    assert.equal(await page.locator('.legend .patch').count(), 1);
+    // Above its lower edge the area goes as far as the plot; below, and left of it, there is none.
+    const painted = await page.evaluate(() => {
+      const { uplot } = document.querySelector('.plot');
+      const { data, width } = uplot.ctx.getImageData(0, 0, uplot.ctx.canvas.width, uplot.ctx.canvas.height);
+      const up = uplot.scales.y.max - 0.02;
+      return [0.13, -0.87].map((at) => data[4 * (Math.round(uplot.valToPos(up, 'y', true)) * width + Math.round(uplot.valToPos(at, 'x', true))) + 3]);
+    });
+    assert.ok(painted[0] > 0, 'within');
+    assert.equal(painted[1], 0, 'left of it');
+    const [saved] = await Promise.all([page.waitForEvent('download'), page.getByLabel('Save Gain as SVG').click()]);
+    const text = readFileSync(await saved.path(), 'utf8');
+    assert.match(text, /<polygon/);
+    assert.ok(!/NaN/.test(text));
+    await close();
+  });
+
+  test('gives every line a look of its own, however many there are', async () => {
+    const x = steps(0, 10, 11);
+    const { page, close } = await open_sections(one(time_series(x, [Array.from({ length: 9 }, (_, k) => ({ name: `line ${k}`, y: x.map((t) => t + k) }))])));
+    const looks = await page.evaluate(() => [...document.querySelectorAll('.legend .swatch')].map((each) => `${each.className} ${each.getAttribute('style')}`));
+    assert.equal(looks.length, 9);
+    assert.equal(new Set(looks).size, 9, String(looks));
+    await close();
+  });
+
   test('is saved as SVG and as PNG, as it stands', async () => {
     const x = steps(0, 10, 50);
     const lines = [{ name: 'kept', y: x }, { name: 'switched off', y: x.map((t) => 2 * t) }];

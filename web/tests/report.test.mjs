@@ -30,7 +30,8 @@ describe('the report', { skip }, () => {
     assert.equal(await page.locator('h1').innerText(), 'Sample aircraft, flight 12');
     assert.equal(await page.locator('.verdict h2').innerText(), 'The pitch model is good to fly with; the yaw model is not.');
     assert.equal(await page.locator('.verdict .word').textContent(), 'Use with care');
-    assert.equal(await page.locator('main > section[id]').count(), 7);
+    assert.equal(await page.locator('main > section[id]').count(), 8);
+    assert.equal(await page.locator('figure.scene-figure .scene-drawing').count(), 1);
     assert.equal(await page.locator('figure.series').count(), 4);
     assert.equal(await page.locator('.time-series .plot canvas').count(), 11);
     assert.equal(await page.locator('figure.xy-figure .plot canvas').count(), 5);

@@ -35,7 +35,8 @@ TEST(ToJson, HoldsEveryKindOfBlock) {
     EXPECT_FALSE(section["id"].get<std::string>().empty());
     for (const json& block : section["blocks"]) kinds.push_back(block["kind"]);
   }
-  for (const char* kind : {"paragraph", "list", "facts", "table", "time_series", "xy", "intervals", "matrix"}) {
+  for (const char* kind :
+       {"paragraph", "list", "facts", "table", "time_series", "xy", "intervals", "matrix", "scene"}) {
     EXPECT_THAT(kinds, testing::Contains(kind));
   }
 }
@@ -45,6 +46,31 @@ TEST(ToJson, HoldsTheWindowsOfAFigure) {
   ASSERT_EQ(figure["windows"].size(), 2U);
   EXPECT_EQ(figure["windows"][0]["from"], 1.0);
   EXPECT_EQ(figure["windows"][0]["to"], 2.5);
+}
+
+TEST(ToJson, HoldsASceneAsThePageReadsIt) {
+  Scene scene{.samples = {0.0, 1.0},
+              .shapes = {{.kind = SceneShape::Kind::kActuator,
+                          .tone = SceneTone::kLink,
+                          .points = {{1.0, 2.0, 3.0, false}, {4.0, 5.0, 6.0, true}},
+                          .size = 0.5}},
+              .joints = {{.name = "pitch", .unit = "deg", .turns = true, .direction = {0.0, -1.0, 0.0}, .scale = 0.5}},
+              .motions = {{.name = "a", .values = {{3.0, kNaN}}}}};
+  const json block = first_block(scene);
+  EXPECT_EQ(block["shapes"][0]["kind"], "actuator");
+  EXPECT_EQ(block["shapes"][0]["tone"], "link");
+  EXPECT_EQ(block["shapes"][0]["points"], json::parse("[[1.0, 2.0, 3.0, 0], [4.0, 5.0, 6.0, 1]]"));
+  EXPECT_EQ(block["joints"][0]["direction"], json::parse("[0.0, -1.0, 0.0]"));
+  EXPECT_EQ(block["motions"][0]["values"][0][0], 3.0);
+  EXPECT_TRUE(block["motions"][0]["values"][0][1].is_null());
+}
+
+TEST(ToJson, AnAreaWithoutAnEndHasNoneInThePage) {
+  const json block =
+      first_block(XYPlot{.areas = {{.name = "mask", .x = {1.0}, .low = {0.5}, .high = {kInfinity}}}, .log_x = true});
+  EXPECT_EQ(block["log_x"], true);
+  EXPECT_EQ(block["areas"][0]["low"][0], 0.5);
+  EXPECT_TRUE(block["areas"][0]["high"][0].is_null());
 }
 
 TEST(ToJson, CannotEndTheScriptElementThatItStandsIn) {

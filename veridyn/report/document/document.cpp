@@ -65,6 +65,8 @@ void check_block(const TimeSeries& figure) {
 
 void check_block(const XYPlot& plot) {
   for (const XYSeries& series : plot.series) VERIDYN_ASSERT(series.x.size() == series.y.size());
+  for (const XYArea& area : plot.areas)
+    VERIDYN_ASSERT(area.low.size() == area.x.size() && area.high.size() == area.x.size());
 }
 
 void check_block(const IntervalPlot& plot) {
@@ -74,6 +76,20 @@ void check_block(const IntervalPlot& plot) {
 void check_block(const Matrix& matrix) {
   VERIDYN_ASSERT(matrix.values.size() == matrix.row_names.size());
   for (const std::vector<double>& row : matrix.values) VERIDYN_ASSERT(row.size() == matrix.column_names.size());
+}
+
+void check_block(const Scene& scene) {
+  using Kind = SceneShape::Kind;
+  for (const SceneShape& shape : scene.shapes) {
+    const std::size_t count = shape.points.size();
+    VERIDYN_ASSERT(shape.kind == Kind::kBall || shape.kind == Kind::kLabel ? count == 1
+                   : shape.kind == Kind::kActuator                         ? count == 2
+                                                                           : count >= 2);
+  }
+  for (const SceneMotion& motion : scene.motions) {
+    VERIDYN_ASSERT(motion.values.size() == scene.joints.size());
+    for (const std::vector<double>& values : motion.values) VERIDYN_ASSERT(values.size() == scene.samples.size());
+  }
 }
 
 void check_block(const Paragraph&) {}

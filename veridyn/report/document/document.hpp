@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -221,6 +222,14 @@ struct XYSeries {
   double opacity = 1.0;  ///< 0 to 1
 };
 
+/// A shaded region of a plot between two lines: a mask, a tolerance.
+struct XYArea {
+  std::string name = {};
+  std::vector<double> x = {};  ///< increasing
+  /// A value that is not finite: as far as the plot goes.
+  std::vector<double> low = {}, high = {};
+};
+
 /// A dashed line across a plot, such as the bound of white noise.
 struct Guide {
   enum class Direction { kHorizontal, kVertical };
@@ -238,6 +247,8 @@ struct XYPlot {
   Quantity y = {};
   std::vector<XYSeries> series = {};
   std::vector<Guide> guides = {};
+  std::vector<XYArea> areas = {};
+  bool log_x = false;        ///< decades along the abscissa; what is not above zero is not drawn
   bool equal_axes = false;   ///< the same range on both axes
   bool equal_scale = false;  ///< a unit as long on one axis as on the other: a drawing of something in space
   int height = 260;          ///< [CSS px]
@@ -282,8 +293,71 @@ struct Matrix {
   int decimals = 2;
 };
 
+/// A place in space: forward, left, up [m], of what moves or of the ground.
+struct ScenePoint {
+  double x = 0.0, y = 0.0, z = 0.0;
+  bool moves = false;
+};
+
+/// What a shape of a scene stands for, which decides its colour.
+enum class SceneTone {
+  kGround,   ///< what stands still
+  kBody,     ///< what moves
+  kLink,     ///< what lies between
+  kPerson,   ///< somebody who is carried
+  kOutline,  ///< dashed: where the body is at rest
+};
+
+/// A piece of a drawing in space.
+struct SceneShape {
+  enum class Kind {
+    kLine,      ///< through its points
+    kFace,      ///< a polygon
+    kBall,      ///< one point
+    kActuator,  ///< from foot to head: a rod that slides in a cylinder
+    kLabel,     ///< one point with a text
+  };
+  Kind kind = Kind::kLine;
+  SceneTone tone = SceneTone::kGround;
+  std::vector<ScenePoint> points = {};
+  double size = 2.0;  ///< width of a line [CSS px]; radius of a ball, length of a cylinder [m]
+  std::string text = {};
+};
+
+/// One of the joints that carry a scene's body, each on the one before, the first on the ground: a shift along or a
+/// turn about a direction (right-hand rule).
+struct SceneJoint {
+  std::string name = {};
+  std::string unit = {};
+  bool turns = false;
+  std::array<double, 3> direction = {1.0, 0.0, 0.0};  ///< forward, left, up; of length 1
+  double scale = 1.0;                                 ///< of one unit [m or rad]
+};
+
+/// What the joints do: values in their units, by joint and sample.
+struct SceneMotion {
+  std::string name = {};
+  std::vector<std::vector<double>> values = {};
+};
+
+/// A drawing in space that moves with a slider of time, seen from wherever it is turned to. Its time is marked in the
+/// figures of equal `axis`; a time series that follows it stands beside it where the page is wide enough. Samples are
+/// stored as they are (thin them out before), and drawn with straight lines between them.
+struct Scene {
+  std::string title = {};
+  std::string caption = {};
+  Quantity x = {.label = "time", .unit = "s"};
+  std::vector<double> samples = {};  ///< abscissae, increasing
+  std::string axis = "time";
+  std::vector<SceneShape> shapes = {};
+  std::vector<SceneJoint> joints = {};
+  std::vector<SceneMotion> motions = {};  ///< one is shown at a time
+  std::string choice = "motion";          ///< what tells motions apart: "algorithm"
+  int height = 420;                       ///< [CSS px]
+};
+
 /// Whatever a section may hold.
-using Block = std::variant<Paragraph, List, FactList, Table, TimeSeries, XYPlot, IntervalPlot, Matrix>;
+using Block = std::variant<Paragraph, List, FactList, Table, TimeSeries, XYPlot, IntervalPlot, Matrix, Scene>;
 
 /// A titled part of a report.
 struct Section {

@@ -44,6 +44,13 @@ std::string_view name_of(SpanTone tone) {
   return name_of(tone, std::array<std::string_view, 4>{"primary", "secondary", "muted", "bad"});
 }
 
+std::string_view name_of(SceneTone tone) {
+  return name_of(tone, std::array<std::string_view, 5>{"ground", "body", "link", "person", "outline"});
+}
+std::string_view name_of(SceneShape::Kind kind) {
+  return name_of(kind, std::array<std::string_view, 5>{"line", "face", "ball", "actuator", "label"});
+}
+
 /// Nine digits are more than any table shows and fewer than a double's noise.
 json number(double value) {
   if (!std::isfinite(value)) return nullptr;
@@ -216,6 +223,16 @@ json block_json(const XYPlot& plot, const JsonOptions& options) {
                       {"value", number(guide.value)},
                       {"label", guide.label}});
   }
+  json areas = json::array();
+  for (const XYArea& area : plot.areas) {
+    json each = {{"name", area.name}, {"x", json::array()}, {"low", json::array()}, {"high", json::array()}};
+    for (std::size_t k = 0; k < area.x.size(); ++k) {
+      each["x"].push_back(number(area.x[k]));
+      each["low"].push_back(number(area.low[k]));
+      each["high"].push_back(number(area.high[k]));
+    }
+    areas.push_back(std::move(each));
+  }
   return {{"kind", "xy"},
           {"title", plot.title},
           {"caption", plot.caption},
@@ -225,7 +242,9 @@ json block_json(const XYPlot& plot, const JsonOptions& options) {
           {"height", plot.height},
           {"equal_axes", plot.equal_axes},
           {"equal_scale", plot.equal_scale},
+          {"log_x", plot.log_x},
           {"series", std::move(series)},
+          {"areas", std::move(areas)},
           {"guides", std::move(guides)}};
 }
 
@@ -271,6 +290,44 @@ json block_json(const Matrix& matrix, const JsonOptions&) {
           {"low", matrix.low},
           {"high", matrix.high},
           {"decimals", matrix.decimals}};
+}
+
+json block_json(const Scene& scene, const JsonOptions&) {
+  json shapes = json::array();
+  for (const SceneShape& shape : scene.shapes) {
+    json points = json::array();
+    for (const ScenePoint& p : shape.points) points.push_back({number(p.x), number(p.y), number(p.z), p.moves ? 1 : 0});
+    shapes.push_back({{"kind", name_of(shape.kind)},
+                      {"tone", name_of(shape.tone)},
+                      {"points", std::move(points)},
+                      {"size", number(shape.size)},
+                      {"text", shape.text}});
+  }
+  json joints = json::array();
+  for (const SceneJoint& joint : scene.joints) {
+    joints.push_back({{"name", joint.name},
+                      {"unit", joint.unit},
+                      {"turns", joint.turns},
+                      {"direction", joint.direction},
+                      {"scale", number(joint.scale)}});
+  }
+  json motions = json::array();
+  for (const SceneMotion& motion : scene.motions) {
+    json values = json::array();
+    for (const std::vector<double>& each : motion.values) values.push_back(round_for_storage(each, kValueSteps));
+    motions.push_back({{"name", motion.name}, {"values", std::move(values)}});
+  }
+  return {{"kind", "scene"},
+          {"title", scene.title},
+          {"caption", scene.caption},
+          {"axis", scene.axis},
+          {"x", quantity_json(scene.x)},
+          {"samples", round_for_storage(scene.samples, kAbscissaSteps)},
+          {"shapes", std::move(shapes)},
+          {"joints", std::move(joints)},
+          {"motions", std::move(motions)},
+          {"choice", scene.choice},
+          {"height", scene.height}};
 }
 
 /// These three occur in strings only; escaped there, no text can end the <script> element or begin a comment in it.

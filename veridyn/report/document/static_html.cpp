@@ -95,6 +95,7 @@ class BlockWriter {
   std::string operator()(const TimeSeries& each) const { return picture(each.title, each.caption); }
   std::string operator()(const XYPlot& each) const { return picture(each.title, each.caption); }
   std::string operator()(const IntervalPlot& each) const { return picture(each.title, each.caption); }
+  std::string operator()(const Scene& each) const { return picture(each.title, each.caption); }
 
   std::string operator()(const Matrix& matrix) const {
     std::string html = "<div class=\"scroll\"><table class=\"matrix\"><thead><tr><td></td>";

@@ -34,7 +34,9 @@ export class Looks {
     if (role === 'measured') return { colour: (colours) => colours.measured, width: 1, dash: [] };
     if (role === 'reference') return { colour: (colours) => colours.reference, width: 1.4, dash: [6, 4] };
     const index = this.estimates++;
-    return { colour: (colours) => colours.lines[index % colours.lines.length] ?? colours.ink, width: 1.7, dash: [] };
+    // Colours come again after the last one: dotted then, so that no two lines look alike.
+    const dotted = index >= palette().lines.length;
+    return { colour: (colours) => colours.lines[index % colours.lines.length] ?? colours.ink, width: dotted ? 2 : 1.7, dash: dotted ? [2, 2.5] : [] };
   }
 }
 

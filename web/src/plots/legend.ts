@@ -26,7 +26,7 @@ export class SeriesSwitch {
 export function swatch(look: LineLook, style: Line['style'], has_band: boolean): HTMLElement {
   const index = Math.max(-1, palette().lines.indexOf(look.colour(palette())));
   const name = index >= 0 ? `--line-${index + 1}` : look.dash.length > 0 ? '--reference' : '--measured';
-  const kind = style === 'markers' ? 'dots' : look.dash.length > 0 ? 'dashed' : 'solid';
+  const kind = style === 'markers' ? 'dots' : look.dash.length === 0 ? 'solid' : index >= 0 ? 'dotted' : 'dashed';
   return h('span', { class: `swatch ${kind}${has_band ? ' banded' : ''}`, style: `--colour: var(${name})`, 'aria-hidden': 'true' });
 }
 

@@ -1,11 +1,12 @@
 import type { Panel, TimeSeries, XYPlot, XYSeries } from '../document';
 import { svg } from '../dom';
-import { format_ticks, nice_ticks, with_unit } from '../numbers';
+import { decade_ticks, format_ticks, nice_ticks, with_unit } from '../numbers';
 import { palette } from '../theme';
 import { text_width, type LineLook } from './frame';
 import { lower_bound } from './gaps';
 import type { Drawn, Range } from './ordinate';
 import type { WindowAxis } from './windows';
+import { area_outline } from './areas';
 
 const kWidth = 960;
 const kMargin = 14;
@@ -236,7 +237,11 @@ export function xy_picture(figure: XYPlot, series: { series: XYSeries; look: Lin
   const unique = new Map(series.map((each) => [each.series.name, { name: each.series.name, look: each.look }]));
   head(picture, with_unit(figure.y.label, figure.y.unit), [...unique.values()], kMargin + 12);
   const area = new Area(picture, left, kMargin + kHead - 4, width, high, x, y);
-  area.grid(plain_ticks(x, width, 90), up, true);
+  area.grid(figure.log_x ? decade_ticks(...x, width / 60) : plain_ticks(x, width, 90), up, true);
+  for (const each of figure.areas ?? []) {
+    const points = area_outline(each, y).map(([px, py]) => `${area.x(px).toFixed(2)},${area.y(py).toFixed(2)}`);
+    area.inside.append(svg('polygon', { points: points.join(' '), ...fill(colours.spans.primary) }));
+  }
   for (const guide of figure.guides) {
     const level = guide.direction === 'horizontal';
     const [gx, gy] = [area.x(guide.value), area.y(guide.value)];

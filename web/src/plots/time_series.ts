@@ -213,6 +213,7 @@ function panel_hooks({ figure, group, windows }: Shared, drawing: DrawnPanel, fi
     ],
     draw: [
       (plot) => {
+        group.place(plot);
         for (const line of drawing.ordinate.off_scale) draw_beyond(plot, line);
         drawing.mark(drawing.ordinate.off_scale);
       },

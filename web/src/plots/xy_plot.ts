@@ -1,7 +1,8 @@
 import type { XYPlot, XYSeries } from '../document';
 import { h } from '../dom';
-import { format_number, with_unit } from '../numbers';
+import { decade_ticks, format_number, with_unit } from '../numbers';
 import { palette } from '../theme';
+import { area_outline } from './areas';
 import { axis, clipped, Looks, mount, OrdinateWidth, translucent, uPlot, type LineLook } from './frame';
 import { legend_entry, range_button, SeriesSwitch } from './legend';
 import { kept_range, stretching, union_of, type Range } from './ordinate';
@@ -121,6 +122,29 @@ function draw_guides(plot: uPlot, figure: XYPlot): void {
   });
 }
 
+function draw_areas(plot: uPlot, figure: XYPlot): void {
+  const range: Range = [plot.scales.y?.min ?? 0, plot.scales.y?.max ?? 1];
+  clipped(plot, (context) => {
+    context.fillStyle = palette().spans.primary;
+    for (const area of figure.areas ?? []) {
+      context.beginPath();
+      area_outline(area, range).forEach(([x, y], k) => (k === 0 ? context.moveTo : context.lineTo).call(context, plot.valToPos(x, 'x', true), plot.valToPos(y, 'y', true)));
+      context.fill();
+    }
+  });
+}
+
+/** A plot of decades as one over logarithms. */
+function over_logarithms(figure: XYPlot): XYPlot {
+  const log = (x: number | null) => (x !== null && x > 0 ? Math.log10(x) : null);
+  return {
+    ...figure,
+    series: figure.series.map((each) => ({ ...each, x: each.x.map(log) })),
+    areas: (figure.areas ?? []).map((each) => ({ ...each, x: each.x.map(log) })),
+    guides: figure.guides.flatMap((each) => (each.direction === 'horizontal' ? [each] : each.value > 0 ? [{ ...each, value: Math.log10(each.value) }] : [])),
+  };
+}
+
 /** The point nearest to the pointer, within 24 px. */
 function find_point(plot: uPlot, visible: XYSeries[], left: number, top: number): { series: XYSeries; k: number } | null {
   let best: { series: XYSeries; k: number } | null = null;
@@ -229,7 +253,9 @@ function zoom_selection(drawing: Drawing, plot: uPlot): void {
 function reading(drawing: Drawing, plot: uPlot): string {
   const { left = -1, top = -1 } = plot.cursor;
   const found = left >= 0 ? find_point(plot, drawing.visible(), left, top) : null;
-  return found ? `${found.series.name}: ${format_number(found.series.x[found.k])}, ${format_number(found.series.y[found.k])}` : '';
+  if (!found) return '';
+  const x = found.series.x[found.k] ?? NaN;
+  return `${found.series.name}: ${format_number(drawing.figure.log_x ? 10 ** x : x)}, ${format_number(found.series.y[found.k])}`;
 }
 
 function plot_options(drawing: Drawing, readout: HTMLElement, width: number, height: number): uPlot.Options {
@@ -243,7 +269,7 @@ function plot_options(drawing: Drawing, readout: HTMLElement, width: number, hei
       x: { time: false, range: (plot) => scales_of(drawing, plot.width || width, plot.height || height)[0] },
       y: { range: (plot) => scales_of(drawing, plot.width || width, plot.height || height)[1] },
     },
-    axes: [axis('x', { size: kAbscissaSize }), axis('y', { size: drawing.ordinates.size })],
+    axes: [axis('x', { size: kAbscissaSize, ...(drawing.figure.log_x ? { ticks: (plot, low, high) => decade_ticks(low, high, plot.bbox.width / uPlot.pxRatio / 40) } : {}) }), axis('y', { size: drawing.ordinates.size })],
     series: [{}, { stroke: 'transparent', points: { show: false } }],
     cursor: {
       drag: { x: true, y: true, uni: kThinSelection, setScale: false },
@@ -258,6 +284,7 @@ function plot_options(drawing: Drawing, readout: HTMLElement, width: number, hei
     hooks: {
       draw: [
         (plot) => {
+          draw_areas(plot, drawing.figure);
           draw_guides(plot, drawing.figure);
           for (const series of drawing.visible()) draw_series(plot, series, drawing.look.get(series) as LineLook);
         },
@@ -281,8 +308,13 @@ function legend_entries({ figure, look }: Drawing, shown: SeriesSwitch) {
     .map((series) => ({ key: key_of(series), entry: legend_entry(series, look.get(series) as LineLook, series.style === 'line' ? 'line' : 'markers', false, shown) }));
 }
 
+function area_key({ areas }: XYPlot): HTMLElement[] {
+  return [...new Set((areas ?? []).map((each) => each.name))].map((name) => h('li', {}, h('span', { class: 'patch primary', 'aria-hidden': 'true' }), h('span', { class: 'name' }, name)));
+}
+
 /** Markers, lines and stems over a free abscissa. */
-export function draw_xy_plot(figure: XYPlot): DrawnFigure {
+export function draw_xy_plot(given: XYPlot): DrawnFigure {
+  const figure = given.log_x ? over_logarithms(given) : given;
   const looks = new Looks();
   const shown = new SeriesSwitch();
   const visible = () => figure.series.filter((each) => shown.shows(each.name, each.role));
@@ -327,7 +359,7 @@ export function draw_xy_plot(figure: XYPlot): DrawnFigure {
     refresh();
   });
   element.append(
-    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(figure.y.label, figure.y.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map(({ entry }) => entry.element))),
+    h('div', { class: 'panel-head' }, h('span', { class: 'panel-label' }, with_unit(figure.y.label, figure.y.unit)), range.element, h('ul', { class: 'legend' }, ...entries.map(({ entry }) => entry.element), ...area_key(figure))),
     host,
     h('div', { class: 'abscissa' }, h('span', {}, with_unit(figure.x.label, figure.x.unit)), readout),
   );

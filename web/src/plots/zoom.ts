@@ -18,6 +18,10 @@ export class ZoomGroup implements Zoomable {
   private high = -Infinity;
   private zoomed = false;
   private shown: [number, number] | null = null;
+  private readonly pointed = new Set<(at: number) => void>();
+  private readonly lines = new Map<uPlot, HTMLElement>();
+  /** The moment that is marked in all plots; null: none. */
+  private moment: number | null = null;
   /** The plot on which the button went down last. */
   grasped: uPlot | null = null;
 
@@ -43,6 +47,37 @@ export class ZoomGroup implements Zoomable {
   add(plot: uPlot, view: PanelView): void {
     this.plots.set(plot, view);
     plot.over.addEventListener('mousedown', () => (this.grasped = plot), true);
+    plot.over.addEventListener('mousemove', (event) => {
+      const at = plot.posToVal(event.clientX - plot.over.getBoundingClientRect().left, 'x');
+      for (const follow of this.pointed) follow(at);
+    });
+    this.place(plot);
+  }
+
+  /** Calls `follow` with the moment at which the pointer is in one of the plots. */
+  on_point(follow: (at: number) => void): void {
+    this.pointed.add(follow);
+  }
+
+  /** Marks a moment by a line across all plots. */
+  mark(at: number): void {
+    this.moment = at;
+    for (const plot of this.plots.keys()) this.place(plot);
+  }
+
+  /** Puts the line where the moment is now. */
+  place(plot: uPlot): void {
+    if (this.moment === null) return;
+    let line = this.lines.get(plot);
+    if (!line) {
+      line = document.createElement('div');
+      line.className = 'moment';
+      plot.over.append(line);
+      this.lines.set(plot, line);
+    }
+    const left = plot.valToPos(this.moment, 'x');
+    line.hidden = !(left >= 0 && left <= plot.over.clientWidth);
+    line.style.transform = `translateX(${left}px)`;
   }
 
   zoom(from: number, to: number): void {
