@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
@@ -42,6 +43,31 @@ void turn(WashoutDesign& design, const std::vector<Coordinate>& to, const Eigen:
     const double v = x(static_cast<Eigen::Index>(i));
     const auto values = knobs[to[i].knob].values.subspan(to[i].first, to[i].count);
     std::fill(values.begin(), values.end(), to[i].logarithmic ? std::exp(v) : v);
+  }
+}
+
+/// A first look along the gains: a small platform is often driven far too hard, and from there no small turn of a knob
+/// helps.
+void halve_gains(Tuning& result, const std::function<double(const WashoutDesign&)>& cost_of, std::size_t evaluations,
+                 const Progress& progress) {
+  constexpr int kHalvings = 4;
+  for (const char* name : {"force_gain", "rate_gain"}) {
+    const std::unique_ptr<WashoutDesign> from = result.design->clone();
+    for (int k = 1; k <= kHalvings && result.evaluations + 1 < evaluations && !progress.interrupted(); ++k) {
+      const std::unique_ptr<WashoutDesign> less = from->clone();
+      bool has_it = false;
+      for (const Knob& knob : less->knobs()) {
+        if (knob.name != name) continue;
+        has_it = true;
+        for (double& gain : knob.values) gain *= std::pow(0.5, k);
+      }
+      if (!has_it) break;
+      ++result.evaluations;
+      const double cost = cost_of(*less);
+      if (!(cost < result.cost_after)) continue;
+      result.cost_after = cost;
+      result.design = less->clone();
+    }
   }
 }
 
@@ -95,13 +121,14 @@ Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::v
     return tuning_cost(run, felt_motion(run, model, thresholds), options);
   };
   result.cost_before = result.cost_after = cost_of(design);
+  halve_gains(result, cost_of, options.evaluations, progress);
   // All numbers of a knob together first: gains of three axes are wrong by the same factor more often than not, and the
   // search is shorter by half. Then each by itself.
   for (const bool together : {true, false}) {
     const std::vector<Knob> knobs = result.design->knobs();
     const std::vector<Coordinate> to = coordinates(knobs, together);
     const auto n = static_cast<Eigen::Index>(to.size());
-    const std::size_t allowed = together ? options.evaluations / 2 : options.evaluations - result.evaluations;
+    const std::size_t left = options.evaluations - result.evaluations, allowed = together ? left / 2 : left;
     if (n == 0 || allowed == 0 || result.interrupted) break;
     estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
     Eigen::VectorXd start(n);

@@ -47,7 +47,9 @@ struct Tuning {
 
 /// Turns the knobs that have a range for it, by the pattern search on logarithms of their values, until the drive costs
 /// least on the platform, its limits and actuators included. Knobs with a zero in their range are turned as they are.
-/// Half of the evaluations turn all numbers of a knob together, the others each by itself.
+/// The gains of
+/// force and rate are halved up to four times first; then half of the evaluations that are left turn all numbers of a
+/// knob together, the others each by itself.
 [[nodiscard]] Tuning tuned(const WashoutDesign& design, const Platform& platform,
                            const std::vector<recording::MotionSample>& drive, const VestibularModel& model,
                            const MotionThresholds& thresholds, const TuningOptions& options, Progress& progress);

@@ -16,6 +16,15 @@ numerics::StateSpace sampled(const TransferFunction& transfer, double step) {
   return numerics::bilinear(numerics::realise(transfer), step);
 }
 
+template <std::size_t kCount, typename Filter>
+std::array<Filter, kCount> alike(const Filter& filter) {
+  if constexpr (kCount == 3) {
+    return {filter, filter, filter};
+  } else {
+    return {filter, filter};
+  }
+}
+
 const ShoaraiSettings& usable(const ShoaraiSettings& s) {
   if (!(std::min({s.step, s.shift_high_pass, s.tilt_low_pass, s.turn_high_pass, s.zeta}) > 0.0))
     throw InputError("washout", "step, frequencies and damping ratio must be above 0");
@@ -39,10 +48,9 @@ double ShoaraiWashout::Filter::step(double u) {
 
 ShoaraiWashout::ShoaraiWashout(const ShoaraiSettings& settings)
     : settings_(usable(settings)),
-      shift_{Filter(sampled(numerics::high_pass(settings.shift_high_pass, settings.zeta), settings.step)), shift_[0],
-             shift_[0]},
-      turn_{Filter(sampled(numerics::high_pass(settings.turn_high_pass), settings.step)), turn_[0], turn_[0]},
-      tilt_{Filter(sampled(numerics::low_pass(settings.tilt_low_pass, settings.zeta), settings.step)), tilt_[0]},
+      shift_(alike<3>(Filter(sampled(numerics::high_pass(settings.shift_high_pass, settings.zeta), settings.step)))),
+      turn_(alike<3>(Filter(sampled(numerics::high_pass(settings.turn_high_pass), settings.step)))),
+      tilt_(alike<2>(Filter(sampled(numerics::low_pass(settings.tilt_low_pass, settings.zeta), settings.step)))),
       gravity_(0.0, 0.0, settings.gravity_from_zero ? 0.0 : kGravity) {}
 
 const ShoaraiWashout::Pose& ShoaraiWashout::step(const Eigen::Vector3d& a, const Eigen::Vector3d& omega) {
