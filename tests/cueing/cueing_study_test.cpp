@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::cueing {
@@ -78,6 +82,25 @@ TEST(CueingStudy, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(
       refusal(std::string("[cue]\n[[omct.mask]]\ncue = \"surge\"\nfrequency = [1, 2]\nleast_gain = [1]\n") + kDrive),
       HasSubstr("has 1 values for 2 frequencies"));
+}
+
+/// A recorded drive of 10 s at 100 Hz in a file of its own; what is to be written into a study.
+std::string recorded_drive(const std::string& name) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / name;
+  std::ofstream out(file);
+  out << "time[s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s]\n";
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 0.01 * k;
+    out << t << "," << std::sin(t) << "," << std::cos(t) << ",9.81,0,0,0\n";
+  }
+  return "file = \"" + file.generic_string() + "\"\n";
+}
+
+TEST(CueingStudy, IsNamedAfterTheDriveThatIsScoredNotTheOneThatIsTunedOn) {
+  const CueingStudy s = read("[cue]\n[data]\n" + recorded_drive("cueing_scored.csv") +
+                             "[tune]\nevaluations = 1\n[tune.data]\n" + recorded_drive("cueing_tuned_on.csv"));
+  EXPECT_FALSE(s.tune_on.empty());
+  EXPECT_EQ(s.drive, "cueing_scored.csv");
 }
 
 }  // namespace
