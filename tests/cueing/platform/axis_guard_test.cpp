@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/cueing/platform/platform.hpp"
 
 namespace veridyn::cueing {
 namespace {
@@ -63,6 +64,29 @@ TEST(AxisGuard, GoesToAFarPositionAndStopsThere) {
   EXPECT_LT(std::abs(guard.state().rate), 1e-6);
   // 20 deg at 30 deg/s, 0.15 s to gain the rate and some more to lose it.
   EXPECT_LT(there, 110);
+}
+
+/// A step that the jerk cannot follow ends where it leads to, without swinging on.
+TEST(AxisGuard, ComesToRestAfterStepsOfAnySize) {
+  const PlatformLimits& platform = built_in_platform("three_axis").limits;
+  for (const PlatformAxis which : {PlatformAxis::kPitch, PlatformAxis::kRoll, PlatformAxis::kHeave}) {
+    const AxisLimits& limits = platform[which];
+    for (const double share : {0.002, 0.01, 0.03, 0.1, 0.3, 0.7, 1.0}) {
+      for (const double step : {0.001, 0.01, 1.0 / 60.0}) {
+        AxisGuard guard(limits);
+        guard.reset(0.0);
+        const double wanted = share * limits.highest;
+        double overshoot = 0.0, late = 0.0;
+        for (double t = 0.0; t < 3.0; t += step) {
+          const double off = guard.step(wanted, step).position - wanted;
+          overshoot = std::max(overshoot, off);
+          if (t > 1.5) late = std::max(late, std::abs(off));
+        }
+        EXPECT_LT(late, 1e-3 * wanted) << name_of(which) << " " << share << " " << step;
+        EXPECT_LT(overshoot, 0.15 * wanted + 0.005 * limits.highest) << name_of(which) << " " << share << " " << step;
+      }
+    }
+  }
 }
 
 TEST(AxisGuard, BrakesBeforeTheLimitWhenDrivenAgainstItAtFullRate) {

@@ -174,8 +174,10 @@ double AxisGuard::wanted_acceleration(double wanted, double rate, double acceler
   const double towards =
       distance < far_from ? kNear * off : std::copysign(std::sqrt(2.0 * braking * (distance - far_from / 2.0)), off);
   const double fastest = 0.999 * std::min(limits_.rate, most.rate);
-  const double total = within(rate + towards, fastest);
-  return within(acceleration + 2.0 * kBandwidth * (total - then.rate),
+  const double missing = within(rate + towards, fastest) - then.rate;
+  // No more than the jerk takes back in time (half of a^2 / 2 J = missing), or the axis would swing for ever.
+  const double taken_back = std::sqrt(std::abs(missing) * std::min(limits_.jerk, most.jerk));
+  return within(acceleration + within(2.0 * kBandwidth * missing, taken_back),
                 std::min(limits_.acceleration, most.acceleration));
 }
 

@@ -9,7 +9,8 @@ namespace veridyn::cueing {
 /// Leads one axis after the positions that are wanted and never past its limits. The axis moves on pieces of constant
 /// jerk. Of every piece it is made sure, before it begins, that the fastest stop from its end stays within position and
 /// rate: so there is always a way to stay within the limits, and the nearer one the earlier the axis brakes. Wanted
-/// positions that the limits allow are followed without delay.
+/// positions that the limits allow are followed without delay; a step that they do not allow is overshot once by an
+/// eighth at most.
 ///
 /// Nothing is allocated or thrown after construction; a copy saves the state.
 class AxisGuard {
