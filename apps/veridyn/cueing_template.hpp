@@ -17,7 +17,7 @@ algorithms = ["tilt", "classical", "three_axis", "return", "optimal", "adaptive"
 driver = [0.2, 0.35, 0.5]          # driver's head from the centre of gravity: forward, left, up [m]
 # sensor = [0, 0, 0]               # the same of the recorded accelerometer
 # gravity = "in"                   # or "out": whether recorded accelerations hold gravity; decided by accel_z
-# preset = "medium"                # "low", "medium", "high": 30, 68, 100 % of the vehicle's motion
+# preset = "medium"                # "low", "medium", "high"; or overall, sustained, instant, chassis, aggression
 # perception = "young_meiry"       # "telban_cardullo", "telban_cardullo_lead", "hosman"
 # thresholds = "usual"             # "reid_nahon"
 

@@ -57,6 +57,16 @@ TEST(CueingStudy, ReadsDrivesAndScores) {
   EXPECT_EQ(r.algorithms[0].response.size(), kCues);
 }
 
+TEST(CueingStudy, SaysWhereTheDriveIsShortOrHasGaps) {
+  CueingStudy s = read(std::string("[cue]\nalgorithms = [\"classical\", \"tilt\"]\noptimum = false\n") + kDrive);
+  for (std::size_t k = s.vehicle.size() / 2; k < s.vehicle.size(); ++k) s.vehicle[k].time += 0.5;
+  Progress progress;
+  const CueingResult r = cue(s, progress);
+  EXPECT_THAT(r.notes, ::testing::ElementsAre(HasSubstr("1 gap longer than 0.1 s, up to 0.51 s"),
+                                              HasSubstr("classical: the drive lasts 12.5 s, its slowest filter "
+                                                        "(recentre = 0.2 rad/s) settles in 23 s")));
+}
+
 TEST(CueingStudy, TheDriversPlaceFeelsTheTurn) {
   const CueingStudy centre = read(std::string("[cue]\n") + kDrive),
                     ahead = read(std::string("[cue]\ndriver = [1.0, 0, 0]\n") + kDrive);

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/washout/driver_settings.hpp"
 #include "veridyn/cueing/washout/shared_channels.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/motion_recording.hpp"
@@ -82,19 +83,8 @@ void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& stud
   study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, simulation.four_wheel.gravity), driver);
 }
 
-/// Gains of the preset language of motion platforms: overall force in percent.
-void apply_preset(WashoutDesign& design, const std::string& preset) {
-  if (preset.empty()) return;
-  const double overall = preset == "low" ? 0.3 : preset == "medium" ? 0.68 : 1.0;
-  for (Knob& knob : design.knobs()) {
-    if (knob.name.ends_with("_gain") && knob.name != "most_gain")
-      std::fill(knob.values.begin(), knob.values.end(), overall);
-  }
-}
-
 void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
-  const std::vector<std::string> presets = {"low", "medium", "high"};
-  const std::string preset = cue.has("preset") ? cue.choice_or("preset", presets, "") : "";
+  const DriverSettings settings = DriverSettings::read(cue);
   const std::vector<std::string> names =
       cue.has("algorithms") ? cue.texts("algorithms") : std::vector<std::string>{"classical"};
   if (names.empty()) cue.fail("algorithms", "names none");
@@ -105,7 +95,7 @@ void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy&
     if (std::find(known.begin(), known.end(), name) == known.end())
       cue.fail("algorithms", fmt::format("there is no algorithm '{}'{}", name, suggestion(name, known)));
     StudyAlgorithm algorithm{name, washout_algorithm(name).design()};
-    apply_preset(*algorithm.design, preset);
+    settings.apply(*algorithm.design);
     read_knobs(washouts.table_or_empty(name), algorithm.design->knobs());
     static_cast<void>(algorithm.design->make(study.platform));  // refuses what cannot be made
     study.algorithms.push_back(std::move(algorithm));
@@ -202,8 +192,48 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   return s;
 }
 
+namespace {
+
+/// What of the drive the platform cannot render, or not yet.
+void note_drive(const CueingStudy& study, CueingResult& result) {
+  if (study.vehicle.size() < 2) return;
+  double longest = 0.0;
+  int gaps = 0;
+  for (std::size_t k = 1; k < study.vehicle.size(); ++k) {
+    const double step = study.vehicle[k].time - study.vehicle[k - 1].time;
+    gaps += step > AxisGuard::kLongestStep ? 1 : 0;
+    longest = std::max(longest, step);
+  }
+  if (gaps > 0)
+    result.notes.push_back(fmt::format("{} gap{} longer than {:g} s, up to {:.2g} s: the platform stops in them", gaps,
+                                       gaps == 1 ? "" : "s", AxisGuard::kLongestStep, longest));
+  const double duration = study.vehicle.back().time - study.vehicle.front().time;
+  for (const StudyAlgorithm& a : study.algorithms) {
+    double slowest = kInfinity;
+    std::string name;
+    for (const Knob& knob : a.design->knobs()) {
+      if (knob.unit != "rad/s" || knob.name.ends_with("rate")) continue;
+      for (const double omega : knob.values) {
+        if (omega > 0.0 && omega < slowest) {
+          slowest = omega;
+          name = knob.name;
+        }
+      }
+    }
+    constexpr double kSettled = 4.6;  // time constants to a hundredth
+    if (duration * slowest < kSettled)
+      result.notes.push_back(
+          fmt::format("{}: the drive lasts {:.3g} s, its slowest filter ({} = {:g} rad/s) settles in "
+                      "{:.3g} s: the beginning weighs in the score",
+                      a.name, duration, name, slowest, kSettled / slowest));
+  }
+}
+
+}  // namespace
+
 CueingResult cue(const CueingStudy& study, Progress& progress) {
   CueingResult result;
+  note_drive(study, result);
   const VestibularModel& model = vestibular_model(study.perception);
   for (const StudyAlgorithm& of : study.algorithms) {
     AlgorithmResult a;

@@ -34,9 +34,7 @@ struct ResponseStudy {
 ///     seed = 1
 ///     [cue]
 ///     algorithms = ["classical", "optimal"]   # see washout_algorithms; "classical" when left out
-///     preset = "medium"                        # "low", "medium", "high": 30, 68, 100 % of the vehicle's motion,
-///     instead
-///                                              # of the algorithms' own gains
+///     preset = "medium"                        # and other settings, see DriverSettings
 ///     perception = "young_meiry"               # see vestibular_models
 ///     thresholds = "usual"                     # or "reid_nahon"
 ///     driver = [0.1, 0.35, 0.5]                # driver's head from the centre of gravity: forward, left, up [m]
