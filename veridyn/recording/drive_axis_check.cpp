@@ -16,9 +16,9 @@ namespace {
 using enum DriveSignal;
 using Values = std::vector<double>;
 
-constexpr std::array<const char*, kDriveSignals> kNames = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y",
-                                                           "gyro_z",  "roll",    "pitch",   "yaw",    "speed",
-                                                           "steer",   "pos_x",   "pos_y"};
+constexpr std::array<const char*, kDriveSignals> kSignalNames = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y",
+                                                                 "gyro_z",  "roll",    "pitch",   "yaw",    "speed",
+                                                                 "steer",   "pos_x",   "pos_y"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSmoothing = 0.4;      // length of each of two moving averages [s]
 constexpr double kComparedBlock = 5.0;  // [s]
@@ -189,7 +189,7 @@ std::vector<Suspect> suspects() {
                  -1.0,
                  true});
   for (const DriveSignal s : {kAccelX, kAccelY, kAccelZ, kGyroX, kGyroY, kGyroZ, kRoll, kPitch, kYaw, kSteer})
-    all.push_back({fmt::format("{} has the wrong sign", kNames[index_of(s)]), {s}});
+    all.push_back({fmt::format("{} has the wrong sign", kSignalNames[index_of(s)]), {s}});
   const std::vector<DriveSignal> accels = {kAccelX, kAccelY, kAccelZ}, gyros = {kGyroX, kGyroY, kGyroZ},
                                  angles = {kRoll, kPitch, kYaw};
   all.push_back({"accelerations point where one is pushed: the specific force is the opposite", accels, -1.0});
@@ -207,11 +207,11 @@ std::vector<Suspect> suspects() {
 
 std::string source_of(DriveSignal s, std::span<const ChannelOrigin> origins) {
   for (const ChannelOrigin& o : origins) {
-    if (o.channel == kNames[index_of(s)] || (s == kGyroZ && o.channel == "yaw_rate") ||
+    if (o.channel == kSignalNames[index_of(s)] || (s == kGyroZ && o.channel == "yaw_rate") ||
         (s == kGyroX && o.channel == "roll_rate"))
       return o.source;
   }
-  return kNames[index_of(s)];
+  return kSignalNames[index_of(s)];
 }
 
 /// Standard name that the drive has for it.
@@ -221,7 +221,7 @@ std::string name_of(DriveSignal s, std::span<const ChannelOrigin> origins) {
     if (s == kGyroX && o.channel == "roll_rate") return "roll_rate";
     if (s == kSteer && o.channel == "steering_wheel") return "steering_wheel";
   }
-  return kNames[index_of(s)];
+  return kSignalNames[index_of(s)];
 }
 
 std::string line(DriveSignal s, const std::string& source, double scale, std::span<const ChannelOrigin> origins) {
@@ -428,7 +428,7 @@ DriveMotion drive_motion(const Recording& recording) {
     }
     m.signals[to] = interpolated(whole, grid);
   };
-  for (std::size_t i = 0; i < kDriveSignals; ++i) take(static_cast<DriveSignal>(i), kNames[i]);
+  for (std::size_t i = 0; i < kDriveSignals; ++i) take(static_cast<DriveSignal>(i), kSignalNames[i]);
   take(kGyroZ, "yaw_rate");
   take(kGyroX, "roll_rate");
   m.hand_wheel = m.signals[kSteer].empty();

@@ -147,6 +147,46 @@ TEST(HorizonProgramme, AWarmStartTakesFewerIterations) {
   EXPECT_LT(warm.iterations, cold.iterations);
 }
 
+/// A soft bound is a hard one with a slack that costs: found as such by an input that does nothing else.
+TEST(HorizonProgramme, SoftBoundsGiveWayAsTheirExcessCosts) {
+  for (const double give : {1e-3, 0.1, 5.0}) {
+    // Pulled beyond 0.3 at the end: x1 = u, cost 1/2 (x1 - 1)^2 + 1/2 eps u^2.
+    Programme p(1);
+    Programme::Stage& s = p.stages[0];
+    s.B(0, 0) = 1.0;
+    s.R(0, 0) = 1e-9;
+    Programme::Stage& end = p.stages[1];
+    end.Q(0, 0) = 1.0;
+    end.q(0) = -1.0;
+    end.x_high(0) = 0.3;
+    end.x_give(0) = give;
+    const ProgrammeResult r = p.solve(Programme::State::Zero(), {.tolerance = 1e-11});
+    ASSERT_EQ(r.end, ProgrammeEnd::kSolved) << give;
+    // d/dx: x - 1 + (x - 0.3) / give = 0.
+    const double expected = (give + 0.3) / (give + 1.0);
+    EXPECT_NEAR(p.states()[1](0), expected, 1e-8) << give;
+    const double excess = expected - 0.3;
+    EXPECT_NEAR(r.cost, 0.5 * expected * expected - expected + 0.5 * excess * excess / give, 1e-8) << give;
+  }
+}
+
+TEST(HorizonProgramme, AStartBeyondASoftBoundIsNoDeadEnd) {
+  Programme hard = mass(10), soft = mass(10);
+  const Programme::State beyond(2.0, 0.0, 0.0, 0.0);
+  ASSERT_NE(hard.solve(beyond).end, ProgrammeEnd::kSolved);
+  for (Programme::Stage& s : soft.stages) s.x_give(0) = 1e-3;
+  const ProgrammeResult r = soft.solve(beyond, {.iterations = 60, .tolerance = 1e-8});
+  EXPECT_EQ(r.end, ProgrammeEnd::kSolved);
+  EXPECT_LT(std::abs(soft.states().back()(0)), 2.0);
+  EXPECT_GT(soft.states()[1](0), soft.stages[1].x_high(0));
+  // Where the bound is not touched it makes no difference.
+  const Programme::State inside(0.01, 0.0, 0.0, 0.0);
+  ASSERT_EQ(hard.solve(inside, {.tolerance = 1e-10}).end, ProgrammeEnd::kSolved);
+  ASSERT_EQ(soft.solve(inside, {.tolerance = 1e-10}).end, ProgrammeEnd::kSolved);
+  for (std::size_t k = 0; k < hard.inputs().size(); ++k)
+    EXPECT_NEAR((hard.inputs()[k] - soft.inputs()[k]).norm(), 0.0, 1e-7);
+}
+
 TEST(HorizonProgramme, SaysWhatCannotBe) {
   Programme p = mass(10);
   EXPECT_NE(p.solve(Programme::State(2.0, 0.0, 0.0, 0.0)).end, ProgrammeEnd::kSolved);  // beyond the bound, far from it

@@ -67,13 +67,15 @@ void HorizonProgramme<kStates, kInputs>::Bounds<kSize>::condense(const Vector& z
     double from_low = 0.0, from_high = 0.0, weight_low = 0.0, weight_high = 0.0;
     if (std::isfinite(low(i))) {
       const double target = centre - (corrected ? s_affine(i) * lambda_affine(i) : 0.0);
-      weight_low = lambda(i) / s(i);
-      from_low = -target / s(i) + weight_low * (z(i) - low(i) - s(i));
+      const double off = z(i) - low(i) + give(i) * lambda(i) - s(i), stiffness = s(i) + give(i) * lambda(i);
+      weight_low = lambda(i) / stiffness;
+      from_low = -(target + give(i) * lambda(i) * lambda(i)) / stiffness + weight_low * off;
     }
     if (std::isfinite(high(i))) {
       const double target = centre - (corrected ? t_affine(i) * mu_affine(i) : 0.0);
-      weight_high = mu(i) / t(i);
-      from_high = target / t(i) - weight_high * (high(i) - z(i) - t(i));
+      const double off = high(i) - z(i) + give(i) * mu(i) - t(i), stiffness = t(i) + give(i) * mu(i);
+      weight_high = mu(i) / stiffness;
+      from_high = (target + give(i) * mu(i) * mu(i)) / stiffness - weight_high * off;
     }
     diagonal(i) += weight_low + weight_high;
     gradient(i) += from_low + from_high;
@@ -88,13 +90,15 @@ void HorizonProgramme<kStates, kInputs>::Bounds<kSize>::take(const Vector& step,
     s_step(i) = lambda_step(i) = t_step(i) = mu_step(i) = 0.0;
     if (std::isfinite(low(i))) {
       const double target = centre - (corrected ? s_affine(i) * lambda_affine(i) : 0.0);
-      s_step(i) = step(i) + (z(i) - low(i) - s(i));
-      lambda_step(i) = (target - lambda(i) * s(i) - lambda(i) * s_step(i)) / s(i);
+      const double off = z(i) - low(i) + give(i) * lambda(i) - s(i);
+      lambda_step(i) = (target - lambda(i) * (s(i) + step(i) + off)) / (s(i) + give(i) * lambda(i));
+      s_step(i) = step(i) + off + give(i) * lambda_step(i);
     }
     if (std::isfinite(high(i))) {
       const double target = centre - (corrected ? t_affine(i) * mu_affine(i) : 0.0);
-      t_step(i) = -step(i) + (high(i) - z(i) - t(i));
-      mu_step(i) = (target - mu(i) * t(i) - mu(i) * t_step(i)) / t(i);
+      const double off = high(i) - z(i) + give(i) * mu(i) - t(i);
+      mu_step(i) = (target - mu(i) * (t(i) - step(i) + off)) / (t(i) + give(i) * mu(i));
+      t_step(i) = -step(i) + off + give(i) * mu_step(i);
     }
   }
   if (!corrected) {
@@ -149,7 +153,8 @@ template <int kSize>
 double HorizonProgramme<kStates, kInputs>::Bounds<kSize>::violation(const Vector& z, const Vector& low,
                                                                     const Vector& high) const {
   double most = 0.0;
-  for (int i = 0; i < kSize; ++i) most = std::max({most, low(i) - z(i), z(i) - high(i)});
+  for (int i = 0; i < kSize; ++i)
+    most = std::max({most, low(i) - z(i) - give(i) * lambda(i), z(i) - high(i) - give(i) * mu(i)});
   return most;
 }
 
@@ -247,6 +252,7 @@ double HorizonProgramme<kStates, kInputs>::cost() const {
     const Stage& s = stages[k];
     sum += 0.5 * x_[k].dot(s.Q * x_[k]) + s.q.dot(x_[k]);
     if (k < u_.size()) sum += 0.5 * u_[k].dot(s.R * u_[k]) + s.r.dot(u_[k]);
+    if (k > 0) sum += 0.5 * s.x_give.dot(of_x_[k].lambda.cwiseAbs2() + of_x_[k].mu.cwiseAbs2());
   }
   return sum;
 }
@@ -272,6 +278,7 @@ ProgrammeResult HorizonProgramme<kStates, kInputs>::solve(const State& x0, const
   roll_out(x0);
   for (std::size_t k = 0; k < n; ++k) {
     of_u_[k].begin(u_[k], stages[k].u_low, stages[k].u_high, warm);
+    of_x_[k + 1].give = stages[k + 1].x_give;
     of_x_[k + 1].begin(x_[k + 1], stages[k + 1].x_low, stages[k + 1].x_high, warm);
   }
   const auto longest = [&](double fraction) {

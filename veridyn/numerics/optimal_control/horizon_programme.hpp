@@ -35,9 +35,9 @@ struct ProgrammeResult {
 ///     subject to x_{k+1} = A_k x_k + B_k u_k + b_k,  x_0 given,  x_low <= x_k <= x_high (k > 0),  u_low <= u_k <=
 ///     u_high
 ///
-/// by Mehrotra's predictor and corrector, each Newton step by a Riccati recursion, so that the work is linear in N
-/// (Rao, Wright & Rawlings 1998, J Optim Theory Appl 99:723). Bounds that are infinite cost nothing. Nothing is
-/// allocated or thrown after construction.
+/// with a cost of excess where bounds of the state are soft, by Mehrotra's predictor and corrector, each Newton step by
+/// a Riccati recursion, so that the work is linear in N (Rao, Wright & Rawlings 1998, J Optim Theory Appl 99:723).
+/// Bounds that are infinite cost nothing. Nothing is allocated or thrown after construction.
 template <int kStates, int kInputs>
 class HorizonProgramme {
  public:
@@ -56,6 +56,8 @@ class HorizonProgramme {
     Input r = Input::Zero();
     State x_low, x_high;
     Input u_low, u_high;
+    /// Of a soft bound: it gives way by this times its multiplier, so that an excess e costs e^2 / (2 give). 0: hard.
+    State x_give = State::Zero();
     Stage();
   };
 
@@ -82,6 +84,7 @@ class HorizonProgramme {
     Vector s, lambda, t, mu;                              // distance and multiplier, below and above
     Vector s_step, lambda_step, t_step, mu_step;          // of the Newton step
     Vector s_affine, lambda_affine, t_affine, mu_affine;  // of the predictor
+    Vector give = Vector::Zero();                         // of soft bounds
     void begin(const Vector& z, const Vector& low, const Vector& high, bool warm);
     /// Adds what the bounds bring to diagonal and gradient.
     void condense(const Vector& z, const Vector& low, const Vector& high, double centre, bool corrected,
