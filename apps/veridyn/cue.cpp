@@ -38,7 +38,7 @@ std::string motion_csv(const CueingRun& run, const Platform& platform) {
   return text;
 }
 
-std::string score_csv(const CueingResult& result) {
+std::string score_csv(const CueingResult& result, const Platform& platform) {
   std::string text = "algorithm,cue,figure,value,low,high,unit\n";
   for (const AlgorithmResult& a : result.algorithms) {
     for (std::size_t i = 0; i < kCues; ++i) {
@@ -55,6 +55,19 @@ std::string score_csv(const CueingResult& result) {
       line("time_above_threshold", s.above, "1");
       line("physical_pearson", s.physical_pearson, "1");
       line("physical_lag", s.physical_lag, "s");
+    }
+    const auto plain = [&](std::string_view of, const char* figure, double value, std::string_view unit) {
+      text += fmt::format("{},{},{},{},,,{}\n", a.run.algorithm, of, figure, value, unit);
+    };
+    plain("platform", "turns_felt_at_rest", a.score.felt_return, "1");
+    if (a.score.leg_speed > 0.0) plain("legs", "rate_used", a.score.leg_speed, "1");
+    for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+      const auto which = static_cast<PlatformAxis>(i);
+      if (!platform.limits.axes[i].moves()) continue;
+      plain(name_of(which), "range_used", a.score.axes[i].used, "1");
+      plain(name_of(which), "held_back", a.score.axes[i].limited, "1");
+      plain(name_of(which), "rate_used", a.score.axes[i].rate, "1");
+      plain(name_of(which), "rms_jerk", a.score.axes[i].rms_jerk, turns(which) ? "rad/s^3" : "m/s^3");
     }
     for (const std::size_t pair : {1U, 0U}) {
       const Measured& e = a.score.pairs[pair];
@@ -153,7 +166,7 @@ int cue_platform(const StudyRun& run) {
   if (result.interrupted) throw Interrupted();
   for (const AlgorithmResult& a : result.algorithms)
     folder.write(fmt::format("platform_{}.csv", a.run.algorithm), motion_csv(a.run, study.platform));
-  folder.write("score.csv", score_csv(result));
+  folder.write("score.csv", score_csv(result, study.platform));
   folder.write("false_cues.csv", false_cues_csv(result));
   if (study.response) folder.write("omct.csv", response_csv(result));
   folder.write("report.html", report::to_html(report::cueing_report(study, result, program_name())));

@@ -248,6 +248,7 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
     const std::unique_ptr<Washout> washout = design->make(study.platform);
     a.run = drive_platform(study.vehicle, *washout, study.platform, progress);
     a.run.algorithm = of.name;
+    if (!a.run.account.empty()) result.notes.push_back(fmt::format("{}: {}", of.name, a.run.account));
     if (progress.interrupted()) {
       result.interrupted = true;
       return result;

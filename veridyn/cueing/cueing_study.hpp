@@ -89,7 +89,7 @@ struct CueingResult {
   std::vector<AlgorithmResult> algorithms;
   /// Of sway with roll and surge with pitch, where the platform renders them and the perception's orders allow.
   std::array<std::optional<LeastError>, 2> least = {};
-  std::vector<std::string> notes;  ///< why something is not there
+  std::vector<std::string> notes;  ///< why something is not there, and how algorithms fared
   bool interrupted = false;
 };
 

@@ -216,12 +216,14 @@ Table false_cue_counts(const CueingResult& result) {
           .caption =
               "Stretches of a tenth of a second and more, of all cues together. Wrong sign: felt the other way, above "
               "threshold. Too strong: more than twice. Missing: not felt, where more than twice the threshold was "
-              "felt in the vehicle."};
+              "felt in the vehicle. Turns felt at rest: share of the time in which the driver felt neither force nor "
+              "turn, and the platform, on its way home, turned above threshold."};
   t.columns = {{.name = "algorithm", .align = Align::kLeft},
                {.name = "wrong sign"},
                {.name = "too strong"},
                {.name = "missing"},
-               {.name = "all together", .unit = "s"}};
+               {.name = "all together", .unit = "s"},
+               {.name = "turns felt at rest", .unit = "%"}};
   for (const AlgorithmResult& a : result.algorithms) {
     std::array<double, 3> count{};
     double time = 0.0;
@@ -229,8 +231,9 @@ Table false_cue_counts(const CueingResult& result) {
       count[static_cast<std::size_t>(f.kind)] += 1.0;
       time += f.end - f.begin;
     }
-    t.rows.push_back({.cells = {text_cell(a.run.algorithm), number_cell(count[0], 0), number_cell(count[1], 0),
-                                number_cell(count[2], 0), number_cell(time, 1)}});
+    t.rows.push_back(
+        {.cells = {text_cell(a.run.algorithm), number_cell(count[0], 0), number_cell(count[1], 0),
+                   number_cell(count[2], 0), number_cell(time, 1), number_cell(100.0 * a.score.felt_return, 1)}});
   }
   return t;
 }

@@ -41,6 +41,7 @@ TEST(PredictiveWashout, KeepsTheRateOfTiltAndThePlatformsRangeByItself) {
   const PlanCounts counts = washout.counts();
   EXPECT_GT(counts.plans, 5000);
   EXPECT_EQ(counts.classical, 0);
+  EXPECT_NE(washout.account().find("on the last plan's tail, 0 on the classical algorithm"), std::string::npos);
   EXPECT_LT(static_cast<double>(counts.iterations) / static_cast<double>(counts.plans), 15.0);
 }
 

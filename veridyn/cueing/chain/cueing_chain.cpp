@@ -65,6 +65,7 @@ CueingRun drive_platform(const std::vector<recording::MotionSample>& vehicle, co
     constexpr std::size_t kBetweenLooks = 1000;
     if (k % kBetweenLooks == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(vehicle.size()))) break;
   }
+  run.account = chain.washout().account();
   return run;
 }
 

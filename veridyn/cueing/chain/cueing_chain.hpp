@@ -56,6 +56,7 @@ struct CueingRun {
   std::vector<recording::MotionSample> vehicle;  ///< at the driver's head, frd
   std::vector<recording::MotionSample> rider;    ///< at the rider's head, platform's axes (frd)
   std::vector<CueingStep> steps;
+  std::string account;  ///< of the algorithm's own work, see `Washout::account`
 };
 
 /// The samples of a drive through the chain. @param vehicle at the driver's head, stamps growing

@@ -1,5 +1,7 @@
 #include "veridyn/cueing/washout/predictive_washout.hpp"
 
+#include <fmt/format.h>
+
 #include "veridyn/cueing/perception/felt_pair.hpp"
 #include "veridyn/numerics/linear_systems/discretisation.hpp"
 
@@ -187,6 +189,14 @@ PlanCounts PredictiveWashout::counts() const {
   for (const auto& p : tilting_) add(p.counts());
   for (const auto& p : shifting_) add(p.counts());
   return all;
+}
+
+std::string PredictiveWashout::account() const {
+  const PlanCounts c = counts();
+  if (c.plans == 0) return {};
+  return fmt::format(
+      "{} plans of {:.1f} iterations, {} at most; {} moments on the last plan's tail, {} on the classical algorithm",
+      c.plans, static_cast<double>(c.iterations) / static_cast<double>(c.plans), c.most, c.tails, c.classical);
 }
 
 PlatformCommand PredictiveWashout::next(const VehicleMotion& motion, SampleStep step) {

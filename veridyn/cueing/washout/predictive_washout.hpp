@@ -90,6 +90,7 @@ class PredictiveWashout final : public Washout {
 
   /// Of both pairs together.
   [[nodiscard]] PlanCounts counts() const;
+  [[nodiscard]] std::string account() const override;
 
  private:
   PlatformCommand next(const VehicleMotion& motion, SampleStep step) override;

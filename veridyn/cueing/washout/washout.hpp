@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "veridyn/cueing/platform/platform_command.hpp"
 #include "veridyn/recording/motion_sample.hpp"
@@ -33,6 +34,8 @@ class Washout {
   PlatformCommand step(const recording::MotionSample& sample, double step);
   /// A copy with its state.
   [[nodiscard]] virtual std::unique_ptr<Washout> clone() const = 0;
+  /// How its own work went since the beginning, in words; nothing of most.
+  [[nodiscard]] virtual std::string account() const { return {}; }
 
  protected:
   Washout() = default;
