@@ -28,9 +28,9 @@ ReproducedRow reproduced_row(const cueing::CueingReproduction& r) {
   if (r.curves.empty()) return row;
   TimeSeries series{.title = "Over time", .axis = r.title};
   series.samples = r.time;
-  Panel panel{.label = "angle", .unit = r.curves.front().unit};
-  for (const cueing::ReproducedCurve& c : r.curves) panel.lines.push_back({.name = c.name, .y = c.values});
-  series.panels.push_back(std::move(panel));
+  // Each on a scale of its own: what is left with the camera is a hundredth of what is there without.
+  for (const cueing::ReproducedCurve& c : r.curves)
+    series.panels.push_back({.label = c.name, .unit = c.unit, .lines = {{.name = c.name, .y = c.values}}});
   row.blocks.emplace_back(std::move(series));
   return row;
 }
