@@ -1,5 +1,5 @@
 // veridyn demo: the full pipeline on a built-in aircraft and a simulated flight, a car and its scaled model, and an arm
-// that lifts a weight; needs no file.
+// that lifts a weight, and the car's double lane change on a motion platform; needs no file.
 
 #include "apps/veridyn/domains.hpp"
 
@@ -79,6 +79,29 @@ speed = "4 m/s"
 builtin = "reference_1to5"
 )";
 
+constexpr const char* kCueingDemo =
+    R"(# The platform's part of `veridyn demo`: the reference car changes lanes twice, and a driver feels it on a platform that
+# rolls, pitches and heaves. Which algorithm feels more like the car?
+title = "double lane change on a motion platform"
+
+[cue]
+algorithms = ["tilt", "three_axis", "mpc"]
+
+[platform]
+subject = "three_axis"
+
+[subject]
+kind = "vehicle"
+builtin = "reference"
+mu = 0.95
+tyre = "magic formula"
+
+[drive]
+model = "four-wheel"
+manoeuvre = "double lane change"
+speed = "80 km/h"
+)";
+
 /// Runs a study of the demo, which is written alongside its results in `folder` of --out.
 StudyRun part(const Arguments& arguments, const std::string& folder, const char* text) {
   StudyRun run = parse_study("demo", (std::filesystem::path(arguments.common.out) / folder / "study.toml").string(),
@@ -100,14 +123,15 @@ int demo(const Arguments& arguments) {
   scale.text_to_write.clear();
   scale.arguments.common.out += "/scale";
   if (const int code = scale_vehicle(scale); code != kDone) return code;
-  return simulate_muscle(part(rest, "muscle", kMuscleDemo));
+  if (const int code = simulate_muscle(part(rest, "muscle", kMuscleDemo)); code != kDone) return code;
+  return cue_platform(part(rest, "cueing", kCueingDemo));
 }
 
 }  // namespace
 
 Command demo_command() {
   return {.name = "demo",
-          .summary = "complete runs on a built-in aircraft, a car and an arm; needs no input",
+          .summary = "complete runs on a built-in aircraft, a car, an arm and a motion platform; needs no input",
           .default_out = "out/demo",
           .example = "veridyn demo --seed 3",
           .run = demo};
