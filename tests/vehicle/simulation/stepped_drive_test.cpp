@@ -20,7 +20,7 @@ using testing::LinearCar;
 using testing::with_longitudinal;
 using Drive = SteppedDrive<LinearTyre<double>>;
 
-constexpr double kStep = 1e-3;
+constexpr double kDriveStep = 1e-3;
 
 /// A car with friction.
 LinearCar<double> gripping_car(const LongitudinalParameters& longitudinal = {}) {
@@ -44,7 +44,8 @@ void expect_same_as_simulate(const LinearCar<double>& car, double speed) {
   const auto road = std::make_shared<testing::SignalRoad>(testing::bumps);
   HeldControls driver;
   Progress silent;
-  const auto whole = simulate(car, driver, road.get(), {.duration = 5.0, .output_step = kStep, .speed = speed}, silent);
+  const auto whole =
+      simulate(car, driver, road.get(), {.duration = 5.0, .output_step = kDriveStep, .speed = speed}, silent);
   ASSERT_EQ(whole.end, SimulationEnd::kCompleted) << whole.message();
   Drive drive(car, road, speed);
   drive.reset(speed);
@@ -83,7 +84,7 @@ TEST(SteppedDrive, StartsStopsReversesAndComesBackWithoutAJump) {
       const bool stop = goal == 0.0;
       c.drive_torque = towards(c.drive_torque, stop ? 0.0 : std::clamp(900.0 * (goal - u), -900.0, 900.0));
       c.brake_torque = towards(c.brake_torque, stop ? 900.0 : 0.0);
-      drive.step(c, kStep);
+      drive.step(c, kDriveStep);
       const double a = drive.rates().longitudinal_acceleration;
       largest_jump = std::max(largest_jump, std::abs(a - last));
       last = a;
@@ -105,17 +106,17 @@ TEST(SteppedDrive, StaysParkedOnAGradeAndRollsWhenReleased) {
   const auto car = gripping_car(l);
   Drive drive(car);
   const Controls parked{.brake_torque = 3000.0};
-  for (int k = 0; k < 3000; ++k) drive.step(parked, kStep);  // settles into its tyres
+  for (int k = 0; k < 3000; ++k) drive.step(parked, kDriveStep);  // settles into its tyres
   const double x = drive.state().vehicle(kX);
-  for (int k = 0; k < 60000; ++k) drive.step(parked, kStep);
+  for (int k = 0; k < 60000; ++k) drive.step(parked, kDriveStep);
   EXPECT_NEAR(drive.state().vehicle(kX), x, 1e-6);
   EXPECT_NEAR(x, 0.0, 0.01);
   EXPECT_NEAR(drive.motion().force.norm(), kGravity, 1e-6);
   const double u = drive.state().vehicle(kU), m = car.parameters().mass;
   const double mass = m + 4.0 * l.wheel_inertia / (l.wheel_radius * l.wheel_radius);
-  for (int k = 0; k < 5000; ++k) drive.step({}, kStep);
+  for (int k = 0; k < 5000; ++k) drive.step({}, kDriveStep);
   const double before = drive.state().vehicle(kU);
-  for (int k = 0; k < 5000; ++k) drive.step({}, kStep);
+  for (int k = 0; k < 5000; ++k) drive.step({}, kDriveStep);
   EXPECT_NEAR((drive.state().vehicle(kU) - before) / 5.0, -kGravity * std::sin(l.grade) * m / mass, 1e-3);
   EXPECT_LT(before, u - 3.0);
 }
@@ -154,7 +155,7 @@ TEST(SteppedDrive, NeverMakesEnergyAtStandstill) {
     double last = energy();
     const double first = last;
     for (int k = 0; k < 3000; ++k) {
-      drive.step({.brake_torque = 1e5}, kStep);
+      drive.step({.brake_torque = 1e5}, kDriveStep);
       const double now = energy();
       ASSERT_LE(now, last + 1e-9 * first) << trial << " at " << k;
       last = now;
@@ -172,14 +173,14 @@ TEST(SteppedDrive, GoesOnAfterASpin) {
   drive.reset(30.0);
   bool spun = false;
   for (int k = 0; k < 12000; ++k) {
-    drive.step({.steer = 0.1 * std::min(1.0, k * kStep), .drive_torque = 2000.0}, kStep);
+    drive.step({.steer = 0.1 * std::min(1.0, k * kDriveStep), .drive_torque = 2000.0}, kDriveStep);
     spun |= drive.state().vehicle(kU) < 0.0;
     ASSERT_TRUE(drive.state().vehicle.allFinite()) << k;
   }
   EXPECT_TRUE(spun);
-  for (int k = 0; k < 30000; ++k) drive.step({.brake_torque = 4000.0}, kStep);
+  for (int k = 0; k < 30000; ++k) drive.step({.brake_torque = 4000.0}, kDriveStep);
   EXPECT_LT(std::hypot(drive.state().vehicle(kU), drive.state().vehicle(kV)), 1e-6);
-  for (int k = 0; k < 5000; ++k) drive.step({.drive_torque = 500.0}, kStep);
+  for (int k = 0; k < 5000; ++k) drive.step({.drive_torque = 500.0}, kDriveStep);
   EXPECT_GT(drive.state().vehicle(kU), 3.0);
   EXPECT_EQ(drive.state().refused, 0);
 }
@@ -190,7 +191,7 @@ TEST(SteppedDrive, BearsAnyInput) {
   const double bad[] = {kNan, kInfinity, -kInfinity, 1e30, -1e30, 0.0, 1.0, -0.5};
   std::mt19937_64 random(7);
   const auto any = [&] { return bad[random() % std::size(bad)]; };
-  const double steps[] = {kStep, 0.05, 0.0, -1.0, kNan, kInfinity};
+  const double steps[] = {kDriveStep, 0.05, 0.0, -1.0, kNan, kInfinity};
   for (int k = 0; k < 2000; ++k) {
     drive.step({.steer = any(), .drive_torque = 1000.0 * any(), .brake_torque = 1000.0 * any()},
                steps[random() % std::size(steps)]);
@@ -206,11 +207,11 @@ TEST(SteppedDrive, GoesOnFromASavedStateBitForBit) {
     return Controls{
         .steer = 0.1 * std::sin(3e-3 * k), .drive_torque = 500.0, .brake_torque = k % 4000 > 2000 ? 3e3 : 0};
   };
-  for (int k = 0; k < 3000; ++k) drive.step(controls(k), kStep);
+  for (int k = 0; k < 3000; ++k) drive.step(controls(k), kDriveStep);
   other.reset(drive.state());
   for (int k = 3000; k < 9000; ++k) {
-    drive.step(controls(k), kStep);
-    other.step(controls(k), kStep);
+    drive.step(controls(k), kDriveStep);
+    other.step(controls(k), kDriveStep);
     ASSERT_TRUE(drive.state().vehicle == other.state().vehicle) << k;
   }
 }
@@ -227,7 +228,7 @@ TEST(SteppedDrive, GivesTheSpecificForceAtAnyPlace) {
   };
   std::vector<Place> path;
   for (int k = 0; k < 3000; ++k) {
-    drive.step({.steer = 0.05, .drive_torque = 300.0}, kStep);
+    drive.step({.steer = 0.05, .drive_torque = 300.0}, kDriveStep);
     const FourWheelState<double>& s = drive.state().vehicle;
     const recording::MotionSample m = drive.motion(head);
     path.push_back({Eigen::Vector3d(s(kX), s(kY), s(kHeave)) + m.attitude * head, m});
@@ -236,7 +237,7 @@ TEST(SteppedDrive, GivesTheSpecificForceAtAnyPlace) {
   for (std::size_t k = 500; k + 10 < path.size(); ++k) {
     const auto at = [&](int by) { return path[static_cast<std::size_t>(static_cast<int>(k) + by)].at; };
     constexpr int kWide = 3;  // of the sixth order: error and rounding both below 1e-7
-    const double h = kWide * kStep;
+    const double h = kWide * kDriveStep;
     const Eigen::Vector3d a = ((at(-3 * kWide) + at(3 * kWide)) / 90.0 - 0.15 * (at(-2 * kWide) + at(2 * kWide)) +
                                1.5 * (at(-kWide) + at(kWide)) - 49.0 / 18.0 * at(0)) /
                               (h * h);
