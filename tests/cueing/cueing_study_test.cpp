@@ -12,7 +12,9 @@
 namespace veridyn::cueing {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kDrive =
     "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"bicycle\"\nmanoeuvre = \"sine\"\n"
@@ -95,13 +97,16 @@ TEST(CueingStudy, SaysWhatIsWrongAndWhere) {
 }
 
 /// A recorded drive of 10 s at 100 Hz in a file of its own; what is to be written into a study.
-std::string recorded_drive(const std::string& name) {
+std::string recorded_drive(const std::string& name, bool with_positions = false) {
   const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / name;
   std::ofstream out(file);
-  out << "time[s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s]\n";
+  out << "time[s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s]"
+      << (with_positions ? ",pos_x[m],pos_y[m]\n" : "\n");
   for (int k = 0; k < 1000; ++k) {
     const double t = 0.01 * k;
-    out << t << "," << std::sin(t) << "," << std::cos(t) << ",9.81,0,0,0\n";
+    out << t << "," << std::sin(t) << "," << std::cos(t) << ",9.81,0,0,0";
+    if (with_positions) out << "," << 20.0 * t << ",0";
+    out << "\n";
   }
   return "file = \"" + file.generic_string() + "\"\n";
 }
@@ -111,6 +116,34 @@ TEST(CueingStudy, IsNamedAfterTheDriveThatIsScoredNotTheOneThatIsTunedOn) {
                              "[tune]\nevaluations = 1\n[tune.data]\n" + recorded_drive("cueing_tuned_on.csv"));
   EXPECT_FALSE(s.tune_on.empty());
   EXPECT_EQ(s.drive, "cueing_scored.csv");
+}
+
+TEST(CueingStudy, ForeseesFromTheDriverOrFromALap) {
+  const std::string four_wheel =
+      "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"four-wheel\"\nmanoeuvre = "
+      "\"sine\"\namplitude = \"2 deg\"\nfrequency = \"0.3 Hz\"\nspeed = 15\nduration = 12\n";
+  const std::string mpc = "[cue]\nalgorithms = [\"mpc\"]\noptimum = false\n";
+  Progress progress;
+  const auto account = [&](const CueingStudy& s) { return cue(s, progress).algorithms.front().run.account; };
+  EXPECT_THAT(account(read(mpc + four_wheel)), Not(HasSubstr("foresaw")));
+  const std::string by_driver = account(read(mpc + "foresee = \"driver\"\n" + four_wheel));
+  EXPECT_THAT(by_driver, HasSubstr("the driver's steering and pedals foresaw 100 % of the time"));
+  EXPECT_THAT(by_driver, Not(HasSubstr("misleads")));
+  EXPECT_THAT(
+      account(read(mpc + "[cue.vehicle]\nkind = \"vehicle\"\nbuiltin = \"reference\"\nmass = 1200\n" + four_wheel)),
+      HasSubstr("steering and pedals foresaw"));
+
+  const std::string lap = recorded_drive("cueing_lap.csv", true);
+  const CueingStudy same = read(mpc + "[cue.lap]\n" + lap + "[data]\n" + lap);
+  EXPECT_THAT(same.notes, Contains(HasSubstr("the lap cueing_lap.csv is also driven or tuned on")));
+  EXPECT_THAT(account(same), HasSubstr("sway: the lap foresaw 100 %"));
+
+  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + lap + "[data]\n" + recorded_drive("cueing_no_place.csv")),
+              HasSubstr("rig.toml:4: cue.lap: is of no use: the drive has no positions"));
+  EXPECT_THAT(refusal(mpc + "[cue.lap]\n" + recorded_drive("cueing_no_place.csv") + "[data]\n" + lap),
+              HasSubstr("has no positions: channels pos_x and pos_y are needed"));
+  EXPECT_THAT(refusal(mpc + "foresee = \"lap\"\n" + four_wheel), HasSubstr("needs a lap of the same track"));
+  EXPECT_THAT(refusal(mpc + "foresee = \"driver\"\n[data]\n" + lap), HasSubstr("map a channel to `steer`"));
 }
 
 }  // namespace

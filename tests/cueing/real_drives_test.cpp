@@ -32,6 +32,7 @@ TEST(RealDrives, OnAGravelStagePlanningAndOptimalWashoutAreBetterThanTheTiltChan
       overrides.push_back(std::string("washout.") + a + ".tilt_rate=\"" + rate + "\"");
     const auto result = cued("gravel_stage", overrides);
     if (!result) GTEST_SKIP() << "the shared data are not here; washout tests on simulated drives are without them";
+    ASSERT_TRUE(result->least[0] && result->least[1]);
     for (const char* name : {"optimal", "mpc"}) {
       for (const Cue which : {Cue::kSurge, Cue::kSway}) {
         const CueingScore &a = of(*result, name).score, &tilt = of(*result, "tilt").score;
@@ -49,8 +50,22 @@ TEST(RealDrives, OnAGravelStagePlanningAndOptimalWashoutAreBetterThanTheTiltChan
       }
       for (const std::size_t pair : {0U, 1U}) EXPECT_GT(a.score.pairs[pair].value, result->least[pair]->error);
     }
-    EXPECT_LT(result->least[0]->residual, 1e-3);
+    for (const auto& least : result->least) EXPECT_LT(least->residual, 1e-6);
   }
+}
+
+TEST(RealDrives, WithALapOfTheSameStagePlansCorrelateTwiceAsWellAndLagLess) {
+  const auto with = cued("gravel_stage_lap", {"cue.optimum=false"});
+  if (!with) GTEST_SKIP() << "the shared data are not here; LapForesight's tests are without them";
+  const auto without = cued("gravel_stage_lap", {"cue.optimum=false", "cue.foresee=\"fade\""});
+  const CueingScore &a = of(*with, "mpc").score, &b = of(*without, "mpc").score, &tilt = of(*with, "tilt").score;
+  for (const Cue which : {Cue::kSurge, Cue::kSway}) {
+    EXPECT_GT(difference(a, b, which, CueFigure::kPearson).low, 0.2) << name_of(which);
+    EXPECT_LT(difference(a, b, which, CueFigure::kLag).high, -0.3) << name_of(which);
+    EXPECT_GT(difference(a, tilt, which, CueFigure::kPearson).low, 0.3) << name_of(which);
+  }
+  EXPECT_NE(of(*with, "mpc").run.account.find("the lap foresaw 100 % of the time"), std::string::npos);
+  EXPECT_EQ(of(*with, "mpc").run.account.find("misleads"), std::string::npos);
 }
 
 TEST(RealDrives, EveryHardLandingOfTheStageIsAmongTheFalseCues) {

@@ -27,7 +27,8 @@ std::vector<MotionSample> driven() {
     s.force = s.attitude.conjugate() * Eigen::Vector3d(0.0, 0.0, kGravity) +
               Eigen::Vector3d(std::sin(t), 2.0 * std::cos(t), 0.1);
     s.rate = {0.05 * std::cos(t), -0.03 * std::sin(t), 0.4};
-    s.force_from = s.rate_from = s.attitude_from = Origin::kMeasured;
+    s.position = {20.0 * t, std::sin(t)};
+    s.force_from = s.rate_from = s.attitude_from = s.position_from = Origin::kMeasured;
     all.push_back(s);
   }
   return all;
@@ -77,6 +78,8 @@ TEST(MotionSamples, ComeBackFromTheirRecordingWithTheirStamps) {
     EXPECT_LT((after.samples[k].force - before[k].force).norm(), 1e-12);
     EXPECT_LT((after.samples[k].rate - before[k].rate).norm(), 1e-12);
     EXPECT_LT(after.samples[k].attitude.angularDistance(before[k].attitude), 1e-7);
+    EXPECT_EQ(after.samples[k].position, before[k].position);
+    EXPECT_EQ(after.samples[k].position_from, Origin::kMeasured);
     EXPECT_EQ(after.samples[k].force_from, Origin::kMeasured);
     EXPECT_EQ(after.samples[k].angular_acceleration_from, Origin::kDerived);
   }

@@ -18,6 +18,8 @@ MotionSample some_motion() {
   s.rate = {0.3, -0.2, 0.5};
   s.angular_acceleration = {-1.0, 0.4, 0.2};
   s.attitude = numerics::quaternion_from_euler(0.3, -0.2, 1.1);
+  s.position = {30.0, -4.0};
+  s.position_from = Origin::kMeasured;
   return s;
 }
 
@@ -39,6 +41,8 @@ TEST(MotionSample, ThereAndBackBetweenFramesIsTheSame) {
   EXPECT_EQ(back.force, frd.force);
   EXPECT_EQ(back.attitude.coeffs(), frd.attitude.coeffs());
   EXPECT_EQ(back.place, frd.place);
+  EXPECT_EQ(flu.position, Eigen::Vector2d(30.0, 4.0));
+  EXPECT_EQ(back.position, frd.position);
   // The same physics in either: turned body axes of the acceleration.
   const Eigen::Vector3d a = acceleration(frd), b = acceleration(flu);
   EXPECT_LT((b - Eigen::Vector3d(a.x(), -a.y(), -a.z())).norm(), 1e-14);
@@ -57,6 +61,8 @@ TEST(MotionSample, AtAnotherPlaceItIsThatOfTheRigidBody) {
   const Eigen::Vector3d lever = (turned_by(kStep) - 2.0 * d + turned_by(-kStep)) / (kStep * kStep);
   EXPECT_LT((at_place(s, place).force - s.force - lever).norm(), 1e-5);
   EXPECT_LT((at_place(at_place(s, place), s.place).force - s.force).norm(), 1e-14);
+  const Eigen::Vector2d moved = (s.attitude.toRotationMatrix() * d).head<2>();
+  EXPECT_LT((at_place(s, place).position - s.position - moved).norm(), 1e-14);
   EXPECT_LT(
       (in_frame(at_place(s, place), Frame::kFlu).force - at_place(in_frame(s, Frame::kFlu), {1.2, 0.4, -0.6}).force)
           .norm(),

@@ -8,7 +8,9 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/washout/driver_foresight.hpp"
 #include "veridyn/cueing/washout/driver_settings.hpp"
+#include "veridyn/cueing/washout/lap_foresight.hpp"
 #include "veridyn/cueing/washout/shared_channels.hpp"
 #include "veridyn/recording/drive_axis_check.hpp"
 #include "veridyn/recording/motion_recording.hpp"
@@ -107,6 +109,54 @@ void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy&
   }
 }
 
+/// A lap that was recorded. Notes where it is not another one.
+LapForesight read_lap(const StudyTable& cue, CueingStudy& study) {
+  if (study.vehicle.front().position_from == recording::Origin::kAbsent)
+    cue.fail("lap", "is of no use: the drive has no positions (channels pos_x and pos_y)");
+  const std::vector<std::filesystem::path> others = study.inputs;
+  const std::vector<MotionSample> lap = recorded(cue.table("lap"), motion_options(cue), place(cue, "driver"), study);
+  for (std::size_t i = others.size(); i < study.inputs.size(); ++i) {
+    if (std::find(others.begin(), others.end(), study.inputs[i]) != others.end())
+      study.notes.push_back(
+          fmt::format("the lap {} is also driven or tuned on: what is foreseen there is too good to be true",
+                      study.inputs[i].filename().string()));
+  }
+  try {
+    return LapForesight(lap);
+  } catch (const InputError& error) {
+    cue.fail("lap", error.what());
+  }
+}
+
+/// The model that goes with the driver's steering and pedals: `[cue.vehicle]`, or the simulated vehicle itself.
+DriverForesight read_driver_foresight(const StudyTable& root, const StudyTable& cue, const CueingStudy& study) {
+  const MotionSample& first = study.vehicle.front();
+  if (first.steer_from == recording::Origin::kAbsent)
+    cue.fail("foresee", "= 'driver' needs the road wheels' angle: map a channel to `steer`");
+  if (first.speed_from == recording::Origin::kAbsent) cue.fail("foresee", "= 'driver' needs the channel `speed`");
+  if (!cue.has("vehicle") && !(root.has("drive") && !root.has("data")))
+    cue.fail("foresee", "= 'driver' needs a model of the vehicle: [cue.vehicle], with the keys of [subject]");
+  const StudyTable table = cue.has("vehicle") ? cue.table("vehicle") : root.table("subject");
+  return DriverForesight(vehicle::read_vehicle(table, vehicle::VehicleNeeds::kFourWheel));
+}
+
+/// Gives the algorithms that plan ahead what they foresee from.
+void read_foresight(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
+  const std::vector<std::string> choices = {"fade", "lap", "driver"};
+  const std::string usual = cue.has("lap") ? "lap" : cue.has("vehicle") ? "driver" : "fade";
+  const std::string choice = cue.choice_or("foresee", choices, usual);
+  if (choice == "lap" && !cue.has("lap")) cue.fail("foresee", "= 'lap' needs a lap of the same track: [cue.lap]");
+  // What is there is read, also where the choice is another one.
+  std::optional<LapForesight> lap;
+  if (cue.has("lap")) lap = read_lap(cue, study);
+  std::optional<DriverForesight> driver;
+  if (cue.has("vehicle") || choice == "driver") driver = read_driver_foresight(root, cue, study);
+  for (const StudyAlgorithm& a : study.algorithms) {
+    if (choice == "lap") a.design->foresee_from(*lap);
+    if (choice == "driver") a.design->foresee_from(*driver);
+  }
+}
+
 Cue read_cue(const StudyTable& table) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < kCues; ++i) names.emplace_back(name_of(static_cast<Cue>(i)));
@@ -189,10 +239,16 @@ CueingStudy read_study(const Study& study, Progress& progress) {
     if (tune.has("data")) s.tune_on = recorded(tune.table("data"), motion_options(cue), place(cue, "driver"), s);
   }
   read_drive(root, cue, s, progress);
+  read_foresight(root, cue, s);
   return s;
 }
 
 namespace {
+
+/// [s]
+double duration_of(const std::vector<MotionSample>& drive) {
+  return drive.empty() ? 0.0 : drive.back().time - drive.front().time;
+}
 
 /// What of the drive the platform cannot render, or not yet.
 void note_drive(const CueingStudy& study, CueingResult& result) {
@@ -207,7 +263,7 @@ void note_drive(const CueingStudy& study, CueingResult& result) {
   if (gaps > 0)
     result.notes.push_back(fmt::format("{} gap{} longer than {:g} s, up to {:.2g} s: the platform stops in them", gaps,
                                        gaps == 1 ? "" : "s", AxisGuard::kLongestStep, longest));
-  const double duration = study.vehicle.back().time - study.vehicle.front().time;
+  const double duration = duration_of(study.vehicle);
   for (const StudyAlgorithm& a : study.algorithms) {
     double slowest = kInfinity;
     std::string name;
@@ -273,8 +329,10 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
       auto& least = result.least[static_cast<std::size_t>(pair)];
       least = least_error(study.vehicle, study.platform, model, study.thresholds, pair);
       if (!least)
-        result.notes.push_back(fmt::format("no least error: the drive is longer than {:g} s, or the search did not end",
-                                           kLongestForLeastError));
+        result.notes.push_back(
+            duration_of(study.vehicle) > kLongestForLeastError
+                ? fmt::format("no least error: the drive is longer than {:g} s", kLongestForLeastError)
+                : fmt::format("no least error in {}: its search did not end", pair == 0 ? "sway" : "surge"));
     } catch (const InputError& error) {
       result.notes.push_back(fmt::format("no least error: {}", error.what()));
     }

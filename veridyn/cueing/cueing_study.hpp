@@ -41,6 +41,10 @@ struct ResponseStudy {
 ///     optimum = true                           # how small the perceived error could be with the drive known before
 ///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
 ///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
+///     foresee = "fade"                         # how `mpc` foresees forces: "lap" ([cue.lap]), "driver"
+///     ([cue.vehicle]) [cue.lap]                                # as [data]: a lap of the same track, driven before
+///     [cue.vehicle]                            # as [subject]: steering and pedals through this model; the simulated
+///                                              # vehicle when left out
 ///     [data]                                   # a recorded drive, see vehicle::read_drive_log; or
 ///     [subject], [drive], [road]               # a simulated one, see vehicle::read_simulation_study
 ///     [platform]                               # see Platform::read

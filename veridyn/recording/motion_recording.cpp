@@ -122,6 +122,10 @@ RecordedMotion motion_samples(const Recording& recording, const MotionOptions& o
                                                                    held(recording, {"gyro_z", "yaw_rate"}, at)};
   const std::array<std::optional<std::vector<double>>, 3> angles = {
       held_angle(recording, "roll", at), held_angle(recording, "pitch", at), held_angle(recording, "yaw", at)};
+  const std::array<std::optional<std::vector<double>>, 2> places = {held(recording, {"pos_x"}, at),
+                                                                    held(recording, {"pos_y"}, at)};
+  const bool placed = places[0] && places[1];
+  const auto steer = held(recording, {"steer"}, at), speed = held(recording, {"speed"}, at);
   for (std::size_t i = 0; i < 3; ++i) {
     constexpr std::array kNames = {"gyro_x", "gyro_y", "gyro_z"};
     if (!rates[i]) continue;
@@ -150,6 +154,12 @@ RecordedMotion motion_samples(const Recording& recording, const MotionOptions& o
     s.force_from = gravity && z ? Origin::kMeasured : Origin::kDerived;
     for (std::size_t i = 0; i < 3; ++i) s.rate(static_cast<Eigen::Index>(i)) = rates[i] ? (*rates[i])[k] : 0.0;
     s.rate_from = rates[0] || rates[1] || rates[2] ? Origin::kMeasured : Origin::kAbsent;
+    if (placed) s.position = {(*places[0])[k], (*places[1])[k]};
+    s.position_from = placed ? Origin::kMeasured : Origin::kAbsent;
+    if (steer) s.inputs.steer = (recording.frame == Frame::kFrd ? -1.0 : 1.0) * (*steer)[k];
+    s.steer_from = steer ? Origin::kMeasured : Origin::kAbsent;
+    if (speed) s.speed = (*speed)[k];
+    s.speed_from = speed ? Origin::kMeasured : Origin::kAbsent;
     motion.samples.push_back(s);
   }
   std::string absent;
@@ -194,6 +204,10 @@ Recording to_recording(const std::vector<MotionSample>& samples) {
     add("roll", "rad", [&](const MotionSample& s) { return euler(s).phi; });
     add("pitch", "rad", [&](const MotionSample& s) { return euler(s).theta; });
     add("yaw", "rad", [&](const MotionSample& s) { return euler(s).psi; });
+  }
+  if (samples.front().position_from != Origin::kAbsent) {
+    add("pos_x", "m", [](const MotionSample& s) { return s.position.x(); });
+    add("pos_y", "m", [](const MotionSample& s) { return s.position.y(); });
   }
   return recording;
 }

@@ -28,6 +28,7 @@ MotionSample in_frame(const MotionSample& sample, Frame frame) {
   // Body and world axes turn alike.
   const Eigen::Quaterniond& q = sample.attitude;
   s.attitude = Eigen::Quaterniond(q.w(), q.x(), -q.y(), -q.z());
+  s.position.y() = -sample.position.y();
   return s;
 }
 
@@ -36,6 +37,7 @@ MotionSample at_place(const MotionSample& sample, const Eigen::Vector3d& place) 
   MotionSample s = sample;
   s.place = place;
   s.force += sample.angular_acceleration.cross(d) + sample.rate.cross(sample.rate.cross(d));
+  s.position += (sample.attitude * d).head<2>();
   return s;
 }
 

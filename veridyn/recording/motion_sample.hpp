@@ -14,6 +14,13 @@ enum class Origin {
   kDerived,   ///< computed from others
 };
 
+/// What the driver of a ground vehicle does.
+struct DriverInputs {
+  double steer = 0.0;         ///< at the road wheels, left positive in any frame [rad]
+  double drive_torque = 0.0;  ///< of all driven wheels together [N m]
+  double brake_torque = 0.0;  ///< of all wheels together, >= 0 [N m]
+};
+
 /// The motion of a body at a moment, at a place on it, as a person there would feel it. Vectors are in body axes.
 struct MotionSample {
   double time = 0.0;                                ///< [s]
@@ -24,8 +31,13 @@ struct MotionSample {
   Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  ///< [rad/s^2]
   /// Body to world components; the world's axes are north, east, down with kFrd, north, west, up with kFlu.
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
+  /// Of the place, along the world's two level axes, from wherever the recording counts [m].
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  double speed = 0.0;  ///< forward [m/s]
+  DriverInputs inputs;
   Origin force_from = Origin::kAbsent, rate_from = Origin::kAbsent, angular_acceleration_from = Origin::kAbsent,
-         attitude_from = Origin::kAbsent;
+         attitude_from = Origin::kAbsent, position_from = Origin::kAbsent, speed_from = Origin::kAbsent,
+         steer_from = Origin::kAbsent, torque_from = Origin::kAbsent;
 };
 
 /// The specific force of a body at rest and level, +g along the axis that points up [m/s^2].

@@ -25,16 +25,13 @@ VehicleModelKind read_model(const StudyTable& drive) {
 FourWheelOptions read_options(const StudyTable& drive, const Vehicle& vehicle) {
   static const std::vector<std::string> kConventions{"first principles", "source"};
   static const std::vector<std::string> kGeometries{"exact", "small angles"};
-  FourWheelOptions options;
+  FourWheelOptions options = four_wheel_options(vehicle);
   options.gravity = drive.positive_or("gravity", "m/s^2", options.gravity);
   if (drive.choice_or("convention", kConventions, "first principles") == "source")
     options.convention = FourWheelConvention::kSource;
   if (drive.choice_or("geometry", kGeometries, "exact") == "small angles")
     options.geometry = BicycleGeometry::kSmallAngles;
-  options.ackermann = vehicle.ackermann;
-  options.camber_per_roll = vehicle.camber_per_roll;
-  options.relaxation_length = vehicle.relaxation_length;
-  if (drive.flag_or("longitudinal", false)) options.longitudinal = vehicle.longitudinal;
+  if (!drive.flag_or("longitudinal", false)) options.longitudinal.reset();
   return options;
 }
 

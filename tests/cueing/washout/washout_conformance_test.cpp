@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <ostream>
 #include <random>
 
 #include "veridyn/core/constants.hpp"
@@ -36,6 +37,7 @@ MotionSample drive(double t) {
 struct Subject {
   std::string algorithm, platform;
 };
+void PrintTo(const Subject& of, std::ostream* out) { *out << of.algorithm << " on " << of.platform; }
 std::vector<Subject> subjects() {
   std::vector<Subject> all;
   for (const WashoutAlgorithm& a : washout_algorithms()) {

@@ -84,7 +84,9 @@ std::optional<LeastError> solved(const std::vector<Eigen::Vector2d>& drive, cons
   const numerics::ProgrammeResult r =
       programme.solve(x0, {.iterations = kIterations, .tolerance = 1e-2 * kTolerance * share});
   const double bounds = 2.0 * static_cast<double>(steps) * (shifts ? 6.0 : 3.0);
-  least.residual = r.complementarity * bounds / std::max(r.cost, 1e-12);
+  // Of a convex programme no more can be left than distances times multipliers and slopes times ranges.
+  const double ranges = static_cast<double>(steps) * (stage.u_high - stage.u_low).sum();
+  least.residual = (r.complementarity * bounds + r.gradient * ranges) / std::max(r.cost, 1e-12);
   if (r.end == numerics::ProgrammeEnd::kInfeasible || !(least.residual <= 100.0 * kTolerance)) return std::nullopt;
   least.iterations = r.iterations;
   for (std::size_t k = 0; k <= steps; ++k) {

@@ -41,25 +41,19 @@ PlannedPair<kStates, kInputs>::PlannedPair(const PredictiveDesign& d, const Plat
   constexpr bool shifts = kInputs == 2;
   const numerics::StateSpace model =
       felt_pair(vestibular_model(d.perception), usual_thresholds(), pair, shifts, -platform.rider.z()).system;
-  const numerics::HeldSystem held = numerics::held(model, kStep, numerics::Hold::kZeroOrder);
   A_ = model.A;
   B_ = model.B.leftCols(kInputs);
   of_force_ = model.B.col(FeltPair::kForce);
-  held_force_ = held.Gamma.col(FeltPair::kForce);
-  fade_ = std::exp(-kStep / d.fades);
   const AxisLimits& angle = platform.limits[tilt_axis(pair)];
   const AxisLimits& shift = platform.limits[shift_axis(pair)];
   typename Programme::Stage stage;
-  stage.A = held.Phi;
-  stage.B = held.Gamma.leftCols(kInputs);
-  constexpr double kShare = 1.0 / static_cast<double>(kSteps);
-  stage.Q = kShare * (d.force_weight * model.C.row(0).transpose() * model.C.row(0) +
-                      d.rate_weight * model.C.row(1).transpose() * model.C.row(1));
+  stage.Q = (d.force_weight * model.C.row(0).transpose() * model.C.row(0) +
+             d.rate_weight * model.C.row(1).transpose() * model.C.row(1));
   const auto squared = [](double v) { return v * v; };
   const double angle_range = 0.5 * (angle.highest - angle.lowest), most_rate = std::min(d.shared.tilt_rate, angle.rate);
-  stage.Q(kAtAngle, kAtAngle) += kShare * d.tilt_weight / squared(angle_range);
+  stage.Q(kAtAngle, kAtAngle) += d.tilt_weight / squared(angle_range);
   stage.R.setZero();
-  stage.R(0, 0) = kShare * kAngleEffort / squared(angle.acceleration);
+  stage.R(0, 0) = kAngleEffort / squared(angle.acceleration);
   stage.x_low(kAtAngle) = d.use * angle.lowest;
   stage.x_high(kAtAngle) = d.use * angle.highest;
   stage.x_low(kAtAngleRate) = -most_rate;
@@ -68,9 +62,9 @@ PlannedPair<kStates, kInputs>::PlannedPair(const PredictiveDesign& d, const Plat
   stage.u_high(0) = angle.acceleration;
   if constexpr (shifts) {
     const double range = 0.5 * (shift.highest - shift.lowest);
-    stage.Q(kAtShift, kAtShift) += kShare * d.shift_weight / squared(range);
-    stage.Q(kAtShiftRate, kAtShiftRate) += kShare * d.shift_weight * kShiftSpeed / squared(range);
-    stage.R(1, 1) = kShare * kShiftEffort / squared(shift.acceleration);
+    stage.Q(kAtShift, kAtShift) += d.shift_weight / squared(range);
+    stage.Q(kAtShiftRate, kAtShiftRate) += d.shift_weight * kShiftSpeed / squared(range);
+    stage.R(1, 1) = kShiftEffort / squared(shift.acceleration);
     // Of sway everything is to the left.
     stage.x_low(kAtShift) = d.use * (pair == 0 ? -shift.highest : shift.lowest);
     stage.x_high(kAtShift) = d.use * (pair == 0 ? -shift.lowest : shift.highest);
@@ -79,20 +73,37 @@ PlannedPair<kStates, kInputs>::PlannedPair(const PredictiveDesign& d, const Plat
     stage.u_low(1) = -shift.acceleration;
     stage.u_high(1) = shift.acceleration;
   }
-  std::fill(programme_.stages.begin(), programme_.stages.end(), stage);
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    const double step = kForeseenTimes[k + 1] - kForeseenTimes[k];
+    const numerics::HeldSystem held = numerics::held(model, step, numerics::Hold::kZeroOrder);
+    typename Programme::Stage& of_step = programme_.stages[k] = stage;
+    of_step.A = held.Phi;
+    of_step.B = held.Gamma.leftCols(kInputs);
+    held_force_[k] = held.Gamma.col(FeltPair::kForce);
+    fade_[k] = std::exp(-foreseen_middle(k) / d.fades);
+    // The state at the end of a step counts for its length.
+    of_step.Q *= step / kForeseenTimes.back();
+    of_step.R *= step / kForeseenTimes.back();
+  }
   // It ends slowly: what comes after the horizon can still be stopped.
   programme_.stages.back().Q *= 3.0;
 }
 
 template <int kStates, int kInputs>
+void PlannedPair<kStates, kInputs>::foresee(double now, const std::array<double, kSteps>& then) {
+  foreseen_now_ = now;
+  foreseen_ = then;
+}
+
+template <int kStates, int kInputs>
 void PlannedPair<kStates, kInputs>::plan(double force) {
-  double then = force;
-  for (typename Programme::Stage& s : programme_.stages) {
-    s.b = held_force_ * then;
-    then *= fade_;
+  bool all_zero = true;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    const double then = foreseen_[k] + fade_[k] * (force - foreseen_now_);
+    programme_.stages[k].b = held_force_[k] * then;
+    all_zero = all_zero && then == 0.0;
   }
-  // The state may lie a rounding beyond a bound that the plan before touched.
-  if (x_.isZero(0.0) && force == 0.0) {
+  if (x_.isZero(0.0) && all_zero) {
     std::fill(tail_.begin(), tail_.end(), Input::Zero());
     since_plan_ = 0.0;
     has_plan_ = true;
@@ -113,7 +124,8 @@ void PlannedPair<kStates, kInputs>::plan(double force) {
 
 template <int kStates, int kInputs>
 typename PlannedPair<kStates, kInputs>::Input PlannedPair<kStates, kInputs>::planned(const PairedOutput& fallback) {
-  const auto at = static_cast<std::size_t>(since_plan_ / kStep);
+  std::size_t at = 0;
+  while (at < kSteps && since_plan_ >= kForeseenTimes[at + 1]) ++at;
   if (since_plan_ > 0.0) ++counts_.tails;
   if (has_plan_ && at < kSteps) return tail_[at];
   ++counts_.classical;
@@ -137,7 +149,7 @@ PairedOutput PlannedPair<kStates, kInputs>::step(double force, const PairedOutpu
     counts_ = {};
   } else if (*step > 0.0) {
     // Long steps in pieces of the plan's, each with its own input.
-    const double pieces = std::ceil(*step / kStep * (1.0 - 1e-9)), h = *step / pieces;
+    const double pieces = std::ceil(*step / kFirstForeseenStep * (1.0 - 1e-9)), h = *step / pieces;
     for (double k = 0.0; k < pieces; ++k) {
       if (!has_plan_ || since_plan_ >= kReplan) plan(force_);
       const Input u = planned(fallback);
@@ -194,14 +206,56 @@ PlanCounts PredictiveWashout::counts() const {
 std::string PredictiveWashout::account() const {
   const PlanCounts c = counts();
   if (c.plans == 0) return {};
-  return fmt::format(
+  std::string text = fmt::format(
       "{} plans of {:.1f} iterations, {} at most; {} moments on the last plan's tail, {} on the classical algorithm",
       c.plans, static_cast<double>(c.iterations) / static_cast<double>(c.plans), c.most, c.tails, c.classical);
+  for (const std::size_t pair : {1U, 0U}) {
+    const std::string foresaw =
+        design_.foresight ? foresight_account_[pair].text(design_.foresight->from()) : std::string();
+    if (!foresaw.empty()) text += fmt::format("; {}: {}", pair == 1 ? "surge" : "sway", foresaw);
+  }
+  return text;
+}
+
+double PredictiveWashout::planned_force(const Eigen::Vector3d& force, Eigen::Index pair) const {
+  const double wanted = design_.shared.force_gain[static_cast<std::size_t>(1 - pair)] *
+                        paired_input(force, Eigen::Vector3d::Zero(), pair)(0);
+  // The plan takes g times the angle for the force.
+  return kGravity * std::asin(std::clamp(wanted / kGravity, -1.0, 1.0));
+}
+
+void PredictiveWashout::look_ahead(const VehicleMotion& motion, SampleStep step) {
+  if (!design_.foresight) return;
+  if (!step) {
+    design_.foresight->reset();
+    for (ForesightAccount& a : foresight_account_) a.reset();
+  }
+  const bool foreseen = design_.foresight->look(*motion.sample, step.value_or(0.0), foreseen_);
+  std::size_t tilting = 0, shifting = 0;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const auto pair = static_cast<std::size_t>(i);
+    const double now = foreseen ? planned_force(foreseen_.now, i) : 0.0;
+    std::array<double, kForeseenSteps> then = {};
+    for (std::size_t k = 0; foreseen && k < kForeseenSteps; ++k) then[k] = planned_force(foreseen_.then[k], i);
+    if (shifts_[pair]) {
+      shifting_[shifting++].foresee(now, then);
+    } else {
+      tilting_[tilting++].foresee(now, then);
+    }
+    constexpr std::size_t kAhead = ForesightAccount::kStep;
+    const double as_force = paired_input(motion.force, Eigen::Vector3d::Zero(), i)(0),
+                 known = paired_input(foreseen_.now, Eigen::Vector3d::Zero(), i)(0),
+                 comes = paired_input(foreseen_.then[kAhead], Eigen::Vector3d::Zero(), i)(0);
+    foresight_account_[pair].add(as_force,
+                                 comes + (as_force - known) * std::exp(-ForesightAccount::kAhead / design_.fades),
+                                 foreseen, step.value_or(0.0));
+  }
 }
 
 PlatformCommand PredictiveWashout::next(const VehicleMotion& motion, SampleStep step) {
   PlatformCommand command;
   shared_.add_to(command, motion.acceleration, motion.rate, step);
+  look_ahead(motion, step);
   std::size_t tilting = 0, shifting = 0;
   for (Eigen::Index i = 0; i < 2; ++i) {
     const auto pair = static_cast<std::size_t>(i);
@@ -210,8 +264,7 @@ PlatformCommand PredictiveWashout::next(const VehicleMotion& motion, SampleStep 
     const ChannelOutput t =
         tilt_[pair].step(cueing::next(low_pass_[pair], now(0), step), design_.shared.tilt_rate, step);
     const PairedOutput classical{s.place, s.change, t.place, t.change};
-    // The plan takes g times the angle for the force.
-    const double force = kGravity * std::asin(std::clamp(now(0) / kGravity, -1.0, 1.0));
+    const double force = planned_force(motion.force, i);
     add_paired(command,
                shifts_[pair] ? shifting_[shifting++].step(force, classical, step)
                              : tilting_[tilting++].step(force, classical, step),

@@ -17,6 +17,8 @@ struct VehicleMotion {
   Eigen::Vector3d force;         ///< specific force [m/s^2]
   Eigen::Vector3d acceleration;  ///< [m/s^2]; without a recorded attitude the vehicle is taken for level
   Eigen::Vector3d rate;          ///< angular rate [rad/s]
+  /// The sample that they were taken from, its values finite.
+  const recording::MotionSample* sample;
 };
 
 /// A washout algorithm: motion of the vehicle at the driver's head in, motion of the platform out, one sample at a
@@ -45,8 +47,9 @@ class Washout {
  private:
   /// @param motion all values finite; at the beginning that of a vehicle that stands on level ground
   virtual PlatformCommand next(const VehicleMotion& motion, SampleStep step) = 0;
-  [[nodiscard]] recording::MotionSample usable(const recording::MotionSample& sample);
-  [[nodiscard]] VehicleMotion led_in(const recording::MotionSample& sample) const;
+  /// Takes the sample, its values made usable, for the last one.
+  void take(const recording::MotionSample& sample);
+  [[nodiscard]] VehicleMotion led_in() const;
 
   recording::MotionSample last_;
   VehicleMotion at_reset_ = {};  ///< less that of a vehicle that stands

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "veridyn/cueing/platform/platform.hpp"
+#include "veridyn/cueing/washout/foresight.hpp"
 #include "veridyn/cueing/washout/knob.hpp"
 #include "veridyn/cueing/washout/washout.hpp"
 
@@ -20,6 +21,8 @@ class WashoutDesign {
   /// The algorithm for a platform. @throws InputError as `check_knobs`, and where the platform lacks what it needs.
   [[nodiscard]] virtual std::unique_ptr<Washout> make(const Platform& platform) const = 0;
   [[nodiscard]] virtual std::unique_ptr<WashoutDesign> clone() const = 0;
+  /// What its algorithms foresee from; those that do not plan ahead have no use for it.
+  virtual void foresee_from(const Foresight& /*foresight*/) {}
 
  protected:
   WashoutDesign() = default;

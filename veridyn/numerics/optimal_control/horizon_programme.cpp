@@ -326,7 +326,8 @@ ProgrammeResult HorizonProgramme<kStates, kInputs>::solve(const State& x0, const
     double after = 0.0, unused = 0.0;
     complementarity(longest(1.0), after, unused);
     const double ratio = mean > 0.0 ? std::clamp(after / mean, 0.0, 1.0) : 0.0;
-    newton(ratio * ratio * ratio * mean, true);
+    // Products far below the tolerance would leave nothing but rounding in the next step.
+    newton(std::max(ratio * ratio * ratio * mean, 1e-2 * options.tolerance), true);
     const double length = longest(0.995);
     if (!(length > 1e-10)) {
       result.end = ProgrammeEnd::kInfeasible;

@@ -194,6 +194,15 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
 
 }  // namespace
 
+FourWheelOptions four_wheel_options(const Vehicle& vehicle) {
+  FourWheelOptions options;
+  options.ackermann = vehicle.ackermann;
+  options.camber_per_roll = vehicle.camber_per_roll;
+  options.relaxation_length = vehicle.relaxation_length;
+  options.longitudinal = vehicle.longitudinal;
+  return options;
+}
+
 bool is_vehicle_study(const StudyTable& root) {
   if (!root.is_table("subject")) return false;
   const StudyTable subject = root.table("subject");

@@ -43,6 +43,9 @@ struct Vehicle {
   std::vector<std::filesystem::path> inputs;  ///< files read
 };
 
+/// The four-wheel model's options that the vehicle itself decides, with its longitudinal dynamics.
+[[nodiscard]] FourWheelOptions four_wheel_options(const Vehicle& vehicle);
+
 /// The use of a vehicle decides which numbers it must have.
 enum class VehicleNeeds {
   kGeometry,  ///< mass, a, b: identification finds the rest

@@ -284,7 +284,12 @@ recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place)
   out.force = to_body * force;
   out.rate = to_body * rate;
   out.angular_acceleration = to_body * turning;
-  out.force_from = out.rate_from = out.angular_acceleration_from = out.attitude_from = recording::Origin::kMeasured;
+  out.position = {s(kX), s(kY)};
+  out.speed = s(kU);
+  out.inputs = {state_.controls.steer, state_.controls.drive_torque, state_.controls.brake_torque};
+  out.force_from = out.rate_from = out.angular_acceleration_from = out.attitude_from = out.position_from =
+      out.speed_from = out.steer_from = recording::Origin::kMeasured;
+  if (spins_) out.torque_from = recording::Origin::kMeasured;
   return recording::at_place(out, place);
 }
 

@@ -26,9 +26,13 @@ std::vector<recording::MotionSample> motion_samples(const VehicleTrajectory& t, 
     s.force = body_from_heading * Eigen::Vector3d(t.longitudinal_acceleration[k], t.lateral_acceleration[k],
                                                   slope(t.heave_rate, k) + gravity);
     s.rate = numerics::body_rates(roll, pitch, Eigen::Vector3d(value(t.roll_rate, k), value(t.pitch_rate, k), t.r[k]));
+    s.position = {t.x[k], t.y[k]};
+    s.speed = t.u[k];
+    s.inputs = {t.steer[k], value(t.drive_torque, k), value(t.brake_torque, k)};
+    s.force_from = s.rate_from = s.attitude_from = s.position_from = s.speed_from = s.steer_from = Origin::kMeasured;
+    if (!t.drive_torque.empty()) s.torque_from = Origin::kMeasured;
+    s.angular_acceleration_from = Origin::kDerived;
     samples.push_back(s);
-    samples.back().force_from = samples.back().rate_from = samples.back().attitude_from = Origin::kMeasured;
-    samples.back().angular_acceleration_from = Origin::kDerived;
   }
   for (std::size_t k = 0; k < samples.size() && samples.size() > 1; ++k) {
     const auto &before = samples[k > 0 ? k - 1 : 0], &after = samples[std::min(k + 1, samples.size() - 1)];

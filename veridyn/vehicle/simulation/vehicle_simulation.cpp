@@ -95,15 +95,21 @@ void reserve(VehicleTrajectory& out, std::size_t samples, bool vertical, bool sp
   }
   for (auto* columns : {&out.Fx, &out.wheel_height, &out.suspension_travel, &out.road}) reserve_wheels(*columns);
   if (spins) {
+    out.drive_torque.reserve(samples);
+    out.brake_torque.reserve(samples);
     reserve_wheels(out.slip_ratio);
     reserve_wheels(out.wheel_speed);
   }
   out.lift_offs.reserve(64);
 }
 
-void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s, double steer,
+void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s, const Controls& controls,
             const FourWheelRates<double>& rates, const PerWheel<double>& road, bool spins) {
-  record_plane(out, time, s, steer);
+  record_plane(out, time, s, controls.steer);
+  if (spins) {
+    out.drive_torque.push_back(controls.drive_torque);
+    out.brake_torque.push_back(controls.brake_torque);
+  }
   out.yaw_acceleration.push_back(rates.derivative(kR));
   out.longitudinal_acceleration.push_back(rates.longitudinal_acceleration);
   out.lateral_acceleration.push_back(rates.lateral_acceleration);

@@ -164,7 +164,7 @@ void record_plane(VehicleTrajectory& out, double time, const State& s, double st
   out.steer.push_back(steer);
 }
 
-void record(VehicleTrajectory& out, double time, const FourWheelState<double>& state, double steer,
+void record(VehicleTrajectory& out, double time, const FourWheelState<double>& state, const Controls& controls,
             const FourWheelRates<double>& rates, const PerWheel<double>& road, bool spins);
 
 /// Which wheels are off the ground, since when.
@@ -288,7 +288,7 @@ VehicleTrajectory simulate(const FourWheelModel<double, Tyre>& start, Driver& dr
     out.end = internal::ended(state, spins);
     const bool last = k == plan.steps || out.end != SimulationEnd::kCompleted;
     if (out.end != SimulationEnd::kDiverged && (last || plan.sampled(k))) {
-      internal::record(out, begin, state, now.steer, rates, under, spins);
+      internal::record(out, begin, state, now, rates, under, spins);
     }
     if (last) break;
     if (!internal::report_progress(progress, k, plan)) {

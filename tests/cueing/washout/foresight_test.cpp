@@ -1,0 +1,35 @@
+#include "veridyn/cueing/washout/foresight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::cueing {
+namespace {
+
+TEST(ForesightAccount, OfASineIsItsClosedForm) {
+  // sin(w t) against sin(w (t + d)): RMS of the difference 2 sin(w d / 2) / sqrt(2) of the amplitude.
+  const double w = 1.7, amplitude = 3.0, d = ForesightAccount::kAhead;
+  ForesightAccount account;
+  for (int k = 0; k < 40000; ++k) {
+    const double t = 0.0025 * k;
+    account.add(amplitude * std::sin(w * t), amplitude * std::sin(w * (t + d)) + 0.5, true, k > 0 ? 0.0025 : 0.0);
+  }
+  EXPECT_NEAR(account.missed_held(), amplitude * std::sqrt(2.0) * std::sin(0.5 * w * d), 0.01);
+  EXPECT_NEAR(account.missed(), 0.5, 0.01);
+  EXPECT_EQ(account.share(), 1.0);
+  EXPECT_EQ(account.text("the lap").find("misleads"), std::string::npos);
+}
+
+TEST(ForesightAccount, SaysWhenItMisleads) {
+  ForesightAccount account;
+  for (int k = 0; k < 3000; ++k) account.add(1.0, 3.0, k % 2 == 0, 0.01);
+  EXPECT_NEAR(account.share(), 0.5, 1e-9);
+  EXPECT_NE(account.text("the lap").find("the lap foresaw 50 % of the time"), std::string::npos);
+  EXPECT_NE(account.text("the lap").find("it misleads"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace veridyn::cueing

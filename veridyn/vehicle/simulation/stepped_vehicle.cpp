@@ -1,0 +1,40 @@
+#include "veridyn/vehicle/simulation/stepped_vehicle.hpp"
+
+#include <utility>
+#include <variant>
+
+namespace veridyn::vehicle {
+namespace {
+
+template <typename Tyre>
+class SteppedOnTyres final : public SteppedVehicle {
+ public:
+  explicit SteppedOnTyres(SteppedDrive<Tyre> drive) : drive_(std::move(drive)) {}
+  void reset(double speed) override { drive_.reset(speed); }
+  void reset(const DriveState& state) override { drive_.reset(state); }
+  void step(const Controls& controls, double dt) noexcept override { drive_.step(controls, dt); }
+  [[nodiscard]] const DriveState& state() const override { return drive_.state(); }
+  [[nodiscard]] recording::MotionSample motion(const Eigen::Vector3d& place) const override {
+    return drive_.motion(place);
+  }
+  [[nodiscard]] std::unique_ptr<SteppedVehicle> clone() const override {
+    return std::make_unique<SteppedOnTyres>(*this);
+  }
+
+ private:
+  SteppedDrive<Tyre> drive_;
+};
+
+}  // namespace
+
+std::unique_ptr<SteppedVehicle> stepped_vehicle(const Vehicle& vehicle, const FourWheelOptions& options,
+                                                std::shared_ptr<const Road> road, double usual_speed) {
+  return std::visit(
+      [&]<typename Tyre>(const AxleTyres<Tyre>& tyres) -> std::unique_ptr<SteppedVehicle> {
+        const FourWheelModel<double, Tyre> model(vehicle.parameters, mounted(tyres), options);
+        return std::make_unique<SteppedOnTyres<Tyre>>(SteppedDrive<Tyre>(model, std::move(road), usual_speed));
+      },
+      vehicle.tyres);
+}
+
+}  // namespace veridyn::vehicle
