@@ -8,8 +8,10 @@
 #include <random>
 
 #include "tests/vehicle/simulation/drives.hpp"
+#include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -182,6 +184,59 @@ TEST(SteppedDrive, GoesOnAfterASpin) {
   EXPECT_LT(std::hypot(drive.state().vehicle(kU), drive.state().vehicle(kV)), 1e-6);
   for (int k = 0; k < 5000; ++k) drive.step({.drive_torque = 500.0}, kDriveStep);
   EXPECT_GT(drive.state().vehicle(kU), 3.0);
+  EXPECT_EQ(drive.state().refused, 0);
+}
+
+// A high, narrow car whose tyres hold more than it bears.
+TEST(SteppedDrive, RollsOverSaysSoAndGoesOn) {
+  VehicleParameters<double> p = car_with_bars();
+  p.cg_height = 1.1;
+  p.track_f = p.track_r = 1.2;
+  p.mu = 1.3;
+  Drive drive(linear_car(p, with_longitudinal({})));
+  drive.reset(25.0);
+  bool rolled_over = false;
+  for (int k = 0; k < 6000; ++k) {
+    drive.step({.steer = 0.2 * std::min(1.0, k * kDriveStep)}, kDriveStep);
+    rolled_over |= drive.state().rolled_over;
+    ASSERT_TRUE(drive.state().vehicle.allFinite()) << k;
+    ASSERT_LE(std::abs(drive.state().vehicle(kRoll)), 45.0 * kDegree * (1.0 + 1e-12)) << k;
+  }
+  EXPECT_TRUE(rolled_over);
+  for (int k = 0; k < 40000; ++k) drive.step({.brake_torque = 4000.0}, kDriveStep);
+  EXPECT_TRUE(drive.state().vehicle.allFinite());
+  EXPECT_LT(std::hypot(drive.state().vehicle(kU), drive.state().vehicle(kV)), 1e-3);
+}
+
+// A whole tyre file, with shifts that push at zero slip.
+TEST(SteppedDrive, OnTyresOfAFileStartsStopsReversesAndStaysParked) {
+  const TirFile file = parse_tir(testing::small_tir(), "small.tir");
+  const auto left = file.on(TyreSide::kLeft), right = file.on(TyreSide::kRight);
+  using MagicDrive = SteppedDrive<MagicFormulaTyre<double>>;
+  MagicDrive drive(MagicDrive::Model(car_with_bars(), {left, right, left, right}, with_longitudinal({})));
+  Controls c;
+  double largest_jump = 0.0, last = 0.0;
+  const double goals[] = {20.0, 0.0, -2.0, 0.0, 5.0, 0.0};
+  for (const double goal : goals) {
+    for (int k = 0; k < 14000; ++k) {
+      const double u = drive.state().vehicle(kU);
+      const bool stop = goal == 0.0;
+      c.steer = stop ? 0.0 : 0.02 * std::sin(1e-3 * k);
+      c.drive_torque = towards(c.drive_torque, stop ? 0.0 : std::clamp(900.0 * (goal - u), -900.0, 900.0));
+      c.brake_torque = towards(c.brake_torque, stop ? 900.0 : 0.0);
+      drive.step(c, kDriveStep);
+      ASSERT_TRUE(drive.state().vehicle.allFinite());
+      const double a = drive.rates().longitudinal_acceleration;
+      largest_jump = std::max(largest_jump, std::abs(a - last));
+      last = a;
+    }
+    EXPECT_NEAR(drive.state().vehicle(kU), goal, goal == 0.0 ? 1e-4 : 0.3);
+  }
+  EXPECT_LT(largest_jump, 0.5);
+  const double x = drive.state().vehicle(kX), y = drive.state().vehicle(kY);
+  for (int k = 0; k < 20000; ++k) drive.step(c, kDriveStep);
+  EXPECT_NEAR(drive.state().vehicle(kX), x, 1e-4);
+  EXPECT_NEAR(drive.state().vehicle(kY), y, 1e-4);
   EXPECT_EQ(drive.state().refused, 0);
 }
 

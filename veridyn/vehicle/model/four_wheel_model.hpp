@@ -14,6 +14,7 @@
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/model/wheel_arrays.hpp"
 #include "veridyn/vehicle/model/wheels.hpp"
+#include "veridyn/vehicle/tyre/four_tyres.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
 namespace veridyn::vehicle {
@@ -158,7 +159,7 @@ class FourWheelModel {
   [[nodiscard]] const WheelArray<Scalar>& wheel_y() const { return y_; }
 
   [[nodiscard]] const VehicleParameters<Scalar>& parameters() const { return p_; }
-  [[nodiscard]] const PerWheel<Tyre>& tyres() const { return tyres_; }
+  [[nodiscard]] const PerWheel<Tyre>& tyres() const { return tyres_.tyres(); }
   [[nodiscard]] const FourWheelOptions& options() const { return options_; }
   /// Static loads of the tyres [N], on the grade where there is one.
   [[nodiscard]] const WheelArray<Scalar>& rest_loads() const { return rest_; }
@@ -187,7 +188,7 @@ class FourWheelModel {
                FourWheelRates<Scalar>& out) const;
 
   VehicleParameters<Scalar> p_;
-  PerWheel<Tyre> tyres_;
+  FourTyres<Tyre> tyres_;
   FourWheelOptions options_;
   // What does not change, worked out once. In the source's convention `tilting_` and `contact_height_` are 0.
   WheelArray<Scalar> x_, y_;                          ///< places of the wheels [m]
@@ -345,12 +346,8 @@ template <typename Scalar, typename Tyre>
 auto FourWheelModel<Scalar, Tyre>::plane_forces(const Slips& slips, const Wheels& load, const Scalar& camber,
                                                 const WheelControls<Scalar>& controls,
                                                 FourWheelRates<Scalar>& out) const -> PlaneForces {
-  const auto force = [&](std::size_t wheel) {
-    const auto w = static_cast<Eigen::Index>(wheel);
-    return tyres_[wheel].forces(load[w], slips.ratio[w], slips.angle[w], camber);
-  };
-  const TyreForces<Scalar> fl = force(0), fr = force(1), rl = force(2), rr = force(3);
-  const Wheels Fx(fl.Fx, fr.Fx, rl.Fx, rr.Fx), Fy(fl.Fy, fr.Fy, rl.Fy, rr.Fy);
+  Wheels Fx, Fy;
+  tyres_.forces(load, slips.ratio, slips.angle, camber, Fx, Fy);
   out.Fx = Fx;
   out.Fy = Fy;
   return {Fx, controls.cos * Fx - controls.sin * Fy, controls.sin * Fx + controls.cos * Fy};

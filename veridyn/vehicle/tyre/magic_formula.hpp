@@ -361,3 +361,6 @@ MagicFormulaTyre<Scalar> MagicFormulaTyre<Scalar>::symmetric() const {
 }
 
 }  // namespace veridyn::vehicle
+
+// Wherever the tyre is known, four of them together must be: a specialisation.
+#include "veridyn/vehicle/tyre/four_magic_formula.hpp"
