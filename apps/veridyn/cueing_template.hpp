@@ -20,6 +20,10 @@ driver = [0.2, 0.35, 0.5]          # driver's head from the centre of gravity: f
 # preset = "medium"                # "low", "medium", "high"; or overall, sustained, instant, chassis, aggression
 # perception = "young_meiry"       # "telban_cardullo", "telban_cardullo_lead", "hosman"
 # thresholds = "usual"             # "reid_nahon"
+# foresee = "fade"                 # what "mpc" plans with: "driver" (steering and pedals through the car's model: the
+#                                  # simulated one, or [cue.vehicle]), "lap" ([cue.lap])
+# [cue.lap]                        # a lap of the same track, driven before; positions are needed in both
+# file = "lap.csv"
 
 [platform]
 subject = "three_axis"             # "hexapod"; or limits of your own:

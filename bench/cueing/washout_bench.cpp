@@ -8,6 +8,9 @@
 #include <string>
 
 #include "tests/support/ipopt/ipopt_programme.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/cueing/washout/driver_foresight.hpp"
+#include "veridyn/cueing/washout/lap_foresight.hpp"
 #include "veridyn/cueing/washout/predictive_washout.hpp"
 #include "veridyn/cueing/washout/washout_design.hpp"
 
@@ -25,15 +28,28 @@ std::vector<recording::MotionSample> winding_road(double duration) {
               Eigen::Vector3d(4.0 * std::sin(0.5 * t) * std::sin(0.13 * t) + 0.3 * bumps,
                               7.0 * std::sin(0.4 * t) + 3.0 * std::sin(1.1 * t) + 0.3 * bumps, bumps);
     s.rate = Eigen::Vector3d(0.05 * std::sin(1.3 * t), 0.03 * std::sin(0.9 * t), 0.3 * std::sin(0.4 * t));
+    s.position = {20.0 * t, 30.0 * std::sin(0.4 * t)};
+    s.speed = 20.0;
+    s.inputs.steer = -0.03 * std::sin(0.4 * t);
+    s.position_from = s.speed_from = s.steer_from = recording::Origin::kMeasured;
     all.push_back(s);
   }
   return all;
 }
 
 /// Mean of a sample; worst ones as wall time of single steps, for plans that have to be ready in time.
-void step(benchmark::State& state, const std::string& algorithm, const std::string& platform) {
+/// @param from what is foreseen from, where anything is
+void step(benchmark::State& state, const std::string& algorithm, const std::string& platform,
+          const std::string& from = {}) {
   const auto drive = winding_road(60.0);
-  const auto washout = washout_algorithm(algorithm).design()->make(built_in_platform(platform));
+  const auto design = washout_algorithm(algorithm).design();
+  if (from == "lap") design->foresee_from(LapForesight(drive));
+  if (from == "driver") {
+    constexpr const char* kCar = "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n";
+    design->foresee_from(DriverForesight(
+        vehicle::read_vehicle(Study::parse(kCar, "car").root().table("subject"), vehicle::VehicleNeeds::kFourWheel)));
+  }
+  const auto washout = design->make(built_in_platform(platform));
   std::vector<double> times;
   times.reserve(2'000'000);
   const bool single = algorithm == "mpc";
@@ -110,8 +126,10 @@ const bool kRegistered = [] {
   for (const WashoutAlgorithm& a : washout_algorithms()) {
     for (const char* platform : {"three_axis", "hexapod"})
       benchmark::RegisterBenchmark(("step/" + std::string(a.name) + "/" + platform).c_str(), step, std::string(a.name),
-                                   platform);
+                                   platform, "");
   }
+  for (const char* from : {"lap", "driver"})
+    benchmark::RegisterBenchmark((std::string("step/mpc/three_axis/") + from).c_str(), step, "mpc", "three_axis", from);
   const auto plans = [](const char* name, auto* run, const char* platform) {
     benchmark::RegisterBenchmark((std::string(name) + "/" + platform).c_str(), run, platform);
   };

@@ -69,6 +69,24 @@ TEST(PredictiveWashout, FeelsMoreLikeBrakingThanTiltAlone) {
   EXPECT_LT(error(PredictiveWashout(design, platform)), 0.9 * error(TiltWashout(TiltDesign{})));
 }
 
+// One of these led the programme round in circles, the predictor running into a bound at every step.
+TEST(PlannedPair, FindsEveryPlanOfAWindingRoadFromAColdStart) {
+  using Pair = PlannedPair<7, 1>;
+  Pair pair(PredictiveDesign{}, built_in_platform("three_axis"), 1);
+  pair.step(0.0, {}, SampleStep{});
+  int problems = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const double t = 0.01 * k, bumps = 0.8 * std::sin(23.0 * t) + 0.5 * std::sin(41.0 * t + 1.0);
+    pair.step(0.6 * (7.0 * std::sin(0.4 * t) + 3.0 * std::sin(1.1 * t) + 0.3 * bumps), {}, 0.01);
+    if (k % 10 != 9) continue;
+    Pair::Programme programme = pair.programme();
+    const numerics::ProgrammeResult r = programme.solve(pair.planned_from(), {.iterations = 50, .tolerance = 1e-8});
+    EXPECT_EQ(r.end, numerics::ProgrammeEnd::kSolved) << t << " s";
+    ++problems;
+  }
+  EXPECT_EQ(problems, 600);
+}
+
 TEST(PredictiveWashout, RefusesOrgansThatItHasNoRoomFor) {
   PredictiveDesign design;
   design.perception = "telban_cardullo";

@@ -13,7 +13,8 @@ namespace veridyn::cueing {
 /// The future in steps that grow by a tenth each: the next moments matter most, and a platform that tilts slowly needs
 /// to know what comes in some seconds.
 inline constexpr std::size_t kForeseenSteps = 24;
-inline constexpr double kFirstForeseenStep = 0.05;  // [s]
+/// The first one [s].
+inline constexpr double kFirstForeseenStep = 0.05;
 /// Where the steps begin, and where the last one ends [s].
 inline constexpr std::array<double, kForeseenSteps + 1> kForeseenTimes = [] {
   std::array<double, kForeseenSteps + 1> times = {};

@@ -15,7 +15,7 @@ constexpr Eigen::Index kAtAngle = FeltPair::kAngle, kAtAngleRate = FeltPair::kAn
 /// leaves open.
 constexpr double kAngleEffort = 0.02, kShiftEffort = 0.02, kShiftSpeed = 0.05;
 /// Iterations of one plan.
-constexpr int kIterations = 20;
+constexpr int kIterations = 30;
 
 }  // namespace
 

@@ -269,6 +269,11 @@ void HorizonProgramme<kStates, kInputs>::complementarity(double length, double& 
   mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+namespace internal {
+/// Share of the products that is left after the predictor, from which on it is not corrected; where to go then.
+inline constexpr double kGoesSomewhere = 0.8, kToTheMiddle = 0.5;
+}  // namespace internal
+
 template <int kStates, int kInputs>
 ProgrammeResult HorizonProgramme<kStates, kInputs>::solve(const State& x0, const ProgrammeOptions& options, bool warm) {
   const std::size_t n = u_.size();
@@ -326,8 +331,13 @@ ProgrammeResult HorizonProgramme<kStates, kInputs>::solve(const State& x0, const
     double after = 0.0, unused = 0.0;
     complementarity(longest(1.0), after, unused);
     const double ratio = mean > 0.0 ? std::clamp(after / mean, 0.0, 1.0) : 0.0;
-    // Products far below the tolerance would leave nothing but rounding in the next step.
-    newton(std::max(ratio * ratio * ratio * mean, 1e-2 * options.tolerance), true);
+    if (ratio < internal::kGoesSomewhere || result.violation > options.tolerance) {
+      // Products far below the tolerance would leave nothing but rounding in the next step.
+      newton(std::max(ratio * ratio * ratio * mean, 1e-2 * options.tolerance), true);
+    } else {
+      // The predictor runs into a bound at once: its correction may lead round in circles, so to the middle first.
+      newton(internal::kToTheMiddle * mean, false);
+    }
     const double length = longest(0.995);
     if (!(length > 1e-10)) {
       result.end = ProgrammeEnd::kInfeasible;
