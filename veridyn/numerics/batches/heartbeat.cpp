@@ -30,7 +30,11 @@ void Heartbeat::beat_until_stopped(std::chrono::milliseconds period) {
   std::unique_lock lock(mutex_);
   for (unsigned long count = 1; !stop_; ++count) {
     // In place: on a network file system an opened file is up to date, while a renamed one may be seen a minute later.
-    std::ofstream(file_, std::ios::trunc) << fmt::format("{}, process {}\n{}\n", host.data(), ::getpid(), count);
+    // Always of one length and never emptied first, so that who looks between sees the last beat.
+    std::ofstream file(file_, std::ios::in | std::ios::out);
+    if (!file) file.open(file_, std::ios::trunc);
+    file << fmt::format("{}, process {}\n{:020}\n", host.data(), ::getpid(), count);
+    file.close();
     stopping_.wait_for(lock, period, [this] { return stop_; });
   }
 }
@@ -42,7 +46,7 @@ std::chrono::duration<double> HeartbeatWatch::silence() {
   std::ifstream file(file_);
   std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   const auto now = std::chrono::steady_clock::now();
-  // No or an empty file is between two beats, or the end of the process.
+  // No or an empty file is before the first beat, or after the end of the process.
   if (!content.empty() && content != seen_) {
     seen_ = std::move(content);
     changed_ = now;
