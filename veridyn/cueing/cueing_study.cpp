@@ -82,7 +82,10 @@ void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& stud
   if (!driven.trajectory.usable()) throw std::runtime_error(driven.trajectory.message());
   study.inputs = simulation.inputs;
   study.drive = fmt::format("{} of {}", to_string(simulation.manoeuvre.kind), simulation.vehicle.name);
-  study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, simulation.four_wheel.gravity), driver);
+  const vehicle::FourWheelOptions& options_of = simulation.four_wheel;
+  study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, options_of.gravity,
+                                                    options_of.longitudinal ? options_of.longitudinal->grade : 0.0),
+                            driver);
 }
 
 void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {

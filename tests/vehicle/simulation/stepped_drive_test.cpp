@@ -11,6 +11,7 @@
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/simulation/trajectory_motion.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {
@@ -49,8 +50,10 @@ void expect_same_as_simulate(const LinearCar<double>& car, double speed) {
   const auto whole =
       simulate(car, driver, road.get(), {.duration = 5.0, .output_step = kDriveStep, .speed = speed}, silent);
   ASSERT_EQ(whole.end, SimulationEnd::kCompleted) << whole.message();
-  Drive drive(car, road, speed);
+  Drive drive(car, road, speed), at_sample(car, road, speed);
   drive.reset(speed);
+  const Eigen::Vector3d head(0.2, 0.4, 0.7);
+  const auto motions = motion_samples(whole, car.options().gravity);
   for (std::size_t k = 0; k + 1 < whole.size(); ++k) {
     drive.step(HeldControls::at(whole.time[k]), whole.time[k + 1] - whole.time[k]);
     const FourWheelState<double>& s = drive.state().vehicle;
@@ -62,6 +65,13 @@ void expect_same_as_simulate(const LinearCar<double>& car, double speed) {
     if (car.options().longitudinal) {
       ASSERT_EQ(s(kWheelSpin + 3), whole.wheel_speed[3][k + 1]) << k;
     }
+    // What is felt, with the controls that a sample of the simulation has: those of the step that begins.
+    DriveState beginning = drive.state();
+    beginning.controls = HeldControls::at(whole.time[k + 1]);
+    at_sample.reset(beginning);
+    const recording::MotionSample here = at_sample.motion(head), there = recording::at_place(motions[k + 1], head);
+    ASSERT_LT((here.force - there.force).norm(), 1e-9) << k;
+    ASSERT_LT((here.angular_acceleration - there.angular_acceleration).norm(), 1e-9) << k;
   }
 }
 

@@ -39,7 +39,9 @@ struct VehicleTrajectory {
   std::vector<double> heave;                       ///< of the sprung mass above its rest [m]
   std::vector<double> roll_rate, pitch_rate;       ///< [rad/s]
   std::vector<double> heave_rate;                  ///< [m/s]
-  PerWheel<std::vector<double>> slip_angle;        ///< [rad]
+  std::vector<double> roll_acceleration, pitch_acceleration;  ///< [rad/s^2]
+  std::vector<double> heave_acceleration;                     ///< [m/s^2]
+  PerWheel<std::vector<double>> slip_angle;                   ///< [rad]
   PerWheel<std::vector<double>> slip_ratio;
   PerWheel<std::vector<double>> Fx, Fy;             ///< wheel axes [N]
   PerWheel<std::vector<double>> Fz;                 ///< normal force, static load included [N]

@@ -7,6 +7,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/model/four_wheel_models.hpp"
+#include "veridyn/vehicle/simulation/body_motion.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation_loop.hpp"
 
 namespace veridyn::vehicle {
@@ -258,37 +259,28 @@ void SteppedDrive<Tyre>::step(const Controls& controls, double dt) noexcept {
 
 template <typename Tyre>
 recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place) const {
-  using Eigen::Vector3d;
   const FourWheelState<double>& s = state_.vehicle;
   const FourWheelState<double>& d = rates_.derivative;
   const double grade = spins_ ? model_.options().longitudinal->grade : 0.0;
-  const double gravity = model_.options().gravity;
-  const Eigen::Quaterniond leans(Eigen::AngleAxisd(s(kPitch), Vector3d::UnitY()) *
-                                 Eigen::AngleAxisd(s(kRoll), Vector3d::UnitX()));
-  recording::MotionSample out;
-  out.time = state_.time;
-  out.frame = Frame::kFlu;
-  out.attitude = Eigen::AngleAxisd(s(kYaw), Vector3d::UnitZ()) * Eigen::AngleAxisd(-grade, Vector3d::UnitY()) * leans;
-  // In the axes of the road under the vehicle, where the equations of motion are written.
-  const Vector3d force(rates_.longitudinal_acceleration + gravity * std::sin(grade), rates_.lateral_acceleration,
-                       d(kHeaveRate) + gravity * std::cos(grade));
-  const Vector3d across(0.0, 1.0, 0.0);  // the axis of pitch, which no other turn has moved
-  const Vector3d forward(std::cos(s(kPitch)), 0.0, -std::sin(s(kPitch)));  // that of roll, turned by pitch
-  const Vector3d up = Vector3d::UnitZ();
-  const Vector3d rate = s(kR) * up + s(kPitchRate) * across + s(kRollRate) * forward;
-  // These axes turn themselves: pitch's with yaw, roll's with yaw and pitch.
-  const Vector3d yaw_rate = s(kR) * up;
-  const Vector3d turning = d(kR) * up + d(kPitchRate) * across + s(kPitchRate) * yaw_rate.cross(across) +
-                           d(kRollRate) * forward + s(kRollRate) * (yaw_rate + s(kPitchRate) * across).cross(forward);
-  const Eigen::Quaterniond to_body = leans.conjugate();
-  out.force = to_body * force;
-  out.rate = to_body * rate;
-  out.angular_acceleration = to_body * turning;
-  out.position = {s(kX), s(kY)};
-  out.speed = s(kU);
+  recording::MotionSample out = motion_sample({.time = state_.time,
+                                               .x = s(kX),
+                                               .y = s(kY),
+                                               .yaw = s(kYaw),
+                                               .roll = s(kRoll),
+                                               .pitch = s(kPitch),
+                                               .yaw_rate = s(kR),
+                                               .roll_rate = s(kRollRate),
+                                               .pitch_rate = s(kPitchRate),
+                                               .yaw_acceleration = d(kR),
+                                               .roll_acceleration = d(kRollRate),
+                                               .pitch_acceleration = d(kPitchRate),
+                                               .forward = rates_.longitudinal_acceleration,
+                                               .leftward = rates_.lateral_acceleration,
+                                               .upward = d(kHeaveRate),
+                                               .speed = s(kU)},
+                                              model_.options().gravity, grade);
   out.inputs = {state_.controls.steer, state_.controls.drive_torque, state_.controls.brake_torque};
-  out.force_from = out.rate_from = out.angular_acceleration_from = out.attitude_from = out.position_from =
-      out.speed_from = out.steer_from = recording::Origin::kMeasured;
+  out.steer_from = recording::Origin::kMeasured;
   if (spins_) out.torque_from = recording::Origin::kMeasured;
   return recording::at_place(out, place);
 }

@@ -7,10 +7,9 @@
 
 namespace veridyn::vehicle {
 
-/// The motion of the body's centre of gravity, in frame flu: specific force in body axes from the accelerations against
-/// the world, angular rates from those of the angles. A model without roll, pitch and heave stays level. Accelerations
-/// of heave, roll and pitch are derived from their rates by central differences.
-/// @param gravity [m/s^2]
-[[nodiscard]] std::vector<recording::MotionSample> motion_samples(const VehicleTrajectory& trajectory, double gravity);
+/// The motion of the body's centre of gravity, see `motion_sample`. A model without roll, pitch and heave stays level.
+/// @param gravity [m/s^2]; @param grade of the road, where the drive had one [rad]
+[[nodiscard]] std::vector<recording::MotionSample> motion_samples(const VehicleTrajectory& trajectory, double gravity,
+                                                                  double grade = 0.0);
 
 }  // namespace veridyn::vehicle

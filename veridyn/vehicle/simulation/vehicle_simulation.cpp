@@ -90,7 +90,8 @@ void reserve(VehicleTrajectory& out, std::size_t samples, bool vertical, bool sp
   };
   for (auto* columns : {&out.slip_angle, &out.Fy, &out.Fz}) reserve_wheels(*columns);
   if (!vertical) return;
-  for (auto* column : {&out.roll, &out.pitch, &out.heave, &out.roll_rate, &out.pitch_rate, &out.heave_rate}) {
+  for (auto* column : {&out.roll, &out.pitch, &out.heave, &out.roll_rate, &out.pitch_rate, &out.heave_rate,
+                       &out.roll_acceleration, &out.pitch_acceleration, &out.heave_acceleration}) {
     column->reserve(samples);
   }
   for (auto* columns : {&out.Fx, &out.wheel_height, &out.suspension_travel, &out.road}) reserve_wheels(*columns);
@@ -119,6 +120,9 @@ void record(VehicleTrajectory& out, double time, const FourWheelState<double>& s
   out.roll_rate.push_back(s(kRollRate));
   out.pitch_rate.push_back(s(kPitchRate));
   out.heave_rate.push_back(s(kHeaveRate));
+  out.roll_acceleration.push_back(rates.derivative(kRollRate));
+  out.pitch_acceleration.push_back(rates.derivative(kPitchRate));
+  out.heave_acceleration.push_back(rates.derivative(kHeaveRate));
   for (std::size_t i = 0; i < kWheels; ++i) {
     const auto w = static_cast<Eigen::Index>(i);
     out.slip_angle[i].push_back(rates.slip_angle[w]);
