@@ -44,7 +44,7 @@ std::string score_csv(const CueingResult& result, const Platform& platform) {
     for (std::size_t i = 0; i < kCues; ++i) {
       const auto cue = static_cast<Cue>(i);
       const CueScore& s = a.score.cues[i];
-      const auto line = [&](const char* figure, const Measured& m, std::string_view unit) {
+      const auto line = [&](std::string_view figure, const Measured& m, std::string_view unit) {
         text +=
             fmt::format("{},{},{},{},{},{},{}\n", a.run.algorithm, name_of(cue), figure, m.value, m.low, m.high, unit);
       };
@@ -55,6 +55,12 @@ std::string score_csv(const CueingResult& result, const Platform& platform) {
       line("time_above_threshold", s.above, "1");
       line("physical_pearson", s.physical_pearson, "1");
       line("physical_lag", s.physical_lag, "s");
+      const AlgorithmResult& first = result.algorithms.front();
+      if (&a == &first) continue;
+      line(fmt::format("pearson_minus_{}", first.run.algorithm),
+           difference(a.score, first.score, cue, CueFigure::kPearson), "1");
+      line(fmt::format("lag_minus_{}", first.run.algorithm), difference(a.score, first.score, cue, CueFigure::kLag),
+           "s");
     }
     const auto plain = [&](std::string_view of, const char* figure, double value, std::string_view unit) {
       text += fmt::format("{},{},{},{},,,{}\n", a.run.algorithm, of, figure, value, unit);
@@ -170,6 +176,7 @@ int cue_platform(const StudyRun& run) {
   folder.write("false_cues.csv", false_cues_csv(result));
   if (study.response) folder.write("omct.csv", response_csv(result));
   folder.write("report.html", report::to_html(report::cueing_report(study, result, program_name())));
+  if (study.knobs) folder.write("knobs.html", report::to_html(report::knob_report(study, result, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
   folder.publish(run.record(study.seed, study.inputs), run.options(), summary_of(folder, study, result));
   print_scores(run.options(), study, result);

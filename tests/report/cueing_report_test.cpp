@@ -66,6 +66,41 @@ TEST(CueingReport, ShowsThePlatformBesideItsHistories) {
   }
 }
 
+TEST(CueingReport, SaysByHowMuchEachDiffersFromTheFirst) {
+  const Document document = report_of("[cue]\nalgorithms = [\"tilt\", \"optimal\", \"mpc\"]\n" + drive("2 deg"));
+  const Table* against = nullptr;
+  for (const Block& block : section(document, "Cue by cue").blocks) {
+    if (const auto* table = std::get_if<Table>(&block); table != nullptr && table->title == "Against tilt")
+      against = table;
+  }
+  ASSERT_TRUE(against != nullptr);
+  ASSERT_EQ(against->rows.size(), 2U) << "not against itself";
+  EXPECT_EQ(against->rows[1].cells.size(), against->columns.size());
+  const Document one = report_of("[cue]\nalgorithms = [\"tilt\"]\n" + drive("2 deg"));
+  for (const Block& block : section(one, "Cue by cue").blocks) {
+    if (const auto* table = std::get_if<Table>(&block); table != nullptr) {
+      EXPECT_THAT(table->title, Not(HasSubstr("Against")));
+    }
+  }
+}
+
+TEST(CueingReport, ShowsWhatTheKnobsDo) {
+  const std::string text = "[cue]\nalgorithms = [\"tilt\", \"classical\"]\nknobs = true\n" + drive("2 deg");
+  Progress progress;
+  const cueing::CueingStudy study = cueing::read_study(Study::parse(text, "rig.toml"), progress);
+  const Document document = knob_report(study, cueing::cue(study, progress), "Veridyn");
+  check(document);
+  EXPECT_THAT(titles(document), testing::ElementsAre("Tilt", "Classical"));
+  EXPECT_THAT(document.verdict.headline, HasSubstr("With tilt, "));
+  const std::vector<Block>& blocks = section(document, "Classical").blocks;
+  ASSERT_EQ(blocks.size(), 2U);
+  const auto* table = std::get_if<Table>(&blocks[0]);
+  const auto* figure = std::get_if<TimeSeries>(&blocks[1]);
+  ASSERT_TRUE(table != nullptr && figure != nullptr);
+  EXPECT_GE(table->rows.size(), figure->panels.size());
+  EXPECT_EQ(figure->panels.front().lines.size(), 4U) << "the vehicle; half, as set, twice";
+}
+
 TEST(CueingReport, NamesWhatIsMostLikeTheDrive) {
   const Document one = report_of("[cue]\nalgorithms = [\"classical\"]\n" + drive("2 deg"));
   EXPECT_THAT(one.verdict.headline, HasSubstr("With classical: correlation"));

@@ -229,6 +229,7 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);
   s.perception = cue.choice_or("perception", models, s.perception);
   s.optimum = cue.flag_or("optimum", true);
+  s.knobs = cue.flag_or("knobs", false);
   const std::vector<std::string> thresholds = {"usual", "reid_nahon"};
   if (cue.choice_or("thresholds", thresholds, "usual") == "reid_nahon") s.thresholds = reid_nahon_thresholds();
   if (root.has("omct")) s.response = read_response(root.table("omct"));
@@ -315,6 +316,10 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
     a.felt = felt_motion(a.run, model, study.thresholds);
     a.score = score(a.run, a.felt, study.platform, study.seed);
     a.knobs = described(*design);
+    if (study.knobs) {
+      progress.stage(fmt::format("turning the knobs of {}", of.name));
+      a.effects = knob_effects(*design, study.platform, model, study.thresholds);
+    }
     for (std::size_t i = 0; study.response && i < kCues; ++i) {
       const auto which = static_cast<Cue>(i);
       if (!renders(study.platform, which)) continue;

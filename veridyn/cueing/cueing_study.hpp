@@ -12,6 +12,7 @@
 #include "veridyn/cueing/platform/platform.hpp"
 #include "veridyn/cueing/score/cueing_score.hpp"
 #include "veridyn/cueing/score/frequency_response.hpp"
+#include "veridyn/cueing/score/knob_effect.hpp"
 #include "veridyn/cueing/score/least_error.hpp"
 #include "veridyn/cueing/score/tuning.hpp"
 
@@ -41,6 +42,7 @@ struct ResponseStudy {
 ///     optimum = true                           # how small the perceived error could be with the drive known before
 ///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
 ///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
+///     knobs = false                            # what each knob does, on a short drive of its own
 ///     foresee = "fade"                         # how `mpc` foresees forces: "lap" ([cue.lap]), "driver"
 ///     ([cue.vehicle]) [cue.lap]                                # as [data]: a lap of the same track, driven before
 ///     [cue.vehicle]                            # as [subject]: steering and pedals through this model; the simulated
@@ -62,6 +64,7 @@ struct CueingStudy {
   std::string perception = "young_meiry";
   MotionThresholds thresholds = usual_thresholds();
   bool optimum = true;
+  bool knobs = false;
   Platform platform;
   std::string drive;                             ///< what drove, for reports
   std::vector<recording::MotionSample> vehicle;  ///< at the driver's head
@@ -85,7 +88,8 @@ struct AlgorithmResult {
   std::optional<Tuning> tuning;                        ///< where the study asked for it
   std::map<Cue, std::vector<ResponsePoint>> response;  ///< of cues that the platform can render
   std::map<Cue, std::vector<ResponsePoint>> outside_mask;
-  std::vector<std::string> knobs;  ///< "onset = 0.8, 1, 1 rad/s"
+  std::vector<std::string> knobs;   ///< "onset = 0.8, 1, 1 rad/s"
+  std::vector<KnobEffect> effects;  ///< where the study asked for them
 };
 
 /// All of them.

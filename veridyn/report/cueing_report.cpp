@@ -160,6 +160,34 @@ List differences(const CueingResult& result) {
   return list;
 }
 
+/// Each algorithm against the first one, in the cues of forces.
+Table against_first(const CueingResult& result) {
+  const AlgorithmResult& first = result.algorithms.front();
+  Table t{.title = fmt::format("Against {}", first.run.algorithm),
+          .caption =
+              "Correlation: more is better. Lag: less is better. An algorithm differs where the interval, over "
+              "the same blocks of both, leaves out 0."};
+  t.columns = {{.name = "algorithm", .align = Align::kLeft}};
+  std::vector<Cue> cues;
+  for (const Cue cue : {Cue::kSurge, Cue::kSway, Cue::kHeave}) {
+    if (!is_moved(result, cue)) continue;
+    cues.push_back(cue);
+    const std::string group(name_of(cue));
+    t.columns.push_back({.name = "correlation", .align = Align::kLeft, .group = group});
+    t.columns.push_back({.name = "lag", .unit = "s", .align = Align::kLeft, .group = group});
+  }
+  for (const AlgorithmResult& a : result.algorithms) {
+    if (&a == &first) continue;
+    std::vector<Cell> cells = {text_cell(a.run.algorithm)};
+    for (const Cue cue : cues) {
+      for (const CueFigure figure : {CueFigure::kPearson, CueFigure::kLag})
+        cells.push_back(text_cell(with_interval(difference(a.score, first.score, cue, figure))));
+    }
+    t.rows.push_back({.cells = std::move(cells)});
+  }
+  return t;
+}
+
 Table workspace_table(const CueingStudy& study, const CueingResult& result) {
   Table t{.title = "What the platform used",
           .caption =
@@ -350,15 +378,15 @@ Section score_tables(const CueingResult& result) {
   Section section{.title = "Cue by cue"};
   section.blocks.emplace_back(Paragraph{
       "What is felt on the platform against what was felt in the vehicle. Correlation: Pearson's, at the same time. "
-      "Lag: by "
-      "how much the platform is late where they are most alike, with the correlation there. Off: share of time in "
-      "which "
-      "they differ by more than the threshold. Physical: the correlation of force or rate itself. In brackets 95 % "
-      "intervals over blocks of 10 s.",
+      "Lag: by how much the platform is late where they are most alike, with the correlation there. Off: share of time "
+      "in which they differ by more than the threshold. Physical: the correlation of force or rate itself. In brackets "
+      "95 % intervals over blocks of 10 s.",
       Tone::kPlain});
   for (std::size_t i = 0; i < kCues; ++i) {
     if (is_moved(result, static_cast<Cue>(i))) section.blocks.emplace_back(score_table(result, static_cast<Cue>(i)));
   }
+  if (Table t = against_first(result); !t.rows.empty() && t.columns.size() > 1)
+    section.blocks.emplace_back(std::move(t));
   return section;
 }
 
@@ -384,6 +412,48 @@ Section knob_section(const CueingResult& result) {
     }
   }
   return {.title = "Numbers of the algorithms", .blocks = {std::move(t)}, .folded = true};
+}
+
+/// What each knob of an algorithm does.
+TimeSeries knob_figure(const AlgorithmResult& a) {
+  TimeSeries figure{
+      .title = fmt::format("Knobs of {}", a.run.algorithm),
+      .caption = "The cue that each changes most. Braking at 2 s, a bend to the left at 11 s, a bump at 22 s."};
+  figure.samples = a.effects.front().time;
+  for (const KnobEffect& e : a.effects) {
+    if (e.difference <= 0.0) continue;
+    const auto in_unit = [&](std::vector<double> values) {
+      for (double& v : values) v = shown(e.cue, v);
+      return values;
+    };
+    Panel panel{.label = fmt::format("{}: {}", e.knob.name, name_of(e.cue)), .unit = shown_unit(e.cue)};
+    panel.lines.push_back({.name = "vehicle", .y = in_unit(e.vehicle), .role = Role::kMeasured});
+    constexpr std::array kNamesOfFactors = {"half", "as set", "twice"};
+    for (std::size_t f = 0; f < e.factors.size(); ++f) {
+      if (f != 1 && e.factors[f] == 1.0) continue;
+      panel.lines.push_back({.name = kNamesOfFactors[f], .y = in_unit(e.platform[f])});
+    }
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+Section knob_effect_section(const AlgorithmResult& a) {
+  Table t{.caption =
+              "Difference: RMS of what is felt with the knob at half and at twice, over the threshold, in the cue "
+              "that changes most."};
+  t.columns = {{.name = "knob", .align = Align::kLeft},
+               {.name = "turned up", .align = Align::kLeft},
+               {.name = "changes", .align = Align::kLeft},
+               {.name = "difference"}};
+  for (const KnobEffect& e : a.effects) {
+    t.rows.push_back({.cells = {text_cell(e.knob.name), text_cell(e.knob.feel),
+                                text_cell(e.difference > 0.0 ? std::string(name_of(e.cue)) : "nothing here"),
+                                number_cell(e.difference, 2)}});
+  }
+  Section section{.title = capitalised(a.run.algorithm), .blocks = {std::move(t)}};
+  if (TimeSeries figure = knob_figure(a); !figure.panels.empty()) section.blocks.emplace_back(std::move(figure));
+  return section;
 }
 
 }  // namespace
@@ -421,6 +491,27 @@ Document cueing_report(const CueingStudy& study, const CueingResult& result, con
   if (study.response) d.sections.push_back(response_section(*study.response, result));
   if (study.tune) add_tuning(result, d);
   d.sections.push_back(knob_section(result));
+  return d;
+}
+
+Document knob_report(const CueingStudy& study, const CueingResult& result, const std::string& program) {
+  Document d{.title = "What each knob does",
+             .subtitle = fmt::format("a drive of 30 s on platform {}: braking, a bend, a bump", study.platform.name),
+             .generator = "Made with " + program};
+  d.verdict.level = Level::kGood;
+  d.verdict.word = "Knobs";
+  for (const AlgorithmResult& a : result.algorithms) {
+    d.sections.push_back(knob_effect_section(a));
+    const auto [least, most] = std::minmax_element(
+        a.effects.begin(), a.effects.end(),
+        [](const KnobEffect& one, const KnobEffect& other) { return one.difference < other.difference; });
+    const std::string line = fmt::format("With {}, {} changes what is felt most, {} least.", a.run.algorithm,
+                                         most->knob.name, least->knob.name);
+    if (d.verdict.headline.empty())
+      d.verdict.headline = line;
+    else
+      d.verdict.lines.push_back(line);
+  }
   return d;
 }
 

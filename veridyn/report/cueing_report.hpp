@@ -12,4 +12,8 @@ namespace veridyn::report {
 [[nodiscard]] Document cueing_report(const cueing::CueingStudy& study, const cueing::CueingResult& result,
                                      const std::string& program);
 
+/// What the knobs of the study's algorithms do, where it asked for that.
+[[nodiscard]] Document knob_report(const cueing::CueingStudy& study, const cueing::CueingResult& result,
+                                   const std::string& program);
+
 }  // namespace veridyn::report
