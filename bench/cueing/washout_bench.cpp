@@ -76,7 +76,7 @@ void step(benchmark::State& state, const std::string& algorithm, const std::stri
   const PlanCounts counts = dynamic_cast<const PredictiveWashout&>(*washout).counts();
   state.counters["iterations_per_plan"] = static_cast<double>(counts.iterations) / static_cast<double>(counts.plans);
   state.counters["most_iterations"] = static_cast<double>(counts.most);
-  state.counters["tails"] = static_cast<double>(counts.tails);
+  state.counters["late"] = static_cast<double>(counts.late);
   state.counters["classical"] = static_cast<double>(counts.classical);
 }
 

@@ -14,7 +14,8 @@ void read_knobs(const StudyTable& table, std::span<const Knob> knobs) {
     if (!table.has(knob.name)) continue;
     const std::vector<double> given = table.numbers(knob.name, knob.unit);
     if (given.size() != knob.values.size())
-      table.fail(knob.name, fmt::format("has {} values; takes {}", given.size(), knob.values.size()));
+      table.fail(knob.name, fmt::format("takes {} value{}, has {}", knob.values.size(),
+                                        knob.values.size() == 1 ? "" : "s", given.size()));
     for (const double v : given) {
       if (!(v > 0.0 || (knob.zero && v == 0.0)))
         table.fail(knob.name, fmt::format("is {}; must be {} 0", v, knob.zero ? "at least" : "above"));

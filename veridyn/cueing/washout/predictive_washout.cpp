@@ -116,7 +116,10 @@ void PlannedPair<kStates, kInputs>::plan(double force) {
   counts_.iterations += r.iterations;
   counts_.most = std::max<long>(counts_.most, r.iterations);
   constexpr double kGoodEnough = 1e-4;  // of a plan that ran out of iterations: its bounds hold
-  if (r.end == numerics::ProgrammeEnd::kInfeasible || r.violation > kGoodEnough) return;
+  if (r.end == numerics::ProgrammeEnd::kInfeasible || r.violation > kGoodEnough) {
+    ++counts_.late;
+    return;
+  }
   std::copy(programme_.inputs().begin(), programme_.inputs().end(), tail_.begin());
   since_plan_ = 0.0;
   has_plan_ = true;
@@ -126,7 +129,6 @@ template <int kStates, int kInputs>
 typename PlannedPair<kStates, kInputs>::Input PlannedPair<kStates, kInputs>::planned(const PairedOutput& fallback) {
   std::size_t at = 0;
   while (at < kSteps && since_plan_ >= kForeseenTimes[at + 1]) ++at;
-  if (since_plan_ > 0.0) ++counts_.tails;
   if (has_plan_ && at < kSteps) return tail_[at];
   ++counts_.classical;
   constexpr double kFollows = 4.0;  // [rad/s], critically damped
@@ -195,7 +197,7 @@ PlanCounts PredictiveWashout::counts() const {
     all.plans += c.plans;
     all.iterations += c.iterations;
     all.most = std::max(all.most, c.most);
-    all.tails += c.tails;
+    all.late += c.late;
     all.classical += c.classical;
   };
   for (const auto& p : tilting_) add(p.counts());
@@ -207,8 +209,9 @@ std::string PredictiveWashout::account() const {
   const PlanCounts c = counts();
   if (c.plans == 0) return {};
   std::string text = fmt::format(
-      "{} plans of {:.1f} iterations, {} at most; {} moments on the last plan's tail, {} on the classical algorithm",
-      c.plans, static_cast<double>(c.iterations) / static_cast<double>(c.plans), c.most, c.tails, c.classical);
+      "{} plans of {:.1f} iterations, {} at most; {} not ready in time: the plan before went on; {} moments on the "
+      "classical algorithm",
+      c.plans, static_cast<double>(c.iterations) / static_cast<double>(c.plans), c.most, c.late, c.classical);
   for (const std::size_t pair : {1U, 0U}) {
     const std::string foresaw =
         design_.foresight ? foresight_account_[pair].text(design_.foresight->from()) : std::string();

@@ -37,7 +37,7 @@ struct PlanCounts {
   long plans = 0;       ///< that were made
   long iterations = 0;  ///< of all of them
   long most = 0;        ///< iterations of one
-  long tails = 0;       ///< moments at which no new plan was there in time and the last one's tail was followed
+  long late = 0;        ///< of them not ready within the iterations: the tail of the one before was followed
   long classical = 0;   ///< moments at which there was no tail either, and the classical algorithm was followed
 };
 
