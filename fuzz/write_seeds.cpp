@@ -40,6 +40,10 @@ int main(int count, char** arguments) {
                                   std::string("\x05\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 18) + "t.npy";
     zip += directory + std::string("PK\x05\x06\0\0\0\0\x01\0\x01\0", 12) + std::string("\x33\0\0\0\x7b\0\0\0\0\0", 10);
     write("npz", zip);
+    // OutSim, the first known packet: twelve of them, a second apart, standing.
+    std::string packets(1, '\0');
+    for (int k = 1; k <= 12; ++k) packets += std::string({'\0', static_cast<char>(k)}) + std::string(62, '\0');
+    write("packet", packets);
     write("tir", veridyn::vehicle::testing::small_tir());
     const std::string road =
         "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";

@@ -140,8 +140,9 @@ int inspect(const Arguments& arguments) {
   summary["bytes_lost"] = damage.bytes_lost;
   summary["records_lost"] = damage.records_lost;
   summary["channels"] = Summary::array();
-  std::string text = fmt::format("{}: {}, {} kinds of message, {} channels, {:.3f} s to {:.3f} s ({:.1f} s)\n", file,
-                                 format, topics, recording.channels().size(), span.begin, span.end, span.duration());
+  std::string text =
+      fmt::format("{}: {}, {} kind{} of message, {} channels, {:.3f} s to {:.3f} s ({:.1f} s)\n", file, format, topics,
+                  topics == 1 ? "" : "s", recording.channels().size(), span.begin, span.end, span.duration());
   if (damage.any()) {
     text += fmt::format("lost: {} bytes, {} records, {} dropouts of {:.3f} s in all\n", damage.bytes_lost,
                         damage.records_lost, damage.dropouts, damage.dropout_s);

@@ -1,6 +1,7 @@
 #include "veridyn/recording/study_data.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "tests/io/support.hpp"
@@ -101,6 +102,30 @@ TEST_F(StudyData, ReadsTheDriveLogsOfOthers) {
   const Recording points =
       read("file = '" + (logs / "cpm_lab/calibration_points.csv").string() + "'\ntime = { rate = 1 }\n");
   EXPECT_EQ(points.at("image_x").size(), 1716U);
+}
+
+TEST_F(StudyData, DescribesPacketsOfItsOwn) {
+  std::string bytes;
+  for (int k = 0; k < 40; ++k) {
+    const float time = 0.05F * static_cast<float>(k), right = 0.3F;
+    std::string packet = "RIG1" + std::string(8, '\0');
+    std::memcpy(packet.data() + 4, &time, 4);
+    std::memcpy(packet.data() + 8, &right, 4);
+    bytes += packet;
+  }
+  write("rig.raw", bytes);
+  const std::string packet = "[data.packet]\nsize = 12\nbegins_with = 'RIG1'\n[[data.packet.field]]\nname = "
+                             "'time'\noffset = 4\nunit = 's'\n[[data.packet.field]]\nname = 'accel_y'\noffset = 8\nunit "
+                             "= 'g'\nfactor = -1\n";
+  const Recording rig = read("file = 'rig.raw'\n" + packet);
+  EXPECT_EQ(rig.frame, Frame::kFlu);
+  EXPECT_NEAR(rig.at("accel_y").value[20], -0.3 * kGravity, 1e-6);
+  EXPECT_NEAR(rig.at("accel_y").times()[20], 1.0, 1e-6);
+  EXPECT_THAT(why([&] { static_cast<void>(read("file = 'rig.raw'\n")); }), HasSubstr("rig.raw: not a known log"));
+  EXPECT_THAT(why([&] { static_cast<void>(read("file = 'rig.raw'\npacket = 'outsim'\n")); }),
+              HasSubstr("rig.raw: holds 0 usable packets of a drive"));
+  EXPECT_THAT(why([&] { static_cast<void>(read("file = 'rig.raw'\npacket = 'outsin'\n")); }),
+              HasSubstr("study.toml:3: data.packet: = 'outsin' is not one of outsim, "));
 }
 
 TEST_F(StudyData, HasItsKeysCheckedWithoutAFile) {

@@ -12,7 +12,7 @@
 #include "veridyn/io/log/mapped_file.hpp"
 #include "veridyn/io/matlab/mat.hpp"
 #include "veridyn/io/opensim/storage.hpp"
-#include "veridyn/io/tables/codemasters.hpp"
+#include "veridyn/io/packets/packet_log.hpp"
 #include "veridyn/io/tables/npy.hpp"
 #include "veridyn/io/tables/npz.hpp"
 #include "veridyn/io/ulog/ulog.hpp"
@@ -20,7 +20,7 @@
 namespace veridyn::io {
 namespace {
 
-enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kCodemasters, kCsv };
+enum class Format { kUnknown, kDataFlash, kDataFlashText, kULog, kMat, kStorage, kNpz, kPackets, kCsv };
 
 Format by_extension(const std::filesystem::path& path) {
   const std::string extension = lower(path.extension().string());
@@ -41,7 +41,7 @@ Format by_content(std::string_view bytes) {
   if (is_dataflash(bytes)) return Format::kDataFlash;
   if (is_dataflash_text(bytes)) return Format::kDataFlashText;
   if (is_storage(bytes)) return Format::kStorage;
-  if (is_codemasters(bytes)) return Format::kCodemasters;
+  if (packets_in(bytes) != nullptr) return Format::kPackets;
   return Format::kUnknown;
 }
 
@@ -67,8 +67,8 @@ const char* name_of(Format format) {
       return "OpenSim storage";
     case Format::kNpz:
       return "NumPy arrays";
-    case Format::kCodemasters:
-      return "Codemasters telemetry";
+    case Format::kPackets:
+      return "telemetry packets";
     case Format::kCsv:
       return "CSV";
     case Format::kUnknown:
@@ -83,6 +83,7 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
   if (std::error_code error; std::filesystem::is_directory(path, error)) return read_npy_folder(path);
   const MappedFile file(path);
   const std::string_view bytes = file.bytes();
+  if (options.packet) return packet_log(*options.packet, bytes, path.string());
   const Format expected = by_extension(path);
   Format format = by_content(bytes);
   if (is_npy(bytes))
@@ -97,8 +98,8 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
         path.string(),
         fmt::format(
             "not a known log{}; known are ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB "
-            "(.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), telemetry packets of "
-            "Codemasters games and CSV",
+            "(.mat), OpenSim storage (.sto, .mot), NumPy arrays (.npz, or folders of .npy), telemetry packets of games "
+            "and CSV",
             claim));
   }
   Log log;
@@ -121,8 +122,8 @@ Log read_log(const std::filesystem::path& path, const ReadOptions& options) {
     case Format::kNpz:
       log = read_npz(bytes, path.string());
       break;
-    case Format::kCodemasters:
-      log = codemasters_log(bytes, path.string());
+    case Format::kPackets:
+      log = packet_log(*packets_in(bytes), bytes, path.string());
       break;
     case Format::kCsv:
     case Format::kUnknown:

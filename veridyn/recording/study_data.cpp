@@ -11,6 +11,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/read.hpp"
 
 namespace veridyn::recording {
@@ -106,6 +107,19 @@ Recording cut(const Recording& recording, TimeSpan span) {
   return result;
 }
 
+namespace {
+
+/// `packet`: a name, or a table that describes one.
+std::optional<io::PacketLayout> read_packet(const StudyTable& data) {
+  if (!data.has("packet")) return std::nullopt;
+  if (data.is_table("packet")) return io::read_packet_layout(data.table("packet"));
+  std::vector<std::string> names;
+  for (const io::PacketLayout& layout : io::known_packets()) names.push_back(layout.name);
+  return io::known_packet(data.choice_or("packet", names, ""));
+}
+
+}  // namespace
+
 Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
   const StudyTable time = data.table_or_empty("time");
   const std::string name = table_name(path);
@@ -116,6 +130,7 @@ Recording read_study_file(const StudyTable& data, const std::filesystem::path& p
   } else {
     read_time(time, options.csv);
   }
+  options.packet = read_packet(data);
   return io::read_recording(path, options);
 }
 
@@ -124,6 +139,7 @@ void check_study_data(const StudyTable& data, std::span<const StandardChannel> s
     if (data.has(key)) static_cast<void>(data.texts(key));
   }
   for (const char* key : {"from", "to"}) static_cast<void>(data.optional_number(key, "s"));
+  static_cast<void>(read_packet(data));
   const StudyTable time = data.table_or_empty("time");
   io::CsvOptions options;
   read_time(time, options);

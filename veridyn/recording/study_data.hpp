@@ -17,6 +17,9 @@ namespace veridyn::recording {
 ///     columns = ["time", "steer[rad]"]        # names of the columns of a table that has no header
 ///     time = { column = "T", unit = "ms" }    # for a table that does not say where its stamps are, or
 ///     time = { rate = "10 Hz" }               # that has none
+///     packet = "outsim"                       # the file holds packets of telemetry, one after the other; their kind
+///                                             # where the content does not tell it, or [data.packet] of one's own
+///                                             # (io/packets/packet_layout.hpp)
 ///     [data.time]                             # the same for some of several tables
 ///     GPS = { column = "T", unit = "ms" }
 ///

@@ -12,8 +12,9 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/io/packets/known_packets.hpp"
+#include "veridyn/io/packets/packet_log.hpp"
 #include "veridyn/io/read.hpp"
-#include "veridyn/io/tables/codemasters.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -121,8 +122,8 @@ std::string packets(std::size_t count) {
 
 TEST(Codemasters, ACircleToTheLeftHasItsAccelerationToTheLeft) {
   const std::string bytes = packets(300);
-  ASSERT_TRUE(is_codemasters(bytes));
-  const Log log = codemasters_log(bytes, "drive.f32");
+  ASSERT_EQ(packets_in(bytes), &known_packet("codemasters"));
+  const Log log = packet_log(*packets_in(bytes), bytes, "drive.f32");
   const Recording r = to_recording(log);
   EXPECT_EQ(r.frame, Frame::kFlu);
   for (const std::size_t k : {20U, 150U, 280U}) {
@@ -134,8 +135,8 @@ TEST(Codemasters, ACircleToTheLeftHasItsAccelerationToTheLeft) {
     EXPECT_NEAR(r.at("roll").value[k], 0.0, 1e-6);
     EXPECT_NEAR(std::remainder(r.at("yaw").value[k] - 0.5 * r.at("yaw").times()[k], 2.0 * kPi), 0.0, 1e-5);
   }
-  EXPECT_FALSE(is_codemasters(std::string(264 * 20, '\0')));
-  EXPECT_FALSE(is_codemasters(bytes.substr(1)));
+  EXPECT_EQ(packets_in(std::string(264 * 20, '\0')), nullptr);
+  EXPECT_EQ(packets_in(bytes.substr(1)), nullptr);
 }
 
 TEST(Codemasters, TheArchiveAndThePacketsOfARealDriveAreTheSame) {

@@ -11,7 +11,8 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/log/time_stamps.hpp"
-#include "veridyn/io/tables/codemasters.hpp"
+#include "veridyn/io/packets/known_packets.hpp"
+#include "veridyn/io/packets/packet_log.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -70,6 +71,20 @@ bool holds_stamps(const std::string& name, const NpyArray& array) {
   return array.columns.size() == 1 && std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
+/// The columns of an array one after the other as floats, where each may be a packet of floats; empty where not.
+std::string as_packets(const NpyArray& array) {
+  std::string bytes;
+  if (array.shape.size() != 2 || array.rows() * sizeof(float) != known_packet("codemasters").size) return bytes;
+  bytes.reserve(array.columns.size() * array.rows() * sizeof(float));
+  for (const Column& column : array.columns) {
+    for (std::size_t i = 0; i < array.rows(); ++i) {
+      const auto number = static_cast<float>(column.number(i));
+      bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+    }
+  }
+  return bytes;
+}
+
 }  // namespace
 
 bool is_npz(std::string_view bytes) { return bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06"); }
@@ -104,7 +119,8 @@ Log read_npz(std::string_view bytes, const std::string& source) {
   NpzArrays read = read_npz_arrays(bytes, source);
   auto& arrays = read.arrays;
   for (const auto& [name, array] : arrays) {
-    if (is_codemasters(array)) return codemasters_log(array, source);
+    const std::string packets = as_packets(array);
+    if (const PacketLayout* layout = packets_in(packets)) return packet_log(*layout, packets, source);
   }
   const auto stamps =
       std::find_if(arrays.begin(), arrays.end(), [](const auto& a) { return holds_stamps(a.first, a.second); });

@@ -26,8 +26,8 @@ struct NpzArrays {
 [[nodiscard]] NpzArrays read_npz_arrays(std::string_view bytes, const std::string& source);
 
 /// A `.npz` as a log. An array of stamps named `t`, `time`, `times`, `timestamp` or `timestamps` [s] gives its time to
-/// every array with as many rows: `acc` with three columns makes `acc[0]`, `acc[1]`, `acc[2]`. A single array of 66
-/// rows that are telemetry of a Codemasters game is read as such, see codemasters.hpp.
+/// every array with as many rows: `acc` with three columns makes `acc[0]`, `acc[1]`, `acc[2]`. An array
+/// whose columns are packets of a game's telemetry is read as such, see packets/packet_log.hpp.
 /// @throws InputError as `read_npz_arrays`, and where no array holds stamps.
 [[nodiscard]] Log read_npz(std::string_view bytes, const std::string& source);
 

@@ -1,0 +1,129 @@
+#include "veridyn/io/packets/packet_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/units.hpp"
+
+namespace veridyn::io {
+namespace {
+
+constexpr std::size_t kLargestPacket = 65507;  // of UDP over IPv4 [bytes]
+
+constexpr std::array<std::pair<std::string_view, GatherType>, 10> kPacketTypes = {{{"f32", GatherType::kFloat},
+                                                                                   {"f64", GatherType::kDouble},
+                                                                                   {"i8", GatherType::kInt8},
+                                                                                   {"u8", GatherType::kUint8},
+                                                                                   {"i16", GatherType::kInt16},
+                                                                                   {"u16", GatherType::kUint16},
+                                                                                   {"i32", GatherType::kInt32},
+                                                                                   {"u32", GatherType::kUint32},
+                                                                                   {"i64", GatherType::kInt64},
+                                                                                   {"u64", GatherType::kUint64}}};
+
+/// What is wrong with a layout, and with which field; empty where nothing is.
+struct LayoutFault {
+  std::size_t field = 0;
+  std::string what;
+};
+
+LayoutFault fault_of(const PacketLayout& layout) {
+  std::vector<std::size_t> order(layout.fields.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return layout.fields[a].offset < layout.fields[b].offset; });
+  std::size_t end = layout.begins_with.size();
+  std::string before = fmt::format("the first {} bytes, which are always the same", end);
+  for (const std::size_t i : order) {
+    const PacketField& f = layout.fields[i];
+    const std::size_t bytes = size_of(f.type);
+    if (bytes == 0) return {i, fmt::format("'{}' is of a type that packets do not have", f.name)};
+    if (f.offset < end) return {i, fmt::format("'{}' at {} overlaps {}", f.name, f.offset, before)};
+    if (f.offset > layout.size || bytes > layout.size - f.offset)
+      return {i, fmt::format("'{}' ends at {}, the packet at {}", f.name, f.offset + bytes, layout.size)};
+    if (layout.find(f.name) != i) return {i, fmt::format("'{}' is there twice", f.name)};
+    end = f.offset + bytes;
+    before = fmt::format("'{}'", f.name);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::size_t PacketLayout::find(std::string_view field) const {
+  return static_cast<std::size_t>(
+      std::find_if(fields.begin(), fields.end(), [&](const PacketField& f) { return f.name == field; }) -
+      fields.begin());
+}
+
+std::size_t size_of(GatherType type) {
+  switch (type) {
+    case GatherType::kInt8:
+    case GatherType::kUint8:
+      return 1;
+    case GatherType::kInt16:
+    case GatherType::kUint16:
+      return 2;
+    case GatherType::kInt32:
+    case GatherType::kUint32:
+    case GatherType::kFloat:
+      return 4;
+    case GatherType::kInt64:
+    case GatherType::kUint64:
+    case GatherType::kDouble:
+      return 8;
+    case GatherType::kHalf:
+    case GatherType::kText:
+      break;
+  }
+  return 0;
+}
+
+void check(const PacketLayout& layout) {
+  if (const LayoutFault fault = fault_of(layout); !fault.what.empty())
+    throw InputError("packet " + layout.name, fault.what);
+}
+
+PacketLayout read_packet_layout(const StudyTable& table) {
+  PacketLayout layout;
+  layout.name = layout.sender = table.path();
+  const long long size = table.integer("size");
+  if (size < 1 || size > static_cast<long long>(kLargestPacket))
+    table.fail("size", fmt::format("is {}; a packet has 1 to {} bytes", size, kLargestPacket));
+  layout.size = static_cast<std::size_t>(size);
+  layout.begins_with = table.text_or("begins_with", "");
+  layout.seen = true;  // by whoever wrote it
+  std::vector<std::string> types;
+  for (const auto& [name, type] : kPacketTypes) types.emplace_back(name);
+  const std::vector<StudyTable> fields = table.tables("field");
+  for (const StudyTable& f : fields) {
+    PacketField field;
+    field.name = f.text("name");
+    const long long offset = f.integer("offset");
+    if (offset < 0 || offset >= size) f.fail("offset", fmt::format("is {}; the packet has {} bytes", offset, size));
+    field.offset = static_cast<std::size_t>(offset);
+    const std::string type = f.choice_or("type", types, "f32");
+    field.type =
+        std::find_if(kPacketTypes.begin(), kPacketTypes.end(), [&](const auto& t) { return t.first == type; })->second;
+    Unit unit;
+    try {
+      unit = parse_unit(f.text_or("unit", "1"));
+    } catch (const InputError& error) {
+      f.fail("unit", error.what());
+    }
+    field.unit = unit.si_name();
+    field.factor = unit.scale * f.number_or("factor", "1", 1.0);
+    field.bias = unit.offset;
+    layout.fields.push_back(std::move(field));
+  }
+  if (fields.empty()) table.fail("field", "is missing: a packet has fields");
+  if (const LayoutFault fault = fault_of(layout); !fault.what.empty()) fields[fault.field].fail("offset", fault.what);
+  if (!layout.has("time")) table.fail("field", "without 'time': packets in a file are ordered by it");
+  return layout;
+}
+
+}  // namespace veridyn::io
