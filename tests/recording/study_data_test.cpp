@@ -114,9 +114,10 @@ TEST_F(StudyData, DescribesPacketsOfItsOwn) {
     bytes += packet;
   }
   write("rig.raw", bytes);
-  const std::string packet = "[data.packet]\nsize = 12\nbegins_with = 'RIG1'\n[[data.packet.field]]\nname = "
-                             "'time'\noffset = 4\nunit = 's'\n[[data.packet.field]]\nname = 'accel_y'\noffset = 8\nunit "
-                             "= 'g'\nfactor = -1\n";
+  const std::string packet =
+      "[data.packet]\nsize = 12\nbegins_with = 'RIG1'\n[[data.packet.field]]\nname = "
+      "'time'\noffset = 4\nunit = 's'\n[[data.packet.field]]\nname = 'accel_y'\noffset = 8\nunit "
+      "= 'g'\nfactor = -1\n";
   const Recording rig = read("file = 'rig.raw'\n" + packet);
   EXPECT_EQ(rig.frame, Frame::kFlu);
   EXPECT_NEAR(rig.at("accel_y").value[20], -0.3 * kGravity, 1e-6);
