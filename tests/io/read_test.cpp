@@ -45,7 +45,7 @@ TEST(ReadLog, RefusesWhatItCannotReadInOneSentence) {
             place +
                 "/zero.bin: not a known log (its name promises ArduPilot DataFlash, its content is not); known are "
                 "ArduPilot DataFlash (.bin, .log), PX4 ULog (.ulg), MATLAB (.mat), OpenSim storage (.sto, .mot), "
-                "NumPy arrays (.npz, or folders of .npy), telemetry packets of Codemasters games and CSV");
+                "NumPy arrays (.npz, or folders of .npy), telemetry packets of games and CSV");
   EXPECT_THAT(
       message_of([&] { (void)read_log(folder.write("picture.png", std::string("\x89PNG\r\n\x1a\n\0\0", 10))); }),
       HasSubstr("not a known log; known are"));
