@@ -7,6 +7,7 @@
 #include <ostream>
 #include <random>
 
+#include "tests/support/sanitized.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/cueing/platform/platform_guard.hpp"
 #include "veridyn/cueing/washout/washout_design.hpp"
@@ -266,7 +267,7 @@ void run_adversary(const std::string& name, const Platform& platform, long steps
 }
 
 TEST_P(EveryWashout, ThePlatformKeepsItsLimitsWhateverComesIn) {
-  run_adversary(GetParam().algorithm, platform(), 50000, 11);
+  run_adversary(GetParam().algorithm, platform(), test::kSanitized ? 5000 : 50000, 11);
 }
 
 TEST_P(EveryWashout, SoakThePlatformKeepsItsLimitsInAMillionSteps) {
