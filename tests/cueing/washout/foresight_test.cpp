@@ -5,9 +5,47 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/cueing/washout/predictive_washout.hpp"
 
 namespace veridyn::cueing {
 namespace {
+
+/// Foresees nothing, but notes whether it was shown a place that is none.
+class Witness final : public Foresight {
+ public:
+  explicit Witness(std::shared_ptr<bool> wild) : wild_(std::move(wild)) {}
+  void reset() override {}
+  bool look(const recording::MotionSample& sample, double /*step*/, Foreseen& /*foreseen*/) override {
+    constexpr double kNowhere = 1e9;  // [m]
+    const bool somewhere = (sample.position.array().abs() < kNowhere).all();
+    *wild_ = *wild_ || (sample.position_from != recording::Origin::kAbsent && !somewhere);
+    return false;
+  }
+  [[nodiscard]] std::unique_ptr<Foresight> clone() const override { return std::make_unique<Witness>(*this); }
+  [[nodiscard]] std::string from() const override { return "nothing"; }
+
+ private:
+  std::shared_ptr<bool> wild_;
+};
+
+TEST(Foresight, IsShownFinitePlacesOnly) {
+  const auto wild = std::make_shared<bool>(false);
+  PredictiveDesign design;
+  design.foresee_from(Witness(wild));
+  const std::unique_ptr<Washout> washout = design.make(built_in_platform("three_axis"));
+  recording::MotionSample sample;
+  sample.force = recording::force_at_rest(sample.frame);
+  sample.position_from = recording::Origin::kMeasured;
+  washout->reset(sample);
+  for (const Eigen::Index axis : {0, 1}) {
+    for (const double value : {kNaN, -kNaN, kInfinity, 1e300}) {
+      recording::MotionSample s = sample;
+      s.position(axis) = value;
+      washout->step(s, 0.01);
+      EXPECT_FALSE(*wild) << axis << " " << value;
+    }
+  }
+}
 
 TEST(ForesightAccount, OfASineIsItsClosedForm) {
   // sin(w t) against sin(w (t + d)): RMS of the difference 2 sin(w d / 2) / sqrt(2) of the amplitude.

@@ -182,39 +182,6 @@ TEST(LapForesight, BearsAnyPosition) {
   }
 }
 
-/// Foresees nothing, but says what it was shown.
-class Witness final : public Foresight {
- public:
-  explicit Witness(std::shared_ptr<bool> wild) : wild_(std::move(wild)) {}
-  void reset() override {}
-  bool look(const MotionSample& sample, double, Foreseen&) override {
-    *wild_ = *wild_ || (sample.position_from != Origin::kAbsent && !sample.position.allFinite());
-    return false;
-  }
-  [[nodiscard]] std::unique_ptr<Foresight> clone() const override { return std::make_unique<Witness>(*this); }
-  [[nodiscard]] std::string from() const override { return "nothing"; }
-
- private:
-  std::shared_ptr<bool> wild_;
-};
-
-TEST(Foresight, IsShownFinitePlacesOnly) {
-  const auto wild = std::make_shared<bool>(false);
-  PredictiveDesign design;
-  design.foresee_from(Witness(wild));
-  const std::unique_ptr<Washout> washout = design.make(built_in_platform("three_axis"));
-  auto drive = Track(1.0).driven(0.0, 100.0, 0.01);
-  washout->reset(drive.front());
-  for (int axis : {0, 1}) {
-    for (const double value : {std::nan(""), -std::nan(""), kInfinity}) {
-      MotionSample s = drive[1];
-      s.position(axis) = value;
-      washout->step(s, 0.01);
-      EXPECT_FALSE(*wild) << axis << " " << value;
-    }
-  }
-}
-
 TEST(LapForesight, RefusesLapsThatSayNothing) {
   auto lap = Track(1.0).driven(0.0, 500.0, 0.016);
   EXPECT_EQ(why([&] { LapForesight(std::vector<MotionSample>{}); }),

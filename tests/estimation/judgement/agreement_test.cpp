@@ -34,6 +34,11 @@ TEST(Agreement, SaysNothingWithoutErrorBars) {
   EXPECT_EQ(agreement_p(difference, covariance), 1.0);
   covariance(1, 1) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(agreement_p(difference, covariance), 1.0);
+  for (const Eigen::Index i : {0, 1}) {
+    covariance = Eigen::Matrix2d::Identity();
+    covariance(i, i) = -1.0;
+    EXPECT_EQ(agreement_p(difference, covariance), 1.0) << i;
+  }
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ TEST(PatternSearch, ScalesEachCoordinateByItself) {
 TEST(PatternSearch, RefusesAStartOutsideTheBounds) {
   EXPECT_THROW((void)pattern(disc(), Eigen::Vector2d(3.0, 0.0)), InputError);
   EXPECT_THROW((void)pattern(disc(), Eigen::Vector2d(std::nan(""), 0.0)), InputError);
+  EXPECT_THROW((void)pattern(disc(), Eigen::Vector2d(0.0, std::nan(""))), InputError);
   EXPECT_THROW((void)pattern(disc(), Eigen::Vector2d(0.0, 0.0), {.tolerance = 0.5}), InputError);
 }
 

@@ -123,6 +123,13 @@ TEST(MonteCarlo, RefusesInputsThatMakeNoSense) {
   UncertainInputs negative = good;
   negative.error_covariance(0, 0) = -1.0;
   EXPECT_EQ(message(negative, {}), "uncertain inputs: error variance -1 of x must be finite and >= 0");
+  UncertainInputs unknown =
+      independent({"x", "y"}, Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1), Eigen::Vector2d(1, 1));
+  unknown.correlation(1, 0) = std::nan("");
+  EXPECT_EQ(message(unknown, {}), "uncertain inputs: correlations of y must lie between -1 and 1");
+  unknown.correlation(1, 0) = 0.0;
+  unknown.correlation(0, 1) = std::nan("");
+  EXPECT_EQ(message(unknown, {}), "uncertain inputs: correlations of x must lie between -1 and 1");
   EXPECT_EQ(message(good, {.draws = 10}), "draws: = 10 must be at least 100");
   EXPECT_EQ(message(good, {.coverage = 1.0}), "coverage: = 1 must be between 0 and 1");
 }

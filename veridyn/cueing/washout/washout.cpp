@@ -29,8 +29,7 @@ void Washout::take(const recording::MotionSample& given) {
   // What is only foreseen from is left out where it cannot be.
   using recording::Origin;
   const recording::DriverInputs& in = sample.inputs;
-  // The norm, since the greatest of values of which one is NaN may be another one.
-  if (!(sample.position.norm() < kFurthest)) sample.position_from = Origin::kAbsent;
+  if (!(sample.position.array().abs() < kFurthest).all()) sample.position_from = Origin::kAbsent;
   if (!(std::abs(sample.speed) < kMostSpeed)) sample.speed_from = Origin::kAbsent;
   if (!(std::abs(in.steer) < kMostSteer)) sample.steer_from = Origin::kAbsent;
   if (!(std::abs(in.drive_torque) < kMostTorque && in.brake_torque >= 0.0 && in.brake_torque < kMostTorque))

@@ -11,7 +11,7 @@ namespace veridyn::estimation {
 
 Agreement agreement(const Eigen::VectorXd& difference, const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0.0) || !covariance.allFinite()) return {};
+  if (!(scale.array() > 0.0).all() || !covariance.allFinite()) return {};
   // Scaled to unit variances: stiffnesses and inertias differ by orders of magnitude.
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   const Eigen::VectorXd d = inverse.asDiagonal() * difference;

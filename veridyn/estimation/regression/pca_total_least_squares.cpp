@@ -62,7 +62,7 @@ PcaTotalLeastSquares pca_total_least_squares(const Eigen::MatrixXd& triangle, co
     const Eigen::MatrixXd E = weight.cwiseInverse().asDiagonal() * excited;
     Eigen::MatrixXd inner = numerics::product(numerics::transposed_product(E, result.jacobian), E);
     const Eigen::VectorXd scale = inner.diagonal().cwiseAbs().cwiseSqrt();
-    if (!(scale.minCoeff() > 0.0)) return result;
+    if (!(scale.array() > 0.0).all()) return result;
     const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
     inner = numerics::scaled(inverse_scale, inner, inverse_scale);
     const numerics::Cholesky cholesky(inner);

@@ -179,8 +179,8 @@ void PatternOptions::validate() const {
 SearchResult pattern_search(BatchEvaluator& evaluator, const Eigen::VectorXd& start, const PatternOptions& options) {
   options.validate();
   const BlackBoxProblem& problem = evaluator.problem();
-  if (start.size() != problem.size() || !((start - problem.low).minCoeff() >= 0.0) ||
-      !((problem.high - start).minCoeff() >= 0.0))
+  if (start.size() != problem.size() || !(start.array() >= problem.low.array()).all() ||
+      !(start.array() <= problem.high.array()).all())
     throw InputError(problem.name, "the start of the pattern search is not within the bounds");
   const std::size_t evaluations = evaluator.evaluations().size(), failed = evaluator.failed();
   PatternSearch search(evaluator, options);

@@ -104,7 +104,7 @@ void UncertainInputs::validate() const {
       throw InputError("uncertain inputs",
                        fmt::format("error variance {} of {} must be finite and >= 0", error_covariance(i, i), name));
     }
-    if (!(correlation.row(i).cwiseAbs().maxCoeff() <= 1.0 + 1e-12)) {
+    if (!(correlation.row(i).array().abs() <= 1.0 + 1e-12).all()) {
       throw InputError("uncertain inputs", fmt::format("correlations of {} must lie between -1 and 1", name));
     }
   }

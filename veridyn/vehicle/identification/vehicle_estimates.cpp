@@ -153,7 +153,7 @@ VehicleParameters<double> begin_of_search(const VehicleProblem& problem, const E
     const AxleEstimate* e = regression.find(method);
     if (e == nullptr || !e->usable) continue;
     const Eigen::Vector3d sigma = e->covariance.diagonal().cwiseSqrt();
-    if (!(sigma.cwiseQuotient(e->value).maxCoeff() < problem.options.max_relative_sigma)) continue;
+    if (!(sigma.cwiseQuotient(e->value).array() < problem.options.max_relative_sigma).all()) continue;
     begin.C_f = e->value(0);
     begin.C_r = e->value(1);
     begin.I_z = e->value(2);
