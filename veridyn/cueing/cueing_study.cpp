@@ -64,12 +64,10 @@ std::vector<MotionSample> recorded(const StudyTable& data, const recording::Moti
   return at_driver(motion.samples, driver);
 }
 
-void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& study, Progress& progress) {
-  const Eigen::Vector3d driver = place(cue, "driver");
-  const recording::MotionOptions options = motion_options(cue);
+void read_drive(const StudyTable& root, CueingStudy& study, Progress& progress) {
   if (root.has("data")) {
     const std::size_t before = study.inputs.size();  // files of the drive that is tuned on
-    study.vehicle = recorded(root.table("data"), options, driver, study);
+    study.vehicle = recorded(root.table("data"), study.motion, study.driver, study);
     study.drive = study.inputs.size() == before ? "drive" : study.inputs[before].filename().string();
     return;
   }
@@ -85,7 +83,7 @@ void read_drive(const StudyTable& root, const StudyTable& cue, CueingStudy& stud
   const vehicle::FourWheelOptions& options_of = simulation.four_wheel;
   study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, options_of.gravity,
                                                     options_of.longitudinal ? options_of.longitudinal->grade : 0.0),
-                            driver);
+                            study.driver);
 }
 
 void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
@@ -117,7 +115,7 @@ LapForesight read_lap(const StudyTable& cue, CueingStudy& study) {
   if (study.vehicle.front().position_from == recording::Origin::kAbsent)
     cue.fail("lap", "is of no use: the drive has no positions (channels pos_x and pos_y)");
   const std::vector<std::filesystem::path> others = study.inputs;
-  const std::vector<MotionSample> lap = recorded(cue.table("lap"), motion_options(cue), place(cue, "driver"), study);
+  const std::vector<MotionSample> lap = recorded(cue.table("lap"), study.motion, study.driver, study);
   for (std::size_t i = others.size(); i < study.inputs.size(); ++i) {
     if (std::find(others.begin(), others.end(), study.inputs[i]) != others.end())
       study.notes.push_back(
@@ -217,8 +215,10 @@ std::vector<std::string> described(WashoutDesign& design) {
 
 }  // namespace
 
-CueingStudy read_study(const Study& study, Progress& progress) {
-  const StudyTable& root = study.root();
+namespace {
+
+/// All but the drive and what is foreseen of it.
+CueingStudy read_rig(const StudyTable& root) {
   CueingStudy s;
   s.title = root.text_or("title", "");
   s.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
@@ -233,6 +233,31 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   const std::vector<std::string> thresholds = {"usual", "reid_nahon"};
   if (cue.choice_or("thresholds", thresholds, "usual") == "reid_nahon") s.thresholds = reid_nahon_thresholds();
   if (root.has("omct")) s.response = read_response(root.table("omct"));
+  s.motion = motion_options(cue);
+  s.driver = place(cue, "driver");
+  return s;
+}
+
+}  // namespace
+
+CueingStudy read_study_without_drive(const Study& study) {
+  const StudyTable& root = study.root();
+  const StudyTable cue = root.table_or_empty("cue");
+  CueingStudy s = read_rig(root);
+  const std::vector<std::string> choices = {"fade"};
+  static_cast<void>(cue.choice_or("foresee", choices, "fade"));
+  for (const char* key : {"lap", "vehicle"}) {
+    if (cue.has(key)) cue.fail(key, "needs a drive that is known; live, forces are foreseen by fade only");
+  }
+  if (root.has("tune")) root.fail("tune", "needs a drive that is known: tune on a recorded one first");
+  return s;
+}
+
+CueingStudy read_study(const Study& study, Progress& progress) {
+  const StudyTable& root = study.root();
+  const StudyTable cue = root.table_or_empty("cue");
+  CueingStudy s = read_rig(root);
+  root.accept("live");  // of `veridyn cue --live`
   if (root.has("tune")) {
     const StudyTable tune = root.table("tune");
     s.tune.emplace();
@@ -240,9 +265,9 @@ CueingStudy read_study(const Study& study, Progress& progress) {
     if (evaluations < 1) tune.fail("evaluations", fmt::format("is {}; must be above 0", evaluations));
     s.tune->evaluations = static_cast<std::size_t>(evaluations);
     s.tune->strength = tune.positive_or("strength", "1", s.tune->strength);
-    if (tune.has("data")) s.tune_on = recorded(tune.table("data"), motion_options(cue), place(cue, "driver"), s);
+    if (tune.has("data")) s.tune_on = recorded(tune.table("data"), s.motion, s.driver, s);
   }
-  read_drive(root, cue, s, progress);
+  read_drive(root, s, progress);
   read_foresight(root, cue, s);
   return s;
 }
@@ -291,31 +316,39 @@ void note_drive(const CueingStudy& study, CueingResult& result) {
 
 }  // namespace
 
+AlgorithmResult scored(const CueingStudy& study, CueingRun run, WashoutDesign& design) {
+  AlgorithmResult a;
+  a.run = std::move(run);
+  a.felt = felt_motion(a.run, vestibular_model(study.perception), study.thresholds);
+  a.score = score(a.run, a.felt, study.platform, study.seed);
+  a.knobs = described(design);
+  return a;
+}
+
 CueingResult cue(const CueingStudy& study, Progress& progress) {
   CueingResult result;
   note_drive(study, result);
   const VestibularModel& model = vestibular_model(study.perception);
   for (const StudyAlgorithm& of : study.algorithms) {
-    AlgorithmResult a;
     std::unique_ptr<WashoutDesign> design = of.design->clone();
+    std::optional<Tuning> tuning;
     if (study.tune) {
       progress.stage(fmt::format("tuning {}", of.name));
-      a.tuning = tuned(*design, study.platform, study.tune_on.empty() ? study.vehicle : study.tune_on, model,
-                       study.thresholds, *study.tune, progress);
-      design = a.tuning->design->clone();
+      tuning = tuned(*design, study.platform, study.tune_on.empty() ? study.vehicle : study.tune_on, model,
+                     study.thresholds, *study.tune, progress);
+      design = tuning->design->clone();
     }
     progress.stage(fmt::format("driving the platform with {}", of.name));
     const std::unique_ptr<Washout> washout = design->make(study.platform);
-    a.run = drive_platform(study.vehicle, *washout, study.platform, progress);
-    a.run.algorithm = of.name;
-    if (!a.run.account.empty()) result.notes.push_back(fmt::format("{}: {}", of.name, a.run.account));
+    CueingRun run = drive_platform(study.vehicle, *washout, study.platform, progress);
+    run.algorithm = of.name;
+    if (!run.account.empty()) result.notes.push_back(fmt::format("{}: {}", of.name, run.account));
     if (progress.interrupted()) {
       result.interrupted = true;
       return result;
     }
-    a.felt = felt_motion(a.run, model, study.thresholds);
-    a.score = score(a.run, a.felt, study.platform, study.seed);
-    a.knobs = described(*design);
+    AlgorithmResult a = scored(study, std::move(run), *design);
+    a.tuning = std::move(tuning);
     if (study.knobs) {
       progress.stage(fmt::format("turning the knobs of {}", of.name));
       a.effects = knob_effects(*design, study.platform, model, study.thresholds);

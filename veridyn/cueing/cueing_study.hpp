@@ -15,6 +15,7 @@
 #include "veridyn/cueing/score/knob_effect.hpp"
 #include "veridyn/cueing/score/least_error.hpp"
 #include "veridyn/cueing/score/tuning.hpp"
+#include "veridyn/recording/motion_recording.hpp"
 
 namespace veridyn::cueing {
 
@@ -66,8 +67,10 @@ struct CueingStudy {
   bool optimum = true;
   bool knobs = false;
   Platform platform;
-  std::string drive;                             ///< what drove, for reports
-  std::vector<recording::MotionSample> vehicle;  ///< at the driver's head
+  recording::MotionOptions motion;                   ///< of whatever recorded the drive
+  Eigen::Vector3d driver = Eigen::Vector3d::Zero();  ///< the driver's head from the centre of gravity, flu [m]
+  std::string drive;                                 ///< what drove, for reports
+  std::vector<recording::MotionSample> vehicle;      ///< at the driver's head
   std::optional<ResponseStudy> response;
   std::optional<TuningOptions> tune;
   std::vector<recording::MotionSample> tune_on;  ///< empty: on the drive itself
@@ -79,6 +82,10 @@ struct CueingStudy {
 /// `study.root().finish()`.
 /// @throws InputError for anything that is wrong in either.
 [[nodiscard]] CueingStudy read_study(const Study& study, Progress& progress);
+/// The same without a drive, for motion that is still to come: `vehicle` stays empty, and algorithms that plan ahead
+/// foresee by `fade`. @throws InputError as above, and for keys that need a drive: [cue.lap], [cue.vehicle], `foresee`
+/// other than "fade", [tune].
+[[nodiscard]] CueingStudy read_study_without_drive(const Study& study);
 
 /// What one algorithm made of the drive.
 struct AlgorithmResult {
@@ -91,6 +98,9 @@ struct AlgorithmResult {
   std::vector<std::string> knobs;   ///< "onset = 0.8, 1, 1 rad/s"
   std::vector<KnobEffect> effects;  ///< where the study asked for them
 };
+
+/// What an algorithm with these numbers made of a drive that is over.
+[[nodiscard]] AlgorithmResult scored(const CueingStudy& study, CueingRun run, WashoutDesign& design);
 
 /// All of them.
 struct CueingResult {

@@ -1,6 +1,7 @@
 #include "veridyn/cueing/chain/cueing_chain.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace veridyn::cueing {
 
@@ -11,6 +12,7 @@ CueingChain::CueingChain(const CueingChain& other)
     : washout_(other.washout_->clone()),
       guard_(other.guard_),
       simulator_(other.simulator_),
+      wanted_(other.wanted_),
       joined_at_(other.joined_at_),
       since_joined_(other.since_joined_) {}
 
@@ -18,29 +20,51 @@ CueingStep CueingChain::reset(const recording::MotionSample& sample) {
   joined_at_ = {};
   since_joined_ = 0.0;
   CueingStep s;
-  s.wanted = washout_->reset(sample);
+  s.wanted = wanted_ = washout_->reset(sample);
   s.told = guard_.reset(s.wanted);
   s.reached = simulator_.reset(s.told);
   return s;
 }
 
-void CueingChain::take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample) {
-  washout_ = std::move(washout);
-  const PlatformCommand begins = washout_->reset(sample);
+std::unique_ptr<Washout> CueingChain::take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample,
+                                                double share) {
+  std::swap(washout_, washout);
+  restart(sample, share);
+  return washout;
+}
+
+void CueingChain::restart(const recording::MotionSample& sample, double share) {
+  wanted_ = washout_->reset(sample);
   const PlatformState at = guard_.state();
-  joined_at_.shift = at.shift - begins.shift;
-  joined_at_.angle = at.angle - begins.angle;
+  joined_at_.shift = at.shift - share * wanted_.shift;
+  joined_at_.angle = at.angle - share * wanted_.angle;
   since_joined_ = 0.0;
 }
 
-CueingStep CueingChain::step(const recording::MotionSample& sample, double step) {
+CueingStep CueingChain::step(const recording::MotionSample& sample, double step, double share) {
+  wanted_ = washout_->step(sample, step);
+  return follow(step, share);
+}
+
+CueingStep CueingChain::hold(double step, double share) { return follow(step, share); }
+
+CueingStep CueingChain::brake(double step) {
+  CueingStep s;
+  s.told = guard_.brake(step);
+  s.wanted = s.told;
+  s.reached = simulator_.step(s.told, step);
+  if (simulator_.leg_rates().size() > 0) s.leg_speed = simulator_.leg_rates().cwiseAbs().maxCoeff();
+  return s;
+}
+
+CueingStep CueingChain::follow(double step, double share) {
   constexpr double kJoins = 0.5;  // time constant, of second order [s]
   CueingStep s;
-  s.wanted = washout_->step(sample, step);
   if (step > 0.0 && std::isfinite(step)) since_joined_ += step;
   const double t = since_joined_ / kJoins, left = (1.0 + t) * std::exp(-t);
-  s.wanted.shift += left * joined_at_.shift;
-  s.wanted.angle += left * joined_at_.angle;
+  s.wanted = wanted_;
+  s.wanted.shift = share * wanted_.shift + left * joined_at_.shift;
+  s.wanted.angle = share * wanted_.angle + left * joined_at_.angle;
   s.told = guard_.step(s.wanted, step);
   s.limited = guard_.limited();
   s.reached = simulator_.step(s.told, step);

@@ -36,16 +36,30 @@ class CueingChain {
 
   /// The platform at rest in its neutral position.
   CueingStep reset(const recording::MotionSample& sample);
-  CueingStep step(const recording::MotionSample& sample, double step);
-  /// Another algorithm, which begins with this sample, from where the platform is.
-  void take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample);
+  /// @param share of the algorithm's command that the platform is given, 0 to 1: 0 leads it to its neutral position
+  CueingStep step(const recording::MotionSample& sample, double step, double share = 1.0);
+  /// Without a sample: the algorithm stands still and the platform follows a share of its last command.
+  CueingStep hold(double step, double share);
+  /// The platform stops as fast as its limits allow, and stays there.
+  CueingStep brake(double step);
+  /// The algorithm begins again with this sample, from where the platform is.
+  void restart(const recording::MotionSample& sample, double share = 1.0);
+  /// Another algorithm, which begins with this sample, from where the platform is. @param share as `step`
+  /// @return the one before, so that whoever is in a hurry need not free it
+  std::unique_ptr<Washout> take_over(std::unique_ptr<Washout> washout, const recording::MotionSample& sample,
+                                     double share = 1.0);
   [[nodiscard]] const PlatformGuard& guard() const { return guard_; }
   [[nodiscard]] const Washout& washout() const { return *washout_; }
 
  private:
+  /// Leads guard and platform after a share of what the algorithm wants.
+  CueingStep follow(double step, double share);
+
   std::unique_ptr<Washout> washout_;
   PlatformGuard guard_;
   PlatformSimulator simulator_;
+  /// Leads guard and platform after what the algorithm wants.
+  PlatformCommand wanted_;     ///< last, by the algorithm itself
   PlatformCommand joined_at_;  ///< by how much the command differed where the algorithm began
   double since_joined_ = 0.0;  ///< [s]
 };

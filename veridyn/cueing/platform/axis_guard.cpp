@@ -163,6 +163,16 @@ AxisState AxisGuard::step(double wanted, double step) {
   return state_;
 }
 
+AxisState AxisGuard::brake(double step) {
+  if (!(step > 0.0) || !std::isfinite(step)) return state_;
+  stop(step);
+  wanted_ = nearest_inside(fastest_stop(state_, limits_).position, limits_);
+  wanted_rate_ = wanted_acceleration_ = 0.0;
+  last_step_ = step;
+  limited_ = false;
+  return state_;
+}
+
 double AxisGuard::wanted_acceleration(double wanted, double rate, double acceleration, double step) const {
   const AxisLimits& most = new_limits_ ? *new_limits_ : limits_;
   const AxisState then = after(state_, 0.0, step);

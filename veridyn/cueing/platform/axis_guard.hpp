@@ -25,6 +25,9 @@ class AxisGuard {
   /// @param step since the last one [s]; below zero or not finite: none. In a gap longer than `kLongestStep` nobody
   ///   knows what was wanted: the axis stops, and follows again from the next step on.
   AxisState step(double wanted, double step);
+  /// The fastest way to rest within the limits, whatever was wanted: an emergency stop.
+  /// @param step as above
+  AxisState brake(double step);
   /// Other limits. Those before stay in force until the axis has been led to where the new ones hold.
   /// @throws InputError as the constructor; then the limits before stay.
   void change_limits(const AxisLimits& limits);

@@ -24,6 +24,13 @@ PlatformState PlatformGuard::step(const PlatformCommand& wanted, double step) {
   return state();
 }
 
+PlatformState PlatformGuard::brake(double step) {
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    if (moves_[i]) axes_[i].brake(step);
+  }
+  return state();
+}
+
 void PlatformGuard::change_limits(const PlatformLimits& limits) {
   limits.validate();
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {

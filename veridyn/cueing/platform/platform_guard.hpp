@@ -18,6 +18,8 @@ class PlatformGuard {
   /// Where the platform is to be. @param command only its shift and angle are read
   /// @param step as `AxisGuard::step`
   PlatformState step(const PlatformCommand& command, double step);
+  /// As `AxisGuard::brake`, every axis.
+  PlatformState brake(double step);
   /// As `AxisGuard::change_limits`, every axis by itself.
   void change_limits(const PlatformLimits& limits);
 
