@@ -25,6 +25,11 @@ std::string lower(std::string_view text) {
   return result;
 }
 
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 std::string shown(std::string_view text) {
   std::string result(text.substr(0, 40));
   for (char& c : result) {

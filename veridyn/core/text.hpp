@@ -13,6 +13,9 @@ namespace veridyn {
 /// ASCII letters as small letters.
 [[nodiscard]] std::string lower(std::string_view text);
 
+/// With a capital at its beginning, where that is an ASCII letter.
+[[nodiscard]] std::string capitalised(std::string text);
+
 /// Bytes of a file for a message: at most 40, what is not printable as '?'.
 [[nodiscard]] std::string shown(std::string_view text);
 

@@ -73,6 +73,7 @@ const std::map<std::string, NamedUnit, std::less<>>& known_units() {
       {"rev", {kAngle, 2.0 * kPi}},
       {"rpm", {kRate, 2.0 * kPi / 60.0}},
       {"Hz", {kFrequency, 1.0}},
+      {"kHz", {kFrequency, 1e3}},
       {"kt", {kSpeed, 1852.0 / 3600.0}},
       {"mph", {kSpeed, 0.44704}},
       {"kph", {kSpeed, 1.0 / 3.6}},

@@ -55,6 +55,11 @@ class LayoutBuilder {
     check(layout_);
     return layout_;
   }
+  /// Whether accelerations hold gravity.
+  LayoutBuilder& gravity(bool in) {
+    layout_.gravity_in = in;
+    return *this;
+  }
   [[nodiscard]] std::size_t size() const { return layout_.size; }
 
  private:
@@ -67,7 +72,8 @@ constexpr std::array<const char*, 4> kFrontFirst = {"fl", "fr", "rl", "rr"}, kRe
 /// positive.
 void add_outsim_main(LayoutBuilder& b) {
   constexpr double kPerMetre = 1.0 / 65536.0;
-  b.f32s({"ang_vel_x", "ang_vel_y", "ang_vel_z"}, "rad/s")
+  b.gravity(false)
+      .f32s({"ang_vel_x", "ang_vel_y", "ang_vel_z"}, "rad/s")
       .f32("yaw", "rad", 1.0, kPi / 2.0)
       .f32("pitch", "rad", -1.0)
       .f32("roll", "rad")
@@ -108,7 +114,8 @@ PacketLayout outgauge(bool with_id) {
 
 PacketLayout motion_68() {
   LayoutBuilder b("motion_68", "packet of 68 bytes with a time in seconds", false);
-  b.f32("time", "s")
+  b.gravity(false)
+      .f32("time", "s")
       .f32("yaw", "rad", 1.0, kPi / 2.0)
       .f32("pitch", "rad", -1.0)
       .f32("roll", "rad")
@@ -134,6 +141,7 @@ PacketLayout codemasters() {
   b.wheels("suspension", kRearFirst, "mm").wheels("suspension_rate", kRearFirst, "mm/s");
   b.wheels("wheel", kRearFirst, "m/s");
   b.f32s({"throttle", "steering", "brake", "clutch", "gear"});
+  b.gravity(false);
   b.f32("accel_y", "m/s^2", kGravity).f32("accel_x", "m/s^2", kGravity);  // lateral g is to the left
   return b.skip(30 * 4).done(264);
 }
@@ -144,7 +152,7 @@ LayoutBuilder forza_sled(std::string name, std::string sender) {
   b.add("race_is_on", GatherType::kInt32).add("time", GatherType::kUint32, "s", kPerMillisecond);
   for (const char* speed : {"engine_speed_max", "engine_speed_idle", "engine_speed"})
     b.f32(speed, "rad/s", 2.0 * kPi / 60.0);
-  b.f32("accel_y", "m/s^2", -1.0).f32("accel_z", "m/s^2").f32("accel_x", "m/s^2");
+  b.gravity(false).f32("accel_y", "m/s^2", -1.0).f32("accel_z", "m/s^2").f32("accel_x", "m/s^2");
   b.f32("velocity_y", "m/s", -1.0).f32("velocity_z", "m/s").f32("velocity_x", "m/s");
   // A left-handed frame: positive about right is nose down, about up to the right, about forward left side down.
   b.f32("gyro_y", "rad/s").f32("gyro_z", "rad/s", -1.0).f32("gyro_x", "rad/s", -1.0);
@@ -211,6 +219,16 @@ PacketLayout assetto_corsa() {
   return b.done(328);
 }
 
+/// The project's own, see docs/formats.md.
+PacketLayout veridyn_motion() {
+  LayoutBuilder b("veridyn", "Veridyn motion", true);
+  b.begins_with("VMO1").add("sequence", GatherType::kUint32).add("time", GatherType::kDouble, "s").gravity(true);
+  b.f32s({"pos_x", "pos_y", "pos_z"}, "m");
+  b.f32s({"world_velocity_x", "world_velocity_y", "world_velocity_z"}, "m/s");
+  b.f32s({"accel_x", "accel_y", "accel_z"}, "m/s^2").f32s({"gyro_x", "gyro_y", "gyro_z"}, "rad/s");
+  return b.f32s({"roll", "pitch", "yaw"}, "rad").done(76);
+}
+
 }  // namespace
 
 PacketLayout outsim2(std::uint32_t options) {
@@ -251,6 +269,7 @@ const std::vector<PacketLayout>& known_packets() {
       forza_dash("forza_2023", "Forza Motorsport (2023) Data Out, dash", 0, 20, 331),
       beamng(),
       assetto_corsa(),
+      veridyn_motion(),
   };
   return all;
 }

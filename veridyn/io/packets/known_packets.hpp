@@ -17,6 +17,7 @@ namespace veridyn::io {
 /// - `forza_sled`, `forza_dash`, `forza_horizon`, `forza_2023`: the maker's "Data Out": right, up, forward.
 /// - `beamng`: MotionSim of BeamNG.drive; no time in it.
 /// - `assetto_corsa`: `RTCarInfo` of its remote telemetry; accelerations in g, no attitude.
+/// - `veridyn`: the project's own, see docs/formats.md: specific force, so gravity is in it.
 [[nodiscard]] const std::vector<PacketLayout>& known_packets();
 
 /// One of them. @throws InputError naming those that there are

@@ -4,8 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/units.hpp"
 
@@ -24,6 +30,54 @@ constexpr std::array<std::pair<std::string_view, GatherType>, 10> kPacketTypes =
                                                                                    {"u32", GatherType::kUint32},
                                                                                    {"i64", GatherType::kInt64},
                                                                                    {"u64", GatherType::kUint64}}};
+
+template <typename T>
+void write_as(double value, char* at) {
+  T number{};
+  if constexpr (std::is_integral_v<T>) {
+    // Not the largest number itself, which a double cannot hold of 64 bits.
+    constexpr double kLowest = static_cast<double>(std::numeric_limits<T>::min()),
+                     kHighest = static_cast<double>(std::numeric_limits<T>::max());
+    if (std::isnan(value)) {
+      number = 0;
+    } else if (value >= kHighest) {
+      number = std::numeric_limits<T>::max();
+    } else {
+      number = static_cast<T>(std::round(std::max(value, kLowest)));
+    }
+  } else {
+    number = static_cast<T>(value);
+  }
+  std::memcpy(at, &number, sizeof number);
+}
+
+void write_number(double value, GatherType type, char* at) {
+  switch (type) {
+    case GatherType::kInt8:
+      return write_as<std::int8_t>(value, at);
+    case GatherType::kUint8:
+      return write_as<std::uint8_t>(value, at);
+    case GatherType::kInt16:
+      return write_as<std::int16_t>(value, at);
+    case GatherType::kUint16:
+      return write_as<std::uint16_t>(value, at);
+    case GatherType::kInt32:
+      return write_as<std::int32_t>(value, at);
+    case GatherType::kUint32:
+      return write_as<std::uint32_t>(value, at);
+    case GatherType::kInt64:
+      return write_as<std::int64_t>(value, at);
+    case GatherType::kUint64:
+      return write_as<std::uint64_t>(value, at);
+    case GatherType::kFloat:
+      return write_as<float>(value, at);
+    case GatherType::kDouble:
+      return write_as<double>(value, at);
+    case GatherType::kHalf:
+    case GatherType::kText:
+      break;
+  }
+}
 
 /// What is wrong with a layout, and with which field; empty where nothing is.
 struct LayoutFault {
@@ -88,6 +142,16 @@ void check(const PacketLayout& layout) {
     throw InputError("packet " + layout.name, fault.what);
 }
 
+void encode(const PacketLayout& layout, std::span<const double> values, std::span<char> packet) {
+  VERIDYN_ASSERT(values.size() == layout.fields.size() && packet.size() == layout.size);
+  std::fill(packet.begin(), packet.end(), '\0');
+  std::copy(layout.begins_with.begin(), layout.begins_with.end(), packet.begin());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const PacketField& f = layout.fields[i];
+    write_number((values[i] - f.bias) / f.factor, f.type, packet.data() + f.offset);
+  }
+}
+
 PacketLayout read_packet_layout(const StudyTable& table) {
   PacketLayout layout;
   layout.name = layout.sender = table.path();
@@ -97,6 +161,10 @@ PacketLayout read_packet_layout(const StudyTable& table) {
   layout.size = static_cast<std::size_t>(size);
   layout.begins_with = table.text_or("begins_with", "");
   layout.seen = true;  // by whoever wrote it
+  if (table.has("gravity")) {
+    const std::vector<std::string> choices = {"in", "out"};
+    layout.gravity_in = table.choice_or("gravity", choices, "in") == "in";
+  }
   std::vector<std::string> types;
   for (const auto& [name, type] : kPacketTypes) types.emplace_back(name);
   const std::vector<StudyTable> fields = table.tables("field");

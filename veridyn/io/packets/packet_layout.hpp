@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +37,9 @@ struct PacketLayout {
   std::vector<PacketField> fields;
   /// Whether the signs were seen to be right on recorded packets, and not only read in the sender's description.
   bool seen = false;
+  /// Whether accelerations hold gravity, as an accelerometer's do; nothing: not known. Those that are derived from
+  /// velocity do not.
+  std::optional<bool> gravity_in{};
 
   /// Where the field of that name lies in `fields`; its size where there is none.
   [[nodiscard]] std::size_t find(std::string_view field) const;
@@ -52,6 +57,7 @@ void check(const PacketLayout& layout);
 ///     [data.packet]
 ///     size = 28                    # bytes
 ///     begins_with = "RIG1"
+///     gravity = "in"               # or "out": whether accelerations hold gravity; may be left out of a file's packets
 ///     [[data.packet.field]]
 ///     name = "accel_x"             # as above
 ///     offset = 4
@@ -60,5 +66,10 @@ void check(const PacketLayout& layout);
 ///     factor = -1                  # a sign or a scale before the unit
 /// @throws InputError with file, line and key: as `check`, unknown types and units
 [[nodiscard]] PacketLayout read_packet_layout(const StudyTable& table);
+
+/// The packet that decodes to these values, rounded to what its numbers can hold; what is not a field is zero.
+/// @param values in the order of the layout's fields, in their units
+/// @param packet of the layout's size
+void encode(const PacketLayout& layout, std::span<const double> values, std::span<char> packet);
 
 }  // namespace veridyn::io

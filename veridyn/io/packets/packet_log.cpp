@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 #include "veridyn/io/packets/packet_decoder.hpp"
+#include "veridyn/io/packets/packet_derivatives.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
 namespace veridyn::io {
@@ -31,71 +31,21 @@ struct DecodedPackets {
   }
 };
 
-/// Slope of a vector over time about sample k, by least squares over the samples within `half` [s].
-Eigen::Vector3d slope(const std::vector<PacketMotion>& motions, std::size_t k, double half,
-                      const std::function<Eigen::Vector3d(const PacketMotion&)>& value) {
-  double n = 0.0, t1 = 0.0, t2 = 0.0;
-  Eigen::Vector3d y0 = Eigen::Vector3d::Zero(), y1 = y0;
-  const double at = motions[k].time;
-  const auto take = [&](std::size_t i) {
-    const double t = motions[i].time - at;
-    const Eigen::Vector3d y = value(motions[i]);
-    n += 1.0;
-    t1 += t;
-    t2 += t * t;
-    y0 += y;
-    y1 += t * y;
-  };
-  take(k);
-  for (std::size_t i = k; i-- > 0 && motions[i].time >= at - half;) take(i);
-  for (std::size_t i = k + 1; i < motions.size() && motions[i].time <= at + half; ++i) take(i);
-  const double spread = t2 - t1 * t1 / n;
-  if (!(spread > 0.0)) return Eigen::Vector3d::Zero();
-  return (y1 - t1 / n * y0) / spread;
-}
-
 /// Puts derived accelerations and rates where packets do not say them.
 /// @return what was derived, in words
 std::vector<std::string> derive(std::vector<PacketMotion>& motions) {
-  constexpr double kHalf = 0.05;  // [s]
   std::set<std::string> derived;
   const std::vector<PacketMotion> said = motions;
   constexpr std::array<const char*, 3> kAccelerations = {"accel_x", "accel_y", "accel_z"};
   for (std::size_t k = 0; k < said.size(); ++k) {
-    const Eigen::Matrix3d R = said[k].attitude.toRotationMatrix();
-    if (!R.allFinite()) continue;
-    if (!said[k].acceleration.allFinite() && said[k].velocity.allFinite()) {
-      const Eigen::Vector3d a = R.transpose() * slope(said, k, kHalf, [](const PacketMotion& m) { return m.velocity; });
-      for (int i = 0; i < 3; ++i) {
-        if (std::isfinite(said[k].acceleration(i))) continue;
-        motions[k].acceleration(i) = a(i);
-        derived.insert(kAccelerations[static_cast<std::size_t>(i)]);
-      }
+    const DerivedMotion d = with_derivatives(said, k);
+    motions[k] = d.motion;
+    for (std::size_t i = 0; i < kAccelerations.size(); ++i) {
+      if (d.acceleration[i]) derived.insert(kAccelerations[i]);
     }
-    if (!said[k].rate.allFinite()) {
-      // R' R^T is the cross product with the angular velocity.
-      const auto turn_of = [&](int axis) {
-        return slope(said, k, kHalf, [axis](const PacketMotion& m) {
-          return Eigen::Vector3d(m.attitude.toRotationMatrix().col(axis));
-        });
-      };
-      const Eigen::Vector3d forward = turn_of(0), left = turn_of(1);
-      motions[k].rate = {R.col(2).dot(left), -R.col(2).dot(forward), R.col(1).dot(forward)};
-      derived.insert("the angular rates");
-    }
+    if (d.rate) derived.insert("the angular rates");
   }
   return {derived.begin(), derived.end()};
-}
-
-/// Whether one packet can follow another in a drive: a little later, and about where the velocity leads.
-bool follows(const PacketMotion& before, const PacketMotion& after) {
-  constexpr double kLongestPause = 1.0, kStray = 1.0;  // [s], [m]
-  const double step = after.time - before.time;
-  if (!(step > 0.0 && step <= kLongestPause)) return false;
-  const Eigen::Vector3d moved = after.position - before.position;
-  if (!moved.allFinite() || !after.velocity.allFinite()) return true;
-  const double way = step * std::max(before.velocity.norm(), after.velocity.norm());
-  return moved.norm() <= 1.5 * way + kStray;
 }
 
 /// Share of packets, looked at here and there, that are such ones and are followed by another.
