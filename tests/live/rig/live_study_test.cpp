@@ -1,0 +1,80 @@
+#include "veridyn/live/rig/live_study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/live/weaving_drive.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace veridyn::live {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string refusal(const std::string& lines) {
+  return why([&] { static_cast<void>(test::rig_study(lines)); });
+}
+
+TEST(LiveStudy, ReadsWhereMotionComesFromAndGoesTo) {
+  const LiveStudy s = test::rig_study(
+      "packet = 'outsim'\nrate = '1 kHz'\ndelay = '15 ms'\nsigns = 'while'\nanswers = false\nsoft_start = 2\n");
+  EXPECT_EQ(to_string(s.telemetry), "127.0.0.1:47123");
+  EXPECT_EQ(to_string(s.platform), "127.0.0.1:47124");
+  ASSERT_EQ(s.layouts.size(), 1U);
+  EXPECT_EQ(s.layouts[0].name, "outsim");
+  EXPECT_EQ(s.options.rate, 1000.0);
+  EXPECT_EQ(s.options.even.delay, 0.015);
+  EXPECT_EQ(s.options.signs, SignCheck::kWhile);
+  EXPECT_FALSE(s.options.answers);
+  EXPECT_EQ(s.options.soft_start, 2.0);
+}
+
+TEST(LiveStudy, LooksForEveryPacketThatHoldsAMotion) {
+  const LiveStudy s = test::rig_study("");
+  EXPECT_GE(s.layouts.size(), 8U);
+  for (const io::PacketLayout& layout : s.layouts) EXPECT_NE(layout.name, "outgauge");
+}
+
+TEST(LiveStudy, RefusesInOneLineWithItsPlace) {
+  EXPECT_THAT(refusal("rate = '10 Hz'\n"), HasSubstr("rig.toml:8: live.rate: is 10 Hz; takes 20 to 4000 Hz"));
+  EXPECT_THAT(refusal("delay = '2 s'\n"), HasSubstr("live.delay: is 2 s; takes 0 to 0.5 s"));
+  EXPECT_THAT(refusal("packet = 'outgauge'\n"),
+              HasSubstr("= 'outgauge' is no known packet with a motion (any, outsim,"));
+  EXPECT_THAT(refusal("signs = 'never'\n"), HasSubstr("rig.toml:8"));
+  EXPECT_THAT(refusal("[live.packet]\nsize = 12\n[[live.packet.field]]\nname = 'time'\noffset = 0\n"
+                      "[[live.packet.field]]\nname = 'speed'\noffset = 2\n"),
+              HasSubstr("'speed' at 2 overlaps 'time'"));
+  EXPECT_THAT(refusal("[live.packet]\nsize = 12\n[[live.packet.field]]\nname = 'time'\noffset = 0\n"
+                      "[[live.packet.field]]\nname = 'speed'\noffset = 10\n"),
+              HasSubstr("'speed' ends at 14, the packet at 12"));
+}
+
+TEST(LiveStudy, RefusesAnAddressThatIsNone) {
+  for (const char* text : {"", "127.0.0.1", "127.0.0.1:0", "127.0.0.1:65536", "localhost:80", "256.0.0.1:80",
+                           "127.0.0.1:80x", "127.0.0:80", "1.2.3.4.5:80"})
+    EXPECT_THAT(why([&] { static_cast<void>(parse_address(text, "live.telemetry")); }),
+                HasSubstr("is no address: takes four numbers and a port"))
+        << text;
+  EXPECT_EQ(parse_address("0.0.0.0:4123", ""), (Sender{0, 4123}));
+}
+
+TEST(LiveStudy, NeedsItsTableAndOneAlgorithm) {
+  EXPECT_THAT(why([] { static_cast<void>(read_live_study(Study::parse("[cue]\n", "rig.toml"))); }),
+              HasSubstr("the table [live] says where telemetry comes from"));
+  EXPECT_THAT(
+      why([] {
+        static_cast<void>(read_live_study(Study::parse(
+            "[cue]\nalgorithms = ['classical', 'tilt']\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n",
+            "rig.toml")));
+      }),
+      HasSubstr("names 2; a platform follows one"));
+  EXPECT_THAT(
+      why([] {
+        static_cast<void>(read_live_study(Study::parse(
+            "[cue]\nforesee = 'lap'\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n", "rig.toml")));
+      }),
+      HasSubstr("foresee"));
+}
+
+}  // namespace
+}  // namespace veridyn::live

@@ -1,0 +1,217 @@
+#include "veridyn/live/recording/live_file.hpp"
+
+#include <algorithm>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/live/link/bytes.hpp"
+#include "veridyn/live/link/crc32.hpp"
+
+namespace veridyn::live {
+namespace {
+
+constexpr std::string_view kBlockStart = "BLK1", kHeadStart = "VLR1";
+constexpr std::size_t kFrame = 12;                 // start, length, CRC
+constexpr std::size_t kLargestBlock = 16U << 20U;  // [bytes]
+
+/// Writes numbers and texts one after the other.
+class RecordWriter {
+ public:
+  explicit RecordWriter(std::span<char> into) : into_(into) {}
+  template <typename T>
+  RecordWriter& add(T value) {
+    put_at(into_, at_, value);
+    at_ += sizeof value;
+    return *this;
+  }
+  /// With its length before it, cut to what fits.
+  RecordWriter& text(std::string_view text) {
+    const std::size_t fits = std::min({text.size(), into_.size() - at_ - 2, std::size_t{0xffff}});
+    add(static_cast<std::uint16_t>(fits));
+    text.copy(into_.data() + at_, fits);
+    at_ += fits;
+    return *this;
+  }
+  [[nodiscard]] std::size_t size() const { return at_; }
+
+ private:
+  std::span<char> into_;
+  std::size_t at_ = 0;
+};
+
+/// Reads them back; after the end everything is zero and `ok` false.
+class RecordReader {
+ public:
+  explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
+  template <typename T>
+  T get() {
+    if (bytes_.size() - at_ < sizeof(T)) {
+      ok_ = false;
+      return T{};
+    }
+    const T value = number_at<T>(bytes_, at_);
+    at_ += sizeof(T);
+    return value;
+  }
+  template <typename Length>
+  std::string_view text() {
+    const auto length = static_cast<std::size_t>(get<Length>());
+    if (!ok_ || bytes_.size() - at_ < length) {
+      ok_ = false;
+      return {};
+    }
+    const std::string_view text = bytes_.substr(at_, length);
+    at_ += length;
+    return text;
+  }
+  [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] bool ended() const { return at_ == bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+bool read_record(RecordReader& r, LiveRecord& record) {
+  const auto kind = r.get<std::uint8_t>();
+  record = {};
+  record.kind = static_cast<LiveRecord::Kind>(kind);
+  record.time = r.get<Nanoseconds>();
+  switch (record.kind) {
+    case LiveRecord::Kind::kDatagram: {
+      const auto link = r.get<std::uint8_t>();
+      if (link > static_cast<std::uint8_t>(LinkOf::kPlatform)) return false;
+      record.link = static_cast<LinkOf>(link);
+      record.datagram.arrival = r.get<Nanoseconds>();
+      record.datagram.sender.address = r.get<std::uint32_t>();
+      record.datagram.sender.port = r.get<std::uint16_t>();
+      record.datagram.bytes = r.text<std::uint16_t>();
+      return r.ok();
+    }
+    case LiveRecord::Kind::kWish: {
+      const auto wish = r.get<std::uint8_t>();
+      record.wish = static_cast<OperatorWish>(wish);
+      return r.ok() && wish <= static_cast<std::uint8_t>(OperatorWish::kSignsWrong);
+    }
+    case LiveRecord::Kind::kKnob:
+      record.knob = r.get<std::uint16_t>();
+      record.count = r.get<std::uint16_t>();
+      record.value = r.get<double>();
+      return r.ok();
+    case LiveRecord::Kind::kStep:
+      record.sent = r.get<Nanoseconds>();
+      record.order = r.text<std::uint16_t>();
+      return r.ok();
+  }
+  return false;
+}
+
+std::optional<LiveHead> read_head(std::string_view content) {
+  if (!content.starts_with(kHeadStart)) return std::nullopt;
+  RecordReader r(content.substr(kHeadStart.size()));
+  LiveHead head;
+  head.program = r.text<std::uint32_t>();
+  head.study_name = r.text<std::uint32_t>();
+  head.study = r.text<std::uint32_t>();
+  head.started = r.get<Nanoseconds>();
+  head.started_utc = r.get<std::int64_t>();
+  head.session = r.get<std::uint32_t>();
+  if (!r.ok()) return std::nullopt;
+  return head;
+}
+
+}  // namespace
+
+std::size_t encode(const LiveRecord& record, std::span<char> into) {
+  RecordWriter w(into);
+  w.add(record.kind).add(record.time);
+  switch (record.kind) {
+    case LiveRecord::Kind::kDatagram:
+      w.add(record.link).add(record.datagram.arrival).add(record.datagram.sender.address);
+      w.add(record.datagram.sender.port).text(record.datagram.bytes);
+      break;
+    case LiveRecord::Kind::kWish:
+      w.add(record.wish);
+      break;
+    case LiveRecord::Kind::kKnob:
+      w.add(record.knob).add(record.count).add(record.value);
+      break;
+    case LiveRecord::Kind::kStep:
+      w.add(record.sent).text(record.order);
+      break;
+  }
+  return w.size();
+}
+
+std::string encode(const LiveHead& head) {
+  std::string bytes(kHeadStart);
+  const auto add = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (const std::string* text : {&head.program, &head.study_name, &head.study}) {
+    add(static_cast<std::uint32_t>(text->size()));
+    bytes += *text;
+  }
+  add(head.started);
+  add(head.started_utc);
+  add(head.session);
+  return bytes;
+}
+
+std::string framed(std::string_view content) {
+  std::string block(kFrame, '\0');
+  kBlockStart.copy(block.data(), kBlockStart.size());
+  put_at(std::span(block), 4, static_cast<std::uint32_t>(content.size()));
+  put_at(std::span(block), 8, crc32(content));
+  block += content;
+  return block;
+}
+
+bool for_each_record(std::string_view content, const std::function<void(const LiveRecord&)>& use) {
+  RecordReader r(content);
+  LiveRecord record;
+  while (!r.ended()) {
+    if (!read_record(r, record)) return false;
+    use(record);
+  }
+  return true;
+}
+
+LiveFile parse_live_file(std::string_view bytes, const std::string& name) {
+  LiveFile file;
+  bool has_head = false;
+  std::size_t at = 0;
+  while (at < bytes.size()) {
+    const std::string_view rest = bytes.substr(at);
+    if (rest.size() < kFrame || !rest.starts_with(kBlockStart)) {
+      // Behind a damaged length the next block is looked for.
+      const std::size_t next = rest.find(kBlockStart, 1);
+      if (next == std::string_view::npos) break;
+      ++file.damaged;
+      at += next;
+      continue;
+    }
+    const std::size_t length = number_at<std::uint32_t>(rest, 4);
+    const std::string_view content = rest.substr(kFrame, length);
+    if (length <= kLargestBlock && content.size() == length && crc32(content) == number_at<std::uint32_t>(rest, 8)) {
+      if (const auto head = has_head ? std::nullopt : read_head(content)) {
+        file.head = *head;
+        has_head = true;
+      } else {
+        file.blocks.emplace_back(content);
+      }
+      at += kFrame + length;
+      continue;
+    }
+    const std::size_t next = rest.find(kBlockStart, 1);
+    if (next == std::string_view::npos) break;
+    ++file.damaged;
+    at += next;
+  }
+  file.cut_bytes = bytes.size() - at;
+  if (!has_head) throw InputError(name, "is no recording of a live run: it has no head");
+  return file;
+}
+
+LiveFile read_live_file(const std::filesystem::path& path) { return parse_live_file(read_file(path), path.string()); }
+
+}  // namespace veridyn::live

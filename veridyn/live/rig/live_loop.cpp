@@ -1,0 +1,158 @@
+#include "veridyn/live/rig/live_loop.hpp"
+
+#include <algorithm>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cmath>
+
+#include "veridyn/live/time/fixed_rate.hpp"
+
+namespace veridyn::live {
+
+std::vector<double> knob_values(cueing::WashoutDesign& design) {
+  std::vector<double> all;
+  for (const cueing::Knob& knob : design.knobs()) all.insert(all.end(), knob.values.begin(), knob.values.end());
+  return all;
+}
+
+void set_knob_values(cueing::WashoutDesign& design, const std::vector<double>& values) {
+  std::size_t at = 0;
+  for (const cueing::Knob& knob : design.knobs()) {
+    for (double& v : knob.values) {
+      if (at < values.size()) v = values[at];
+      ++at;
+    }
+  }
+}
+
+struct LiveControl::Queues {
+  boost::lockfree::spsc_queue<OperatorWish, boost::lockfree::capacity<64>> wishes;
+  boost::lockfree::spsc_queue<Telemetry, boost::lockfree::capacity<8000>> motions;
+  std::atomic<KnobSetting*> setting{nullptr};
+  boost::lockfree::spsc_queue<KnobSetting*, boost::lockfree::capacity<64>> done;
+
+  ~Queues() {
+    delete setting.load();
+    done.consume_all([](KnobSetting* s) { delete s; });
+  }
+  Queues() = default;
+  Queues(const Queues&) = delete;
+  Queues& operator=(const Queues&) = delete;
+};
+
+LiveControl::LiveControl() : queues_(std::make_unique<Queues>()) {}
+LiveControl::~LiveControl() = default;
+
+void LiveControl::wish(OperatorWish wish) { queues_->wishes.push(wish); }
+
+void LiveControl::turn(std::unique_ptr<KnobSetting> setting) {
+  delete queues_->setting.exchange(setting.release(), std::memory_order_acq_rel);
+}
+
+void LiveControl::tidy() {
+  queues_->done.consume_all([](KnobSetting* s) { delete s; });
+}
+
+const RigStatus& LiveControl::status() {
+  status_.update();
+  return status_.value();
+}
+
+void LiveControl::take_motions(std::vector<Telemetry>& motions) {
+  queues_->motions.consume_all([&](const Telemetry& t) { motions.push_back(t); });
+}
+
+LiveLoop::LiveLoop(const LiveStudy& study, std::uint32_t session)
+    : rig_(study, session), period_(nanoseconds(1.0 / study.options.rate)) {}
+
+void LiveLoop::take(const Incoming& incoming, Nanoseconds now, LiveControl& control, LiveRecorder* recorder) {
+  if (recorder != nullptr) {
+    LiveRecord r;
+    r.kind = LiveRecord::Kind::kDatagram;
+    r.time = now;
+    r.link = incoming.link;
+    r.datagram = incoming.datagram;
+    recorder->record(r);
+  }
+  if (const std::optional<Telemetry> t = rig_.take(incoming.link, incoming.datagram)) {
+    control.queues_->motions.push(*t);
+    if (arrived_ < kArrivals) arrivals_[arrived_++] = t->arrival;
+  }
+}
+
+void LiveLoop::take_wishes(LiveControl& control, Nanoseconds now, LiveRecorder* recorder) {
+  const auto wish = [&](OperatorWish w) {
+    rig_.wish(w);
+    if (recorder == nullptr) return;
+    LiveRecord r;
+    r.kind = LiveRecord::Kind::kWish;
+    r.time = now;
+    r.wish = w;
+    recorder->record(r);
+  };
+  OperatorWish w{};
+  while (control.queues_->wishes.pop(w)) wish(w);
+  if (control.emergency_.exchange(false)) wish(OperatorWish::kEmergency);
+  // What was done with goes back to be freed elsewhere; without room for it nothing new is taken.
+  if (control.queues_->done.write_available() == 0) return;
+  KnobSetting* setting = control.queues_->setting.exchange(nullptr, std::memory_order_acq_rel);
+  if (setting == nullptr) return;
+  if (recorder != nullptr) {
+    LiveRecord r;
+    r.kind = LiveRecord::Kind::kKnob;
+    r.time = now;
+    r.count = static_cast<std::uint16_t>(setting->values.size());
+    for (std::size_t i = 0; i < setting->values.size(); ++i) {
+      r.knob = static_cast<std::uint16_t>(i);
+      r.value = setting->values[i];
+      recorder->record(r);
+    }
+  }
+  setting->washout = rig_.take_over(std::move(setting->washout));
+  control.queues_->done.push(setting);
+}
+
+void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRecorder* recorder,
+                   std::optional<Nanoseconds> end) {
+  FixedRate rate(clock.now() + period_, period_);
+  while (!control.ended() && (!end || rate.next() <= *end)) {
+    while (const std::optional<Incoming> incoming = links.next(clock, rate.next()))
+      take(*incoming, clock.now(), control, recorder);
+    const Nanoseconds woke = clock.now();
+    take_wishes(control, woke, recorder);
+    const RigStep& step = rig_.step(rate.next());
+    if (!links.send({step.order.data(), step.order.size()})) ++times_.not_sent;
+    const Nanoseconds sent = clock.now();
+    for (std::size_t i = 0; i < arrived_; ++i) {
+      times_.receive_to_send.add(sent - arrivals_[i]);
+      times_.wait.add(woke - arrivals_[i]);
+    }
+    arrived_ = 0;
+    times_.work.add(sent - woke);
+    times_.wake.add(woke - rate.next());
+    if (times_.steps > 0) times_.jitter.add(std::abs(sent - last_sent_ - period_));
+    ++times_.steps;
+    last_sent_ = sent;
+    if (recorder != nullptr) {
+      LiveRecord r;
+      r.kind = LiveRecord::Kind::kStep;
+      r.time = step.time;
+      r.sent = sent;
+      r.order = {step.order.data(), step.order.size()};
+      recorder->record(r);
+    }
+    rate.advance(clock.now());
+    times_.left_out = rate.left_out();
+    RigStatus& status = control.status_.to_write();
+    status.step = step;
+    status.readiness = rig_.readiness();
+    status.answers = rig_.answers();
+    status.packets = rig_.intake().counts();
+    status.drives = rig_.intake().drives();
+    status.gaps = rig_.gaps();
+    status.drift = rig_.intake().clock().drift();
+    status.times = times_;
+    control.status_.publish();
+  }
+}
+
+}  // namespace veridyn::live

@@ -1,0 +1,239 @@
+#include "veridyn/live/rig/live_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace veridyn::live {
+namespace {
+
+using cueing::AxisState;
+using cueing::kPlatformAxes;
+using cueing::PlatformAxis;
+
+/// From 0 to 1 without a jump in rate and acceleration.
+double smooth(double phase) { return phase * phase * phase * (10.0 + phase * (-15.0 + 6.0 * phase)); }
+
+std::unique_ptr<cueing::Washout> algorithm_of(const LiveStudy& study) {
+  return study.cueing.algorithms.front().design->make(study.cueing.platform);
+}
+
+}  // namespace
+
+std::string_view name_of(Readiness readiness) {
+  switch (readiness) {
+    case Readiness::kReady:
+      return "ready";
+    case Readiness::kNoTelemetry:
+      return "no telemetry";
+    case Readiness::kFrozen:
+      return "the telemetry is frozen: the same motion over and over";
+    case Readiness::kTooSlow:
+      return "telemetry comes at less than 20 Hz";
+    case Readiness::kNoAnswer:
+      return "the platform does not answer";
+    case Readiness::kRefused:
+      return "the platform refuses orders: another program commands it, or it is at fault";
+    case Readiness::kSignsUnknown:
+      return "the telemetry's signs are not checked yet: drive, brake and turn";
+    case Readiness::kSignsWrong:
+      return "a sign, axis or unit of the telemetry is wrong";
+  }
+  return "";
+}
+
+LiveRig::LiveRig(const LiveStudy& study, std::uint32_t session)
+    : options_(study.options),
+      intake_(study.layouts, study.options.intake),
+      even_(study.options.even),
+      chain_(algorithm_of(study), study.cueing.platform),
+      session_(session) {
+  recording::MotionSample still;
+  still.frame = Frame::kFlu;
+  still.force = recording::force_at_rest(Frame::kFlu);
+  step_.cueing = chain_.reset(still);
+  last_sample_ = still;
+  entered_[0] = 1;
+}
+
+std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
+  if (link == LinkOf::kPlatform) {
+    const std::optional<PlatformAnswer> a = decode_answer(datagram.bytes);
+    if (!a || a->session != session_) {
+      ++answers_.unreadable;
+      return std::nullopt;
+    }
+    ++answers_.count;
+    answers_.verdict = a->verdict;
+    answers_.outside_limits = a->outside_limits;
+    answers_.round_trip = datagram.arrival - a->time;
+    answers_.reached = a->reached;
+    last_answer_ = datagram.arrival;
+    return std::nullopt;
+  }
+  if (datagram.bytes == kEmergencyPacket) {
+    wish(OperatorWish::kEmergency);
+    return std::nullopt;
+  }
+  std::optional<Telemetry> t = intake_.take(datagram);
+  if (!t) return t;
+  t->sample.place = options_.sensor;
+  if (last_packet_ && datagram.arrival > *last_packet_) {
+    // Packets of the last half second or so; several that came together count as one moment.
+    const double gap = seconds(datagram.arrival - *last_packet_), weight = std::min(gap / 0.5, 1.0);
+    rate_ = rate_ > 0.0 ? rate_ + weight * (1.0 / gap - rate_) : 1.0 / gap;
+  }
+  last_packet_ = datagram.arrival;
+  watch_frozen(*t);
+  anew_ = anew_ || t->anew;
+  even_.add(*t);
+  return t;
+}
+
+void LiveRig::watch_frozen(const Telemetry& t) {
+  constexpr double kStands = 0.5;  // [m/s]
+  const auto& s = t.sample;
+  const bool same = last_telemetry_ && std::abs(s.speed) > kStands && s.force == last_telemetry_->force &&
+                    s.rate == last_telemetry_->rate && s.position == last_telemetry_->position &&
+                    s.speed == last_telemetry_->speed;
+  if (!same) same_since_ = t.arrival;
+  last_telemetry_ = s;
+}
+
+void LiveRig::wish(OperatorWish wish) {
+  switch (wish) {
+    case OperatorWish::kStart:
+      wants_motion_ = true;
+      break;
+    case OperatorWish::kPark:
+      wants_motion_ = false;
+      wants_park_ = true;
+      break;
+    case OperatorWish::kEmergency:
+      wants_motion_ = false;
+      emergency_ = true;
+      break;
+    case OperatorWish::kRelease:
+      release_ = true;
+      break;
+    case OperatorWish::kSignsRight:
+      signs_right_ = signs_right_.value_or(true);
+      break;
+    case OperatorWish::kSignsWrong:
+      signs_right_ = false;
+      break;
+  }
+}
+
+std::unique_ptr<cueing::Washout> LiveRig::take_over(std::unique_ptr<cueing::Washout> washout) {
+  return chain_.take_over(std::move(washout), *last_sample_, step_.share);
+}
+
+Readiness LiveRig::ready_at(Nanoseconds time) const {
+  if (!last_packet_ || time - *last_packet_ > nanoseconds(options_.lost_after)) return Readiness::kNoTelemetry;
+  if (time - same_since_ > nanoseconds(options_.frozen_after)) return Readiness::kFrozen;
+  if (rate_ == 0.0) return Readiness::kNoTelemetry;  // the first packet
+  if (rate_ < options_.slowest_packets) return Readiness::kTooSlow;
+  if (options_.answers) {
+    if (!last_answer_ || time - *last_answer_ > nanoseconds(options_.unanswered_after)) return Readiness::kNoAnswer;
+    if (answers_.verdict == PlatformVerdict::kCommandedByAnother || answers_.verdict == PlatformVerdict::kFault)
+      return Readiness::kRefused;
+  }
+  if (options_.signs != SignCheck::kOff && signs_right_ == false) return Readiness::kSignsWrong;
+  if (options_.signs == SignCheck::kBefore && !signs_right_) return Readiness::kSignsUnknown;
+  return Readiness::kReady;
+}
+
+void LiveRig::handle(RigEvent event, Nanoseconds time) {
+  const RigState to = after(step_.state, event);
+  if (to == step_.state) return;
+  const RigState from = std::exchange(step_.state, to);
+  state_since_ = time;
+  ++entered_[static_cast<std::size_t>(to)];
+  // The algorithm begins again, from where the platform is, whenever motion is let through again, and behind an
+  // emergency stop, to be led to park from there.
+  if (to == RigState::kSoftStart && from == RigState::kParked) phase_ = 0.0;
+  if (from == RigState::kStopped) phase_ = 0.0;
+  if (to == RigState::kSoftStart || from == RigState::kStopped) chain_.restart(*last_sample_, smooth(phase_));
+}
+
+void LiveRig::drive(double dt) {
+  RigStep& s = step_;
+  if (s.state == RigState::kSoftStart) phase_ = std::min(phase_ + dt / options_.soft_start, 1.0);
+  if (s.state == RigState::kFade || s.state == RigState::kParked) phase_ = std::max(phase_ - dt / options_.fade, 0.0);
+  s.share = smooth(phase_);
+  switch (s.state) {
+    case RigState::kStopped:
+      s.cueing = chain_.brake(dt);
+      break;
+    case RigState::kSoftStart:
+    case RigState::kRunning:
+      s.cueing = chain_.step(*last_sample_, dt, s.share);
+      break;
+    case RigState::kParked:
+    case RigState::kHold:
+    case RigState::kFade:
+      s.cueing = chain_.hold(dt, s.share);
+      break;
+  }
+}
+
+bool LiveRig::at_rest_in_neutral() const {
+  constexpr double kClose = 1e-3, kSlow = 1e-3;  // [m or rad], [m/s or rad/s]
+  if (phase_ > 0.0) return false;
+  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+    const AxisState a = axis(step_.cueing.told, static_cast<PlatformAxis>(i));
+    if (!(std::abs(a.position) < kClose && std::abs(a.rate) < kSlow)) return false;
+  }
+  return true;
+}
+
+const RigStep& LiveRig::step(Nanoseconds time) {
+  const double dt = begun_ ? seconds(time - last_time_) : 0.0;
+  const bool gap = dt > cueing::AxisGuard::kLongestStep;
+  gaps_ += gap ? 1 : 0;
+  begun_ = true;
+  last_time_ = time;
+  step_.time = time;
+  step_.motion = even_.at(time, intake_.clock());
+  if (step_.motion) {
+    step_.motion->sample = recording::at_place(step_.motion->sample, options_.driver);
+    last_sample_ = step_.motion->sample;
+  }
+  if ((anew_ || gap) && (step_.state == RigState::kRunning || step_.state == RigState::kSoftStart)) {
+    chain_.restart(*last_sample_, step_.share);
+  }
+  anew_ = false;
+  readiness_ = ready_at(time);
+  const bool ready = readiness_ == Readiness::kReady;
+  // What stops comes before what starts.
+  if (std::exchange(emergency_, false)) {
+    handle(RigEvent::kEmergency, time);
+    release_ = false;
+  }
+  if (std::exchange(wants_park_, false) || readiness_ == Readiness::kSignsWrong) handle(RigEvent::kPark, time);
+  if (std::exchange(release_, false)) handle(RigEvent::kRelease, time);
+  if (!ready) handle(RigEvent::kLost, time);
+  if (step_.state == RigState::kHold) {
+    if (ready) {
+      handle(RigEvent::kBack, time);
+    } else if (time - state_since_ >= nanoseconds(options_.hold)) {
+      handle(RigEvent::kHeldLong, time);
+    }
+  }
+  if (step_.state == RigState::kFade && at_rest_in_neutral()) handle(RigEvent::kFaded, time);
+  if (step_.state == RigState::kParked && wants_motion_ && ready) handle(RigEvent::kStart, time);
+  if (step_.state == RigState::kSoftStart && phase_ >= 1.0) handle(RigEvent::kStarted, time);
+  drive(dt);
+  ++step_.sequence;
+  PlatformOrder order;
+  order.session = session_;
+  order.sequence = step_.sequence;
+  order.time = time;
+  order.state = step_.state;
+  order.motion = step_.cueing.told;
+  step_.order = encode(order);
+  return step_;
+}
+
+}  // namespace veridyn::live

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "veridyn/cueing/chain/cueing_chain.hpp"
+#include "veridyn/live/platform/platform_packet.hpp"
+#include "veridyn/live/recording/live_record.hpp"
+#include "veridyn/live/rig/live_study.hpp"
+
+namespace veridyn::live {
+
+/// A datagram of these bytes where telemetry comes in is an emergency stop, whoever sends it.
+inline constexpr std::string_view kEmergencyPacket = "VSTOP1";
+
+/// One step of a rig.
+struct RigStep {
+  Nanoseconds time = 0;
+  RigState state = RigState::kParked;
+  double share = 0.0;                ///< of the motion that the platform is given
+  std::optional<EvenSample> motion;  ///< of the vehicle, at the driver's head
+  cueing::CueingStep cueing;
+  OrderBytes order = {};
+  std::uint32_t sequence = 0;
+};
+
+/// Why a rig that is to run stays parked.
+enum class Readiness {
+  kReady,
+  kNoTelemetry,  ///< none accepted, or not for a while
+  kFrozen,       ///< packets say the same motion over and over
+  kTooSlow,      ///< fewer packets than `slowest_packets`
+  kNoAnswer,     ///< of the platform
+  kRefused,      ///< the platform is commanded by another program, or at fault
+  kSignsUnknown,
+  kSignsWrong,
+};
+[[nodiscard]] std::string_view name_of(Readiness readiness);
+
+/// The rig without clocks, sockets and threads: datagrams, the operator's wishes and times in, orders to the platform
+/// out. The same in gives the same out, bit for bit: a recorded run is replayed by feeding it again.
+///
+/// Platform and motion pass through `cueing::CueingChain` and its guard as in `veridyn cue`. Nothing is allocated or
+/// thrown after construction.
+class LiveRig {
+ public:
+  /// @param session of the orders @throws InputError as the intake and the chain
+  LiveRig(const LiveStudy& study, std::uint32_t session);
+
+  /// Something came in. @return of telemetry, the motion it holds where it was accepted
+  std::optional<Telemetry> take(LinkOf link, const Datagram& datagram);
+  /// Takes effect with the next step.
+  void wish(OperatorWish wish);
+  /// An algorithm that was made elsewhere takes over, from where the platform is.
+  /// @return the one before, for whoever frees it
+  std::unique_ptr<cueing::Washout> take_over(std::unique_ptr<cueing::Washout> washout);
+  /// One step. @param time later than that of the step before
+  const RigStep& step(Nanoseconds time);
+
+  [[nodiscard]] RigState state() const { return step_.state; }
+  [[nodiscard]] Readiness readiness() const { return readiness_; }
+  [[nodiscard]] const PacketIntake& intake() const { return intake_; }
+  /// Answers of the platform: how many, those that could not be read, the last one's verdict, orders that it counted
+  /// outside its limits, and the round trip of the last.
+  struct Answers {
+    std::uint64_t count = 0, unreadable = 0;
+    PlatformVerdict verdict = PlatformVerdict::kFollows;
+    std::uint32_t outside_limits = 0;
+    Nanoseconds round_trip = 0;
+    cueing::PerPlatformAxis<float> reached = {};
+  };
+  [[nodiscard]] const Answers& answers() const { return answers_; }
+  /// Steps that came so late that the platform had to stop.
+  [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
+  /// How often each state began.
+  [[nodiscard]] const std::array<std::uint64_t, kRigStates>& entered() const { return entered_; }
+
+ private:
+  [[nodiscard]] Readiness ready_at(Nanoseconds time) const;
+  void handle(RigEvent event, Nanoseconds time);
+  void drive(double dt);
+  [[nodiscard]] bool at_rest_in_neutral() const;
+  void watch_frozen(const Telemetry& telemetry);
+
+  RigOptions options_;
+  PacketIntake intake_;
+  EvenMotion even_;
+  cueing::CueingChain chain_;
+  std::uint32_t session_;
+  std::optional<recording::MotionSample> last_sample_;  ///< at the driver's head
+  std::optional<Nanoseconds> last_packet_, last_answer_, last_verdict_bad_;
+  Nanoseconds same_since_ = 0, last_time_ = 0, state_since_ = 0;
+  double rate_ = 0.0;  ///< of packets, low-passed [Hz]
+  std::optional<recording::MotionSample> last_telemetry_;
+  bool begun_ = false, anew_ = false;
+  bool wants_motion_ = false, wants_park_ = false, emergency_ = false, release_ = false;
+  std::optional<bool> signs_right_;
+  double phase_ = 0.0;  ///< of soft start and fade, 0 parked to 1
+  Readiness readiness_ = Readiness::kNoTelemetry;
+  RigStep step_;
+  Answers answers_;
+  std::uint64_t gaps_ = 0;
+  std::array<std::uint64_t, kRigStates> entered_ = {};
+};
+
+}  // namespace veridyn::live

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/cueing/cueing_study.hpp"
+#include "veridyn/live/link/datagram.hpp"
+#include "veridyn/live/rig/rig_options.hpp"
+#include "veridyn/live/virtual/virtual_vehicle.hpp"
+
+namespace veridyn::live {
+
+/// A study of `veridyn cue --live`: platform, algorithm and rider as `veridyn cue` has them, and where motion comes
+/// from and goes to.
+///
+///     [live]
+///     telemetry = "127.0.0.1:4123"     # listens here for packets; 0.0.0.0 for all of the machine's addresses
+///     packet = "outsim"                # see io::known_packets; "any" (when left out) recognises them by content
+///     [live.packet]                    # or a layout of one's own, see io::read_packet_layout
+///     platform = "127.0.0.1:5123"      # orders go there
+///     answers = true                   # whether the platform answers them
+///     rate = "100 Hz"                  # of orders, 20 Hz to 4 kHz
+///     delay = "20 ms"                  # of the motion, for packets that come late; extrapolate = "30 ms" where they
+///     do not soft_start = 3, hold = 0.5, fade = 3                  # [s] lost_after = 0.25, frozen_after = 1,
+///     stale_after = 0.25, unanswered_after = 0.25   # [s] signs = "before"                 # or "while" or "off": when
+///     the telemetry's signs are checked
+struct LiveStudy {
+  cueing::CueingStudy cueing;  ///< without a drive; one algorithm
+  std::vector<io::PacketLayout> layouts;
+  Sender telemetry;  ///< where we listen
+  Sender platform;   ///< where orders go
+  RigOptions options;
+};
+
+/// All keys but those of a drive are read; [data], [drive], [subject], [road] are known and left alone.
+/// @throws InputError for anything that is wrong in it.
+[[nodiscard]] LiveStudy read_live_study(const Study& study);
+
+/// How the virtual vehicle sends, from `[live.vehicle]`:
+///     rate = "100 Hz", jitter = "20 ms", loss = 0.01, clock_drift = 50e-6, seed = 1
+/// @throws InputError with file, line and key
+[[nodiscard]] VirtualVehicleOptions read_virtual_vehicle(const StudyTable& live);
+
+/// "127.0.0.1:4123". @throws InputError at `place`
+[[nodiscard]] Sender parse_address(std::string_view text, const std::string& place);
+
+}  // namespace veridyn::live

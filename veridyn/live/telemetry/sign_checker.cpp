@@ -1,0 +1,63 @@
+#include "veridyn/live/telemetry/sign_checker.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "veridyn/recording/drive_axis_check.hpp"
+#include "veridyn/recording/motion_recording.hpp"
+
+namespace veridyn::live {
+namespace {
+
+constexpr double kLongest = 120.0;  // [s]
+
+}  // namespace
+
+void SignChecker::add(const std::vector<recording::MotionSample>& samples) {
+  for (const recording::MotionSample& s : samples) {
+    if (!samples_.empty() && s.time <= samples_.back().time) continue;
+    samples_.push_back(s);
+  }
+  if (samples_.empty()) return;
+  const double from = samples_.back().time - kLongest;
+  const auto first =
+      std::find_if(samples_.begin(), samples_.end(), [&](const recording::MotionSample& s) { return s.time >= from; });
+  samples_.erase(samples_.begin(), first);
+}
+
+SignVerdict SignChecker::check() const {
+  struct Needed {
+    const char* relation;
+    const char* to_do;
+    bool fits = false;
+  };
+  std::vector<Needed> all = {{"accel_x", "accelerate and brake"}, {"accel_y", "drive bends"}, {"gyro_z", "turn"}};
+  if (samples_.size() >= 2) {
+    Recording recording = recording::to_recording(samples_);
+    std::vector<double> speed;
+    for (const recording::MotionSample& sample : samples_) speed.push_back(sample.speed);
+    if (samples_.front().speed_from != recording::Origin::kAbsent)
+      recording.add(make_channel("speed", "m/s", recording.find("accel_x")->time, std::move(speed)));
+    const recording::DriveAxisCheck check = recording::check_drive_axes(recording::drive_motion(recording));
+    if (!check.faults.empty()) {
+      std::vector<std::string> faults;
+      for (const recording::DriveFault& f : check.faults)
+        faults.push_back(fmt::format("{} (correlation {:.2f})", f.text, f.correlation));
+      return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, "; "))};
+    }
+    for (Needed& n : all) {
+      for (const recording::DriveRelation& r : check.relations)
+        n.fits = n.fits || (r.text.starts_with(n.relation) && r.judged && r.fits);
+    }
+  }
+  std::vector<std::string> missing;
+  for (const Needed& n : all) {
+    if (!n.fits) missing.emplace_back(n.to_do);
+  }
+  if (missing.empty()) return {SignVerdict::Kind::kRight, ""};
+  return {SignVerdict::Kind::kUnknown, fmt::format("{}", fmt::join(missing, ", "))};
+}
+
+}  // namespace veridyn::live
