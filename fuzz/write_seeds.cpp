@@ -7,6 +7,8 @@
 #include "tests/vehicle/tyre/small_tir.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/io/packets/known_packets.hpp"
+#include "veridyn/live/recording/live_file.hpp"
 
 int main(int count, char** arguments) {
   if (count != 2) {
@@ -44,6 +46,24 @@ int main(int count, char** arguments) {
     std::string packets(1, '\0');
     for (int k = 1; k <= 12; ++k) packets += std::string({'\0', static_cast<char>(k)}) + std::string(62, '\0');
     write("packet", packets);
+    // Twelve packets of a car that stands, as a socket gives them.
+    const veridyn::io::PacketLayout& motion = veridyn::io::known_packet("veridyn");
+    std::vector<double> values(motion.fields.size(), 0.0);
+    std::string packet(motion.size, '\0'), datagrams;
+    for (int k = 0; k < 12; ++k) {
+      values[motion.find("time")] = 1.0 + 0.01 * k;
+      values[motion.find("accel_z")] = 9.8;
+      veridyn::io::encode(motion, values, packet);
+      datagrams += static_cast<char>(packet.size());
+      datagrams += packet;
+    }
+    write("telemetry", datagrams);
+    veridyn::live::LiveRecord step;
+    step.order = "order";
+    std::string records(veridyn::live::kLargestRecord, '\0');
+    records.resize(veridyn::live::encode(step, records));
+    write("live_file",
+          veridyn::live::framed(veridyn::live::encode(veridyn::live::LiveHead{})) + veridyn::live::framed(records));
     write("tir", veridyn::vehicle::testing::small_tir());
     const std::string road =
         "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";

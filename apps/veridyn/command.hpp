@@ -88,6 +88,7 @@ struct Command {
 [[nodiscard]] Command inspect_command();
 [[nodiscard]] Command reconstruct_command();
 [[nodiscard]] Command reproduce_command();
+[[nodiscard]] Command rig_command();
 [[nodiscard]] Command scale_command();
 [[nodiscard]] Command sensitivity_command();
 [[nodiscard]] Command simulate_command();

@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/cue_live.hpp"
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/cueing/cueing_study.hpp"
 #include "veridyn/report/cueing_report.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -164,6 +166,7 @@ void print_scores(const CommonOptions& options, const CueingStudy& study, const 
 }  // namespace
 
 int cue_platform(const StudyRun& run) {
+  if (run.arguments.flag("--live")) return cue_live(run);
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
   const CueingStudy study = cueing::read_study(run.study, progress);
@@ -185,13 +188,22 @@ int cue_platform(const StudyRun& run) {
 }
 
 Command cue_command() {
-  return {
-      .name = "cue",
-      .summary = "a drive on a motion platform: washout algorithms, limits, and how it feels",
-      .arguments = {{.name = "STUDY", .help = "study file; its table [cue] names the algorithms", .required = true}},
-      .default_out = "out/cue",
-      .example = "veridyn cue examples/studies/cueing/double_lane_change.toml --out out/cue",
-      .run = [](const Arguments& arguments) { return run_on_study("cue", arguments); }};
+  return {.name = "cue",
+          .summary = "a drive on a motion platform: washout algorithms, limits, and how it feels",
+          .arguments =
+              {{.name = "STUDY", .help = "study file; its table [cue] names the algorithms"},
+               {.name = "--live", .help = "follow telemetry as it comes, by the study's [live]", .value = false},
+               {.name = "--start", .help = "with --live: start as soon as all is ready", .value = false},
+               {.name = "--seconds", .help = "with --live: park and end after this time; 0: with Ctrl-C", .value = 0.0},
+               {.name = "--replay", .help = "a recorded live run, computed again and compared", .type = "FILE"}},
+          .default_out = "out/cue",
+          .example = "veridyn cue examples/studies/cueing/double_lane_change.toml --out out/cue",
+          .run = [](const Arguments& arguments) {
+            const bool replayed = !arguments.text("--replay").empty(), of_study = !arguments.text("STUDY").empty();
+            if (replayed == of_study)
+              throw InputError("cue", "takes a study, or --replay and a recorded run: either, not both");
+            return replayed ? cue_replay(arguments) : run_on_study("cue", arguments);
+          }};
 }
 
 }  // namespace veridyn::app

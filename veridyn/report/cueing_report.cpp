@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "veridyn/core/text.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/platform_figure.hpp"
 #include "veridyn/report/figures/response_figures.hpp"
@@ -34,11 +34,6 @@ double three_digits(double value) {
   if (value == 0.0 || !std::isfinite(value)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
   return unit * std::round(value / unit);
-}
-
-std::string capitalised(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
 }
 
 bool is_moved(const CueingResult& result, Cue cue) {

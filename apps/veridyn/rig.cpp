@@ -1,0 +1,141 @@
+// veridyn rig vehicle|platform STUDY: the virtual rig, so that anyone can run all of a live rig at home.
+#include <fmt/format.h>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/live/rig/live_study.hpp"
+#include "veridyn/live/virtual/virtual_platform.hpp"
+#ifdef VERIDYN_HAS_SOCKETS
+#include "veridyn/live/link/udp_socket.hpp"
+#endif
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::live;
+
+#ifdef VERIDYN_HAS_SOCKETS
+
+/// Until Ctrl-C or --seconds.
+class UntilOver {
+ public:
+  UntilOver(const Arguments& arguments, Nanoseconds start)
+      : interruption_(arguments.common.interruption),
+        end_(arguments.number("--seconds") > 0.0 ? start + nanoseconds(arguments.number("--seconds")) : 0) {}
+  [[nodiscard]] bool over(Nanoseconds now) const { return interruption_.requested() || (end_ != 0 && now >= end_); }
+
+ private:
+  Interruption interruption_;
+  Nanoseconds end_;
+};
+
+int rig_platform(const Arguments& arguments) {
+  const CommonOptions& options = arguments.common;
+  const LiveStudy study = read_live_study(Study::load(arguments.text("STUDY"), options.overrides));
+  UdpSocket socket(study.platform, "live.platform");
+  VirtualPlatform platform(study.cueing.platform);
+  RealClock clock;
+  const UntilOver until(arguments, clock.now());
+  print_line(options,
+             fmt::format("platform {} takes orders at {}", study.cueing.platform.name, to_string(study.platform)));
+  std::string commander;
+  std::uint64_t refused = 0;
+  while (!until.over(clock.now())) {
+    constexpr Nanoseconds kStep = 5 * kMillisecond;
+    socket.wait(clock.now() + kStep);
+    while (const auto datagram = socket.receive()) {
+      if (const auto answer = platform.take(*datagram)) {
+        const AnswerBytes bytes = encode(*answer);
+        socket.send_to(datagram->sender, {bytes.data(), bytes.size()});
+      }
+      platform.step(clock.now());
+    }
+    platform.step(clock.now());
+    if (platform.commander() != commander) {
+      commander = platform.commander();
+      print_line(options, fmt::format("{} commands the platform", commander));
+    }
+    if (platform.counts().refused > refused && refused == 0)
+      print_line(options,
+                 fmt::format("orders of {} are refused: {} commands the platform", platform.last_refused(), commander));
+    refused = platform.counts().refused;
+  }
+  const VirtualPlatform::Counts& c = platform.counts();
+  Summary summary;
+  summary["orders_followed"] = c.followed;
+  summary["orders_outside_limits"] = c.outside;
+  summary["jumps"] = c.jumps;
+  summary["orders_of_others_refused"] = c.refused;
+  summary["orders_old"] = c.old;
+  summary["unreadable"] = c.unreadable;
+  summary["silences"] = c.silences;
+  print_summary(summary, options);
+  print_line(options,
+             fmt::format("{} orders followed, {} beyond limits, {} jumps, {} of other programs refused, {} unreadable",
+                         c.followed, c.outside, c.jumps, c.refused, c.unreadable));
+  return c.outside + c.jumps > 0 ? kFailed : kDone;
+}
+
+int rig_vehicle(const Arguments& arguments) {
+  const CommonOptions& options = arguments.common;
+  const Study file = Study::load(arguments.text("STUDY"), options.overrides);
+  const LiveStudy study = read_live_study(file);
+  TerminalProgress progress = progress_of(options);
+  cueing::CueingStudy drive = cueing::read_study(file, progress);
+  if (progress.interrupted()) throw Interrupted();
+  if (drive.vehicle.size() < 2)
+    throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
+  // Packets say what happens where the sensor is.
+  for (recording::MotionSample& s : drive.vehicle) s = recording::at_place(s, drive.motion.place);
+  VirtualVehicle vehicle(std::move(drive.vehicle), read_virtual_vehicle(file.root().table("live")));
+  UdpSocket socket = UdpSocket::connected(study.telemetry, "live.telemetry");
+  RealClock clock;
+  const Nanoseconds start = clock.now();
+  const UntilOver until(arguments, start);
+  print_line(options, fmt::format("{} drives, packets to {}", drive.drive, to_string(study.telemetry)));
+  std::uint64_t not_sent = 0;
+  while (!until.over(clock.now())) {
+    clock.sleep_until(start + vehicle.due());
+    if (const auto packet = vehicle.next(); packet && !socket.send(*packet)) ++not_sent;
+  }
+  Summary summary;
+  summary["packets_sent"] = vehicle.sent() - not_sent;
+  summary["packets_lost_on_purpose"] = vehicle.lost();
+  print_summary(summary, options);
+  print_line(options, fmt::format("{} packets sent", vehicle.sent() - not_sent));
+  return kDone;
+}
+
+#else
+
+int rig_platform(const Arguments&) {
+  throw InputError("rig", "this program was built without sockets (see VERIDYN_SOCKETS)");
+}
+int rig_vehicle(const Arguments& arguments) { return rig_platform(arguments); }
+
+#endif
+
+}  // namespace
+
+Command rig_command() {
+  const std::vector<Argument> arguments = {
+      {.name = "STUDY", .help = "study file with [live]", .required = true},
+      {.name = "--seconds", .help = "end after this time; 0: with Ctrl-C", .value = 0.0}};
+  return {
+      .name = "rig",
+      .summary = "the virtual rig: a vehicle that sends telemetry, a platform that follows orders",
+      .commands = {
+          {.name = "vehicle",
+           .summary = "drives the study's drive again and again and sends it as packets",
+           .arguments = arguments,
+           .example = "veridyn rig vehicle examples/studies/cueing/live.toml",
+           .run = rig_vehicle},
+          {.name = "platform",
+           .summary = "follows orders as the study's platform would, answers them and counts what is beyond its limits",
+           .arguments = arguments,
+           .example = "veridyn rig platform examples/studies/cueing/live.toml",
+           .run = rig_platform}}};
+}
+
+}  // namespace veridyn::app
