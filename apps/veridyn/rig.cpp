@@ -3,6 +3,7 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/rig_test.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/live/virtual/virtual_platform.hpp"
@@ -135,7 +136,8 @@ Command rig_command() {
            .summary = "follows orders as the study's platform would, answers them and counts what is beyond its limits",
            .arguments = arguments,
            .example = "veridyn rig platform examples/studies/cueing/live.toml",
-           .run = rig_platform}}};
+           .run = rig_platform},
+          rig_test_command()}};
 }
 
 }  // namespace veridyn::app

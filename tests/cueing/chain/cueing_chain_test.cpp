@@ -57,6 +57,69 @@ TEST(CueingChain, AnotherAlgorithmTakesOverWithoutAJump) {
   EXPECT_LT((after.wanted.angle - before.wanted.angle).norm(), 1e-3 * kDegree);
 }
 
+/// A chain that has followed the drive for seven seconds.
+CueingChain driven_chain() {
+  CueingChain chain(washout("classical"), built_in_platform("hexapod"));
+  chain.reset(driving(0.0));
+  for (int k = 1; k < 700; ++k) chain.step(driving(0.01 * k), 0.01);
+  return chain;
+}
+
+TEST(CueingChain, FollowsAShareOfItsAlgorithmAndLeadsToNeutralAtNone) {
+  CueingChain whole = driven_chain(), half = driven_chain();
+  CueingStep w, h;
+  for (int k = 700; k < 1300; ++k) {
+    w = whole.step(driving(0.01 * k), 0.01);
+    h = half.step(driving(0.01 * k), 0.01, 0.5);
+  }
+  EXPECT_GT(w.told.angle.norm(), 1.0 * kDegree);
+  EXPECT_LT((h.told.angle - 0.5 * w.told.angle).norm(), 1e-3 * kDegree);
+  for (int k = 0; k < 500; ++k) h = half.hold(0.01, 0.0);
+  EXPECT_LT(h.told.angle.norm(), 1e-6);
+  EXPECT_LT(h.told.shift.norm(), 1e-6);
+}
+
+TEST(CueingChain, HoldsWhatItWasLastTold) {
+  CueingChain chain = driven_chain();
+  const CueingStep before = chain.step(driving(7.0), 0.01);
+  CueingStep s;
+  for (int k = 0; k < 100; ++k) s = chain.hold(0.01, 1.0);
+  EXPECT_LT((s.told.angle - before.wanted.angle).norm(), 1e-6);
+  EXPECT_LT(s.told.rate.norm(), 1e-6);
+}
+
+TEST(CueingChain, BrakesToRestAsFastAsItsLimitsAllow) {
+  CueingChain chain = driven_chain();
+  const PlatformState at = chain.guard().state();
+  const AxisState pitch = axis(at, PlatformAxis::kPitch);
+  ASSERT_GT(std::abs(pitch.rate), 0.5 * kDegree);
+  const AxisLimits& limits = built_in_platform("hexapod").limits[PlatformAxis::kPitch];
+  CueingStep s;
+  double time = 0.0;
+  do {
+    s = chain.brake(0.005);
+    time += 0.005;
+  } while (s.told.rate.norm() + s.told.velocity.norm() > 0.0 && time < 2.0);
+  // From rate v and acceleration a: the jerk's way there and back, and the rate itself by the most acceleration.
+  EXPECT_LT(time, 3.0 * limits.acceleration / limits.jerk + std::abs(pitch.rate) / limits.acceleration + 0.02);
+  const PlatformState rest = chain.guard().state();
+  chain.brake(0.1);
+  EXPECT_EQ(chain.guard().state().angle, rest.angle);
+}
+
+TEST(CueingChain, BeginsAgainFromWhereThePlatformIs) {
+  CueingChain chain = driven_chain();
+  for (int k = 0; k < 50; ++k) chain.brake(0.01);
+  const PlatformState rest = chain.guard().state();
+  ASSERT_GT(rest.angle.norm(), 1.0 * kDegree);
+  // With no share at first, as after an emergency stop: it stays, and then goes home gently.
+  chain.restart(driving(20.0), 0.0);
+  CueingStep s = chain.hold(0.01, 0.0);
+  EXPECT_LT((s.wanted.angle - rest.angle).norm(), 0.02 * kDegree);
+  for (int k = 0; k < 800; ++k) s = chain.hold(0.01, 0.0);
+  EXPECT_LT(s.told.angle.norm(), 1e-4);
+}
+
 TEST(CueingChain, ACopyGoesOnAlike) {
   CueingChain chain(washout("adaptive"), built_in_platform("hexapod"));
   chain.reset(driving(0.0));

@@ -81,9 +81,9 @@ double as_sent(const PacketField& f, double value) { return (value - f.bias) / f
 
 TEST(KnownPackets, AreOfTheirSizes) {
   const std::map<std::string, std::size_t> sizes = {
-      {"outsim", 64},      {"outsim_id", 68},    {"outsim2", 280},      {"outgauge", 92},    {"outgauge_id", 96},
-      {"motion_68", 68},   {"codemasters", 264}, {"forza_sled", 232},   {"forza_dash", 311}, {"forza_horizon", 324},
-      {"forza_2023", 331}, {"beamng", 88},       {"assetto_corsa", 328}};
+      {"outsim", 64},      {"outsim_id", 68},    {"outsim2", 280},       {"outgauge", 92},    {"outgauge_id", 96},
+      {"motion_68", 68},   {"codemasters", 264}, {"forza_sled", 232},    {"forza_dash", 311}, {"forza_horizon", 324},
+      {"forza_2023", 331}, {"beamng", 88},       {"assetto_corsa", 328}, {"veridyn", 76}};
   ASSERT_EQ(known_packets().size(), sizes.size());
   for (const auto& [name, size] : sizes) EXPECT_EQ(known_packet(name).size, size) << name;
   EXPECT_THROW(static_cast<void>(known_packet("outsin")), InputError);

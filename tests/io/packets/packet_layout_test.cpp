@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/io/packets/packet_decoder.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -29,6 +32,36 @@ TEST(PacketLayout, OfOnesOwnHasUnitsAndSigns) {
   EXPECT_EQ(layout.fields[1].unit, "m/s^2");
   EXPECT_DOUBLE_EQ(layout.fields[1].factor, -kGravity);
   EXPECT_DOUBLE_EQ(layout.fields[2].factor, 0.1 * kDegree);
+}
+
+TEST(PacketLayout, WritesWhatItReads) {
+  const PacketLayout layout = layout_of(
+      "[data.packet]\nsize = 30\nbegins_with = \"RIG1\"\ngravity = \"out\"\n"
+      "[[data.packet.field]]\nname = \"time\"\noffset = 4\ntype = \"u32\"\nunit = \"ms\"\n"
+      "[[data.packet.field]]\nname = \"a\"\noffset = 8\ntype = \"i16\"\nunit = \"deg\"\nfactor = -0.1\n"
+      "[[data.packet.field]]\nname = \"b\"\noffset = 12\ntype = \"f64\"\n"
+      "[[data.packet.field]]\nname = \"c\"\noffset = 20\ntype = \"f32\"\nunit = \"g\"\n"
+      "[[data.packet.field]]\nname = \"d\"\noffset = 24\ntype = \"u8\"\n");
+  EXPECT_EQ(layout.gravity_in, false);
+  const PacketDecoder decoder(layout);
+  const std::vector<double> in = {12.345, -0.5, 1.0 / 3.0, 9.0, 200.0};
+  std::vector<double> out(in.size());
+  std::string packet(layout.size, 'x');
+  encode(layout, in, packet);
+  EXPECT_EQ(packet.substr(0, 4), "RIG1");
+  EXPECT_EQ(packet.substr(25), std::string(5, '\0'));
+  ASSERT_TRUE(decoder.decode(packet, out));
+  EXPECT_NEAR(out[0], 12.345, 0.5e-3);
+  EXPECT_NEAR(out[1], -0.5, 0.05 * kDegree);
+  EXPECT_EQ(out[2], 1.0 / 3.0);
+  EXPECT_NEAR(out[3], 9.0, 1e-6);
+  EXPECT_EQ(out[4], 200.0);
+  // What a number cannot hold becomes the nearest that it can; what is none becomes zero.
+  encode(layout, std::vector<double>{-1.0, 1e6, 0.0, 0.0, std::nan("")}, packet);
+  ASSERT_TRUE(decoder.decode(packet, out));
+  EXPECT_EQ(out[0], 0.0);
+  EXPECT_NEAR(out[1], 3276.8 * kDegree, 1e-9);
+  EXPECT_EQ(out[4], 0.0);
 }
 
 TEST(PacketLayout, SaysWhatIsWrongAndWhere) {

@@ -1,5 +1,6 @@
 #include "veridyn/live/virtual/virtual_platform.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace veridyn::live {
@@ -27,6 +28,25 @@ void VirtualPlatform::judge(const PlatformOrder& order) {
   }
 }
 
+void VirtualPlatform::follow(const PlatformOrder& order) {
+  // Moved by the sender's time, which is even, not by that of arrival.
+  const double dt = last_order_ && !silent_ ? std::clamp(seconds(order.time - last_order_->time), 0.0, kSilence) : 0.0;
+  cueing::PlatformState told = order.motion;
+  if (catches_up_) {
+    // From where it went by itself it comes within its limits, and follows from there.
+    told = guard_.step(order.motion, dt);
+    bool there = dt > 0.0;
+    for (std::size_t i = 0; i < kPlatformAxes; ++i) {
+      const auto which = static_cast<PlatformAxis>(i);
+      constexpr double kClose = 1e-3;  // [m or rad]
+      there = there && std::abs(axis(told, which).position - axis(order.motion, which).position) < kClose;
+    }
+    catches_up_ = !there;
+  }
+  told_ = told;
+  reached_ = simulator_.step(told, dt);
+}
+
 std::optional<PlatformAnswer> VirtualPlatform::take(const Datagram& datagram) {
   const std::optional<PlatformOrder> order = decode_order(datagram.bytes);
   if (!order) {
@@ -37,52 +57,53 @@ std::optional<PlatformAnswer> VirtualPlatform::take(const Datagram& datagram) {
   answer.session = order->session;
   answer.sequence = order->sequence;
   answer.time = order->time;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i)
-    answer.reached[i] = static_cast<float>(axis(reached_, static_cast<PlatformAxis>(i)).position);
   if (session_ && *session_ != order->session && datagram.arrival - last_arrival_ < nanoseconds(kFree)) {
     ++counts_.refused;
     refused_ = datagram.sender;
     answer.verdict = PlatformVerdict::kCommandedByAnother;
-    answer.outside_limits = static_cast<std::uint32_t>(counts_.outside);
-    return answer;
-  }
-  if (session_ != order->session) last_order_.reset();
-  session_ = order->session;
-  commander_ = datagram.sender;
-  last_arrival_ = datagram.arrival;
-  if (last_order_ && order->sequence <= last_order_->sequence) {
-    ++counts_.old;
   } else {
-    const std::uint64_t outside = counts_.outside;
-    judge(*order);
-    if (counts_.outside > outside) answer.verdict = PlatformVerdict::kOutsideLimits;
-    last_order_ = *order;
-    silent_ = false;
-    ++counts_.followed;
+    if (session_ != order->session) last_order_.reset();
+    session_ = order->session;
+    commander_ = datagram.sender;
+    last_arrival_ = datagram.arrival;
+    if (last_order_ && order->sequence <= last_order_->sequence) {
+      ++counts_.old;
+    } else {
+      const std::uint64_t outside = counts_.outside;
+      judge(*order);
+      if (counts_.outside > outside) {
+        answer.verdict = PlatformVerdict::kOutsideLimits;
+      } else {
+        follow(*order);
+        ++counts_.followed;
+      }
+      last_order_ = *order;
+      silent_ = false;
+    }
   }
   answer.outside_limits = static_cast<std::uint32_t>(counts_.outside);
+  for (std::size_t i = 0; i < kPlatformAxes; ++i)
+    answer.reached[i] = static_cast<float>(axis(reached_, static_cast<PlatformAxis>(i)).position);
   return answer;
 }
 
 void VirtualPlatform::step(Nanoseconds now) {
-  const double dt = begun_ ? seconds(now - now_) : 0.0;
-  begun_ = true;
+  const double dt = seconds(now - now_);
   now_ = now;
   if (!silent_ && now - last_arrival_ > nanoseconds(kSilence)) {
-    silent_ = true;
+    silent_ = catches_up_ = true;
     ++counts_.silences;
+    guard_.reset(told_);
+    return;
   }
-  // Whoever orders it, and where nobody does, its own guard leads the actuators; without orders gently to neutral.
+  if (!silent_ || !session_) return;
+  // Gently to neutral, by itself.
   cueing::PlatformCommand wanted;
-  if (!silent_) {
-    wanted = last_order_->motion;
-  } else {
-    const cueing::PlatformState at = guard_.state();
-    const double left = std::exp(-dt / 1.0);
-    wanted.shift = left * at.shift;
-    wanted.angle = left * at.angle;
-  }
-  reached_ = simulator_.step(guard_.step(wanted, dt), dt);
+  const double left = std::exp(-dt);
+  wanted.shift = left * told_.shift;
+  wanted.angle = left * told_.angle;
+  told_ = guard_.step(wanted, dt);
+  reached_ = simulator_.step(told_, dt);
 }
 
 }  // namespace veridyn::live

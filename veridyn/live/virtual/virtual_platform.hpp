@@ -20,13 +20,13 @@ class VirtualPlatform {
 
   /// @return the answer to an order; nothing to what is none
   std::optional<PlatformAnswer> take(const Datagram& datagram);
-  /// Moves on to this time.
+  /// Where orders do not come, it moves by itself; to be called often.
   void step(Nanoseconds now);
 
   /// What it was told and what it did, since the beginning.
   struct Counts {
     std::uint64_t followed = 0;
-    std::uint64_t outside = 0;  ///< beyond position or rate
+    std::uint64_t outside = 0;  ///< beyond position or rate; not followed
     std::uint64_t jumps = 0;    ///< farther from the order before than the largest rate leads in the time between
     std::uint64_t refused = 0;  ///< of a program that does not command it
     std::uint64_t old = 0;      ///< repeated or out of order
@@ -45,16 +45,17 @@ class VirtualPlatform {
 
  private:
   void judge(const PlatformOrder& order);
+  void follow(const PlatformOrder& order);
 
   cueing::Platform platform_;
   cueing::PlatformGuard guard_;
   cueing::PlatformSimulator simulator_;
-  cueing::PlatformState reached_;
+  cueing::PlatformState told_, reached_;
   std::optional<std::uint32_t> session_;
   Sender commander_, refused_;
   std::optional<PlatformOrder> last_order_;
   Nanoseconds last_arrival_ = 0, now_ = 0;
-  bool begun_ = false, silent_ = true;
+  bool silent_ = true, catches_up_ = false;
   Counts counts_;
 };
 

@@ -1,0 +1,244 @@
+// veridyn rig test STUDY: a platform told by hand (home, min, max, wave, steps, sweep), and how it follows.
+#include "apps/veridyn/rig_test.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "apps/veridyn/console.hpp"
+#include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/output_folder.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/cueing/platform/platform_guard.hpp"
+#include "veridyn/live/platform/platform_packet.hpp"
+#include "veridyn/live/platform/platform_response.hpp"
+#include "veridyn/live/platform/test_signal.hpp"
+#include "veridyn/live/rig/live_study.hpp"
+#include "veridyn/live/time/fixed_rate.hpp"
+#ifdef VERIDYN_HAS_SOCKETS
+#include "veridyn/live/link/udp_socket.hpp"
+#endif
+
+namespace veridyn::app {
+namespace {
+
+using namespace veridyn::live;
+using cueing::PlatformAxis;
+
+constexpr std::array<TestSignal, 6> kSignals = {TestSignal::kHome, TestSignal::kMin,   TestSignal::kMax,
+                                                TestSignal::kWave, TestSignal::kSteps, TestSignal::kSweep};
+
+std::vector<std::string> signal_names() {
+  std::vector<std::string> names;
+  for (const TestSignal s : kSignals) names.emplace_back(name_of(s));
+  return names;
+}
+
+#ifdef VERIDYN_HAS_SOCKETS
+
+/// Tells a platform where to be, through the guard, and keeps what it answers.
+class PlatformByHand {
+ public:
+  explicit PlatformByHand(const LiveStudy& study)
+      : limits_(study.cueing.platform.limits),
+        guard_(study.cueing.platform.limits),
+        socket_(UdpSocket::connected(study.platform, "live.platform")),
+        session_(static_cast<std::uint32_t>(std::random_device()())),
+        rate_(clock_.now(), nanoseconds(1.0 / study.options.rate)) {}
+
+  /// One order at its time. @return where the axis was told to be
+  double tell(PlatformAxis axis, double wanted) {
+    clock_.sleep_until(rate_.next());
+    cueing::PlatformState to;
+    set_axis(to, axis, {.position = wanted, .rate = 0.0, .acceleration = 0.0});
+    PlatformOrder order;
+    order.session = session_;
+    order.sequence = ++sequence_;
+    order.time = rate_.next();
+    order.state = RigState::kRunning;
+    order.motion = guard_.step(to, begun_ ? seconds(rate_.next() - last_) : 0.0);
+    begun_ = true;
+    last_ = rate_.next();
+    const OrderBytes bytes = encode(order);
+    socket_.send({bytes.data(), bytes.size()});
+    while (const auto datagram = socket_.receive()) {
+      const auto answer = decode_answer(datagram->bytes);
+      if (!answer || answer->session != session_) continue;
+      if (answer->verdict == PlatformVerdict::kCommandedByAnother)
+        throw InputError("live.platform", "another program commands the platform");
+      answers_[answer->sequence] = answer->reached;
+    }
+    rate_.advance(clock_.now());
+    return cueing::axis(order.motion, axis).position;
+  }
+
+  [[nodiscard]] std::uint32_t sequence() const { return sequence_; }
+  [[nodiscard]] std::size_t answers() const { return answers_.size(); }
+  /// The axis's position when an order came in; nothing where it was not answered.
+  [[nodiscard]] std::optional<double> reached(std::uint32_t sequence, PlatformAxis axis) const {
+    const auto at = answers_.find(sequence);
+    if (at == answers_.end()) return std::nullopt;
+    return static_cast<double>(at->second[axis]);
+  }
+
+ private:
+  cueing::PlatformLimits limits_;
+  cueing::PlatformGuard guard_;
+  UdpSocket socket_;
+  RealClock clock_;
+  std::uint32_t session_, sequence_ = 0;
+  FixedRate rate_;
+  Nanoseconds last_ = 0;
+  bool begun_ = false;
+  std::map<std::uint32_t, cueing::PerPlatformAxis<float>> answers_;
+};
+
+/// One axis under one signal, then home. Answers that are missing are the last ones.
+ToldAndReached play(PlatformByHand& platform, PlatformAxis axis, const TestSignalOptions& signal,
+                    const LiveStudy& study, double duration, const Interruption& interruption) {
+  ToldAndReached motion;
+  motion.step = 1.0 / study.options.rate;
+  const std::uint32_t first = platform.sequence() + 1;
+  const auto steps = static_cast<long>(duration * study.options.rate);
+  const cueing::AxisLimits& limits = study.cueing.platform.limits[axis];
+  for (long k = 0; k < steps && !interruption.requested(); ++k)
+    motion.told.push_back(platform.tell(axis, wanted_position(signal, limits, static_cast<double>(k) * motion.step)));
+  constexpr double kHomeWithin = 3.0;  // [s]
+  for (long k = 0; k < static_cast<long>(kHomeWithin * study.options.rate); ++k) platform.tell(axis, 0.0);
+  double last = 0.0;
+  for (std::size_t k = 0; k < motion.told.size(); ++k) {
+    last = platform.reached(first + static_cast<std::uint32_t>(k), axis).value_or(last);
+    motion.reached.push_back(last);
+  }
+  return motion;
+}
+
+/// `[platform]` of the platform that was measured.
+std::string platform_toml(const LiveStudy& study, const std::map<PlatformAxis, PlatformResponse>& responses) {
+  const cueing::Platform& p = study.cueing.platform;
+  std::string text = fmt::format("# Measured by `veridyn rig test` on platform {}.\n[platform]\n", p.name);
+  bool built_in = false;
+  for (const cueing::Platform& known : cueing::built_in_platforms()) built_in = built_in || known.name == p.name;
+  if (built_in) text += fmt::format("subject = \"{}\"\n", p.name);
+  double omega = 0.0, zeta = 0.0, delay = 0.0;
+  for (const auto& [axis, r] : responses) {
+    omega += r.omega.value / static_cast<double>(responses.size());
+    zeta += r.zeta.value / static_cast<double>(responses.size());
+    delay += r.delay.value / static_cast<double>(responses.size());
+  }
+  text +=
+      fmt::format("omega = {:.4g}   # rad/s\nzeta = {:.4g}\ndelay = {:.4g}   # s, the way there and back included\n",
+                  omega, zeta, delay);
+  for (const auto& [axis, r] : responses) {
+    const cueing::AxisLimits& l = p.limits[axis];
+    if (!built_in) {
+      text +=
+          fmt::format("{0} = [{1:.6g}, {2:.6g}]\n{0}_rate = {3:.6g}\n{0}_acceleration = {4:.6g}\n{0}_jerk = {5:.6g}\n",
+                      name_of(axis), l.lowest, l.highest, l.rate, l.acceleration, l.jerk);
+    }
+    if (std::abs(r.gain.value - 1.0) > 0.01 + 2.0 * r.gain.sigma)
+      text += fmt::format("{0}_commanded = [{1:.6g}, {2:.6g}]\n{0}_reached = [{3:.6g}, {4:.6g}]\n", name_of(axis),
+                          l.lowest, l.highest, r.gain.value * l.lowest, r.gain.value * l.highest);
+  }
+  return text;
+}
+
+int rig_test(const Arguments& arguments) {
+  const CommonOptions& options = arguments.common;
+  const std::string path = arguments.text("STUDY");
+  const StudyRun run = parse_study("rig", path, read_file(path), arguments);
+  const LiveStudy study = read_live_study(run.study);
+  run.study.root().finish();
+  TestSignalOptions signal;
+  signal.signal = *std::find_if(kSignals.begin(), kSignals.end(),
+                                [&](TestSignal s) { return name_of(s) == arguments.text("--signal"); });
+  signal.size = arguments.number("--size");
+  if (!(signal.size <= 1.0))
+    throw InputError("--size", fmt::format("is {:g}; takes up to 1, the whole range", signal.size));
+  signal.frequency = arguments.number("--frequency");
+  signal.duration = arguments.number("--seconds");
+  std::vector<PlatformAxis> axes;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < cueing::kPlatformAxes; ++i) {
+    const auto axis = static_cast<PlatformAxis>(i);
+    if (!study.cueing.platform.limits[axis].moves()) continue;
+    names.emplace_back(name_of(axis));
+    if (arguments.text("--axis") == "all" || arguments.text("--axis") == name_of(axis)) axes.push_back(axis);
+  }
+  if (axes.empty())
+    throw InputError("--axis", fmt::format("'{}' is no axis of this platform (all, {})", arguments.text("--axis"),
+                                           fmt::join(names, ", ")));
+  OutputFolder folder(options.out);
+  PlatformByHand platform(study);
+  std::string csv = "axis,time[s],told[m or rad],reached[m or rad]\n";
+  std::map<PlatformAxis, PlatformResponse> responses;
+  for (const PlatformAxis axis : axes) {
+    print_line(options, fmt::format("{}: {}, {:g} s", name_of(axis), name_of(signal.signal), signal.duration));
+    const ToldAndReached motion = play(platform, axis, signal, study, signal.duration, options.interruption);
+    if (options.interruption.requested()) throw Interrupted();
+    if (platform.answers() == 0 && study.options.answers)
+      throw InputError("live.platform", fmt::format("{} does not answer", to_string(study.platform)));
+    for (std::size_t k = 0; k < motion.told.size(); ++k)
+      csv += fmt::format("{},{:.5g},{:.7g},{:.7g}\n", name_of(axis), static_cast<double>(k) * motion.step,
+                         motion.told[k], motion.reached[k]);
+    if (signal.signal != TestSignal::kSweep || !study.options.answers) continue;
+    const PlatformResponse& r = responses[axis] = fit_response(motion);
+    print_line(
+        options,
+        fmt::format("{}: gain {:.3f} +- {:.3f}, omega {:.1f} +- {:.1f} rad/s, zeta {:.2f} +- {:.2f}, delay {:.1f} "
+                    "+- {:.1f} ms, {:.1f} % not explained",
+                    name_of(axis), r.gain.value, r.gain.sigma, r.omega.value, r.omega.sigma, r.zeta.value, r.zeta.sigma,
+                    1e3 * r.delay.value, 1e3 * r.delay.sigma, 100.0 * r.rms));
+    for (const std::string& note : r.notes) print_line(options, fmt::format("{}: {}", name_of(axis), note));
+  }
+  folder.write("told_and_reached.csv", csv);
+  Summary summary;
+  summary["folder"] = folder.path().string();
+  for (const auto& [axis, r] : responses) {
+    Summary& s = summary["axes"][std::string(name_of(axis))];
+    for (const auto& [name, value] : {std::pair("gain", r.gain), std::pair("omega_rad_s", r.omega),
+                                      std::pair("zeta", r.zeta), std::pair("delay_s", r.delay)})
+      s[name] = Summary::object({{"value", value.value}, {"sigma", value.sigma}});
+    s["not_explained"] = r.rms;
+    s["notes"] = r.notes;
+  }
+  if (!responses.empty()) folder.write("platform.toml", platform_toml(study, responses));
+  const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
+  folder.publish(run.record(0), options, summary);
+  print_line(options, fmt::format("wrote {} in {}", files, folder.path().string()));
+  return kDone;
+}
+
+#else
+
+int rig_test(const Arguments&) {
+  throw InputError("rig", "this program was built without sockets (see VERIDYN_SOCKETS)");
+}
+
+#endif
+
+}  // namespace
+
+Command rig_test_command() {
+  return {
+      .name = "test",
+      .summary = "tells the platform where to be, axis by axis; a sweep measures how it follows, for `[platform]`",
+      .arguments =
+          {{.name = "STUDY", .help = "study file with [live]", .required = true},
+           {.name = "--axis", .help = "of the platform; all: one after the other", .value = std::string("all")},
+           {.name = "--signal", .help = "what it is told", .value = std::string("sweep"), .choices = signal_names()},
+           {.name = "--size", .help = "share of what the limits allow", .value = 0.5, .positive = true},
+           {.name = "--frequency", .help = "of wave and steps [Hz]", .value = 0.5, .positive = true},
+           {.name = "--seconds", .help = "for each axis", .value = 30.0, .positive = true}},
+      .default_out = "out/rig",
+      .example = "veridyn rig test examples/studies/cueing/live.toml --axis pitch",
+      .run = rig_test};
+}
+
+}  // namespace veridyn::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "apps/veridyn/command.hpp"
+
+namespace veridyn::app {
+
+/// `veridyn rig test STUDY`: the platform by hand, and how it follows.
+[[nodiscard]] Command rig_test_command();
+
+}  // namespace veridyn::app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string_view>
+
+#include "veridyn/cueing/platform/platform_limits.hpp"
+
+namespace veridyn::live {
+
+/// What a platform is told by hand, one axis at a time.
+enum class TestSignal {
+  kHome,   ///< neutral
+  kMin,    ///< the lowest position
+  kMax,    ///< the highest
+  kWave,   ///< a sine about neutral
+  kSteps,  ///< up, neutral, down, neutral
+  kSweep,  ///< a sine whose frequency grows, which finds how the platform follows
+};
+
+/// "home", "min", "max", "wave", "steps", "sweep".
+[[nodiscard]] std::string_view name_of(TestSignal signal);
+
+/// How a signal is played.
+struct TestSignalOptions {
+  TestSignal signal = TestSignal::kSweep;
+  double size = 0.5;             ///< of what the limits allow, 0 to 1
+  double frequency = 0.5;        ///< of the wave; steps change as often as it turns [Hz]
+  double low = 0.1, high = 6.0;  ///< of the sweep [Hz]
+  double duration = 60.0;        ///< of the sweep [s]
+};
+
+/// Position that is wanted at a time [m or rad]. Sines, of wave and sweep, are as large as range, rate and acceleration
+/// of the axis allow at their frequency, times `size`, so that a guard has nothing to hold back. They begin and end at
+/// rest within a second.
+[[nodiscard]] double wanted_position(const TestSignalOptions& options, const cueing::AxisLimits& limits, double time);
+
+/// Frequency of the sweep at a time [Hz]: it grows by the same factor every second.
+[[nodiscard]] double sweep_frequency(const TestSignalOptions& options, double time);
+
+}  // namespace veridyn::live
