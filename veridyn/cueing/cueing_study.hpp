@@ -44,8 +44,8 @@ struct ResponseStudy {
 ///     sensor = [0, 0, 0]                       # the same of the recorded accelerometer
 ///     gravity = "in"                           # or "out": whether accelerations hold gravity; decided by accel_z
 ///     knobs = false                            # what each knob does, on a short drive of its own
-///     foresee = "fade"                         # how `mpc` foresees forces: "lap" ([cue.lap]), "driver"
-///     ([cue.vehicle]) [cue.lap]                                # as [data]: a lap of the same track, driven before
+///     foresee = "fade"                         # how `mpc` foresees forces: or "lap", "driver"
+///     [cue.lap]                                # as [data]: a lap of the same track, driven before
 ///     [cue.vehicle]                            # as [subject]: steering and pedals through this model; the simulated
 ///                                              # vehicle when left out
 ///     [data]                                   # a recorded drive, see vehicle::read_drive_log; or
@@ -55,9 +55,11 @@ struct ResponseStudy {
 ///     [omct]                                   # measure gain and phase of the chain
 ///     force = 0.5, rate = "2 deg/s", frequencies = [0.1, 1, 10]
 ///     [[omct.mask]]                            # where the response has to be; lines between its frequencies
-///     cue = "surge", frequency = [0.1, 10], least_gain = [0.5, 0.5], most_gain = [1, 1], least_phase = ["-45 deg",
-///     ...] [tune]                                   # turn the knobs on this drive, or on another one: evaluations =
-///     150 [tune.data]                              # as [data]
+///     cue = "surge", frequency = [0.1, 10], least_gain = [0.5, 0.5], most_gain = [1, 1]
+///     least_phase = ["-45 deg", "-45 deg"]     # and most_phase
+///     [tune]                                   # turn the knobs on this drive, or on another one
+///     evaluations = 150
+///     [tune.data]                              # as [data]
 struct CueingStudy {
   std::string title;
   std::uint64_t seed = 1;

@@ -46,6 +46,7 @@ LiveRig::LiveRig(const LiveStudy& study, std::uint32_t session)
     : options_(study.options),
       intake_(study.layouts, study.options.intake),
       even_(study.options.even),
+      spikes_(study.options.spikes),
       chain_(algorithm_of(study), study.cueing.platform),
       session_(session) {
   recording::MotionSample still;
@@ -197,6 +198,8 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   step_.time = time;
   step_.motion = even_.at(time, intake_.clock());
   if (step_.motion) {
+    if (anew_) spikes_.reset();
+    step_.motion->sample.force = spikes_.step(step_.motion->sample.force, dt);
     step_.motion->sample = recording::at_place(step_.motion->sample, options_.driver);
     last_sample_ = step_.motion->sample;
   }

@@ -10,6 +10,7 @@
 #include "veridyn/live/platform/platform_packet.hpp"
 #include "veridyn/live/recording/live_record.hpp"
 #include "veridyn/live/rig/live_study.hpp"
+#include "veridyn/live/telemetry/spike_filter.hpp"
 
 namespace veridyn::live {
 
@@ -88,6 +89,7 @@ class LiveRig {
   RigOptions options_;
   PacketIntake intake_;
   EvenMotion even_;
+  SpikeFilter spikes_;
   cueing::CueingChain chain_;
   std::uint32_t session_;
   std::optional<recording::MotionSample> last_sample_;  ///< at the driver's head

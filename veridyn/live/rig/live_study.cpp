@@ -121,6 +121,7 @@ LiveStudy read_live_study(const Study& study) {
   o.frozen_after = number_within(live, "frozen_after", "s", o.frozen_after, 0.1, 60.0);
   o.unanswered_after = number_within(live, "unanswered_after", "s", o.unanswered_after, 0.02, 5.0);
   o.intake.stale_after = number_within(live, "stale_after", "s", o.intake.stale_after, 0.01, 5.0);
+  o.spikes = number_within(live, "spikes", "m/s^3", o.spikes, 50.0, 1e6);
   const std::vector<std::string> checks = {"before", "while", "off"};
   const std::string signs = live.choice_or("signs", checks, "before");
   o.signs = signs == "before" ? SignCheck::kBefore : signs == "while" ? SignCheck::kWhile : SignCheck::kOff;

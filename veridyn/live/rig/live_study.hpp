@@ -16,16 +16,18 @@ namespace veridyn::live {
 /// from and goes to.
 ///
 ///     [live]
-///     telemetry = "127.0.0.1:4123"     # listens here for packets; 0.0.0.0 for all of the machine's addresses
-///     packet = "outsim"                # see io::known_packets; "any" (when left out) recognises them by content
-///     [live.packet]                    # or a layout of one's own, see io::read_packet_layout
-///     platform = "127.0.0.1:5123"      # orders go there
-///     answers = true                   # whether the platform answers them
-///     rate = "100 Hz"                  # of orders, 20 Hz to 4 kHz
-///     delay = "20 ms"                  # of the motion, for packets that come late; extrapolate = "30 ms" where they
-///     do not soft_start = 3, hold = 0.5, fade = 3                  # [s] lost_after = 0.25, frozen_after = 1,
-///     stale_after = 0.25, unanswered_after = 0.25   # [s] signs = "before"                 # or "while" or "off": when
-///     the telemetry's signs are checked
+///     telemetry = "127.0.0.1:4123"  # listens here for packets; 0.0.0.0: at all of the machine's addresses
+///     packet = "outsim"             # see io::known_packets; "any" (when left out) recognises them by content
+///     [live.packet]                 # or a layout of one's own, see io::read_packet_layout
+///     platform = "127.0.0.1:5123"   # orders go there
+///     answers = true                # whether the platform answers them
+///     rate = "100 Hz"               # of orders, 20 Hz to 4 kHz
+///     delay = "20 ms"               # of the motion, for packets that come late
+///     extrapolate = "30 ms"         # how far it goes on where they come later still
+///     spikes = "500 m/s^3"          # most change of a specific force, against crashes and landings
+///     soft_start = 3                # [s], as hold = 0.5, fade = 3
+///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
+///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
   std::vector<io::PacketLayout> layouts;

@@ -25,6 +25,7 @@ struct RigOptions {
   bool answers = true;             ///< whether the platform answers orders
   double unanswered_after = 0.25;  ///< the platform counts as lost [s]
   double slowest_packets = 20.0;   ///< fewer are no motion to follow [Hz]
+  double spikes = 500.0;           ///< most change of a specific force, above that it is a crash or a landing [m/s^3]
   SignCheck signs = SignCheck::kBefore;
   IntakeOptions intake;
   EvenMotionOptions even;
