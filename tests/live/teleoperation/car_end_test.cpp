@@ -148,6 +148,34 @@ TEST(CarEnd, AnOutageBetweenTwoStepsOfTheActuatorsCountsToo) {
   EXPECT_EQ(car.links_lost(), 1U);
 }
 
+TEST(CarEnd, NeutralBeforeAnOutageIsNotNeutralAfterIt) {
+  // The same, with released pedals throughout: they must be released for `neutral_for` after the outage.
+  CarEnd car({}, 1);
+  OperatorEnd driver({}, 2);
+  std::array<std::uint8_t, kLongestFrame> frame;
+  const auto exchange = [&](Nanoseconds now) {
+    driver.receive(Bytes(frame).first(car.report({}, now, frame)), now);
+    car.receive(Bytes(frame).first(driver.command({}, now, frame)), now);
+  };
+  exchange(kMillisecond);
+  EXPECT_EQ(car.step({}, 50 * kMillisecond).state, CarState::kHolding);
+  exchange(210 * kMillisecond);
+  EXPECT_EQ(car.step({}, 220 * kMillisecond).state, CarState::kHolding);
+  EXPECT_EQ(car.step({}, 309 * kMillisecond).state, CarState::kHolding);
+  EXPECT_EQ(car.step({}, 310 * kMillisecond).state, CarState::kDriving);
+}
+
+TEST(CarEnd, AnEchoOfItsRunBeforeProvesNothing) {
+  CarEnd before({.neutral_for = 0}, 1), after({.neutral_for = 0}, 2);
+  OperatorEnd driver({}, 2);
+  std::array<std::uint8_t, kLongestFrame> frame;
+  driver.receive(Bytes(frame).first(before.report({}, 0, frame)), 0);
+  EXPECT_GT(after.report({}, 0, frame), 0U);  // of the same number, and lost
+  after.receive(Bytes(frame).first(driver.command({}, kMillisecond, frame)), kMillisecond);
+  EXPECT_EQ(after.verdicts()[CommandVerdict::kUnproven], 1U);
+  EXPECT_EQ(after.step({}, kMillisecond).state, CarState::kHolding);
+}
+
 TEST(CarEnd, NeverExecutesDuplicatesAndLateCommands) {
   CarEnd car({.neutral_for = 0}, 1);
   OperatorEnd driver({}, 2);
