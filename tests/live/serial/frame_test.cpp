@@ -1,5 +1,6 @@
 #include "veridyn/live/serial/frame.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -78,8 +78,8 @@ TEST(SerialLine, IsRefusedInOneLine) {
 
   PseudoTerminal terminal;
   const std::string device = terminal.device();
-  EXPECT_EQ(refusal(device, 0), device + ": baud = 0 must be > 0");
-  EXPECT_EQ(refusal(device, -9600), device + ": baud = -9600 must be > 0");
+  EXPECT_EQ(refusal(device, 0), device + ": baud is 0; must be > 0");
+  EXPECT_EQ(refusal(device, -9600), device + ": baud is -9600; must be > 0");
   {
     SerialLine line({.device = device});
     EXPECT_EQ(refusal(device), device + ": in use by another program");

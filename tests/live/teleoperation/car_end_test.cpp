@@ -339,18 +339,18 @@ TEST(CarEnd, HoldsAfterItsOwnRestart) {
 
 TEST(CarEnd, IsRefusedWithOptionsThatCannotBe) {
   const auto refusal = [](const CarEndOptions& options) { return why([&] { CarEnd car(options, 1); }); };
-  EXPECT_EQ(refusal({.lost_after = 0}), "lost_after: = 0 must be > 0");
-  EXPECT_EQ(refusal({.stale_after = -1}), "stale_after: = -1e-09 must be > 0");
-  EXPECT_EQ(refusal({.blind_after = 0}), "blind_after: = 0 must be > 0");
-  EXPECT_EQ(refusal({.neutral_for = -kSecond}), "neutral_for: = -1 must not be below 0");
-  EXPECT_EQ(refusal({.neutral_force = kNaN}), "neutral_force: = nan must be from 0 to 1");
-  EXPECT_EQ(refusal({.neutral_brake = 1.5}), "neutral_brake: = 1.5 must be from 0 to 1");
-  EXPECT_EQ(refusal({.brake_rate = 0.0}), "brake_rate: = 0 must be > 0");
-  EXPECT_EQ(refusal({.brake_moving = -0.1}), "brake_moving: = -0.1 must be from 0 to 1");
-  EXPECT_EQ(refusal({.brake_holding = kNaN}), "brake_holding: = nan must be from 0 to 1");
-  EXPECT_EQ(refusal({.standing_speed = kNaN}), "standing_speed: = nan must be > 0");
-  EXPECT_EQ(refusal({.standing_for = -kSecond}), "standing_for: = -1 must not be below 0");
-  EXPECT_EQ(refusal({.range = {.steering = -1.0}}), "range.steering: = -1 rad must be > 0 and <= 3.2");
+  EXPECT_EQ(refusal({.lost_after = 0}), "lost_after: is 0; must be > 0");
+  EXPECT_EQ(refusal({.stale_after = -1}), "stale_after: is -1e-09; must be > 0");
+  EXPECT_EQ(refusal({.blind_after = 0}), "blind_after: is 0; must be > 0");
+  EXPECT_EQ(refusal({.neutral_for = -kSecond}), "neutral_for: is -1; must not be below 0");
+  EXPECT_EQ(refusal({.neutral_force = kNaN}), "neutral_force: is nan; must be from 0 to 1");
+  EXPECT_EQ(refusal({.neutral_brake = 1.5}), "neutral_brake: is 1.5; must be from 0 to 1");
+  EXPECT_EQ(refusal({.brake_rate = 0.0}), "brake_rate: is 0; must be > 0");
+  EXPECT_EQ(refusal({.brake_moving = -0.1}), "brake_moving: is -0.1; must be from 0 to 1");
+  EXPECT_EQ(refusal({.brake_holding = kNaN}), "brake_holding: is nan; must be from 0 to 1");
+  EXPECT_EQ(refusal({.standing_speed = kNaN}), "standing_speed: is nan; must be > 0");
+  EXPECT_EQ(refusal({.standing_for = -kSecond}), "standing_for: is -1; must not be below 0");
+  EXPECT_EQ(refusal({.range = {.steering = -1.0}}), "range.steering: is -1 rad; must be > 0 and <= 3.2");
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ TEST(OperatorEnd, DoesNotSendWhatIsNoCommand) {
   EXPECT_EQ(driver.command({}, 0, std::span(frame).first(20)), 0U);
   EXPECT_EQ(driver.command({}, 0, frame), frame_size(kCommandPayload));
   EXPECT_EQ(driver.quality(0).commands_sent, 1U);
-  EXPECT_EQ(why([] { OperatorEnd({.lost_after = 0}, 1); }), "lost_after: = 0 s must be > 0");
+  EXPECT_EQ(why([] { OperatorEnd({.lost_after = 0}, 1); }), "lost_after: is 0 s; must be > 0");
   EXPECT_EQ(why([] { OperatorEnd({.range = {.drive_force = 0.0}}, 1); }),
-            "range.drive_force: = 0 N must be > 0 and <= 1600");
+            "range.drive_force: is 0 N; must be > 0 and <= 1600");
 }
 
 TEST(OperatorEnd, CountsWhatWasLostInEachDirection) {

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -78,9 +79,10 @@ TEST(CarCommand, OutOfRangeIsNamed) {
   EXPECT_EQ(what_is_wrong({.drive_force = -100.06}, range), "drive_force");
   EXPECT_EQ(what_is_wrong({.brake = -0.001}, range), "brake");
   EXPECT_EQ(what_is_wrong({.brake = 1.001}, range), "brake");
-  EXPECT_EQ(why([] { CommandRange{.steering = kNaN}.validate(); }), "range.steering: = nan rad must be > 0 and <= 3.2");
+  EXPECT_EQ(why([] { CommandRange{.steering = kNaN}.validate(); }),
+            "range.steering: is nan rad; must be > 0 and <= 3.2");
   EXPECT_EQ(why([] { CommandRange{.drive_force = 2000.0}.validate(); }),
-            "range.drive_force: = 2000 N must be > 0 and <= 1600");
+            "range.drive_force: is 2000 N; must be > 0 and <= 1600");
 }
 
 TEST(CarCommand, AnEchoThatIsTooOldIsNone) {

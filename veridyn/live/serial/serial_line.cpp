@@ -73,7 +73,7 @@ std::optional<std::string> set_up(int descriptor, int baud) {
 
 SerialLine::SerialLine(const SerialOptions& options) {
   const std::string place = options.device.string();
-  if (options.baud <= 0) throw InputError(place, fmt::format("baud = {} must be > 0", options.baud));
+  if (options.baud <= 0) throw InputError(place, fmt::format("baud is {}; must be > 0", options.baud));
   descriptor_ = ::open(options.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) throw InputError(place, internal::open_refusal(errno, "dialout"));
   if (const std::optional<std::string> refusal = set_up(descriptor_, options.baud)) {

@@ -20,9 +20,9 @@ constexpr std::uint16_t kNoEcho = 0xFFFF;
 
 void CommandRange::validate() const {
   if (!(steering > 0.0 && steering <= 3.2))
-    throw InputError("range.steering", fmt::format("= {} rad must be > 0 and <= 3.2", steering));
+    throw InputError("range.steering", fmt::format("is {} rad; must be > 0 and <= 3.2", steering));
   if (!(drive_force > 0.0 && drive_force <= 1600.0))
-    throw InputError("range.drive_force", fmt::format("= {} N must be > 0 and <= 1600", drive_force));
+    throw InputError("range.drive_force", fmt::format("is {} N; must be > 0 and <= 1600", drive_force));
 }
 
 std::string_view what_is_wrong(const CarCommand& command, const CommandRange& range) {

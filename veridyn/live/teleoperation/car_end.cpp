@@ -12,19 +12,19 @@ namespace veridyn::live {
 void CarEndOptions::validate() const {
   range.validate();
   const auto positive = [](std::string_view name, double value) {
-    if (!(value > 0.0)) throw InputError(name, fmt::format("= {} must be > 0", value));
+    if (!(value > 0.0)) throw InputError(name, fmt::format("is {}; must be > 0", value));
   };
   const auto share = [](std::string_view name, double value) {
-    if (!(value >= 0.0 && value <= 1.0)) throw InputError(name, fmt::format("= {} must be from 0 to 1", value));
+    if (!(value >= 0.0 && value <= 1.0)) throw InputError(name, fmt::format("is {}; must be from 0 to 1", value));
   };
   positive("lost_after", seconds(lost_after));
   positive("stale_after", seconds(stale_after));
   positive("blind_after", seconds(blind_after));
   positive("brake_rate", brake_rate);
   positive("standing_speed", standing_speed);
-  if (neutral_for < 0) throw InputError("neutral_for", fmt::format("= {} must not be below 0", seconds(neutral_for)));
+  if (neutral_for < 0) throw InputError("neutral_for", fmt::format("is {}; must not be below 0", seconds(neutral_for)));
   if (standing_for < 0)
-    throw InputError("standing_for", fmt::format("= {} must not be below 0", seconds(standing_for)));
+    throw InputError("standing_for", fmt::format("is {}; must not be below 0", seconds(standing_for)));
   share("neutral_force", neutral_force);
   share("neutral_brake", neutral_brake);
   share("brake_moving", brake_moving);

@@ -27,7 +27,7 @@ double LinkQuality::report_loss() const { return share_lost(reports_lost, report
 OperatorEnd::OperatorEnd(const OperatorEndOptions& options, std::uint16_t run) : options_(options), run_(run) {
   options_.range.validate();
   if (!(options_.lost_after > 0))
-    throw InputError("lost_after", fmt::format("= {} s must be > 0", seconds(options_.lost_after)));
+    throw InputError("lost_after", fmt::format("is {} s; must be > 0", seconds(options_.lost_after)));
 }
 
 std::size_t OperatorEnd::command(const CarCommand& command, Nanoseconds now, std::span<std::uint8_t> out) {
