@@ -21,7 +21,7 @@ std::vector<Decoded> decode(FrameDecoder& decoder, Bytes bytes, std::size_t chun
   while (!bytes.empty()) {
     Bytes part = bytes.first(std::min(chunk, bytes.size()));
     bytes = bytes.subspan(part.size());
-    while (const std::optional<Frame> frame = decoder.next(part))
+    while (const std::optional<SerialFrame> frame = decoder.next(part))
       frames.push_back({frame->header, {frame->payload.begin(), frame->payload.end()}});
     VERIDYN_ASSERT(part.empty());
   }

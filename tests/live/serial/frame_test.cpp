@@ -43,7 +43,7 @@ struct OwnFrame {
 
 std::vector<OwnFrame> decoded(FrameDecoder& decoder, Bytes bytes) {
   std::vector<OwnFrame> frames;
-  while (const std::optional<Frame> frame = decoder.next(bytes))
+  while (const std::optional<SerialFrame> frame = decoder.next(bytes))
     frames.push_back({frame->header, {frame->payload.begin(), frame->payload.end()}});
   EXPECT_TRUE(bytes.empty());
   return frames;
@@ -191,7 +191,7 @@ DamageCount send_damaged(std::uint64_t frames, bool single_bits, FrameDecoder& d
     const std::size_t size = encode_frame({.kind = 1, .run = 77, .sequence = k}, sent, buffer);
     if (line.damage(std::span(buffer).first(size)) > 0) ++count.damaged;
     Bytes bytes = Bytes(buffer).first(size);
-    while (const std::optional<Frame> frame = decoder.next(bytes)) {
+    while (const std::optional<SerialFrame> frame = decoder.next(bytes)) {
       ++count.received;
       const FrameHeader& header = frame->header;
       const bool right =
@@ -227,10 +227,10 @@ TEST(FrameDecoder, LetsNoDamagedFrameThrough) {
 
 /// 1e7 damaged ones: one in three of those sent.
 TEST(FrameSoak, LetsNoneOfTenMillionDamagedFramesThroughWithBytesFlipped) {
-  expect_no_wrong_frame(test::kSanitized ? 3'100'000 : 31'000'000, false);
+  expect_no_wrong_frame(veridyn::test::kSanitized ? 3'100'000 : 31'000'000, false);
 }
 TEST(FrameSoak, LetsNoneOfTenMillionDamagedFramesThroughWithSingleBitsFlipped) {
-  expect_no_wrong_frame(test::kSanitized ? 3'100'000 : 31'000'000, true);
+  expect_no_wrong_frame(veridyn::test::kSanitized ? 3'100'000 : 31'000'000, true);
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST(Teleoperation, DrivesOnALineThatFlipsOneByteInAHundred) {
   loop.get_going();
   loop.sensors.wheel_speeds.fill(20.0);
   std::uint64_t wrong = 0, compared = 0;
-  const double time = test::kSanitized ? 10.0 : 100.0;
+  const double time = veridyn::test::kSanitized ? 10.0 : 100.0;
   loop.run(time, [&] {
     if (loop.now % kMillisecond != 0) return;
     const double t = seconds(loop.now);
@@ -189,7 +189,7 @@ TEST(Teleoperation, DrivesOnALineThatFlipsOneByteInAHundred) {
 /// nothing was sent for `lost_after` and that long, the car does not drive.
 TEST(Teleoperation, NeverDrivesOnOldCommandsWhateverHappens) {
   numerics::RandomStream random(5, "faults");
-  const int rounds = test::kSanitized ? 4 : 40;
+  const int rounds = veridyn::test::kSanitized ? 4 : 40;
   std::uint64_t lost = 0, executed = 0, times_driven = 0;
   for (int round = 0; round < rounds; ++round) {
     SimulatedLoop loop(round % 2 == 0 ? 0.01 : 0.0, {}, 100 + static_cast<std::uint64_t>(round));

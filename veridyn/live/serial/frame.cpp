@@ -10,7 +10,7 @@ namespace {
 static_assert(kLongestFrame - 1 <= 254, "one byte of stuffing is enough only for fewer than 254 bytes");
 
 std::uint32_t crc_of(Bytes bytes) {
-  return static_cast<std::uint32_t>(crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
+  return static_cast<std::uint32_t>(::crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
 
 /// Stuffs bytes[1..size) in place: bytes[0] and every zero become the distance to the next zero or the end.
@@ -54,7 +54,7 @@ std::size_t encode_frame(const FrameHeader& header, Bytes payload, std::span<std
   return stuffed + 1;
 }
 
-std::optional<Frame> FrameDecoder::next(Bytes& bytes) {
+std::optional<SerialFrame> FrameDecoder::next(Bytes& bytes) {
   while (!bytes.empty()) {
     const auto zero = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
     const auto run = static_cast<std::size_t>(zero - bytes.begin());
@@ -67,7 +67,7 @@ std::optional<Frame> FrameDecoder::next(Bytes& bytes) {
     counts_.bytes += used;
     bytes = bytes.subspan(used);
     if (!ended) continue;
-    const std::optional<Frame> frame = finish();
+    const std::optional<SerialFrame> frame = finish();
     size_ = 0;
     overflowed_ = false;
     if (frame) return frame;
@@ -75,7 +75,7 @@ std::optional<Frame> FrameDecoder::next(Bytes& bytes) {
   return std::nullopt;
 }
 
-std::optional<Frame> FrameDecoder::finish() {
+std::optional<SerialFrame> FrameDecoder::finish() {
   // Without its zero the longest frame has one byte less than the buffer.
   if (overflowed_ || size_ == buffer_.size()) {
     ++counts_.too_long;
@@ -96,7 +96,7 @@ std::optional<Frame> FrameDecoder::finish() {
     ++counts_.other_version;
     return std::nullopt;
   }
-  Frame frame;
+  SerialFrame frame;
   frame.header.kind = read.get<std::uint8_t>();
   frame.header.run = read.get<std::uint16_t>();
   frame.header.sequence = read.get<std::uint32_t>();

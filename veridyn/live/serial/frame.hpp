@@ -38,7 +38,7 @@ struct FrameHeader {
 };
 
 /// A frame that passed all checks. The payload is a view into the decoder, until its next call.
-struct Frame {
+struct SerialFrame {
   FrameHeader header;
   Bytes payload;
 };
@@ -63,15 +63,15 @@ struct FrameCounts {
 
 /// Takes bytes in chunks of any size and gives the frames that are whole. Allocates nothing and never throws.
 ///
-///     while (const std::optional<Frame> frame = decoder.next(bytes)) use(*frame);
+///     while (const std::optional<SerialFrame> frame = decoder.next(bytes)) use(*frame);
 class FrameDecoder {
  public:
   /// Takes bytes from the front of `bytes` to the end of the next good frame, or all of them where there is none.
-  [[nodiscard]] std::optional<Frame> next(Bytes& bytes);
+  [[nodiscard]] std::optional<SerialFrame> next(Bytes& bytes);
   [[nodiscard]] const FrameCounts& counts() const { return counts_; }
 
  private:
-  [[nodiscard]] std::optional<Frame> finish();
+  [[nodiscard]] std::optional<SerialFrame> finish();
 
   std::array<std::uint8_t, kLongestFrame> buffer_ = {};
   std::size_t size_ = 0;

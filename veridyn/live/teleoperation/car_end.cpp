@@ -37,10 +37,10 @@ CarEnd::CarEnd(const CarEndOptions& options, std::uint16_t run)
 }
 
 void CarEnd::receive(Bytes bytes, Nanoseconds now) {
-  while (const std::optional<Frame> frame = decoder_.next(bytes)) ++verdicts_[judge(*frame, now)];
+  while (const std::optional<SerialFrame> frame = decoder_.next(bytes)) ++verdicts_[judge(*frame, now)];
 }
 
-CommandVerdict CarEnd::judge(const Frame& frame, Nanoseconds now) {
+CommandVerdict CarEnd::judge(const SerialFrame& frame, Nanoseconds now) {
   const std::optional<CommandPayload> payload =
       frame.header.kind == kCommandKind ? decode_command(frame.payload) : std::nullopt;
   if (!payload) return CommandVerdict::kNoCommand;

@@ -89,7 +89,7 @@ class CarEnd {
   [[nodiscard]] std::optional<std::uint32_t> last_executed() const { return last_executed_; }
 
  private:
-  [[nodiscard]] CommandVerdict judge(const Frame& frame, Nanoseconds now);
+  [[nodiscard]] CommandVerdict judge(const SerialFrame& frame, Nanoseconds now);
   /// An upper bound of the age of a command; nothing where there is none.
   [[nodiscard]] std::optional<Nanoseconds> age_bound(const std::optional<Echo>& echo, Nanoseconds now) const;
   void execute(const CarCommand& command, Nanoseconds now);

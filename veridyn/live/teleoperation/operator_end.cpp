@@ -50,10 +50,10 @@ std::size_t OperatorEnd::command(const CarCommand& command, Nanoseconds now, std
 }
 
 void OperatorEnd::receive(Bytes bytes, Nanoseconds now) {
-  while (const std::optional<Frame> frame = decoder_.next(bytes)) take(*frame, now);
+  while (const std::optional<SerialFrame> frame = decoder_.next(bytes)) take(*frame, now);
 }
 
-void OperatorEnd::take(const Frame& frame, Nanoseconds now) {
+void OperatorEnd::take(const SerialFrame& frame, Nanoseconds now) {
   const std::optional<ReportPayload> payload =
       frame.header.kind == kReportKind ? decode_report(frame.payload) : std::nullopt;
   // A delayed report of the car's run before this one is as good as none.

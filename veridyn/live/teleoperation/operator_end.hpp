@@ -84,7 +84,7 @@ class OperatorEnd {
   [[nodiscard]] std::uint64_t car_restarts() const { return car_restarts_; }
 
  private:
-  void take(const Frame& frame, Nanoseconds now);
+  void take(const SerialFrame& frame, Nanoseconds now);
   void adopt(std::uint16_t car_run);
   [[nodiscard]] Nanoseconds car_time(std::uint32_t time_us);
   void take_echo(const Echo& echo, Nanoseconds made, Nanoseconds now);
