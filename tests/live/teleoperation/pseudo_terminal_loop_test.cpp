@@ -13,9 +13,9 @@
 namespace veridyn::live {
 namespace {
 
-/// What the driver asks for at the command of that number: neutral at first.
+/// What the driver asks for at the command of that number; pedals are released at first and every ten seconds.
 CarCommand command_of(std::uint32_t sequence) {
-  if (sequence < 50) return {};
+  if (sequence % 1000 < 50) return {};
   return {.steering = 0.5 * std::sin(0.01 * sequence), .drive_force = 80.0 * std::cos(0.013 * sequence)};
 }
 
@@ -24,7 +24,6 @@ struct PseudoTerminalRun {
   std::uint64_t wrong = 0;                  ///< executed other than sent
   std::uint64_t links_lost = 0;
   LinkQuality quality;
-  CarState state = CarState::kHolding;
   std::uint64_t damaged_at_car = 0;
 };
 
@@ -42,11 +41,14 @@ PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
   std::thread line([&] {
     RealClock own;
     testing::SimulatedLine to_car(flipped, 1), to_operator(flipped, 2);
-    std::array<std::uint8_t, 4096> chunk;
+    std::array<std::uint8_t, 4096> from_operator, from_car;
     while (!stop) {
+      // The time after reading: no byte is older than it says, however long this thread had to wait.
+      const Bytes out = Bytes(from_operator).first(at_operator.read_some(from_operator));
+      const Bytes back = Bytes(from_car).first(at_car.read_some(from_car));
       const Nanoseconds now = own.now();
-      to_car.send(Bytes(chunk).first(at_operator.read_some(chunk)), now);
-      to_operator.send(Bytes(chunk).first(at_car.read_some(chunk)), now);
+      to_car.send(out, now);
+      to_operator.send(back, now);
       at_car.write(to_car.arrived(now));
       at_operator.write(to_operator.arrived(now));
       own.sleep_until(now + 100'000);
@@ -65,8 +67,9 @@ PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
     run.command_delays.reserve(commands);
     while (!stop) {
       serial.wait(kMillisecond);
-      car.receive(Bytes(chunk).first(serial.read(chunk)), own.now());
+      const Bytes bytes = Bytes(chunk).first(serial.read(chunk));
       const Nanoseconds now = own.now();
+      car.receive(bytes, now);
       const CarActuation actuation = car.step(sensors, now);
       if (car.last_executed() && car.last_executed() != last) {
         last = car.last_executed();
@@ -82,7 +85,6 @@ PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
       }
     }
     run.links_lost = car.links_lost();
-    run.state = car.state();
     run.damaged_at_car = car.frames().damaged();
   });
   {
@@ -125,12 +127,15 @@ void print(const PseudoTerminalRun& run) {
       100.0 * run.quality.report_loss());
 }
 
-/// Delays depend on what else the machine does; what holds whatever it does is asserted.
+/// How long most commands take depends on what else the machine does; what holds whatever it does is asserted.
 void expect_a_drive(const PseudoTerminalRun& run, double time) {
   EXPECT_EQ(run.wrong, 0U);
   EXPECT_GT(run.damaged_at_car, 0U);
-  // 0.99^28 of the commands are whole; before the first report none is executed.
-  EXPECT_GT(static_cast<double>(run.command_delays.size()), 0.6 * 100.0 * time);
+  // 0.99^28 of the commands are whole, 0.99^53 of the reports. On a machine that is too busy some are stale.
+  EXPECT_NEAR(run.quality.command_loss(), 1.0 - std::pow(0.99, 28), 4.0 * std::sqrt(0.25 / (100.0 * time)));
+  EXPECT_NEAR(run.quality.report_loss(), 1.0 - std::pow(0.99, 53), 4.0 * std::sqrt(0.25 / (100.0 * time)));
+  ASSERT_GT(run.command_delays.size(), static_cast<std::size_t>(10.0 * time));
+  EXPECT_LE(run.command_delays.back(), 200 * kMillisecond);
   ASSERT_TRUE(run.quality.round_trip_median && run.quality.command_delay && run.quality.report_delay);
   // No faster than the bits: 27 and 52 bytes of 40 us.
   EXPECT_GE(run.command_delays.front(), 27 * 40'000);
@@ -152,7 +157,6 @@ TEST(TeleoperationOnPseudoTerminalsSoak, ExecutesNothingThatWasNotSentInTwoMinut
   const PseudoTerminalRun run = run_on_pseudo_terminals(120.0, 0.01);
   print(run);
   expect_a_drive(run, 120.0);
-  EXPECT_EQ(run.state, CarState::kDriving);
 }
 
 }  // namespace
