@@ -35,6 +35,31 @@ FrameBytes encoded(const FrameHeader& header, Bytes payload) {
   return bytes;
 }
 
+/// The specification once more, written another way: CRC bit by bit, stuffing block by block.
+FrameBytes by_the_book(const FrameBytes& content) {
+  FrameBytes bytes = content;
+  std::uint32_t crc = 0xFFFF'FFFFU;
+  for (const std::uint8_t byte : content) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB8'8320U : 0U);
+  }
+  crc ^= 0xFFFF'FFFFU;
+  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(crc >> shift));
+  bytes.push_back(0);
+  FrameBytes stuffed, block;
+  for (const std::uint8_t byte : bytes) {
+    if (byte != 0) {
+      block.push_back(byte);
+      continue;
+    }
+    stuffed.push_back(static_cast<std::uint8_t>(block.size() + 1));
+    stuffed.insert(stuffed.end(), block.begin(), block.end());
+    block.clear();
+  }
+  stuffed.push_back(0);
+  return stuffed;
+}
+
 struct OwnFrame {
   FrameHeader header;
   FrameBytes payload;
@@ -55,6 +80,33 @@ TEST(Frame, IsAsSpecifiedToTheByte) {
   const FrameHeader header = {.kind = 2, .run = 0x0403, .sequence = 5};
   EXPECT_THAT(encoded(header, payload), ::testing::ElementsAre(0x06, 0x01, 0x02, 0x03, 0x04, 0x05, 0x01, 0x01, 0x03,
                                                                0x02, 0xaa, 0x05, 0x84, 0x23, 0x6f, 0x16, 0x00));
+}
+
+TEST(Frame, AgreesWithTheSpecificationWrittenAnotherWay) {
+  numerics::RandomStream random(6, "frames");
+  for (int round = 0; round < 2000; ++round) {
+    const FrameHeader header = random_header(random);
+    const FrameBytes payload = random_payload(random);
+    FrameBytes content = {1, header.kind, static_cast<std::uint8_t>(header.run),
+                          static_cast<std::uint8_t>(header.run >> 8U)};
+    for (unsigned shift = 0; shift < 32; shift += 8)
+      content.push_back(static_cast<std::uint8_t>(header.sequence >> shift));
+    content.push_back(static_cast<std::uint8_t>(payload.size()));
+    content.insert(content.end(), payload.begin(), payload.end());
+    ASSERT_EQ(encoded(header, payload), by_the_book(content)) << round;
+  }
+}
+
+TEST(FrameDecoder, RefusesWhatAnotherSenderMayMeanByAGoodCrc) {
+  FrameDecoder decoder;
+  EXPECT_EQ(decoded(decoder, by_the_book({1, 2, 3, 4, 5, 0, 0, 0, 2, 0xaa, 0})).size(), 1U);
+  EXPECT_TRUE(decoded(decoder, by_the_book({2, 2, 3, 4, 5, 0, 0, 0, 2, 0xaa, 0})).empty());
+  EXPECT_EQ(decoder.counts().other_version, 1U);
+  EXPECT_TRUE(decoded(decoder, by_the_book({1, 2, 3, 4, 5, 0, 0, 0, 3, 0xaa, 0})).empty());  // three, and there are two
+  EXPECT_TRUE(decoded(decoder, by_the_book({1, 2, 3, 4, 5, 0, 0, 0, 1, 0xaa, 0})).empty());
+  EXPECT_TRUE(decoded(decoder, by_the_book({1, 2, 3, 4, 5, 0, 0, 0})).empty());  // a header without a length
+  EXPECT_EQ(decoder.counts().malformed, 3U);
+  EXPECT_EQ(decoder.counts().bad_crc, 0U);
 }
 
 TEST(Frame, RoundTripsAnyPayloadInChunksOfAnySize) {

@@ -159,10 +159,27 @@ TEST(CarEnd, NeutralBeforeAnOutageIsNotNeutralAfterIt) {
   };
   exchange(kMillisecond);
   EXPECT_EQ(car.step({}, 50 * kMillisecond).state, CarState::kHolding);
+  // One command, however long ago, says nothing of the pedals since.
+  EXPECT_EQ(car.step({}, 190 * kMillisecond).state, CarState::kHolding);
   exchange(210 * kMillisecond);
   EXPECT_EQ(car.step({}, 220 * kMillisecond).state, CarState::kHolding);
-  EXPECT_EQ(car.step({}, 309 * kMillisecond).state, CarState::kHolding);
-  EXPECT_EQ(car.step({}, 310 * kMillisecond).state, CarState::kDriving);
+  exchange(309 * kMillisecond);
+  EXPECT_EQ(car.step({}, 315 * kMillisecond).state, CarState::kHolding);
+  exchange(320 * kMillisecond);
+  EXPECT_EQ(car.step({}, 320 * kMillisecond).state, CarState::kDriving);
+}
+
+TEST(CarEnd, BrakesWithReleasedPedalsToo) {
+  SimulatedLoop loop;
+  loop.get_going();
+  loop.sensors = rolling();
+  loop.run(1.0);  // rolls, pedals released
+  EXPECT_EQ(loop.car->state(), CarState::kDriving);
+  loop.to_car.cut = true;
+  loop.run(0.25);
+  loop.run(1.0, [&] { ASSERT_EQ(loop.actuation.state, CarState::kBraking); });
+  EXPECT_EQ(loop.car->links_lost(), 1U);
+  EXPECT_NEAR(loop.actuation.command.brake, 0.6, 1e-9);
 }
 
 TEST(CarEnd, AnEchoOfItsRunBeforeProvesNothing) {

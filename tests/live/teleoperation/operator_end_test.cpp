@@ -195,6 +195,7 @@ TEST(Teleoperation, NeverDrivesOnOldCommandsWhateverHappens) {
     SimulatedLoop loop(round % 2 == 0 ? 0.01 : 0.0, {}, 100 + static_cast<std::uint64_t>(round));
     loop.sensors.wheel_speeds.fill(20.0);
     Nanoseconds last_sent = 0;
+    CarState before = CarState::kHolding;
     for (int k = 0; k < 60; ++k) {
       switch (random.index(10)) {
         case 0:
@@ -229,6 +230,8 @@ TEST(Teleoperation, NeverDrivesOnOldCommandsWhateverHappens) {
       loop.run(random.uniform(0.01, 1.0), [&] {
         if (!loop.operator_paused) last_sent = loop.now;
         if (loop.car_paused || loop.now % kMillisecond != 0) return;
+        if (before == CarState::kDriving && loop.actuation.state == CarState::kBraking) ++lost;
+        before = loop.actuation.state;
         if (loop.actuation.command.drive_force != 0.0) {
           ++times_driven;
           ASSERT_EQ(loop.actuation.state, CarState::kDriving);
@@ -237,11 +240,10 @@ TEST(Teleoperation, NeverDrivesOnOldCommandsWhateverHappens) {
       });
     }
     for (const Nanoseconds age : loop.command_ages) ASSERT_LE(age, 200 * kMillisecond) << round;
-    lost += loop.car->links_lost();
     executed += loop.command_ages.size();
   }
   // It was not for want of driving.
-  EXPECT_GT(lost, static_cast<std::uint64_t>(rounds));
+  EXPECT_GT(lost, static_cast<std::uint64_t>(rounds) * 2);
   EXPECT_GT(executed, static_cast<std::uint64_t>(rounds) * 300);
   EXPECT_GT(times_driven, static_cast<std::uint64_t>(rounds) * 500);
 }

@@ -18,7 +18,7 @@ namespace veridyn::live {
 ///
 /// Why 32 bits: a damaged frame passes a check of n bits about once in 2^n, because stuffing turns one flipped bit into
 /// errors in several places, so that no guaranteed distance is left. With 1 % of the bytes flipped a quarter to a half
-/// of all frames is damaged: of 1e7 frames some 40 to 60 would pass 16 bits, 0.001 pass 32.
+/// of all frames is damaged: of 1e7 frames some 40 would pass 16 bits, 0.001 pass 32.
 inline constexpr std::uint8_t kFrameVersion = 1;
 /// Header and CRC [bytes].
 inline constexpr std::size_t kFrameHeader = 9, kFrameCheck = 4;

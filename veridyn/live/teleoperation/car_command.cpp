@@ -13,7 +13,6 @@ namespace {
 constexpr double kSteeringStep = 1e-4;  // [rad]
 constexpr double kForceStep = 0.05;     // [N]
 constexpr double kBrakeStep = 1e-4;
-constexpr Nanoseconds kAgeStep = 100'000;
 constexpr std::uint16_t kNoEcho = 0xFFFF;
 
 }  // namespace
@@ -35,10 +34,10 @@ std::string_view what_is_wrong(const CarCommand& command, const CommandRange& ra
 }
 
 void encode_echo(const std::optional<Echo>& echo, LittleEndianWriter& out) {
-  const bool known = echo && echo->age >= 0 && echo->age / kAgeStep < kNoEcho;
+  const bool known = echo && echo->age >= 0 && echo->age / kEchoAgeStep < kNoEcho;
   out.put(known ? echo->run : std::uint16_t{0});
   out.put(known ? echo->sequence : std::uint16_t{0});
-  out.put(known ? static_cast<std::uint16_t>(echo->age / kAgeStep) : kNoEcho);
+  out.put(known ? static_cast<std::uint16_t>(echo->age / kEchoAgeStep) : kNoEcho);
 }
 
 std::optional<Echo> decode_echo(LittleEndianReader& in) {
@@ -47,7 +46,7 @@ std::optional<Echo> decode_echo(LittleEndianReader& in) {
   echo.sequence = in.get<std::uint16_t>();
   const auto age = in.get<std::uint16_t>();
   if (age == kNoEcho) return std::nullopt;
-  echo.age = age * kAgeStep;
+  echo.age = age * kEchoAgeStep;
   return echo;
 }
 

@@ -35,6 +35,9 @@ struct CarCommand {
 /// well. A value on the limit is within, one that half a step of sending takes beyond it too.
 [[nodiscard]] std::string_view what_is_wrong(const CarCommand& command, const CommandRange& range);
 
+/// What ages of echoes are rounded down to.
+inline constexpr Nanoseconds kEchoAgeStep = 100'000;
+
 /// Which of the other end's frames was received last and how long ago, so that the other end can tell how old this is.
 struct Echo {
   std::uint16_t run = 0;

@@ -113,9 +113,9 @@ CarActuation CarEnd::step(const CarSensors& sensors, Nanoseconds now) {
   const bool alive = link_alive(now);
 
   if (state_ == CarState::kDriving && !alive) lose_link();
-  // The commands of an outage's end are not those of its beginning: neutral is asked for again.
+  // Pedals that were released when the link was lost have to be seen released when it is back.
   if (!alive) neutral_since_.reset();
-  if (state_ != CarState::kDriving && neutral_since_ && now - *neutral_since_ >= options_.neutral_for)
+  if (state_ != CarState::kDriving && neutral_since_ && *executed_at_ - *neutral_since_ >= options_.neutral_for)
     state_ = CarState::kDriving;
   if (state_ == CarState::kDriving) return {.command = wanted_, .state = state_};
 

@@ -8,13 +8,13 @@ Nanoseconds drift_in(Nanoseconds time) { return nanoseconds(ClockOffset::kDrift 
 }  // namespace
 
 void ClockOffset::outward(Nanoseconds sent_near, Nanoseconds arrived_far, Nanoseconds now) {
-  const Nanoseconds bound = arrived_far - sent_near + kStampStep;
+  const Nanoseconds bound = arrived_far - sent_near;
   if (!highest_ || bound <= highest_->value + drift_in(now - highest_->at)) highest_ = Bound{bound, now};
   check(now);
 }
 
 void ClockOffset::backward(Nanoseconds sent_far, Nanoseconds arrived_near, Nanoseconds now) {
-  const Nanoseconds bound = sent_far - arrived_near - kStampStep;
+  const Nanoseconds bound = sent_far - arrived_near;
   if (!lowest_ || bound >= lowest_->value - drift_in(now - lowest_->at)) lowest_ = Bound{bound, now};
   check(now);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "veridyn/live/time/clock.hpp"
@@ -24,12 +25,11 @@ class ClockOffset {
  public:
   /// Fastest drift of two quartz clocks against each other [s/s].
   static constexpr double kDrift = 100e-6;
-  /// Coarseness of the stamps [ns]: bounds are taken wider by it.
-  static constexpr Nanoseconds kStampStep = 110'000;
 
-  /// A frame from near to far. @param now of the near clock
+  /// A frame from near to far. @param arrived_far the latest that it can have been, where stamps are coarse
+  /// @param now of the near clock
   void outward(Nanoseconds sent_near, Nanoseconds arrived_far, Nanoseconds now);
-  /// A frame back.
+  /// A frame back. @param sent_far the earliest that it can have been
   void backward(Nanoseconds sent_far, Nanoseconds arrived_near, Nanoseconds now);
   void reset() { *this = {}; }
 

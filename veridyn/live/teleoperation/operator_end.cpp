@@ -9,6 +9,9 @@
 namespace veridyn::live {
 namespace {
 
+// What times of the car are rounded down by, at most.
+constexpr Nanoseconds kTimeStep = 1'000;
+
 double share_lost(std::uint64_t lost, std::uint64_t arrived) {
   const std::uint64_t all = lost + arrived;
   return all > 0 ? static_cast<double>(lost) / static_cast<double>(all) : 0.0;
@@ -102,7 +105,8 @@ void OperatorEnd::take_echo(const Echo& echo, Nanoseconds made, Nanoseconds now)
   const std::optional<Nanoseconds> sent = commands_.of(echo.sequence);
   if (!sent) return;
   round_trips_[round_trip_count_++ % round_trips_.size()] = std::max<Nanoseconds>(now - *sent - echo.age, 0);
-  const Nanoseconds arrived = made - echo.age;
+  // Both the time and the age are rounded down: the command can have arrived no later than this.
+  const Nanoseconds arrived = made + kTimeStep - echo.age;
   offset_.outward(*sent, arrived, now);
   command_stamps_ = arrived - *sent;
 }
@@ -146,8 +150,9 @@ LinkQuality OperatorEnd::quality(Nanoseconds now) const {
   if (quality.clock_offset) {
     // arrival on the other clock less sending on this one = delay + offset; the other way round: delay - offset.
     const auto [lowest, highest] = *quality.clock_offset;
-    if (command_stamps_) quality.command_delay = delay(*command_stamps_ - highest, *command_stamps_ - lowest);
-    if (report_stamps_) quality.report_delay = delay(*report_stamps_ + lowest, *report_stamps_ + highest);
+    if (command_stamps_)
+      quality.command_delay = delay(*command_stamps_ - kTimeStep - kEchoAgeStep - highest, *command_stamps_ - lowest);
+    if (report_stamps_) quality.report_delay = delay(*report_stamps_ - kTimeStep + lowest, *report_stamps_ + highest);
   }
   return quality;
 }

@@ -111,7 +111,7 @@ class OperatorEnd {
   std::uint64_t commands_arrived_ = 0, commands_spanned_ = 0;
 
   ClockOffset offset_;
-  std::optional<Nanoseconds> command_stamps_, report_stamps_;  ///< arrival on one clock less sending on the other
+  std::optional<Nanoseconds> command_stamps_, report_stamps_;  ///< latest arrival less earliest sending, on two clocks
   std::array<Nanoseconds, 1024> round_trips_ = {};
   std::uint64_t round_trip_count_ = 0;
 };
