@@ -170,6 +170,8 @@ TEST(WheelAxes, LeaveOutWhatIsHalfDropped) {
   for (const WheelEvent& event : wheel.events) axes.take(event);
   EXPECT_EQ(axes.value(0), 1);
   EXPECT_EQ(axes.dropped(), 1U);
+  RecordedWheel().axis(2, 7).report().play([&](const WheelEvent& event) { axes.take(event); });
+  EXPECT_EQ(axes.value(0), 1);
   RecordedWheel().axis(0, 4).report().play([&](const WheelEvent& event) { axes.take(event); });
   EXPECT_EQ(axes.value(0), 4);
 }
