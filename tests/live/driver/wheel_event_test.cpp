@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "tests/live/driver/recorded_wheel.hpp"
+#include "tests/live/serial/without_rights.hpp"
 #include "tests/support/refusal.hpp"
 #include "veridyn/live/driver/wheel_device.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -187,6 +188,10 @@ TEST(WheelDevice, IsRefusedInOneLine) {
   EXPECT_EQ(refusal("/dev/input/event_none"), "/dev/input/event_none: there is no such device; is it plugged in?");
   EXPECT_EQ(refusal(file.path()), file.path() + ": not an input device");
   EXPECT_EQ(refusal("/dev/null"), "/dev/null: not an input device");
+  {
+    const testing::WithoutRights closed("wheel_without_rights");
+    EXPECT_EQ(refusal(closed.path()), closed.path() + ": no right to open it; members of the group 'input' have it");
+  }
   EXPECT_EQ(refusal(::testing::TempDir()), ::testing::TempDir() + ": not an input device");
 }
 

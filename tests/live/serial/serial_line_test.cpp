@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "tests/live/serial/pseudo_terminal.hpp"
+#include "tests/live/serial/without_rights.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace veridyn::live {
@@ -85,14 +86,19 @@ TEST(SerialLine, IsRefusedInOneLine) {
     EXPECT_EQ(refusal(device), device + ": in use by another program");
   }
   EXPECT_EQ(refusal(device), "nothing was refused");
-  // What a test cannot bring about: rights that the superuser does not lack, a clock that cannot be divided.
-  EXPECT_EQ(internal::open_refusal(EACCES, "dialout"), "no right to open it; members of the group 'dialout' have it");
+  // What a test cannot bring about: a device that is busy, a clock that cannot be divided.
   EXPECT_EQ(internal::open_refusal(EBUSY, "dialout"), "in use by another program");
   EXPECT_EQ(internal::baud_refusal(250'000, 230'400),
             "the line cannot do 250000 baud; the nearest it offers is 230400");
   EXPECT_EQ(internal::baud_refusal(250'000, 9'600), "the line cannot do 250000 baud; the nearest it offers is 9600");
   EXPECT_FALSE(internal::baud_refusal(250'000, 250'000));
   EXPECT_FALSE(internal::baud_refusal(115'200, 115'384));
+}
+
+TEST(SerialLine, IsRefusedWithoutTheRightToOpenIt) {
+  const testing::WithoutRights file("serial_line_without_rights");
+  EXPECT_EQ(why([&] { SerialLine line({.device = file.path()}); }),
+            file.path() + ": no right to open it; members of the group 'dialout' have it");
 }
 
 }  // namespace
