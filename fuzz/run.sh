@@ -5,7 +5,7 @@ set -eu
 seconds=${1:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 build=${2:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 shift 2
-[ $# -gt 0 ] || set -- dataflash dataflash_text ulog csv mat npy npz packet storage osim tir crg telemetry live_file
+[ $# -gt 0 ] || set -- dataflash dataflash_text ulog csv mat npy npz packet storage osim tir crg telemetry live_file teleoperation wheel
 "$build/bin/fuzz_seeds" "$build/fuzz-corpus"
 mkdir -p "$build/fuzz-corpus/osim"
 cp "$(dirname "$0")"/../veridyn/muscle/osim/models/*.osim "$build/fuzz-corpus/osim/"

@@ -64,6 +64,11 @@ int main(int count, char** arguments) {
     records.resize(veridyn::live::encode(step, records));
     write("live_file",
           veridyn::live::framed(veridyn::live::encode(veridyn::live::LiveHead{})) + veridyn::live::framed(records));
+    // The frame that docs/teleoperation.md gives, in chunks of eight bytes.
+    write("teleoperation", std::string("\x07\x06\x01\x02\x03\x04\x05\x01\x01\x03\x02\xaa\x05\x84\x23\x6f\x16\0", 18));
+    // A steering axis at its left end, then the report.
+    write("wheel", std::string("\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x03\0\0\0\x01\0\0\0", 24) +
+                       std::string("\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24));
     write("tir", veridyn::vehicle::testing::small_tir());
     const std::string road =
         "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";
