@@ -27,6 +27,11 @@
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_links.hpp"
 #endif
+#ifdef VERIDYN_HAS_PAGE
+#include "veridyn/live/page/live_page.hpp"
+#include "veridyn/live/page/page_token.hpp"
+#include "veridyn/live/page/status_json.hpp"
+#endif
 
 namespace veridyn::app {
 namespace {
@@ -181,9 +186,89 @@ class Console {
   std::string last_;
 };
 
-/// The operator's side of a run: keys, signals, the check of the signs, and the end.
+#ifdef VERIDYN_HAS_PAGE
+
+/// The page of a run, and what is asked there.
+class PageOfRun {
+ public:
+  PageOfRun(const LiveStudy& study, const CommonOptions& options)
+      : design_(study.cueing.algorithms.front().design->clone()) {
+    if (!study.page) return;
+    const bool drawn = study.page_token.empty() && study.page->address >> 24U == 127;
+    const std::string token = drawn                      ? random_token()
+                              : study.page_token.empty() ? ""
+                                                         : read_token_file(study.page_token);
+    page_ = std::make_unique<LivePage>(PageOptions{*study.page, token});
+    print_line(options, fmt::format("page: http://{}{}", to_string(*study.page), drawn ? "  token: " + token : ""));
+  }
+
+  /// Shows the newest status, 20 times a second, and does what was asked for.
+  void update(const RigStatus& status, const LiveStudy& study, LiveControl& control, double time,
+              const std::string& message) {
+    if (!page_) return;
+    if (time - shown_ >= 0.05) {
+      shown_ = time;
+      page_->show(status_json(status, study, *design_, time, page_->refused(), message));
+    }
+    for (const PageRequest& r : page_->take_requests()) {
+      if (r.kind == PageRequest::Kind::kWish) {
+        if (r.wish == OperatorWish::kEmergency)
+          control.emergency();
+        else
+          control.wish(r.wish);
+        continue;
+      }
+      std::vector<double> values = knob_values(*design_);
+      if (r.kind == PageRequest::Kind::kUndo) {
+        if (before_.empty()) continue;
+        values = before_.back();
+        before_.pop_back();
+      } else {
+        if (r.knob >= values.size()) continue;
+        before_.push_back(values);
+        values[r.knob] = r.value;
+      }
+      turn(values, study, control);
+    }
+  }
+
+ private:
+  /// Another algorithm with these numbers; those that it refuses are left.
+  void turn(const std::vector<double>& values, const LiveStudy& study, LiveControl& control) {
+    std::unique_ptr<cueing::WashoutDesign> design = design_->clone();
+    set_knob_values(*design, values);
+    try {
+      auto setting = std::make_unique<KnobSetting>();
+      setting->values = values;
+      setting->washout = design->make(study.cueing.platform);
+      control.turn(std::move(setting));
+      design_ = std::move(design);
+    } catch (const InputError&) {
+      if (!before_.empty()) before_.pop_back();
+    }
+  }
+
+  std::unique_ptr<cueing::WashoutDesign> design_;
+  std::vector<std::vector<double>> before_;  ///< values of the knobs, the last ones last
+  std::unique_ptr<LivePage> page_;
+  double shown_ = -1.0;
+};
+
+#else
+
+class PageOfRun {
+ public:
+  PageOfRun(const LiveStudy& study, const CommonOptions&) {
+    if (study.page) throw InputError("live.page", "this program was built without the page (see VERIDYN_PAGE)");
+  }
+  void update(const RigStatus&, const LiveStudy&, LiveControl&, double, const std::string&) {}
+};
+
+#endif
+
+/// The operator's side of a run: keys, signals, page, the check of the signs, and the end.
 void supervise(const StudyRun& run, const LiveStudy& study, LiveControl& control, LiveRecorder& recorder,
-               RealClock& clock, Nanoseconds start, std::vector<std::string>& notes) {
+               PageOfRun& page, RealClock& clock, Nanoseconds start, std::vector<std::string>& notes) {
   const CommonOptions& options = run.options();
   Keys keys;
   Console console(options);
@@ -200,6 +285,7 @@ void supervise(const StudyRun& run, const LiveStudy& study, LiveControl& control
     const double time = seconds(now - start);
     const RigStatus& status = control.status();
     console.show(status, time);
+    page.update(status, study, control, time, signs_text.empty() || signs_done ? "" : "still to drive: " + signs_text);
     control.tidy();
     motions.clear();
     control.take_motions(motions);
@@ -280,6 +366,7 @@ int cue_live(const StudyRun& run) {
   const auto session = static_cast<std::uint32_t>(std::random_device()());
   LiveLoop loop(study, session);
   UdpLinks links(study.telemetry, study.platform);
+  PageOfRun page(study, run.options());
   RealClock clock;
   const Nanoseconds start = clock.now();
   const auto utc = std::chrono::system_clock::now().time_since_epoch();
@@ -307,7 +394,7 @@ int cue_live(const StudyRun& run) {
       late = make_thread_timely();
       loop.run(links, clock, control, &recorder, std::nullopt);
     });
-    supervise(run, study, control, recorder, clock, start, notes);
+    supervise(run, study, control, recorder, page, clock, start, notes);
     thread.join();
     std::signal(SIGUSR1, SIG_DFL);
     stopped_by_signal = nullptr;

@@ -6,8 +6,8 @@ veridyn=${1:?usage: examples/live/run.sh VERIDYN OUT [SECONDS]}
 out=${2:?usage: examples/live/run.sh VERIDYN OUT [SECONDS]}
 seconds=${3:-12}
 study=$(dirname "$0")/../studies/cueing/live.toml
-port=$((30000 + 2 * ($$ % 10000)))
-sets="--set live.telemetry=127.0.0.1:$port --set live.platform=127.0.0.1:$((port + 1)) --set live.signs=while"
+port=$((30000 + 3 * ($$ % 10000)))
+sets="--set live.telemetry=127.0.0.1:$port --set live.platform=127.0.0.1:$((port + 1)) --set live.page=127.0.0.1:$((port + 2)) --set live.signs=while"
 rm -rf "$out" && mkdir -p "$out"
 "$veridyn" rig platform "$study" $sets & platform=$!
 "$veridyn" rig vehicle "$study" $sets --quiet & vehicle=$!

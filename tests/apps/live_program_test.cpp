@@ -23,7 +23,10 @@ class LiveProgramTest : public ProgramTest {
     ProgramTest::SetUp();
     const int base = 20000 + 4 * (static_cast<int>(::getpid()) % 10000);
     study_ = (test::source_folder() / "examples/studies/cueing/live.toml").string();
-    sets_ = {"--set", fmt::format("live.telemetry=127.0.0.1:{}", base),
+    page_ = base + 2;
+    sets_ = {"--set",
+             fmt::format("live.page=127.0.0.1:{}", page_),
+             "--set", fmt::format("live.telemetry=127.0.0.1:{}", base),
              "--set", fmt::format("live.platform=127.0.0.1:{}", base + 1),
              "--set", "live.soft_start=1",
              "--set", "live.fade=1",
@@ -57,6 +60,7 @@ class LiveProgramTest : public ProgramTest {
 
   std::string study_;
   std::vector<std::string> sets_;
+  int page_ = 0;
 };
 
 void LiveProgramTest::disturb(int times, std::uint64_t seed) {

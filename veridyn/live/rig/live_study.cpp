@@ -108,6 +108,8 @@ LiveStudy read_live_study(const Study& study) {
   s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
   s.platform = parse_address(live.text("platform"), live.place("platform"));
   if (s.telemetry == s.platform) live.fail("platform", "is where telemetry comes in");
+  if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
+  if (live.has("page_token")) s.page_token = live.file("page_token");
   s.layouts = read_layouts(live);
   RigOptions& o = s.options;
   o.rate = number_within(live, "rate", "Hz", o.rate, 20.0, 4000.0);

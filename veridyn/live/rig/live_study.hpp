@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,12 +28,16 @@ namespace veridyn::live {
 ///     spikes = "500 m/s^3"          # most change of a specific force, against crashes and landings
 ///     soft_start = 3                # [s], as hold = 0.5, fade = 3
 ///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
+///     page = "127.0.0.1:8090"       # the run's page in a browser; none when left out
+///     page_token = "token.txt"      # file of what a control needs; needed beyond loopback, else one is drawn
 ///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
   std::vector<io::PacketLayout> layouts;
-  Sender telemetry;  ///< where we listen
-  Sender platform;   ///< where orders go
+  Sender telemetry;                  ///< where we listen
+  Sender platform;                   ///< where orders go
+  std::optional<Sender> page;        ///< where the run's page is shown
+  std::filesystem::path page_token;  ///< file of its token; empty: one is drawn and printed
   RigOptions options;
 };
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "veridyn/live/link/datagram.hpp"
+#include "veridyn/live/recording/live_record.hpp"
+
+namespace veridyn::live {
+
+/// What somebody at the page asks for.
+struct PageRequest {
+  enum class Kind {
+    kWish,  ///< `wish`
+    kKnob,  ///< value `knob` of the algorithm's knobs becomes `value`
+    kUndo,  ///< the knobs as they were before the last turn
+  };
+  Kind kind = Kind::kWish;
+  OperatorWish wish = OperatorWish::kPark;
+  std::size_t knob = 0;
+  double value = 0.0;
+};
+
+struct PageOptions {
+  Sender address = {0x7f000001, 8090};
+  /// For any control. Empty: there is none, the page only shows.
+  std::string token;
+};
+
+/// The page of a live run: shows its status as server-sent events, and takes requests from whoever has the token. It
+/// has threads of its own; a page that is slow or closed delays nobody.
+///
+/// A control is answered 401 without a token, 403 with a wrong one, or where the request came by another name than an
+/// address of this machine (so that no foreign page reaches it through a browser); all of these are counted. The token
+/// comes in the header `Authorization: Bearer`, never in an address.
+class LivePage {
+ public:
+  /// @throws InputError: the port is in use, the address is not ours; an address beyond loopback without a token
+  explicit LivePage(const PageOptions& options);
+  ~LivePage();
+  LivePage(const LivePage&) = delete;
+  LivePage& operator=(const LivePage&) = delete;
+
+  /// The newest status, as JSON in one line.
+  void show(std::string json);
+  [[nodiscard]] std::vector<PageRequest> take_requests();
+  /// Controls that were refused.
+  [[nodiscard]] std::uint64_t refused() const;
+
+ private:
+  struct Server;
+  std::unique_ptr<Server> server_;
+};
+
+}  // namespace veridyn::live

@@ -1,0 +1,64 @@
+#include "veridyn/live/page/status_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace veridyn::live {
+
+using nlohmann::json;
+
+std::string status_json(const RigStatus& status, const LiveStudy& study, cueing::WashoutDesign& design, double time,
+                        std::uint64_t refused, const std::string& message) {
+  json j;
+  j["title"] = study.cueing.title;
+  j["time"] = time;
+  j["state"] = std::string(name_of(status.step.state));
+  j["readiness"] = std::string(name_of(status.readiness));
+  j["share"] = status.step.share;
+  j["message"] = message;
+  j["refused"] = refused;
+  for (std::size_t i = 0; i < cueing::kPlatformAxes; ++i) {
+    const auto which = static_cast<cueing::PlatformAxis>(i);
+    const cueing::AxisLimits& l = study.cueing.platform.limits.axes[i];
+    if (!l.moves()) continue;
+    j["axes"].push_back({{"name", std::string(name_of(which))},
+                         {"turns", turns(which)},
+                         {"lowest", l.lowest},
+                         {"highest", l.highest},
+                         {"told", axis(status.step.cueing.told, which).position},
+                         {"reached", study.options.answers ? static_cast<double>(status.answers.reached[i])
+                                                           : axis(status.step.cueing.reached, which).position},
+                         {"limited", static_cast<bool>(status.step.cueing.limited[i])}});
+  }
+  if (status.step.motion) {
+    // In the vehicle, and on the platform: what the rider's accelerometer shows, forward, right, down.
+    const recording::MotionSample v = recording::in_frame(status.step.motion->sample, Frame::kFrd);
+    const recording::MotionSample r = rider_motion(status.step.cueing.reached, study.cueing.platform.rider);
+    j["vehicle"] = {v.force.x(), v.force.y(), v.force.z()};
+    j["rider"] = {r.force.x(), r.force.y(), r.force.z()};
+    j["speed"] = v.speed;
+  }
+  for (std::size_t i = 0; i < kPacketFates; ++i)
+    j["packets"].push_back({{"name", std::string(name_of(static_cast<PacketFate>(i)))}, {"count", status.packets[i]}});
+  const LatencyHistogram& h = status.times.receive_to_send;
+  json bins = json::array();
+  for (std::size_t i = 0; i + 1 < LatencyHistogram::kBins; ++i) {
+    if (h.bins()[i] > 0) bins.push_back({LatencyHistogram::upper_edge(i), h.bins()[i]});
+  }
+  j["latency"] = {{"bins", bins}, {"p50", h.quantile(0.5)}, {"p99", h.quantile(0.99)}};
+  j["orders"] = status.times.steps;
+  j["left_out"] = status.times.left_out;
+  std::size_t index = 0;
+  for (const cueing::Knob& knob : design.knobs()) {
+    for (std::size_t k = 0; k < knob.values.size(); ++k) {
+      j["knobs"].push_back({{"index", index++},
+                            {"name", knob.values.size() > 1 ? knob.name + " " + std::to_string(k + 1) : knob.name},
+                            {"unit", knob.unit},
+                            {"value", knob.values[k]},
+                            {"feel", knob.feel}});
+    }
+  }
+  return j.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace veridyn::live
