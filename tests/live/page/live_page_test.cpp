@@ -89,7 +89,7 @@ TEST_F(LivePageTest, RefusesAndCountsControlsWithoutTheRightToken) {
   EXPECT_EQ(control(park, {}), 401);
   EXPECT_EQ(control(park, {{"Authorization", kToken}}), 401);
   EXPECT_EQ(control(park, {{"Authorization", "Bearer 0123456789abcdee"}}), 403);
-  EXPECT_EQ(control(park, {{"Authorization", "Bearer "}}), 403);
+  EXPECT_EQ(control(park, {{"Authorization", "Bearer "}}), 401);
   EXPECT_EQ(client_.Post(std::string("/control?token=") + kToken, park, "application/json")->status, 401);
   // A foreign page in the operator's browser, by another name for this address.
   const std::string bearer = std::string("Bearer ") + kToken;

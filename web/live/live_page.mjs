@@ -1,0 +1,141 @@
+// The page of a live run in headless Chromium, with the whole virtual rig running: values move, a knob changes the motion, the
+// emergency stop works, a control without the token is refused.
+//   node --test live_page.mjs     VERIDYN=the program, STUDY=live.toml, SCREENSHOT=where a picture is to be written (optional)
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { chromium } from 'playwright-core';
+
+const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skip = existsSync(executablePath) ? false : `no Chromium at ${executablePath}`;
+if (skip) console.log(skip);
+
+const port = 50000 + 3 * (process.pid % 5000);
+const sets = [
+  `live.telemetry=127.0.0.1:${port}`,
+  `live.platform=127.0.0.1:${port + 1}`,
+  `live.page=127.0.0.1:${port + 2}`,
+  'live.signs=while',
+  'live.soft_start=1',
+  'live.rate=500',
+  'drive.duration=30',
+].flatMap((s) => ['--set', s]);
+const processes = [];
+let browser, page, folder, token;
+
+const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+const state = () => page.textContent('#state');
+/** Waits until the page shows this. */
+async function shows(selector, wanted, ms = 20000) {
+  const end = Date.now() + ms;
+  let text;
+  while (Date.now() < end) {
+    text = await page.textContent(selector);
+    if (wanted.test(text)) return text;
+    await sleep(50);
+  }
+  assert.match(text, wanted);
+}
+/** Largest pitch and roll on the page over a time [deg]. */
+async function largest(ms) {
+  const end = Date.now() + ms;
+  let most = 0;
+  while (Date.now() < end) {
+    const cells = await page.$$eval('#axes td.n', (all) => all.map((c) => c.textContent));
+    for (const c of cells) if (c.endsWith('°')) most = Math.max(most, Math.abs(parseFloat(c)));
+    await sleep(30);
+  }
+  return most;
+}
+
+before(async () => {
+  if (skip) return;
+  folder = mkdtempSync(join(tmpdir(), 'veridyn-live-'));
+  const run = (...words) => {
+    const p = spawn(process.env.VERIDYN, [...words, ...sets], { stdio: ['ignore', 'ignore', 'pipe'] });
+    p.said = '';
+    p.stderr.on('data', (d) => (p.said += d));
+    processes.push(p);
+    return p;
+  };
+  run('rig', 'platform', process.env.STUDY);
+  run('rig', 'vehicle', process.env.STUDY);
+  const rig = run('cue', process.env.STUDY, '--live', '--start', '--out', join(folder, 'out'));
+  for (let k = 0; k < 400 && !token; ++k) {
+    token = /token: (\S+)/.exec(rig.said)?.[1];
+    await sleep(50);
+  }
+  assert.ok(token, rig.said);
+  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu', '--no-first-run'] });
+  page = await browser.newPage({ viewport: { width: 1300, height: 860 } });
+  await page.goto(`http://127.0.0.1:${port + 2}/`);
+});
+
+after(async () => {
+  await browser?.close();
+  for (const p of processes) p.kill('SIGKILL');
+  if (folder) rmSync(folder, { recursive: true, force: true });
+});
+
+test('values move while the rig runs', { skip }, async () => {
+  await shows('#state', /running/);
+  const packets = async () => Number(await page.textContent('#packets td.n'));
+  const first = await packets();
+  await sleep(1000);
+  const second = await packets();
+  assert.ok(second > first + 50 && second < first + 500, `${first} then ${second} packets`);
+  assert.ok((await largest(3000)) > 0.3);
+  assert.ok((await page.$$('#latency rect')).length > 3);
+});
+
+test('a control without the token is refused and counted', { skip }, async () => {
+  await page.click('#park');
+  await shows('#answer', /needs the token/);
+  await shows('#why', /1 controls? refused/);
+  assert.equal(await state(), 'running');
+});
+
+test('a knob changes the motion, and undo takes it back', { skip }, async () => {
+  await page.fill('#token', token);
+  const before = await largest(5000);
+  // All gains of forces to a fifth: the platform hardly moves.
+  for (const index of [0, 1, 2, 3]) {
+    await page.$eval(`#knob${index}`, (slider) => {
+      slider.value = -1;
+      slider.dispatchEvent(new Event('change'));
+    });
+    await sleep(150);
+  }
+  await shows('.knob:nth-child(1) span', /^0\.120/);
+  await sleep(3000);
+  const then = await largest(5000);
+  assert.ok(then < 0.5 * before, `${before} deg, then ${then}`);
+  for (let k = 0; k < 4; ++k) {
+    await page.click('#undo');
+    await sleep(150);
+  }
+  await shows('.knob:nth-child(1) span', /^0\.600/);
+  if (process.env.SCREENSHOT) {
+    await sleep(9000);
+    await page.screenshot({ path: process.env.SCREENSHOT });
+  }
+});
+
+test('the emergency stop stops, and a release lets it go to park', { skip }, async () => {
+  await page.click('#stop');
+  await shows('#state', /stopped/, 2000);
+  const at = await page.textContent('#axes');
+  await sleep(500);
+  assert.equal(await state(), 'stopped');
+  const cells = await page.$$eval('#axes td.n', (all) => all.map((c) => c.textContent));
+  await sleep(500);
+  assert.deepEqual(await page.$$eval('#axes td.n', (all) => all.map((c) => c.textContent)), cells, at);
+  await page.click('#release');
+  await shows('#state', /fade|parked/);
+  await shows('#state', /parked/);
+  await page.click('#start');
+  await shows('#state', /soft start|running/);
+});
