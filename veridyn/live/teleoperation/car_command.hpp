@@ -52,7 +52,7 @@ struct CommandPayload {
   std::optional<Echo> echo;  ///< none: no report was received within 6.5534 s (age 0xffff)
 };
 
-/// @param command within what a frame can hold, see `what_is_wrong`
+/// @param payload its command within what a frame can hold, see `what_is_wrong`
 /// @param out of `kCommandPayload` bytes
 void encode_command(const CommandPayload& payload, std::span<std::uint8_t> out);
 /// Nothing where the size is not that of a command. Values are held against no range here.
