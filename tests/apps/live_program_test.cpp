@@ -24,8 +24,7 @@ class LiveProgramTest : public ProgramTest {
     const int base = 20000 + 4 * (static_cast<int>(::getpid()) % 10000);
     study_ = (test::source_folder() / "examples/studies/cueing/live.toml").string();
     page_ = base + 2;
-    sets_ = {"--set",
-             fmt::format("live.page=127.0.0.1:{}", page_),
+    sets_ = {"--set", fmt::format("live.page=127.0.0.1:{}", page_),
              "--set", fmt::format("live.telemetry=127.0.0.1:{}", base),
              "--set", fmt::format("live.platform=127.0.0.1:{}", base + 1),
              "--set", "live.soft_start=1",
