@@ -11,6 +11,7 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/text.hpp"
+#include "veridyn/io/tables/csv_cells.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -19,13 +20,13 @@ std::string_view unquoted(std::string_view text) {
   return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
+std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
   std::vector<std::string_view> cells;
   while (true) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(unquoted(trimmed(line.substr(0, comma))));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
+    const std::size_t end = line.find(delimiter);
+    cells.push_back(unquoted(trimmed(line.substr(0, end))));
+    if (end == std::string_view::npos) return cells;
+    line.remove_prefix(end + 1);
   }
 }
 
@@ -49,6 +50,8 @@ Table parse_table(std::string_view text, std::string source) {
   table.source = std::move(source);
   std::vector<Unit> recorded;
   std::size_t number = 0;
+  char delimiter = ',';
+  bool closed = false;  // a delimiter after the last cell of every row
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
@@ -57,7 +60,10 @@ Table parse_table(std::string_view text, std::string source) {
     ++number;
     if (line.empty() || line.front() == '#') continue;
     const std::string place = fmt::format("{}:{}", table.source, number);
-    const std::vector<std::string_view> cells = cells_of(line);
+    if (table.columns.empty()) delimiter = internal::guess_delimiter(line);
+    std::vector<std::string_view> cells = cells_of(line, delimiter);
+    if (table.columns.empty()) closed = cells.size() > 1 && line.back() == delimiter;
+    if (closed && line.back() == delimiter) cells.pop_back();
     if (table.columns.empty()) {
       for (const std::string_view cell : cells) {
         const std::size_t open = cell.find('[');
@@ -83,6 +89,7 @@ Table parse_table(std::string_view text, std::string source) {
     }
     if (cells.size() != table.columns.size())
       throw InputError(place, fmt::format("has {} cells, the header {}", cells.size(), table.columns.size()));
+    table.lines.push_back(number);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       double value = kNaN;
       if (!cells[i].empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -21,6 +22,7 @@ struct TableColumn {
 struct Table {
   std::string source;
   std::vector<TableColumn> columns;
+  std::vector<std::size_t> lines{};  ///< of the file, of each row
 
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().value.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
@@ -28,8 +30,9 @@ struct Table {
   [[nodiscard]] const TableColumn& at(std::string_view name) const;
 };
 
-/// Reads comma-separated columns under a header `name[unit],...` (also `alpha_deg`, `beta_deg` for degrees); lines that
-/// start with '#' are comments.
+/// Reads columns under a header `name[unit],...` (also `alpha_deg`, `beta_deg` for degrees), separated by comma,
+/// semicolon or tabulator, whichever the header holds most of; lines that start with '#' are comments. A delimiter
+/// after the last cell of the header is taken for what it is.
 /// @throws InputError with file:line for rows of another length, non-numeric cells, unknown units, names that
 /// appear twice, or no rows.
 [[nodiscard]] Table read_table(const std::filesystem::path& path);
