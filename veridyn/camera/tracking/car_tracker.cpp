@@ -1,0 +1,204 @@
+#include "veridyn/camera/tracking/car_tracker.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
+#include "veridyn/numerics/rotation.hpp"
+#include "veridyn/numerics/statistics.hpp"
+
+namespace veridyn::camera {
+
+void TrackerOptions::validate() const {
+  blobs.validate();
+  layout.validate();
+  if (!(motion.forward > 0.0 && motion.left > 0.0 && motion.yaw > 0.0))
+    throw InputError("tracker", "the densities of the motion must be > 0");
+  if (!(gate_probability > 0.9 && gate_probability < 1.0))
+    throw InputError("tracker", "gate_probability must be between 0.9 and 1");
+  if (!(lost_after_s > 0.0 && lost_sigma_m > 0.0 && longest_step_s > 0.0))
+    throw InputError("tracker", "lost_after, lost_sigma and longest_step must be > 0");
+  if (layout.markers.size() == 2 && !first_heading)
+    throw InputError("tracker", "two markers look the same from both ends: the heading at the start must be given");
+  if (first_heading && !std::isfinite(*first_heading)) throw InputError("tracker", "first_heading must be finite");
+}
+
+CarTracker::CarTracker(const Calibration& calibration, const TrackerOptions& options)
+    : calibration_(calibration), options_(options), finder_((options.validate(), options.blobs)) {
+  if (!calibration_.covariance.allFinite())
+    throw InputError("calibration", "its error is unknown (four points only), and so would be that of the poses");
+  for (std::size_t n = 2; n <= 3; ++n)
+    fit_gate_[n] = numerics::chi_square_quantile(options_.gate_probability, 2.0 * static_cast<double>(n) - 3.0);
+  pose_gate_ = numerics::chi_square_quantile(options_.gate_probability, 3.0);
+}
+
+TrackedPose CarTracker::add(double time, const GreyView& frame) { return add(time, finder_.find(frame)); }
+
+TrackedPose CarTracker::add(double time, std::span<const Blob> blobs) {
+  if (!std::isfinite(time) || (begun_ && !(time > time_)))
+    throw InputError("frame", fmt::format("its time {:.6f} s does not follow {:.6f} s", time, time_));
+  const double step = time - time_;
+  if (begun_ && step > options_.longest_step_s) following_ = false;
+  if (following_) {
+    filter_.propagate(options_.motion, {}, step);
+    const double sigma = std::sqrt(filter_.covariance().topLeftCorner<2, 2>().trace());
+    if (time - seen_ > options_.lost_after_s || !(sigma < options_.lost_sigma_m)) following_ = false;
+  }
+  begun_ = true;
+  time_ = time;
+  spots_of(blobs, calibration_, spots_);
+
+  TrackedPose result;
+  result.time = time;
+  const std::size_t all = options_.layout.markers.size();
+  if (following_) {
+    result.measured = recognise(all, true);
+    if (!result.measured && all == 3 && close()) result.measured = recognise(2, true);
+    if (result.measured) {
+      scale(*result.measured);
+      correct(time, *result.measured);
+    }
+  } else {
+    result.measured = recognise(all, false);
+    if (result.measured) {
+      scale(*result.measured);
+      start(*result.measured);
+    }
+  }
+  if (!following_) return result;
+  if (result.measured) {
+    seen_ = time;
+    map_ = result.measured->map;
+  }
+  result.status = result.measured ? TrackStatus::kMeasured : TrackStatus::kPredicted;
+  result.pose = filter_.state().head<3>();
+  result.pose(2) = numerics::wrap_angle(result.pose(2));
+  result.covariance = filter_.covariance().topLeftCorner<3, 3>() + map_;
+  result.velocity = filter_.state().tail<3>();
+  result.velocity_covariance = filter_.covariance().bottomRightCorner<3, 3>();
+  return result;
+}
+
+std::optional<PoseMeasurement> CarTracker::recognise(std::size_t markers, bool predicted) {
+  const auto& layout = options_.layout.markers;
+  std::optional<PoseMeasurement> best, second;
+  double best_distance = kInfinity, second_distance = kInfinity;
+  std::array<const Spot*, 3> chosen{};
+  std::array<std::size_t, 3> which{};
+
+  const double factor = variance_factor();
+  const auto judge = [&] {
+    const auto pose =
+        fit_pose(std::span(chosen).first(markers), std::span(which).first(markers), options_.layout, calibration_);
+    if (!pose || !(pose->chi_square < fit_gate_[markers] * factor)) return;
+    double distance = pose->chi_square / factor;
+    if (predicted) {
+      Eigen::Vector3d off = pose->pose - filter_.state().head<3>();
+      off(2) = numerics::wrap_angle(off(2));
+      const Eigen::Matrix3d S = filter_.covariance().topLeftCorner<3, 3>() + factor * pose->noise;
+      const double from_prediction = off.dot(S.ldlt().solve(off));
+      if (!(from_prediction < pose_gate_)) return;
+      distance += from_prediction;
+    } else if (options_.first_heading && markers == 2 &&
+               !(std::abs(numerics::wrap_angle(pose->pose(2) - *options_.first_heading)) < 0.5 * kPi)) {
+      return;
+    }
+    if (distance < best_distance) {
+      second = best;
+      second_distance = best_distance;
+      best = pose;
+      best_distance = distance;
+    } else if (distance < second_distance) {
+      second = pose;
+      second_distance = distance;
+    }
+  };
+  // Distances between spots against the layout's, well before a fit: six sigma of both spots and both markers.
+  const auto fits = [&](std::size_t i, std::size_t j) {
+    const double expected = (layout[which[i]] - layout[which[j]]).norm();
+    const double sigma2 =
+        chosen[i]->noise.trace() + chosen[j]->noise.trace() + 4.0 * options_.layout.sigma * options_.layout.sigma;
+    const double off = (chosen[i]->place - chosen[j]->place).norm() - expected;
+    return off * off < 36.0 * factor * sigma2;
+  };
+  const auto pairs = [&](std::size_t a, std::size_t b) {
+    which = {a, b, 3 - a - b};
+    for (const Spot& first : spots_) {
+      for (const Spot& other : spots_) {
+        if (&first == &other) continue;
+        chosen = {&first, &other, nullptr};
+        if (!fits(0, 1)) continue;
+        if (markers == 2) {
+          judge();
+          continue;
+        }
+        for (const Spot& third : spots_) {
+          if (&third == &first || &third == &other) continue;
+          chosen[2] = &third;
+          if (fits(0, 2) && fits(1, 2)) judge();
+        }
+      }
+    }
+  };
+  pairs(0, 1);
+  if (markers == 2 && layout.size() == 3) {
+    pairs(0, 2);
+    pairs(1, 2);
+  }
+  // Two that agree about equally well: which of them is the car is not known.
+  constexpr double kClearly = 9.0;
+  const bool ambiguous = predicted && markers < layout.size() ? second_distance < best_distance + kClearly
+                                                              : !predicted && second.has_value();
+  if (ambiguous && best && second && (best->pose - second->pose).head<2>().norm() > 1e-3) return std::nullopt;
+  return best;
+}
+
+bool CarTracker::close() const noexcept {
+  double least = kInfinity;
+  const auto& m = options_.layout.markers;
+  for (std::size_t i = 0; i < m.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) least = std::min(least, (m[i] - m[j]).norm());
+  const auto& P = filter_.covariance();
+  constexpr double kSigmas = 3.0, kHeading = 0.2;
+  return kSigmas * std::sqrt(std::max(P(0, 0), P(1, 1))) < least && std::sqrt(P(2, 2)) < kHeading;
+}
+
+void CarTracker::scale(PoseMeasurement& measured) {
+  // The gate lets through what the factor so far explains, so that the factor can grow, but no outlier moves it much.
+  if (measured.markers == 3) {
+    misfit_ += std::min(measured.chi_square, fit_gate_[3] * variance_factor());
+    freedom_ += 3.0;
+  }
+  measured.noise *= variance_factor();
+}
+
+void CarTracker::start(const PoseMeasurement& measured) {
+  CarMotionModel::State<double> x = CarMotionModel::State<double>::Zero();
+  x.head<3>() = measured.pose;
+  Filter::Covariance P = Filter::Covariance::Zero();
+  P.topLeftCorner<3, 3>() = measured.noise;
+  constexpr double kSpeed = 3.0, kSlip = 1.0, kYawRate = 4.0;  // of any car of such a size
+  P.diagonal().tail<3>() << kSpeed * kSpeed, kSlip * kSlip, kYawRate * kYawRate;
+  filter_ = Filter(x, P);
+  for (auto& monitor : monitors_) monitor.restart();
+  following_ = true;
+}
+
+void CarTracker::correct(double time, const PoseMeasurement& measured) {
+  // Three scalars of independent noise: L^-1 (z - x) with noise = L L'. The state moves with each of them.
+  const Eigen::Matrix3d L = measured.noise.llt().matrixL();
+  const Eigen::Matrix3d whiten = L.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Vector3d off = measured.pose - filter_.state().head<3>();
+    off(2) = numerics::wrap_angle(off(2));
+    Filter::Vector H = Filter::Vector::Zero();
+    H.head<3>() = whiten.row(i).transpose();
+    filter_.update(time, whiten.row(i).dot(off), H, 1.0, monitors_[static_cast<std::size_t>(i)]);
+  }
+}
+
+}  // namespace veridyn::camera
