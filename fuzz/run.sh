@@ -5,7 +5,10 @@ set -eu
 seconds=${1:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 build=${2:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 shift 2
-[ $# -gt 0 ] || set -- dataflash dataflash_text ulog csv mat npy npz packet storage osim tir crg telemetry live_file teleoperation wheel
+if [ $# -eq 0 ]; then
+  set -- dataflash dataflash_text ulog csv mat npy npz packet storage osim tir crg telemetry live_file teleoperation wheel
+  if [ -x "$build/bin/fuzz_camera" ]; then set -- "$@" camera; fi
+fi
 "$build/bin/fuzz_seeds" "$build/fuzz-corpus"
 mkdir -p "$build/fuzz-corpus/osim"
 cp "$(dirname "$0")"/../veridyn/muscle/osim/models/*.osim "$build/fuzz-corpus/osim/"

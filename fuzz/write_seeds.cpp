@@ -69,6 +69,9 @@ int main(int count, char** arguments) {
     // A steering axis at its left end, then the report.
     write("wheel", std::string("\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x03\0\0\0\x01\0\0\0", 24) +
                        std::string("\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24));
+    // Points of a track, and a pose: the first byte says which.
+    write("camera", std::string(1, '\0') +
+                        "world_x[m];world_y;image_x;image_y;\n0;0;1;400;\n1;0;400;401;\n1;1;402;2;\n0;1;3;1;\n");
     write("tir", veridyn::vehicle::testing::small_tir());
     const std::string road =
         "$ROAD_CRG\nREFERENCE_LINE_INCREMENT = 2.0\nLONG_SECTION_V_RIGHT = -1\nLONG_SECTION_V_INCREMENT = 2\n$\n";

@@ -56,6 +56,25 @@ void FusionOptions::validate() const {
                                            lag_s, std::abs(offset) + 3.0 * offset_sigma));
 }
 
+FusionOptions FusionOptions::read(const StudyTable& table) {
+  FusionOptions o;
+  const auto take = [&](const char* key, double& value) { value = table.positive_or(key, "1", value); };
+  take("gyro", o.noise.gyro);
+  o.noise.gyro_share = table.number_or("gyro_share", "1", o.noise.gyro_share);
+  take("gyro_walk", o.noise.gyro_walk);
+  take("gyro_bias", o.noise.gyro_bias);
+  take("accelerometer", o.noise.accelerometer);
+  take("accelerometer_walk", o.noise.accelerometer_walk);
+  take("accelerometer_bias", o.noise.accelerometer_bias);
+  o.sensor_place = {table.number_or("sensor_x", "m", 0.0), table.number_or("sensor_y", "m", 0.0)};
+  o.offset = table.number_or("offset", "s", o.offset);
+  o.offset_sigma = table.positive_or("offset_sigma", "s", o.offset_sigma);
+  o.inclination_sigma = table.positive_or("inclination_sigma", "rad", o.inclination_sigma);
+  o.lag_s = table.positive_or("lag", "s", o.lag_s);
+  o.longest_gap_s = table.positive_or("longest_gap", "s", o.longest_gap_s);
+  return o;
+}
+
 InertialCameraFusion::InertialCameraFusion(const FusionOptions& options) : options_(options) {
   options_.validate();
   model_.noise = options_.noise;

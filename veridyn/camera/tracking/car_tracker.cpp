@@ -27,6 +27,23 @@ void TrackerOptions::validate() const {
   if (first_heading && !std::isfinite(*first_heading)) throw InputError("tracker", "first_heading must be finite");
 }
 
+TrackerOptions TrackerOptions::read(const StudyTable& table) {
+  TrackerOptions o;
+  if (table.has("markers_x") || table.has("markers_y")) {
+    const std::vector<double> x = table.numbers("markers_x", "m"), y = table.numbers("markers_y", "m");
+    if (x.size() != y.size()) table.fail("markers_y", fmt::format("has {} numbers, markers_x {}", y.size(), x.size()));
+    o.layout.markers.clear();
+    for (std::size_t i = 0; i < x.size(); ++i) o.layout.markers.emplace_back(x[i], y[i]);
+  }
+  o.layout.sigma = table.positive_or("marker_sigma", "m", o.layout.sigma);
+  o.first_heading = table.optional_number("first_heading", "rad");
+  o.blobs.contrast = table.positive_or("contrast", "1", o.blobs.contrast);
+  o.lost_after_s = table.positive_or("lost_after", "s", o.lost_after_s);
+  o.lost_sigma_m = table.positive_or("lost_sigma", "m", o.lost_sigma_m);
+  o.longest_step_s = table.positive_or("longest_step", "s", o.longest_step_s);
+  return o;
+}
+
 CarTracker::CarTracker(const Calibration& calibration, const TrackerOptions& options)
     : calibration_(calibration), options_(options), finder_((options.validate(), options.blobs)) {
   if (!calibration_.covariance.allFinite())

@@ -9,6 +9,7 @@
 
 #include "veridyn/camera/tracking/car_motion_model.hpp"
 #include "veridyn/camera/tracking/marker_pose.hpp"
+#include "veridyn/core/study.hpp"
 #include "veridyn/estimation/kalman/kalman_filter.hpp"
 
 namespace veridyn::camera {
@@ -29,6 +30,10 @@ struct TrackerOptions {
 
   /// @throws InputError naming the option
   void validate() const;
+  /// Study table of these keys: markers_x, markers_y [m] (lists of equal length), marker_sigma, first_heading,
+  /// contrast, lost_after, lost_sigma, longest_step.
+  /// @throws InputError with the place of a value that makes no sense
+  [[nodiscard]] static TrackerOptions read(const StudyTable& table);
 };
 
 /// How a pose came about.
@@ -46,7 +51,7 @@ struct TrackedPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of it, with that of the map
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< forward, left [m/s], yaw rate [rad/s]
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();
-  std::optional<PoseMeasurement> measured;  ///< from this frame alone
+  std::optional<PoseMeasurement> measured{}; ///< from this frame alone
 };
 
 /// Follows a car by its bright markers, frame by frame.

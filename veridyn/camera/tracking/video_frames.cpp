@@ -87,8 +87,7 @@ std::optional<VideoFrame> VideoFrames::next() {
 void write_video(const std::filesystem::path& path, std::span<const GreyImage> images, double rate_Hz) {
   if (images.empty()) throw InputError(path.string(), "no pictures for a video");
   const cv::Size size(images.front().width, images.front().height);
-  cv::VideoWriter writer(path.string(), cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_Hz,
-                         size, true);
+  cv::VideoWriter writer(path.string(), cv::CAP_ANY, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_Hz, size, true);
   if (!writer.isOpened()) throw InputError(path.string(), "cannot be written as a video");
   writer.set(cv::VIDEOWRITER_PROP_QUALITY, 95.0);
   for (const GreyImage& image : images) {

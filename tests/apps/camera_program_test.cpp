@@ -1,0 +1,103 @@
+// `veridyn camera` as its users meet it.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/program.hpp"
+#include "tests/camera/fusion/simulated_sensors.hpp"
+#include "tests/camera/rendered_drive.hpp"
+#include "veridyn/camera/tracking/pose_tables.hpp"
+#include "veridyn/camera/tracking/video_frames.hpp"
+#include "veridyn/io/tables/table.hpp"
+
+namespace veridyn {
+namespace {
+
+using ::testing::HasSubstr;
+
+class CameraProgram : public ProgramTest {};
+
+TEST_F(CameraProgram, CalibratesAndFollowsACarInAVideo) {
+  const camera::TrackCamera truth = camera::testing::half_size_camera();
+  const std::string points = file("points.csv", camera::to_csv(camera::testing::grid_points(truth, 0.2, 0.15, 1)));
+  const Outcome calibrated = run("camera calibrate " + points + " --out " + (folder_ / "camera").string());
+  ASSERT_EQ(calibrated.exit_code, 0) << calibrated.text;
+  EXPECT_THAT(calibrated.text, HasSubstr("RMS on the track"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "camera/report.html"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "camera/residuals.csv"));
+
+  camera::OverheadRenderer renderer(camera::testing::disturbed_scene(truth, 960, 540), 1);
+  std::vector<camera::GreyImage> images;
+  for (int k = 0; k < 30; ++k) images.push_back(renderer.render(k / 30.0));
+  const std::string video = (folder_ / "drive.avi").string();
+  camera::write_video(video, images, 30.0);
+  const std::string calibration = " --calibration " + (folder_ / "camera/calibration.toml").string();
+  const Outcome tracked = run("camera track " + video + calibration + " --out " + (folder_ / "out").string());
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
+  EXPECT_THAT(tracked.text, HasSubstr("30 frames: the car was recognised in"));
+  const auto poses = camera::read_poses(in_out("measured_poses.csv"));
+  ASSERT_GT(poses.size(), 20U);
+  for (const camera::TimedPose& p : poses) {
+    const Eigen::Vector3d pose = camera::testing::figure_of_eight(p.time);
+    EXPECT_LT((p.pose - pose).head<2>().norm(), 2e-3) << p.time;
+  }
+  EXPECT_FALSE(camera::read_poses(in_out("poses.csv")).empty());
+
+  // Bad input: one line, and nothing new.
+  expect_refusal("camera track " + points + calibration + out(), "points.csv: is no video that can be read");
+  expect_refusal("camera track " + video + calibration + out() + " --set tracker.contrasst=3", "contrasst");
+  expect_refusal("camera track " + video + calibration + out() + " --set tracker.markers_x=[0.1,-0.1] " +
+                     "--set tracker.markers_y=[0,0]",
+                 "two markers look the same from both ends");
+  expect_refusal("camera track " + video + calibration + out() + " --set tracker.markers_x=[0.3,-0.3,0.1] " +
+                     "--set tracker.markers_y=[0,0,0.2]",
+                 "the car was recognised in none of 30 frames");
+}
+
+TEST_F(CameraProgram, RefusesPointsThatFitNoMapInOneLine) {
+  const std::string header = "world_x,world_y,image_x,image_y\n";
+  const std::string three = file("three.csv", header + "0,0,1,1\n1,0,9,1\n1,1,9,9\n");
+  expect_refusal("camera calibrate " + three + out(), "three.csv: holds 3 points; a map of the track needs at least 4");
+  const std::string line = file("line.csv", header + "0,0,1,1\n1,1,9,1\n2,2,9,9\n3,3,1,9\n");
+  expect_refusal("camera calibrate " + line + out(), "line.csv:5: all 4 points up to here are on a line on the track");
+  expect_refusal("camera calibrate " + three + out() + " --distortion fisheye", "--distortion");
+  EXPECT_THAT(results(), ::testing::IsEmpty());
+}
+
+TEST_F(CameraProgram, FusesARecording) {
+  const camera::testing::SimulatedRun drive = camera::testing::simulated_run({.seed = 3, .duration_s = 20.0});
+  std::string inertial =
+      "time[s],rate_x[rad/s],rate_y[rad/s],rate_z[rad/s],force_x[m/s^2],force_y[m/s^2],force_z[m/s^2]\n";
+  for (const auto& s : drive.inertial)
+    inertial += fmt::format("{},{},{},{},{},{},{}\n", s.time, s.rate(0), s.rate(1), s.rate(2), s.force(0), s.force(1),
+                            s.force(2));
+  std::vector<camera::TrackedPose> poses;
+  for (const auto& f : drive.frames) {
+    camera::TrackedPose p{.time = f.stamp};
+    p.measured = camera::PoseMeasurement{.pose = f.pose, .noise = f.covariance, .markers = 3};
+    poses.push_back(p);
+  }
+  std::sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  const std::string imu = file("imu.csv", inertial), seen = file("poses.csv", camera::measured_poses_csv(poses));
+  const Outcome fused = run("camera fuse " + imu + " --poses " + seen + " --out " + (folder_ / "out").string());
+  ASSERT_EQ(fused.exit_code, 0) << fused.text;
+  EXPECT_THAT(fused.text, HasSubstr("the stamps of the camera are"));
+  EXPECT_THAT(fused.text, ::testing::Not(HasSubstr("warning")));
+  const io::Table motion = io::read_table(in_out("motion.csv"));
+  EXPECT_NEAR(motion.at("pitch").value.back(), drive.truth.back().pitch, 2.0 * kDegree);
+  EXPECT_GT(motion.at("sigma_pitch").value.back(), 0.0);
+  // A sensor that is mounted upside down is noticed.
+  std::string wrong = inertial.substr(0, inertial.find('\n') + 1);
+  for (const auto& s : drive.inertial)
+    wrong += fmt::format("{},{},{},{},{},{},{}\n", s.time, s.rate(0), -s.rate(1), -s.rate(2), s.force(0), -s.force(1),
+                         s.force(2));
+  const Outcome odd =
+      run("camera fuse " + file("odd.csv", wrong) + " --poses " + seen + " --out " + (folder_ / "odd").string());
+  EXPECT_THAT(odd.text, HasSubstr("contradict the inertial sensors"));
+}
+
+}  // namespace
+}  // namespace veridyn
