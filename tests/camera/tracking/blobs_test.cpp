@@ -37,14 +37,16 @@ TEST(BlobFinder, StatesTheErrorOfACentre) {
     EXPECT_FALSE(blobs[0].disturbed);
     const Eigen::Vector2d off = blobs[0].centre - centre;
     mean_x += off(0) / kPictures;
-    squares += off.dot(blobs[0].covariance.inverse() * off) / (2.0 * kPictures);
+    const Eigen::Matrix2d of_noise = blobs[0].covariance - 1e-3 * Eigen::Matrix2d::Identity();
+    squares += off.dot(of_noise.inverse() * off) / (2.0 * kPictures);
     noise += finder.noise() / kPictures;
   }
   EXPECT_NEAR(noise, 3.0, 0.1);  // from 200 pixels each, 0.3 for one picture
   EXPECT_NEAR(mean_x, 0.0, 0.005);
-  // Chi-square over 800 degrees of freedom has a standard deviation of 0.05; the stated error contains a floor.
-  EXPECT_GT(squares, 0.7);
-  EXPECT_LT(squares, 1.2);
+  // Chi-square over 800 degrees of freedom has a standard deviation of 0.05; what the cut at a quarter of the height
+  // does (pixels that come and go with the noise, shape of the pixels) is a little more. The floor is left out.
+  EXPECT_GT(squares, 0.8);
+  EXPECT_LT(squares, 1.4);
 }
 
 TEST(BlobFinder, SaysWhichSpotsAreDisturbed) {

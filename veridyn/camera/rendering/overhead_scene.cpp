@@ -100,20 +100,24 @@ GreyImage OverheadRenderer::render(double time) {
   }
   if (!during(scene_.hidden, time)) {
     const Eigen::Vector3d middle = scene_.pose(time);
-    // The body, sharp: it is no more than a brighter ground under the markers.
+    // The body where it is in the middle of the exposure.
     const double reach = 0.2 * scale_at(middle.head<2>());
     const Eigen::Vector2d c = seen_at(middle.head<2>());
     if (c.allFinite()) {
       const int left = std::max(0, static_cast<int>(c(0) - reach)), top = std::max(0, static_cast<int>(c(1) - reach));
       for (int y = top; y <= std::min(scene_.height - 1, static_cast<int>(c(1) + reach)); ++y) {
         for (int x = left; x <= std::min(scene_.width - 1, static_cast<int>(c(0) + reach)); ++x) {
-          const auto p = scene_.camera.to_track({x, y});
-          if (!p) continue;
-          const Eigen::Vector2d d = *p - middle.head<2>();
-          const double forward = std::cos(middle(2)) * d(0) + std::sin(middle(2)) * d(1);
-          const double side = -std::sin(middle(2)) * d(0) + std::cos(middle(2)) * d(1);
-          if (std::abs(forward) < 0.15 && std::abs(side) < 0.075)
-            light_[at(y) * at(scene_.width) + at(x)] += static_cast<float>(scene_.car * room);
+          // The share of the pixel that the body covers, from nine points in it.
+          int covered = 0;
+          for (int sub = 0; sub < 9; ++sub) {
+            const auto p = scene_.camera.to_track({x + (sub % 3 - 1) / 3.0, y + (sub / 3 - 1) / 3.0});
+            if (!p) continue;
+            const Eigen::Vector2d d = *p - middle.head<2>();
+            const double forward = std::cos(middle(2)) * d(0) + std::sin(middle(2)) * d(1);
+            const double side = -std::sin(middle(2)) * d(0) + std::cos(middle(2)) * d(1);
+            covered += std::abs(forward) < 0.15 && std::abs(side) < 0.075 ? 1 : 0;
+          }
+          light_[at(y) * at(scene_.width) + at(x)] += static_cast<float>(scene_.car * room * covered / 9.0);
         }
       }
     }

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -55,7 +56,7 @@ CarTracker::CarTracker(const Calibration& calibration, const TrackerOptions& opt
 
 TrackedPose CarTracker::add(double time, const GreyView& frame) { return add(time, finder_.find(frame)); }
 
-TrackedPose CarTracker::add(double time, std::span<const Blob> blobs) {
+void CarTracker::begin(double time) {
   if (!std::isfinite(time) || (begun_ && !(time > time_)))
     throw InputError("frame", fmt::format("its time {:.6f} s does not follow {:.6f} s", time, time_));
   const double step = time - time_;
@@ -67,30 +68,81 @@ TrackedPose CarTracker::add(double time, std::span<const Blob> blobs) {
   }
   begun_ = true;
   time_ = time;
-  spots_of(blobs, calibration_, spots_);
+}
 
+TrackedPose CarTracker::add(double time, std::span<const Blob> blobs) {
+  begin(time);
+  spots_of(blobs, calibration_, spots_);
+  const std::size_t all = options_.layout.markers.size();
+  std::optional<PoseMeasurement> measured = recognise(all, following_);
+  if (!measured && following_ && all == 3 && close()) measured = recognise(2, true);
+  if (measured) scale(*measured);
+  return finish(time, std::move(measured));
+}
+
+TrackedPose CarTracker::add(double time, std::span<const PoseMeasurement> candidates) {
+  begin(time);
+  std::optional<PoseMeasurement> measured;
+  if (following_) {
+    constexpr double kClearly = 9.0;
+    double best = kInfinity, second = kInfinity;
+    for (const PoseMeasurement& pose : candidates) {
+      const double d = distance(pose, 1.0);
+      if (d < best) {
+        second = best;
+        best = d;
+        measured = pose;
+      } else {
+        second = std::min(second, d);
+      }
+    }
+    // Without a clear best the heading is not known any more.
+    if (measured && best < pose_gate_ && second < best + kClearly) following_ = false;
+    if (!(best < pose_gate_) || !following_) measured.reset();
+  }
+  if (!following_ && !measured) measured = found_again(time, candidates);
+  return finish(time, std::move(measured));
+}
+
+std::optional<PoseMeasurement> CarTracker::found_again(double time, std::span<const PoseMeasurement> candidates) {
+  if (candidates.empty()) return std::nullopt;
+  constexpr double kMoved = 0.03, kRecent = 0.5;
+  double wanted = 0.0;
+  if (!followed_ && options_.first_heading) {
+    wanted = *options_.first_heading;
+  } else {
+    const Eigen::Vector2d place = candidates.front().pose.head<2>(), moved = place - lost_place_;
+    const bool recent = time - lost_time_ < kRecent;
+    if (!recent || moved.norm() > kMoved) {
+      lost_place_ = place;
+      lost_time_ = time;
+    }
+    if (!recent || !(moved.norm() > kMoved)) return std::nullopt;
+    wanted = std::atan2(moved(1), moved(0));
+  }
+  std::optional<PoseMeasurement> found;
+  for (const PoseMeasurement& pose : candidates) {
+    if (!(std::abs(numerics::wrap_angle(pose.pose(2) - wanted)) < 0.5 * kPi)) continue;
+    if (found) return std::nullopt;
+    found = pose;
+  }
+  return found;
+}
+
+TrackedPose CarTracker::finish(double time, std::optional<PoseMeasurement> measured) {
   TrackedPose result;
   result.time = time;
-  const std::size_t all = options_.layout.markers.size();
-  if (following_) {
-    result.measured = recognise(all, true);
-    if (!result.measured && all == 3 && close()) result.measured = recognise(2, true);
-    if (result.measured) {
-      scale(*result.measured);
+  result.measured = std::move(measured);
+  if (result.measured) {
+    if (following_) {
       correct(time, *result.measured);
-    }
-  } else {
-    result.measured = recognise(all, false);
-    if (result.measured) {
-      scale(*result.measured);
+    } else {
       start(*result.measured);
     }
-  }
-  if (!following_) return result;
-  if (result.measured) {
     seen_ = time;
     map_ = result.measured->map;
   }
+  if (!following_) return result;
   result.status = result.measured ? TrackStatus::kMeasured : TrackStatus::kPredicted;
   result.pose = filter_.state().head<3>();
   result.pose(2) = numerics::wrap_angle(result.pose(2));
@@ -100,6 +152,13 @@ TrackedPose CarTracker::add(double time, std::span<const Blob> blobs) {
   return result;
 }
 
+double CarTracker::distance(const PoseMeasurement& pose, double factor) const {
+  Eigen::Vector3d off = pose.pose - filter_.state().head<3>();
+  off(2) = numerics::wrap_angle(off(2));
+  const Eigen::Matrix3d S = filter_.covariance().topLeftCorner<3, 3>() + factor * pose.noise;
+  return off.dot(S.ldlt().solve(off));
+}
+
 std::optional<PoseMeasurement> CarTracker::recognise(std::size_t markers, bool predicted) {
   const auto& layout = options_.layout.markers;
   std::optional<PoseMeasurement> best, second;
@@ -107,31 +166,30 @@ std::optional<PoseMeasurement> CarTracker::recognise(std::size_t markers, bool p
   std::array<const Spot*, 3> chosen{};
   std::array<std::size_t, 3> which{};
 
+  // Four times the variance so far is let in, so that the factor can grow to what the pictures really are.
+  constexpr double kRoom = 4.0;
   const double factor = variance_factor();
   const auto judge = [&] {
     const auto pose =
         fit_pose(std::span(chosen).first(markers), std::span(which).first(markers), options_.layout, calibration_);
-    if (!pose || !(pose->chi_square < fit_gate_[markers] * factor)) return;
-    double distance = pose->chi_square / factor;
+    if (!pose || !(pose->chi_square < fit_gate_[markers] * kRoom * factor)) return;
+    double total = pose->chi_square / factor;
     if (predicted) {
-      Eigen::Vector3d off = pose->pose - filter_.state().head<3>();
-      off(2) = numerics::wrap_angle(off(2));
-      const Eigen::Matrix3d S = filter_.covariance().topLeftCorner<3, 3>() + factor * pose->noise;
-      const double from_prediction = off.dot(S.ldlt().solve(off));
+      const double from_prediction = distance(*pose, factor);
       if (!(from_prediction < pose_gate_)) return;
-      distance += from_prediction;
+      total += from_prediction;
     } else if (options_.first_heading && markers == 2 &&
                !(std::abs(numerics::wrap_angle(pose->pose(2) - *options_.first_heading)) < 0.5 * kPi)) {
       return;
     }
-    if (distance < best_distance) {
+    if (total < best_distance) {
       second = best;
       second_distance = best_distance;
       best = pose;
-      best_distance = distance;
-    } else if (distance < second_distance) {
+      best_distance = total;
+    } else if (total < second_distance) {
       second = pose;
-      second_distance = distance;
+      second_distance = total;
     }
   };
   // Distances between spots against the layout's, well before a fit: six sigma of both spots and both markers.
@@ -185,7 +243,7 @@ bool CarTracker::close() const noexcept {
 }
 
 void CarTracker::scale(PoseMeasurement& measured) {
-  // The gate lets through what the factor so far explains, so that the factor can grow, but no outlier moves it much.
+  // No outlier moves the factor much.
   if (measured.markers == 3) {
     misfit_ += std::min(measured.chi_square, fit_gate_[3] * variance_factor());
     freedom_ += 3.0;
@@ -202,7 +260,7 @@ void CarTracker::start(const PoseMeasurement& measured) {
   P.diagonal().tail<3>() << kSpeed * kSpeed, kSlip * kSlip, kYawRate * kYawRate;
   filter_ = Filter(x, P);
   for (auto& monitor : monitors_) monitor.restart();
-  following_ = true;
+  following_ = followed_ = true;
 }
 
 void CarTracker::correct(double time, const PoseMeasurement& measured) {

@@ -51,7 +51,7 @@ struct TrackedPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of it, with that of the map
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();    ///< forward, left [m/s], yaw rate [rad/s]
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();
-  std::optional<PoseMeasurement> measured{}; ///< from this frame alone
+  std::optional<PoseMeasurement> measured{};  ///< from this frame alone
 };
 
 /// Follows a car by its bright markers, frame by frame.
@@ -74,6 +74,10 @@ class CarTracker {
   TrackedPose add(double time, const GreyView& frame);
   /// The same from spots that were found elsewhere.
   TrackedPose add(double time, std::span<const Blob> blobs);
+  /// The same from poses that the car may have in the frame, of which one is right at most (SilhouetteFinder): the one
+  /// that agrees with the prediction; at the start the one whose heading is within 90 degrees of `first_heading`, or
+  /// the only one.
+  TrackedPose add(double time, std::span<const PoseMeasurement> candidates);
 
   [[nodiscard]] const BlobFinder& finder() const noexcept { return finder_; }
   /// The factor on the covariance of the pixels.
@@ -82,7 +86,14 @@ class CarTracker {
  private:
   using Filter = estimation::ExtendedKalmanFilter<CarMotionModel>;
 
+  /// To the time of a frame.
+  void begin(double time);
+  /// The outcome of a frame, with what was measured.
+  [[nodiscard]] TrackedPose finish(double time, std::optional<PoseMeasurement> measured);
   [[nodiscard]] std::optional<PoseMeasurement> recognise(std::size_t markers, bool predicted);
+  [[nodiscard]] std::optional<PoseMeasurement> found_again(double time, std::span<const PoseMeasurement> candidates);
+  /// Squared distance of a pose from the prediction.
+  [[nodiscard]] double distance(const PoseMeasurement& pose, double factor) const;
   void start(const PoseMeasurement& measured);
   [[nodiscard]] bool close() const noexcept;
   void scale(PoseMeasurement& measured);
@@ -99,7 +110,9 @@ class CarTracker {
   double pose_gate_ = 0.0, misfit_ = 0.0, freedom_ = 0.0;
   Eigen::Matrix3d map_ = Eigen::Matrix3d::Zero();
   double time_ = 0.0, seen_ = 0.0;
-  bool begun_ = false, following_ = false;
+  Eigen::Vector2d lost_place_ = Eigen::Vector2d::Zero();  ///< of a candidate since the car was lost
+  double lost_time_ = -1e9;
+  bool begun_ = false, following_ = false, followed_ = false;
 };
 
 }  // namespace veridyn::camera
