@@ -214,7 +214,8 @@ std::span<const Blob> BlobFinder::find(const GreyView& image) {
     if (a.pixels != b.pixels) return a.pixels > b.pixels;
     return a.y0 != b.y0 ? a.y0 < b.y0 : a.x0 < b.x0;
   });
-  const int reach = 2 * (options_.margin + 1);
+  // What of another spot lies beyond its pixels above the threshold is below the level from which light counts.
+  const int reach = options_.margin + 1;
   for (const Box& box : boxes_) {
     if (blobs_.size() == options_.most_blobs) break;
     if (box.pixels < options_.least_pixels) continue;
