@@ -16,6 +16,7 @@
 #include "veridyn/camera/calibration/calibration_file.hpp"
 #include "veridyn/camera/fusion/fused_drive.hpp"
 #include "veridyn/camera/tracking/pose_tables.hpp"
+#include "veridyn/camera/tracking/silhouette.hpp"
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -101,9 +102,13 @@ int track_video(const Arguments& arguments) {
   OutputFolder folder(common.out);
   const Study options = options_of(arguments);
   const TrackerOptions tracker_options = TrackerOptions::read(options.root().table_or_empty("tracker"));
+  const SilhouetteOptions silhouette_options = SilhouetteOptions::read(options.root().table_or_empty("silhouette"));
   options.root().finish();
+  const bool by_silhouette = arguments.text("--method") == "silhouette";
   const std::filesystem::path video = arguments.text("VIDEO"), calibration = arguments.text("--calibration");
-  CarTracker tracker(read_calibration(calibration), tracker_options);
+  const Calibration map = read_calibration(calibration);
+  CarTracker tracker(map, tracker_options);
+  SilhouetteFinder silhouettes(silhouette_options);
   // The library behind OpenCV writes lines of its own about files that are no video; -8 is its "quiet".
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   VideoFrames frames(video);
@@ -113,15 +118,20 @@ int track_video(const Arguments& arguments) {
   std::size_t seen = 0, lost = 0;
   while (const auto frame = frames.next()) {
     stop_if_interrupted(arguments);
-    poses.push_back(tracker.add(frame->time, frame->image.view()));
+    const GreyView view = frame->image.view();
+    poses.push_back(by_silhouette ? tracker.add(frame->time, silhouettes.find(view, map))
+                                  : tracker.add(frame->time, view));
     seen += poses.back().status == TrackStatus::kMeasured ? 1 : 0;
     lost += poses.back().status == TrackStatus::kLost ? 1 : 0;
   }
   if (seen == 0)
-    throw InputError(video.string(),
-                     fmt::format("the car was recognised in none of {} frames: are the markers where "
-                                 "tracker.markers_x, tracker.markers_y say, and is the calibration of this camera?",
-                                 poses.size()));
+    throw InputError(
+        video.string(),
+        fmt::format("the car was recognised in none of {} frames: {}, and is the calibration of this camera?",
+                    poses.size(),
+                    by_silhouette ? "is the first frame empty, is the car as large as silhouette.length and "
+                                    "silhouette.width say"
+                                  : "are the markers where tracker.markers_x and tracker.markers_y say"));
   folder.write("poses.csv", poses_csv(poses));
   folder.write("measured_poses.csv", measured_poses_csv(poses));
   folder.publish(record_of("camera track", options, 0, {video, calibration}), common,
@@ -198,10 +208,14 @@ Command camera_command() {
            .example = "veridyn camera calibrate points.csv --out camera",
            .run = calibrate},
           {.name = "track",
-           .summary = "poses of a car with bright markers in a video",
+           .summary = "poses of a car in a video, by bright markers or by its silhouette",
            .arguments =
                {{.name = "VIDEO", .help = "video file", .type = "FILE", .required = true},
-                {.name = "--calibration", .help = "calibration.toml of this camera", .type = "FILE", .required = true}},
+                {.name = "--calibration", .help = "calibration.toml of this camera", .type = "FILE", .required = true},
+                {.name = "--method",
+                 .help = "bright markers, or what differs from the first frame, in which the track is empty",
+                 .value = "markers",
+                 .choices = {"markers", "silhouette"}}},
            .default_out = "out/camera_track",
            .example = "veridyn camera track drive.avi --calibration camera/calibration.toml --set "
                       "tracker.markers_x=[0.1,-0.08,-0.06] --set tracker.markers_y=[0,0.05,-0.04]",

@@ -49,6 +49,9 @@ TEST_F(CameraProgram, CalibratesAndFollowsACarInAVideo) {
   }
   EXPECT_FALSE(camera::read_poses(in_out("poses.csv")).empty());
 
+  // Its markers alone are no silhouette of a car.
+  expect_refusal("camera track " + video + calibration + out() + " --method silhouette",
+                 "the car was recognised in none of 30 frames: is the first frame empty");
   // Bad input: one line, and nothing new.
   expect_refusal("camera track " + points + calibration + out(), "points.csv: is no video that can be read");
   expect_refusal("camera track " + video + calibration + out() + " --set tracker.contrasst=3", "contrasst");

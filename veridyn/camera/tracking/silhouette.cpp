@@ -23,6 +23,16 @@ void SilhouetteOptions::validate() const {
   if (!middle.allFinite()) throw InputError("silhouette", "the middle must be finite");
 }
 
+SilhouetteOptions SilhouetteOptions::read(const StudyTable& table) {
+  SilhouetteOptions o;
+  o.contrast = table.positive_or("contrast", "1", o.contrast);
+  o.learning_frames = table.positive_or("learning_frames", "1", o.learning_frames);
+  o.length = table.positive_or("length", "m", o.length);
+  o.width = table.positive_or("width", "m", o.width);
+  o.middle = {table.number_or("middle_x", "m", 0.0), table.number_or("middle_y", "m", 0.0)};
+  return o;
+}
+
 SilhouetteFinder::SilhouetteFinder(const SilhouetteOptions& options) : options_(options) { options_.validate(); }
 
 double SilhouetteFinder::brightness(const GreyView& image) {

@@ -9,6 +9,7 @@
 
 #include "veridyn/camera/tracking/grey_image.hpp"
 #include "veridyn/camera/tracking/marker_pose.hpp"
+#include "veridyn/core/study.hpp"
 
 namespace veridyn::camera {
 
@@ -25,6 +26,9 @@ struct SilhouetteOptions {
 
   /// @throws InputError("silhouette", ...) for values that make no sense
   void validate() const;
+  /// Study table of these keys: contrast, learning_frames, length, width, middle_x, middle_y [m].
+  /// @throws InputError with the place of a value that makes no sense
+  [[nodiscard]] static SilhouetteOptions read(const StudyTable& table);
 };
 
 /// The part of a picture that is not the background. Keeps a running mean of each pixel, to which what belongs to a
