@@ -1,5 +1,6 @@
 #include "veridyn/camera/calibration/homography.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 
