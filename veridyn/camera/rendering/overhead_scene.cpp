@@ -110,7 +110,8 @@ GreyImage OverheadRenderer::render(double time) {
           // The share of the pixel that the body covers, from nine points in it.
           int covered = 0;
           for (int sub = 0; sub < 9; ++sub) {
-            const auto p = scene_.camera.to_track({x + (sub % 3 - 1) / 3.0, y + (sub / 3 - 1) / 3.0});
+            const int column = sub % 3 - 1, line = sub / 3 - 1;
+            const auto p = scene_.camera.to_track({x + column / 3.0, y + line / 3.0});
             if (!p) continue;
             const Eigen::Vector2d d = *p - middle.head<2>();
             const double forward = std::cos(middle(2)) * d(0) + std::sin(middle(2)) * d(1);
