@@ -122,12 +122,12 @@ TEST(InertialCameraFusion, BandsOfInclinationHold) {
 /// The same frames at once and up to 0.25 s late leave the same filter behind, but for rounding.
 TEST(InertialCameraFusion, LateFramesCountAsIfTheyHadComeInTime) {
   SimulatedRun late = testing::simulated_run({.seed = 5, .duration_s = 20.0, .offset = 0.02, .latest_s = 0.25});
-  SimulatedRun prompt = late;
-  for (std::size_t i = 1; i < prompt.frames.size(); ++i)
-    if (prompt.frames[i].stamp > 0.5) prompt.frames[i].arrival = prompt.frames[i].stamp;
-  std::stable_sort(prompt.frames.begin(), prompt.frames.end(),
+  SimulatedRun punctual = late;
+  for (std::size_t i = 1; i < punctual.frames.size(); ++i)
+    if (punctual.frames[i].stamp > 0.5) punctual.frames[i].arrival = punctual.frames[i].stamp;
+  std::stable_sort(punctual.frames.begin(), punctual.frames.end(),
                    [](const auto& a, const auto& b) { return a.arrival < b.arrival; });
-  const std::vector<FusedMotion> a = fused(late), b = fused(prompt);
+  const std::vector<FusedMotion> a = fused(late), b = fused(punctual);
   EXPECT_NEAR(a.back().pitch, b.back().pitch, 1e-9);
   EXPECT_NEAR(a.back().offset, b.back().offset, 1e-9);
   EXPECT_LT((a.back().position - b.back().position).norm(), 1e-9);
