@@ -40,7 +40,7 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	tools/tidy.sh $(BUILD) $(JOBS) $(TIDY)
 
-ASAN_MODULES ?= core numerics estimation io recording aircraft vehicle muscle cueing live report apps
+ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle muscle cueing live report apps
 # Accuracy, coverage of intervals over many recordings, and the same work done again for equal bytes say nothing about
 # memory that one recording and one run do not say.
 ASAN_WITHOUT := Campaign|CostTheSameOnADrive|InTwoHundredCleanDrives|BeyondTheIntervals|WithManyMoreSimulations|EndsWhereTheGradientDoes|PredictsUnseenTasks|AWrongModelIsSaidToBeWrong|NullDirectionsAreTrue|ByWhatWasForetold|ItDoesSoOfAnotherPerson|LeavesWhatItDoesNotDetermineWhereItWas|CorrectsWhatTheFlightShows|DoesNotMoveACleanFlightsAnswer|FindsTheScaleOfTheVanes|IsNoneOfTheBuiltInAircrafts|FindsNoDelayInTurbulence|Cover|Alarm|StatesItsFrequencyError|DoesNotAllocate|HoldTheTruth|HoldsTheTruth|HaveRealisticSigmas|DoesNotClaim|ReachesTheBound|ReachesTheSpecificationsBound|RevertsFromAWrongModel|FindsTheTermsOfTheTrueModel|Mpirun|BitForBitWhenItIsKilled|ResumesSearchProfilesAndPosterior|ShardsMergeToTheSameBytes|ProcessesOfALauncherMeet|TheSameOnAnyNumberOfThreads|FollowsProfiles|CorrelatedNoiseIsFound|FarFromTheStandardModelWithParametersOpen|FilesOfARecordingGive|FindsFrictionAndShape|OfWhatIsWellDetermined|ComparesPersonsCaseByCase|NoModelConfirmsItself|ALogThatGrows|EveryKnobOfEveryAlgorithm|WithALapOfTheSameStagePlans|TheCameraTakesTheFalsePitch
