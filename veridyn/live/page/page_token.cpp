@@ -24,7 +24,7 @@ std::string read_token_file(const std::filesystem::path& path) {
   constexpr mode_t kOthers = 077;
   if (::stat(path.c_str(), &status) == 0 && (status.st_mode & kOthers) != 0)
     throw InputError(path.string(), "can be read by others: it is a secret (chmod 600)");
-  const std::string token(trimmed(std::string_view(text).substr(0, text.find('\n'))));
+  std::string token(trimmed(std::string_view(text).substr(0, text.find('\n'))));
   constexpr std::size_t kShortest = 16;
   if (token.size() < kShortest)
     throw InputError(path.string(),
