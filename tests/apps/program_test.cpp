@@ -34,15 +34,15 @@ TEST_F(Program, ShowsItsCommandsAndNoOthers) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command : {"demo", "init", "inspect", "simulate", "reconstruct", "identify", "sensitivity",
-                              "validate", "export", "track", "reproduce", "cue"})
+                              "validate", "export", "track", "reproduce", "cue", "rig", "camera"})
     EXPECT_THAT(help.text, HasSubstr(command));
-  for (const char* command : {"rig", "serve"}) EXPECT_THAT(help.text, testing::Not(HasSubstr(command)));
+  for (const char* command : {"serve"}) EXPECT_THAT(help.text, testing::Not(HasSubstr(command)));
 }
 
 TEST_F(Program, HelpsEveryCommandWithAnExample) {
-  for (const char* command :
-       {"demo", "inspect", "simulate", "reconstruct", "identify", "sensitivity", "validate", "export", "track", "cue",
-        "reproduce aircraft", "init aircraft", "init muscle", "init cueing"}) {
+  for (const char* command : {"demo", "inspect", "simulate", "reconstruct", "identify", "sensitivity", "validate",
+                              "export", "track", "cue", "rig vehicle", "rig platform", "rig test", "camera calibrate",
+                              "reproduce aircraft", "init aircraft", "init muscle", "init cueing"}) {
     const Outcome help = run(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command;
     EXPECT_THAT(help.text, HasSubstr("Example:\n  veridyn ")) << command;
