@@ -25,17 +25,20 @@ XYPlot residual_plot(const CalibrationPoints& points, const Calibration& c) {
   }
   const double wanted = (high - low).maxCoeff() / 20.0 / std::max(largest, 1e-9);
   const double factor = std::pow(10.0, std::floor(std::log10(std::max(wanted, 1.0))));
+  // More lines than these are a blot, and a figure that has to thin them out joins what is left.
+  constexpr std::size_t kMostDrawn = 900;
+  const std::size_t every = (points.points.size() + kMostDrawn - 1) / kMostDrawn;
   XYPlot plot{.title = "Residuals on the track",
-              .caption = fmt::format("From each point to where its image is mapped, {:g} times as long. Noise points "
+              .caption = fmt::format("From {} to where its image is mapped, {:g} times as long. Noise points "
                                      "everywhere; lines that agree with their neighbours are an error of the map.",
-                                     factor),
+                                     every > 1 ? fmt::format("one point in {}", every) : "each point", factor),
               .x = {.label = "x", .unit = "m"},
               .y = {.label = "y", .unit = "m"},
               .equal_scale = true,
               .height = 480};
   XYSeries arrows{.name = fmt::format("residual x {:g}", factor), .style = Style::kLine, .width = 1.0};
   XYSeries dots{.name = "point", .role = Role::kMeasured, .width = 2.0};
-  for (std::size_t i = 0; i < points.points.size(); ++i) {
+  for (std::size_t i = 0; i < points.points.size(); i += every) {
     const Eigen::Vector2d& from = points.points[i].track;
     const Eigen::Vector2d to = from + factor * c.residuals[i].track;
     // A value that is no number parts the line.

@@ -331,7 +331,6 @@ void supervise(const StudyRun& run, const LiveStudy& study, LiveControl& control
         control.wish(OperatorWish::kRelease);
         break;
       case 'q':
-        options.interruption.requested() ? void() : control.wish(OperatorWish::kPark);
         ending = true;
         break;
       default:
