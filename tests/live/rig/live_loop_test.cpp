@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <deque>
 #include <thread>
 
@@ -47,6 +48,8 @@ class MemoryLinks final : public LiveLinks {
     answered_ = answer.has_value();
     return true;
   }
+
+  [[nodiscard]] std::uint64_t sent() const { return vehicle_.sent(); }
 
   VirtualPlatform platform;
   Nanoseconds now = 0;
@@ -120,6 +123,41 @@ TEST_F(LiveLoopTest, AllocatesNothing) {
   EXPECT_EQ(steps, 3000);
   EXPECT_EQ(before - first, 0);
 }
+
+/// A run of the rig at 100 Hz: no packet of ours is lost, nothing is allocated after the first steps, no order is
+/// beyond the limits. A drive that is put back to its start costs the packets by which that is noticed.
+void expect_a_clean_run(double duration) {
+  const LiveStudy study = test::rig_study("packet = 'veridyn'\nrate = '100 Hz'\nsigns = 'off'\n");
+  MemoryLinks links(study, {.jitter = 0.008});
+  SetClock clock;
+  LiveControl control;
+  LiveLoop loop(study, 5);
+  control.wish(OperatorWish::kStart);
+  long first = 0, last = 0;
+  std::uint64_t steps = 0;
+  links.at_step = [&] {
+    if (++steps == 100) first = allocations;
+    last = allocations;
+  };
+  loop.run(links, clock, control, nullptr, nanoseconds(duration));
+  EXPECT_EQ(steps, static_cast<std::uint64_t>(std::lround(100.0 * duration)));
+  EXPECT_EQ(last - first, 0);
+  const PerPacketFate<std::uint64_t> packets = loop.rig().intake().counts();
+  std::uint64_t all = 0;
+  for (const std::uint64_t count : packets) all += count;
+  EXPECT_EQ(all, links.sent());
+  const std::uint64_t put_back = loop.rig().intake().drives() - 1;
+  EXPECT_EQ(all - packets[PacketFate::kAccepted], put_back * (IntakeOptions().begins_anew - 1));
+  EXPECT_EQ(loop.times().left_out, 0U);
+  EXPECT_EQ(loop.times().not_sent, 0U);
+  EXPECT_EQ(links.platform.counts().outside + links.platform.counts().jumps, 0U);
+  EXPECT_EQ(links.platform.counts().followed, steps);
+  EXPECT_EQ(loop.rig().state(), RigState::kRunning);
+}
+
+TEST_F(LiveLoopTest, RunsAMinuteWithoutALossOrAnAllocation) { expect_a_clean_run(60.0); }
+
+TEST(LiveLoopSoak, RunsAnHourOfToldTimeWithoutALossOrAnAllocation) { expect_a_clean_run(3600.0); }
 
 TEST_F(LiveLoopTest, RecordedRunIsReplayedBitForBitWithItsKnobs) {
   const LiveStudy study = read_live_study(Study::parse(kStudy, "rig.toml"));
