@@ -30,7 +30,8 @@ VideoFrames::VideoFrames(const std::filesystem::path& path) : reader_(std::make_
   r.name = path.string();
   if (!std::filesystem::is_regular_file(path)) throw InputError(r.name, "is not a file");
   try {
-    if (!r.capture.open(r.name)) throw InputError(r.name, "is no video that can be read");
+    // By this library only: for a file that it cannot read OpenCV goes on to look for cameras on the USB.
+    if (!r.capture.open(r.name, cv::CAP_FFMPEG)) throw InputError(r.name, "is no video that can be read");
     r.width = static_cast<int>(r.capture.get(cv::CAP_PROP_FRAME_WIDTH));
     r.height = static_cast<int>(r.capture.get(cv::CAP_PROP_FRAME_HEIGHT));
     r.rate = r.capture.get(cv::CAP_PROP_FPS);
