@@ -41,7 +41,7 @@ XYPlot residual_plot(const CalibrationPoints& points, const Calibration& c) {
   for (std::size_t i = 0; i < points.points.size(); i += every) {
     const Eigen::Vector2d& from = points.points[i].track;
     const Eigen::Vector2d to = from + factor * c.residuals[i].track;
-    // A value that is no number parts the line.
+    // NaN breaks the line.
     for (const Eigen::Vector2d& p : {from, to, Eigen::Vector2d(Eigen::Vector2d::Constant(std::nan("")))}) {
       arrows.x.push_back(p(0));
       arrows.y.push_back(p(1));

@@ -291,7 +291,10 @@ void supervise(const StudyRun& run, const LiveStudy& study, LiveControl& control
     control.take_motions(motions);
     for (const Telemetry& t : motions) {
       if (signs_done) break;
-      if (t.anew) signs.reset(), samples.clear();
+      if (t.restarted) {
+        signs.reset();
+        samples.clear();
+      }
       samples.push_back(t.sample);
     }
     if (!signs_done && now >= next_check) {

@@ -184,7 +184,7 @@ TEST(DriverCommand, IsAlwaysWithinTheRange) {
   EXPECT_EQ(command({.throttle = 1.0}).drive_force, 100.0);
   EXPECT_EQ(command({.throttle = 1.0, .reverse = true}).drive_force, -50.0);
   EXPECT_EQ(command({.throttle = 1.0, .brake = 0.1}), (CarCommand{.brake = 0.1}));
-  // What is no number stays none: the operator's end does not send it.
+  // NaN stays NaN: the operator's end does not send it.
   EXPECT_EQ(what_is_wrong(car_command({.brake = kNaN}, options), options.range), "brake");
   EXPECT_EQ(why([] { DriverCommandOptions{.steering_ratio = 0.0}.validate(); }), "steering_ratio: is 0; must be > 0");
   EXPECT_EQ(why([] { DriverCommandOptions{.reverse_share = kNaN}.validate(); }),

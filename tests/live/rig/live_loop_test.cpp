@@ -147,7 +147,7 @@ void expect_a_clean_run(double duration) {
   for (const std::uint64_t count : packets) all += count;
   EXPECT_EQ(all, links.sent());
   const std::uint64_t put_back = loop.rig().intake().drives() - 1;
-  EXPECT_EQ(all - packets[PacketFate::kAccepted], put_back * (IntakeOptions().begins_anew - 1));
+  EXPECT_EQ(all - packets[PacketFate::kAccepted], put_back * (IntakeOptions().begins_again - 1));
   EXPECT_EQ(loop.times().left_out, 0U);
   EXPECT_EQ(loop.times().not_sent, 0U);
   EXPECT_EQ(links.platform.counts().outside + links.platform.counts().jumps, 0U);
@@ -211,17 +211,20 @@ TEST_F(LiveLoopTest, RecordedRunIsReplayedBitForBitWithItsKnobs) {
   EXPECT_EQ(one.packets[PacketFate::kAccepted], one.times.receive_to_send.count());
 }
 
-TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {
+/// Records a run of `kStudy` that nobody disturbs.
+void record_run(const std::filesystem::path& path, const LiveHead& head, Nanoseconds end) {
   const LiveStudy study = read_live_study(Study::parse(kStudy, "rig.toml"));
-  {
-    MemoryLinks links(study);
-    SetClock clock;
-    LiveControl control;
-    LiveRecorder recorder(path_, head_of(kStudy));
-    LiveLoop loop(study, 5);
-    control.wish(OperatorWish::kStart);
-    loop.run(links, clock, control, &recorder, 6 * kSecond);
-  }
+  MemoryLinks links(study);
+  SetClock clock;
+  LiveControl control;
+  LiveRecorder recorder(path, head);
+  LiveLoop loop(study, 5);
+  control.wish(OperatorWish::kStart);
+  loop.run(links, clock, control, &recorder, end);
+}
+
+TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {
+  record_run(path_, head_of(kStudy), 6 * kSecond);
   LiveFile file = read_live_file(path_);
   Progress quiet;
   ASSERT_EQ(replay(file, "run.vlr", quiet).different, 0U);
@@ -231,16 +234,7 @@ TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {
 }
 
 TEST_F(LiveLoopTest, TheRecordingOfARunThatWasCutOffIsReplayedAsFarAsItGoes) {
-  const LiveStudy study = read_live_study(Study::parse(kStudy, "rig.toml"));
-  {
-    MemoryLinks links(study);
-    SetClock clock;
-    LiveControl control;
-    LiveRecorder recorder(path_, head_of(kStudy));
-    LiveLoop loop(study, 5);
-    control.wish(OperatorWish::kStart);
-    loop.run(links, clock, control, &recorder, 20 * kSecond);
-  }
+  record_run(path_, head_of(kStudy), 20 * kSecond);
   std::string bytes = read_file(path_);
   bytes.resize(bytes.size() / 2);
   Progress quiet;

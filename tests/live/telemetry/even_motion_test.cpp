@@ -10,8 +10,8 @@
 namespace veridyn::live {
 namespace {
 
-Telemetry telemetry(const recording::MotionSample& sample, Nanoseconds arrival, bool anew = false) {
-  return {.sample = sample, .arrival = arrival, .anew = anew};
+Telemetry telemetry(const recording::MotionSample& sample, Nanoseconds arrival, bool restarted = false) {
+  return {.sample = sample, .arrival = arrival, .restarted = restarted};
 }
 
 TEST(EvenMotion, IsOnLinesBetweenPacketsAndLaterByTheDelay) {

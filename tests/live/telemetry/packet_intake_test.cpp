@@ -50,7 +50,7 @@ TEST(PacketIntake, LetsADriveThroughWithItsMotion) {
   for (const TimedPacket& p : packets(3.0)) {
     const auto t = intake.take({p.bytes, kGame, p.arrival});
     ASSERT_TRUE(t);
-    EXPECT_EQ(t->anew, k == 0);
+    EXPECT_EQ(t->restarted, k == 0);
     EXPECT_EQ(t->arrival, p.arrival);
     const auto& truth = drive[k];
     EXPECT_NEAR(t->sample.time, 1000.0 + truth.time, 1e-9);
@@ -111,16 +111,16 @@ TEST(PacketIntake, BeginsAgainWhereADriveIsPutBackAndSaysSo) {
   for (std::size_t k = 0; k < 300; ++k) ASSERT_EQ(fate_of(intake, all[k]), PacketFate::kAccepted);
   // The game loads a state of 3 s before; its clock goes back with it.
   std::size_t until = 0;
-  bool anew = false;
-  for (std::size_t k = 0; k < 20 && !anew; ++k) {
+  bool restarted = false;
+  for (std::size_t k = 0; k < 20 && !restarted; ++k) {
     TimedPacket p = all[k];
     p.arrival = all[300].arrival + all[k].arrival - all[0].arrival;
     const auto t = intake.take({p.bytes, kGame, p.arrival});
-    anew = t && t->anew;
+    restarted = t && t->restarted;
     ++until;
   }
-  EXPECT_TRUE(anew);
-  EXPECT_EQ(until, IntakeOptions().begins_anew);
+  EXPECT_TRUE(restarted);
+  EXPECT_EQ(until, IntakeOptions().begins_again);
   EXPECT_EQ(intake.drives(), 2U);
 }
 

@@ -86,7 +86,7 @@ std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
   }
   last_packet_ = datagram.arrival;
   watch_frozen(*t);
-  anew_ = anew_ || t->anew;
+  restarted_ = restarted_ || t->restarted;
   even_.add(*t);
   return t;
 }
@@ -198,15 +198,15 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   step_.time = time;
   step_.motion = even_.at(time, intake_.clock());
   if (step_.motion) {
-    if (anew_) spikes_.reset();
+    if (restarted_) spikes_.reset();
     step_.motion->sample.force = spikes_.step(step_.motion->sample.force, dt);
     step_.motion->sample = recording::at_place(step_.motion->sample, options_.driver);
     last_sample_ = step_.motion->sample;
   }
-  if ((anew_ || gap) && (step_.state == RigState::kRunning || step_.state == RigState::kSoftStart)) {
+  if ((restarted_ || gap) && (step_.state == RigState::kRunning || step_.state == RigState::kSoftStart)) {
     chain_.restart(*last_sample_, step_.share);
   }
-  anew_ = false;
+  restarted_ = false;
   readiness_ = ready_at(time);
   const bool ready = readiness_ == Readiness::kReady;
   // What stops comes before what starts.

@@ -97,7 +97,7 @@ class LiveRig {
   Nanoseconds same_since_ = 0, last_time_ = 0, state_since_ = 0;
   double rate_ = 0.0;  ///< of packets, low-passed [Hz]
   std::optional<recording::MotionSample> last_telemetry_;
-  bool begun_ = false, anew_ = false;
+  bool begun_ = false, restarted_ = false;
   bool wants_motion_ = false, wants_park_ = false, emergency_ = false, release_ = false;
   std::optional<bool> signs_right_;
   double phase_ = 0.0;  ///< of soft start and fade, 0 parked to 1

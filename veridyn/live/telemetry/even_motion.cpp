@@ -24,7 +24,7 @@ recording::MotionSample on_line(const recording::MotionSample& a, const recordin
 }  // namespace
 
 void EvenMotion::add(const Telemetry& telemetry) {
-  if (telemetry.anew) count_ = 0;
+  if (telemetry.restarted) count_ = 0;
   kept_[next_] = telemetry;
   next_ = (next_ + 1) % kKept;
   count_ = std::min(count_ + 1, kKept);

@@ -30,7 +30,7 @@ class EvenMotion {
  public:
   explicit EvenMotion(const EvenMotionOptions& options = {}) : options_(options) {}
 
-  /// One that began anew forgets those before.
+  /// One that began again forgets those before.
   void add(const Telemetry& telemetry);
   void reset() { count_ = 0; }
   /// @param now by our clock; @param clock of the sender; nothing before the first packet

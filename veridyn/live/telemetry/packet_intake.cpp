@@ -81,8 +81,8 @@ std::optional<Telemetry> PacketIntake::take(const Datagram& packet) {
   count(packet.sender, fate);
   if (fate != PacketFate::kAccepted) return std::nullopt;
   last_arrival_ = packet.arrival;
-  Telemetry t{.sample = sample_of_last(), .arrival = packet.arrival, .anew = anew_};
-  anew_ = false;
+  Telemetry t{.sample = sample_of_last(), .arrival = packet.arrival, .restarted = restarted_};
+  restarted_ = false;
   return t;
 }
 
@@ -158,7 +158,7 @@ PacketFate PacketIntake::follow(const io::PacketMotion& motion, Nanoseconds arri
   // What does not fit to the drive, but to itself, is another drive.
   strays_ = stray_ && strays_ > 0 && io::follows(*stray_, motion) ? strays_ + 1 : 1;
   stray_ = motion;
-  if (strays_ < options_.begins_anew) return fate;
+  if (strays_ < options_.begins_again) return fate;
   begin(motion, arrival);
   return PacketFate::kAccepted;
 }
@@ -170,7 +170,7 @@ void PacketIntake::begin(const io::PacketMotion& motion, Nanoseconds arrival) {
   keep(motion);
   strays_ = 0;
   stray_.reset();
-  anew_ = true;
+  restarted_ = true;
   ++drives_;
 }
 

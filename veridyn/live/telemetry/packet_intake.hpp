@@ -34,16 +34,16 @@ using PerPacketFate = EnumArray<PacketFate, T, kPacketFates>;
 
 /// How packets are taken in.
 struct IntakeOptions {
-  double stale_after = 0.25;    ///< how much later than the quickest ones a packet may come [s]
-  double silent_after = 1.0;    ///< without packets of the sender, another one is listened to [s]
-  std::size_t begins_anew = 5;  ///< packets that follow one another, but not those before: the drive began again
+  double stale_after = 0.25;     ///< how much later than the quickest ones a packet may come [s]
+  double silent_after = 1.0;     ///< without packets of the sender, another one is listened to [s]
+  std::size_t begins_again = 5;  ///< packets that follow one another, but not those before: the drive began again
 };
 
 /// A motion of the vehicle, as one packet says it.
 struct Telemetry {
   recording::MotionSample sample;  ///< at the packet's place, frame flu; its time is the sender's [s]
   Nanoseconds arrival = 0;
-  bool anew = false;  ///< it does not follow the one before: a drive that began, or began again
+  bool restarted = false;  ///< it does not follow the one before: a drive that began, or began again
 };
 
 /// Takes packets in one by one, lets those through that a drive consists of, and counts the others by kind and sender.
@@ -111,7 +111,7 @@ class PacketIntake {
   std::size_t kept_ = 0;
   std::optional<io::PacketMotion> stray_;  ///< the last one that did not follow
   std::size_t strays_ = 0;                 ///< in a row, each following the one before
-  bool anew_ = false, derives_acceleration_ = false, derives_rate_ = false;
+  bool restarted_ = false, derives_acceleration_ = false, derives_rate_ = false;
   std::uint64_t drives_ = 0, from_others_ = 0;
   std::array<FromSender, kSenders> senders_{};
   std::size_t known_senders_ = 0;

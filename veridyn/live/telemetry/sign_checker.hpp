@@ -21,7 +21,7 @@ class SignChecker {
  public:
   /// @param samples of accepted packets, frame flu
   void add(const std::vector<recording::MotionSample>& samples);
-  /// A drive that began anew: what was before is not compared with what follows.
+  /// A drive that began again: what was before is not compared with what follows.
   void reset() { samples_.clear(); }
   /// Right: forward and sideways acceleration and yaw rate were compared and fit, and nothing else is wrong. What is
   /// wrong is said as soon as it shows. The last two minutes are looked at.
