@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "tests/estimation/output_error/example_models.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::estimation {
@@ -85,8 +85,9 @@ TEST(CorrelatedNoiseModel, GivesTheEstimateAndErrorBarOfGeneralisedLeastSquares)
     for (Eigen::Index b = 0; b < m; ++b)
       R(a, b) = sigma * sigma * std::pow(phi, std::abs(static_cast<double>(k - there[static_cast<std::size_t>(b)])));
   }
-  const Eigen::LLT<Eigen::MatrixXd> root(R);
-  const Eigen::MatrixXd P = (S.transpose() * root.solve(S)).inverse();
+  const numerics::Cholesky root(R);
+  const Eigen::MatrixXd P =
+      numerics::Cholesky(S.transpose() * root.solve(S)).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count, count)));
   const Eigen::VectorXd theta = P * S.transpose() * root.solve(z);
   const CorrelatedNoiseModel white(model, {measured}, Eigen::VectorXd::Constant(1, phi));
   const OutputErrorEstimate e = output_error(white, white.whitened(std::vector<RowMatrix>{measured}), given(sigma));
