@@ -28,11 +28,13 @@ test: setup format-check ## build and run the whole test suite
 docs: setup ## API reference from the headers: build/docs/html/index.html
 	@node tools/docs.mjs build/docs
 
-format: ## reformat the sources
+format: ## reformat sources and documents
 	git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format -i
+	node tools/wrap_markdown.mjs --write
 
 format-check: setup
 	@git ls-files -co --exclude-standard '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+	@node tools/wrap_markdown.mjs --check
 
 TIDY ?= veridyn apps/veridyn
 

@@ -22,10 +22,7 @@ using namespace veridyn::cueing;
 /// Where the platform is told to be and where it is, sample by sample.
 std::string motion_csv(const CueingRun& run, const Platform& platform) {
   std::string text = "time[s]";
-  std::vector<PlatformAxis> axes;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (platform.limits.axes[i].moves()) axes.push_back(static_cast<PlatformAxis>(i));
-  }
+  const std::vector<PlatformAxis> axes = platform.limits.moving_axes();
   for (const char* what : {"told", "reached"}) {
     for (const PlatformAxis a : axes) text += fmt::format(",{}_{}[{}]", what, name_of(a), turns(a) ? "rad" : "m");
   }
@@ -43,9 +40,8 @@ std::string motion_csv(const CueingRun& run, const Platform& platform) {
 std::string score_csv(const CueingResult& result, const Platform& platform) {
   std::string text = "algorithm,cue,figure,value,low,high,unit\n";
   for (const AlgorithmResult& a : result.algorithms) {
-    for (std::size_t i = 0; i < kCues; ++i) {
-      const auto cue = static_cast<Cue>(i);
-      const CueScore& s = a.score.cues[i];
+    for (const Cue cue : kAllCues) {
+      const CueScore& s = a.score.cues[cue];
       const auto line = [&](std::string_view figure, const Measured& m, std::string_view unit) {
         text +=
             fmt::format("{},{},{},{},{},{},{}\n", a.run.algorithm, name_of(cue), figure, m.value, m.low, m.high, unit);
@@ -69,13 +65,12 @@ std::string score_csv(const CueingResult& result, const Platform& platform) {
     };
     plain("platform", "turns_felt_at_rest", a.score.felt_return, "1");
     if (a.score.leg_speed > 0.0) plain("legs", "rate_used", a.score.leg_speed, "1");
-    for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-      const auto which = static_cast<PlatformAxis>(i);
-      if (!platform.limits.axes[i].moves()) continue;
-      plain(name_of(which), "range_used", a.score.axes[i].used, "1");
-      plain(name_of(which), "held_back", a.score.axes[i].limited, "1");
-      plain(name_of(which), "rate_used", a.score.axes[i].rate, "1");
-      plain(name_of(which), "rms_jerk", a.score.axes[i].rms_jerk, turns(which) ? "rad/s^3" : "m/s^3");
+    for (const PlatformAxis which : platform.limits.moving_axes()) {
+      const AxisScore& score = a.score.axes[which];
+      plain(name_of(which), "range_used", score.used, "1");
+      plain(name_of(which), "held_back", score.limited, "1");
+      plain(name_of(which), "rate_used", score.rate, "1");
+      plain(name_of(which), "rms_jerk", score.rms_jerk, turns(which) ? "rad/s^3" : "m/s^3");
     }
     for (const std::size_t pair : {1U, 0U}) {
       const Measured& e = a.score.pairs[pair];
@@ -125,11 +120,12 @@ Summary summary_of(const OutputFolder& folder, const CueingStudy& study, const C
   for (const AlgorithmResult& a : result.algorithms) {
     Summary of;
     of["name"] = a.run.algorithm;
-    for (std::size_t i = 0; i < kCues; ++i) {
-      const std::string cue(name_of(static_cast<Cue>(i)));
-      of["cues"][cue]["pearson"] = measured(a.score.cues[i].pearson);
-      of["cues"][cue]["lag_s"] = measured(a.score.cues[i].lag);
-      of["cues"][cue]["rms_error"] = measured(a.score.cues[i].rmse);
+    for (const Cue cue : kAllCues) {
+      const CueScore& score = a.score.cues[cue];
+      Summary& to = of["cues"][std::string(name_of(cue))];
+      to["pearson"] = measured(score.pearson);
+      to["lag_s"] = measured(score.lag);
+      to["rms_error"] = measured(score.rmse);
     }
     of["perceived_error"]["surge and pitch"] = measured(a.score.pairs[1]);
     of["perceived_error"]["sway and roll"] = measured(a.score.pairs[0]);

@@ -8,6 +8,7 @@
 
 #include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -27,7 +28,7 @@ struct Cell {
 
 struct Row {
   std::string_view command;
-  std::array<Cell, kDomains> cells;  ///< in the order of `Domain`
+  EnumArray<Domain, Cell, kDomains> cells;
 };
 
 constexpr const char* kIdentifiesIt = "`veridyn identify` analyses it";
@@ -73,18 +74,18 @@ struct Names {
   const char* one;   ///< "a study of an aircraft"
   const char* many;  ///< "identify is for aircraft"
 };
-constexpr std::array<Names, kDomains> kNames = {Names{"an aircraft", "aircraft"},
-                                                Names{"a vehicle", "vehicles"},
-                                                Names{"a musculoskeletal model", "musculoskeletal models"},
-                                                Names{"a swing test", "swing tests"},
-                                                Names{"an air-data calibration", "air-data calibrations"},
-                                                Names{"a motion platform", "motion platforms"}};
+constexpr EnumArray<Domain, Names, kDomains> kNames = {Names{"an aircraft", "aircraft"},
+                                                       Names{"a vehicle", "vehicles"},
+                                                       Names{"a musculoskeletal model", "musculoskeletal models"},
+                                                       Names{"a swing test", "swing tests"},
+                                                       Names{"an air-data calibration", "air-data calibrations"},
+                                                       Names{"a motion platform", "motion platforms"}};
 
 /// "aircraft", "aircraft and vehicles", "aircraft, vehicles and swing tests".
 std::string domains_with(const Row& row) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < kDomains; ++i) {
-    if (row.cells[i].run != nullptr) names.emplace_back(kNames[i].many);
+  for (const Domain domain : enumerators<Domain, kDomains>()) {
+    if (row.cells[domain].run != nullptr) names.emplace_back(kNames[domain].many);
   }
   std::string text = names.front();
   for (std::size_t i = 1; i < names.size(); ++i) text += (i + 1 == names.size() ? " and " : ", ") + names[i];
@@ -133,7 +134,7 @@ int run_on_study(std::string_view command, const Arguments& arguments) {
   const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
   const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
-  const auto domain = static_cast<std::size_t>(domain_of(run.study));
+  const Domain domain = domain_of(run.study);
   const Cell& cell = row.cells[domain];
   if (cell.run != nullptr) {
     const int exit_code = cell.run(run);

@@ -21,7 +21,8 @@ enum class Domain {
   kCalibration,  ///< air data in a wind tunnel: [calibration]
   kCueing,       ///< a drive on a motion platform: [cue]
 };
-inline constexpr int kDomains = 6;
+/// How many there are.
+inline constexpr std::size_t kDomains = 6;
 
 /// Decides which domain a study is of.
 /// @throws InputError for a `kind` of subject that there is not, and for a [drive] or [motion] whose [subject] does not

@@ -18,7 +18,7 @@ namespace {
 void refuse_checkpoint(const StudyRun& run) {
   // `demo`, which identifies too, has no such option.
   if (run.arguments.values.contains("--checkpoint") && !run.arguments.text("--checkpoint").empty())
-    throw InputError("--checkpoint", "is for a person's tasks; identify of other studies begins anew");
+    throw InputError("--checkpoint", "is for a person's tasks; identify of other studies starts from the beginning");
 }
 
 }  // namespace

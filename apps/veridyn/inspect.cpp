@@ -64,7 +64,7 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
                                  "correlation", "[s]");
   Summary json = Summary::object();
   json["relations"] = Summary::array();
-  for (const recording::DriveRelation& r : check.relations) {
+  for (const recording::AxisRelation& r : check.relations) {
     text += r.seconds > 0.0 && std::isfinite(r.low)
                 ? fmt::format("  {:<38} {:>7.3g} {:>20} {:>12.2f} {:>6.0f}{}\n", r.text, r.slope,
                               fmt::format("{:.3g} to {:.3g}", r.low, r.high), r.correlation, r.seconds,
@@ -102,7 +102,9 @@ std::string axis_section(const recording::MappedRecording& mapped, Summary& summ
 /// The drive of a study, with its `[data.map]`.
 int inspect_drive(const Arguments& arguments, const std::string& file) {
   const Study study = Study::load(file, arguments.common.overrides);
-  const vehicle::DriveLog log = vehicle::read_drive_log(study.root().table("data"));
+  const StudyTable data = study.root().table("data");
+  const vehicle::DriveLog log = vehicle::read_drive_log(data);
+  data.finish();
   Summary summary;
   summary["file"] = file;
   std::string text = fmt::format("{}: drive of a study, {} channels\n", file, log.mapped.recording.channels().size());
@@ -164,10 +166,10 @@ int inspect(const Arguments& arguments) {
                                                    {"rate_Hz", channel.rate_Hz()},
                                                    {"gaps", gaps.size()},
                                                    {"missing", range.missing}}));
-    text +=
-        fmt::format("{:<44} {:<8} {:>8} {:>9.2f} {:>5} {:>7.2f} {:>8}  {}\n", channel.name, channel.unit.name,
-                    channel.size(), channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
-                    std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numbers");
+    text += fmt::format(
+        "{:<44} {:<8} {:>8} {:>9.2f} {:>5} {:>7.2f} {:>8}  {}\n", channel.name, channel.unit.name, channel.size(),
+        channel.rate_Hz(), gaps.size(), gap_time(channel), range.missing,
+        std::isfinite(range.low) ? fmt::format("{:.6g} .. {:.6g}", range.low, range.high) : "no numeric values");
   }
   text += mapping_section(mapped, vehicle, summary);
   if (vehicle) text += axis_section(mapped, summary);

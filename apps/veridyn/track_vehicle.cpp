@@ -21,17 +21,16 @@ namespace {
 using namespace veridyn::vehicle;
 
 std::string change_line(const DriveChange& c) {
-  return fmt::format("{:9.1f} s  {} changed, began at about {:.1f} s", c.change.detected_s,
-                     kTrackedAxleNames[static_cast<std::size_t>(c.axle)], c.change.began_s);
+  return fmt::format("{:9.1f} s  {} changed, began at about {:.1f} s", c.change.detected_s, kTrackedAxleNames[c.axle],
+                     c.change.began_s);
 }
 
 std::string live_line(const TrackedDrive& drive) {
   const DriveTracker* t = drive.tracker();
   if (t == nullptr) return "waits for the drive to begin";
   std::string text = fmt::format("{:9.1f} s ", t->last_time());
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const auto axle = static_cast<TrackedAxle>(i);
-    text += fmt::format(" {} {:.4g} +- {:.2g}", kTrackedAxleNames[i], t->value(axle), t->sigma(axle));
+  for (const TrackedAxle axle : kAllTrackedAxles) {
+    text += fmt::format(" {} {:.4g} +- {:.2g}", kTrackedAxleNames[axle], t->value(axle), t->sigma(axle));
   }
   return text;
 }
@@ -51,7 +50,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
     folder.write("track.csv", io::to_csv(history_recording(*tracker)));
     count = tracker->changes().size();
     for (const DriveChange& c : tracker->changes()) {
-      const std::string_view name = kTrackedAxleNames[static_cast<std::size_t>(c.axle)];
+      const std::string_view name = kTrackedAxleNames[c.axle];
       changes +=
           fmt::format("{},{},{},{},{}\n", name, c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread",
                       c.change.detected_s, c.change.began_s, c.change.shift);

@@ -49,7 +49,7 @@ void one_pass_ols_gtls_pca(benchmark::State& state) {
 }
 BENCHMARK(one_pass_ols_gtls_pca)->Unit(benchmark::kMillisecond);
 
-// What a user calls: four methods with coloured-residual covariances, residual analysis and honesty checks.
+// What a user calls: four methods with covariances of autocorrelated residuals, residual analysis and checks.
 void compare_everything(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(compare(data()).recommends);
 }

@@ -1,4 +1,4 @@
-// How fast logs are read, in bytes of the file per second, on one core, every column decoded; beside it the same bytes
+// How fast logs are read, in bytes of the file per second, on one core, every column decoded; alongside, the same bytes
 // copied once with memcpy, which no reader can beat.
 #include <benchmark/benchmark.h>
 

@@ -111,6 +111,10 @@ TEST_F(CommandLine, EveryCommandSaysThatItWasInterruptedAndWritesNothing) {
       file("drive.toml",
            "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\n"
            "manoeuvre = \"step steer\"\namplitude = \"2 deg\"\nduration = 3000\n[scale]\nlength_ratio = 0.2\n");
+  const std::string platform = file("platform.toml",
+                                    "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\n"
+                                    "manoeuvre = \"step steer\"\namplitude = \"2 deg\"\nduration = 3000\n"
+                                    "[cue]\nalgorithms = [\"classical\"]\n");
   const std::string arm = file("arm.toml", "[subject]\nmodel = \"arm\"\n[motion]\nduration = 500\n");
   const std::string estimate =
       " --estimate-file " + file("estimate.json",
@@ -120,7 +124,7 @@ TEST_F(CommandLine, EveryCommandSaysThatItWasInterruptedAndWritesNothing) {
   for (const std::string& arguments :
        {"simulate " + flight, "reconstruct " + flight, "identify " + flight, "validate " + flight + estimate,
         "track " + flight, "simulate " + drive, "identify " + drive, "validate " + drive + estimate, "track " + drive,
-        "scale " + drive, "simulate " + arm, std::string("demo --set flight.duration=3000"),
+        "scale " + drive, "cue " + platform, "simulate " + arm, std::string("demo --set flight.duration=3000"),
         std::string("reproduce aircraft")}) {
     const Outcome stopped = run_interrupted(arguments + to, folder_);
     EXPECT_EQ(stopped.exit_code, 1) << arguments << ": " << stopped.text;

@@ -236,6 +236,17 @@ TEST_F(Program, NamesWhatIsWrongWithARecording) {
       "m.toml:6: data.map.alpha: ");
 }
 
+TEST_F(Program, NamesTheUnitOfTimeWhereMillisecondsAreCalledSeconds) {
+  std::string csv =
+      "time[s],accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],gyro_x[rad/s],gyro_y[rad/s],gyro_z[rad/s],roll[rad],"
+      "pitch[rad],yaw[rad],vel_north[m/s],vel_east[m/s],vel_down[m/s]\n";
+  for (int k = 0; k < 30; ++k) csv += std::to_string(10 * k) + ",0,0,0,0,0,0,0,0,0,0,0,0\n";
+  file("r.csv", csv);
+  expect_refusal(
+      "identify " + file("s.toml", "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"r.csv\"\n") + out(),
+      "r.csv: its gyro has a sample every 10 s, too few to follow a flight: check the unit of time (data.time.unit)");
+}
+
 TEST_F(Program, RefusesAFlightThatNeverLeavesTheGround) {
   ASSERT_EQ(run("simulate " +
                 file("f.toml",

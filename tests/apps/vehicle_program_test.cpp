@@ -55,6 +55,9 @@ TEST_F(VehicleProgram, DrivesScalesAndIdentifiesItsOwnTemplate) {
           .exit_code,
       0);
   EXPECT_TRUE(std::filesystem::exists(in_out("estimate.json")));
+  const std::string methods = read_file(in_out("methods.csv"));
+  EXPECT_THAT(methods, testing::StartsWith("parameter,method,value,sigma,low95,high95,unit\nC_f,OLS,"));
+  EXPECT_THAT(methods.substr(0, methods.find("\nC_r")), testing::EndsWith(",N/rad"));
 }
 
 TEST_F(VehicleProgram, WantsTheMassOfTheCarWhoseLogItReads) {
@@ -169,7 +172,7 @@ TEST_F(VehicleProgram, RefusesLogsThatHoldNoDrive) {
       [&](double) {
         return Row{0.0, 20.0, nan, 0.0};
       },
-      "yaw_rate holds no numbers");
+      "yaw_rate holds no numeric values");
   refused(
       "degrees",
       [](double t) {
@@ -215,6 +218,8 @@ TEST_F(VehicleProgram, InspectSaysWhichUnitIsWrongAndItsLineMendsIt) {
   ASSERT_EQ(mended.exit_code, 0) << mended.text;
   EXPECT_THAT(mended.text, HasSubstr("nothing contradicts"));
   EXPECT_EQ(nlohmann::json::parse(run("inspect " + study + " --json").text)["signs_and_units"]["faults"].size(), 1U);
+  expect_refusal("inspect " + file("misspelt.toml", "[data]\nfile = \"kmh.csv\"\nfrm = 2\n"),
+                 "misspelt.toml:3: data.frm: unknown key");
   expect_refusal("inspect " + file("none.toml", "title = \"nothing\"\n"), "data: is missing");
 }
 

@@ -22,5 +22,16 @@ TEST(EnumArray, TakesEnumeratorsAndNumbers) {
   EXPECT_EQ(copy[Side::kLeft], 2.0);
 }
 
+TEST(Enumerators, AreInOrder) {
+  constexpr auto kSides = enumerators<Side, 3>();
+  static_assert(kSides.size() == 3 && kSides[2] == Side::kBoth);
+  EnumArray<Side, int, 3> order{};
+  int next = 0;
+  for (const Side side : kSides) order[side] = next++;
+  EXPECT_EQ(order[Side::kLeft], 0);
+  EXPECT_EQ(order[Side::kRight], 1);
+  EXPECT_EQ(order[Side::kBoth], 2);
+}
+
 }  // namespace
 }  // namespace veridyn

@@ -13,8 +13,8 @@ namespace veridyn::estimation::testing_support {
 
 /// Unit-variance noise: AR(1) with coefficient `rho`, then (with `pass_Hz` > 0 at 100 Hz) low-passed as a recorded
 /// channel is.
-inline Eigen::VectorXd coloured_noise(std::mt19937_64& generator, Eigen::Index count, double rho,
-                                      double pass_Hz = 0.0) {
+inline Eigen::VectorXd correlated_noise(std::mt19937_64& generator, Eigen::Index count, double rho,
+                                        double pass_Hz = 0.0) {
   std::normal_distribution<double> normal;
   constexpr Eigen::Index kLeadIn = 200;
   std::vector<double> x(static_cast<std::size_t>(count + 2 * kLeadIn));
@@ -54,12 +54,13 @@ inline SimulatedRegression simulate_regression(unsigned seed, const Eigen::Vecto
   SimulatedRegression s;
   s.true_regressors.resize(N, n);
   s.true_regressors.col(0).setOnes();
-  for (Eigen::Index j = 1; j < n; ++j) s.true_regressors.col(j) = coloured_noise(generator, N, settings.regressor_rho);
+  for (Eigen::Index j = 1; j < n; ++j)
+    s.true_regressors.col(j) = correlated_noise(generator, N, settings.regressor_rho);
   if (n > 2) s.true_regressors.col(2) = (0.8 * s.true_regressors.col(2) + 0.6 * s.true_regressors.col(1)).eval();
   s.true_regressand = s.true_regressors * theta;
   Eigen::MatrixXd errors(N, n + 1);
   for (Eigen::Index j = 0; j <= n; ++j)
-    errors.col(j) = coloured_noise(generator, N, settings.error_rho, settings.error_pass_Hz);
+    errors.col(j) = correlated_noise(generator, N, settings.error_rho, settings.error_pass_Hz);
   // Pivoted square root: W may be singular.
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(W);
   const Eigen::MatrixXd lower = ldlt.matrixL();

@@ -31,6 +31,42 @@ TEST(RungeKutta4, IntegratesCubicsInTimeExactly) {
   EXPECT_NEAR(x(0), 16.0, 1e-13);
 }
 
+// The two other forms against the step itself, which they follow to rounding.
+TEST(RungeKutta4, GoesOnFromAKnownRate) {
+  const double t = 0.7, h = 0.1;
+  const Vector2d x(0.3, -1.2);
+  const auto rate = [&](RungeKuttaMoment moment, const Vector2d& at) {
+    return forced(moment == RungeKuttaMoment::kMiddle ? t + 0.5 * h : t + h, at);
+  };
+  const Vector2d expected = runge_kutta_4_step(forced, t, x, h);
+  EXPECT_EQ(runge_kutta_4_from(forced(t, x), rate, x, h), expected);
+  Vector2d in_place = x, k;
+  const auto stage = [&](RungeKuttaMoment moment, const Vector2d& at) -> const Vector2d& {
+    return k = rate(moment, at);
+  };
+  runge_kutta_4_in_place<2>(forced(t, x), stage, h, in_place);
+  EXPECT_LT((in_place - expected).norm(), 1e-15);
+}
+
+// The second entry is held, the first is driven by it: x' = y.
+TEST(RungeKutta4, LeavesEntriesThatDoNotMove) {
+  Vector2d x(1.0, 2.0), k;
+  const auto stage = [&](RungeKuttaMoment, Vector2d& at) -> const Vector2d& { return k = Vector2d(at(1), 7.0); };
+  runge_kutta_4_in_place<1>(Vector2d(2.0, 7.0), stage, 0.5, x);
+  EXPECT_NEAR(x(0), 2.0, 1e-15);
+  EXPECT_EQ(x(1), 2.0);
+}
+
+TEST(RungeKutta4, TakesStagesAsTheRateCorrectsThem) {
+  Vector2d x(1.0, 0.0), k;
+  const auto stopped = [&](RungeKuttaMoment, Vector2d& at) -> const Vector2d& {
+    at(0) = std::max(at(0), 0.95);
+    return k = Vector2d(-at(0), 0.0);
+  };
+  runge_kutta_4_in_place<2>(Vector2d(-1.0, 0.0), stopped, 0.3, x);
+  EXPECT_NEAR(x(0), 1.0 - 0.05 * (1.0 + 2.0 * 0.95 + 2.0 * 0.95 + 0.95), 1e-15);
+}
+
 TEST(AdaptiveIntegration, KeepsTheToleranceAndReachesTheEndInBothDirections) {
   const OdeFunction f = [](double t, const VectorXd& x, VectorXd& rate) { rate = forced(t, Vector2d(x)); };
   double last = 1.0;

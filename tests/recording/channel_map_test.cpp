@@ -29,7 +29,7 @@ Recording log_of_three() {
 MappedRecording mapped_by(const std::string& map) {
   const Study study = Study::parse("[data.map]\n" + map, "s.toml");
   MappedRecording mapped;
-  apply_channel_map(log_of_three(), kStandard, study.root().table("data").table("map"), mapped);
+  mapped = with_channel_map(std::move(mapped), log_of_three(), kStandard, study.root().table("data").table("map"));
   return mapped;
 }
 

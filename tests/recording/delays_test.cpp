@@ -122,7 +122,7 @@ TEST(Delays, NoiseOfWhatTheCauseReactsToIsNotTakenForADelay) {
   EXPECT_EQ(delay(kNoise * kNoise).text, "not determined: the cause explains too little");
 }
 
-/// A cause whose effect is 0.06 s late, with half as much noise of the same colour as effect.
+/// A cause whose effect is 0.06 s late, with half as much noise of the same spectrum as effect.
 DelayReport noisy_delay(std::uint64_t seed) {
   const std::vector<double> cause = lively(6000, "cause", seed), noise = lively(6000, "noise", seed);
   std::vector<double> effect = later(cause, 6);

@@ -11,7 +11,7 @@
 namespace veridyn::recording {
 namespace {
 
-using enum DriveSignal;
+using enum InertialChannel;
 
 /// A drive of two minutes through bends, up and down hills: sideslip, roll on the springs, a banked road, sensor noise,
 /// a speed that comes 0.2 s late, gravity in the accelerations.
@@ -26,7 +26,7 @@ DriveMotion drive(unsigned seed, double liveliness = 1.0) {
     return 18.0 + liveliness * (4.0 * std::sin(0.21 * t + p1) + 2.0 * std::sin(0.5 * t + p2));
   };
   double yaw = 0.3, x = 0.0, y = 0.0;
-  const auto put = [&](DriveSignal s, double value) { m.signals[s].push_back(value); };
+  const auto put = [&](InertialChannel s, double value) { m.signals[s].push_back(value); };
   for (std::size_t k = 0; k < n; ++k) {
     const double t = m.step * static_cast<double>(k), h = 1e-4;
     const double v = speed(t), dv = (speed(t + h) - speed(t - h)) / (2.0 * h);
@@ -58,8 +58,8 @@ DriveMotion drive(unsigned seed, double liveliness = 1.0) {
   return m;
 }
 
-void scale(DriveMotion& m, const std::vector<DriveSignal>& signals, double factor) {
-  for (const DriveSignal s : signals) {
+void scale(DriveMotion& m, const std::vector<InertialChannel>& signals, double factor) {
+  for (const InertialChannel s : signals) {
     for (double& v : m.signals[s]) v *= factor;
   }
 }
@@ -86,7 +86,7 @@ TEST(DriveAxisCheck, FindsNothingInTwoHundredCleanDrives) {
 TEST(DriveAxisCheck, NamesEverySingleFaultAndItsLineMendsIt) {
   struct OneFault {
     const char* what;
-    std::vector<DriveSignal> signals;
+    std::vector<InertialChannel> signals;
     double factor;
     const char* line;
   };

@@ -67,10 +67,8 @@ TEST(Segments, BlocksAreEqualAndFillTheSpan) {
 }
 
 TEST(Segments, HoldOutHasItsShareAndAGuardBetweenTheUses) {
-  Segments s;
-  s.excited = {{0, 300}};
   const SegmentOptions options{.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 0.5};
-  assign_blocks(s, options, Neighbours::kJoined, 1.0);
+  const AssignedBlocks s = assign_blocks(std::vector<TimeSpan>{{0, 300}}, options, Neighbours::kJoined, 1.0);
   EXPECT_EQ(s.holdout.size(), 10u);
   EXPECT_NEAR(total_s(s.holdout), 10.0 * 9.0, 1e-9);
   EXPECT_EQ(s.identification.front().begin, 0.0);
@@ -81,10 +79,9 @@ TEST(Segments, HoldOutHasItsShareAndAGuardBetweenTheUses) {
 
 TEST(Segments, NeighbouringBlocksOfOneUseAreJoinedOrKeptSeparately) {
   const SegmentOptions options{.holdout = 0.0};
-  Segments joined, separate;
-  joined.excited = separate.excited = {{0, 30}, {40, 50}};
-  assign_blocks(joined, options, Neighbours::kJoined, 1.0);
-  assign_blocks(separate, options, Neighbours::kSeparate, 1.0);
+  const std::vector<TimeSpan> excited = {{0, 30}, {40, 50}};
+  const AssignedBlocks joined = assign_blocks(excited, options, Neighbours::kJoined, 1.0);
+  const AssignedBlocks separate = assign_blocks(excited, options, Neighbours::kSeparate, 1.0);
   EXPECT_THAT(joined.identification, ElementsAre(TimeSpan{0, 30}, TimeSpan{40, 50}));
   EXPECT_THAT(separate.identification,
               ElementsAre(TimeSpan{0, 10}, TimeSpan{10, 20}, TimeSpan{20, 30}, TimeSpan{40, 50}));
@@ -92,16 +89,14 @@ TEST(Segments, NeighbouringBlocksOfOneUseAreJoinedOrKeptSeparately) {
 }
 
 TEST(Segments, FirstBlockIsForIdentificationWhateverTheShare) {
-  Segments s;
-  s.excited = {{0, 10}};
-  assign_blocks(s, {.holdout = 0.8}, Neighbours::kJoined, 1.0);
+  const AssignedBlocks s = assign_blocks(std::vector<TimeSpan>{{0, 10}}, {.holdout = 0.8}, Neighbours::kJoined, 1.0);
   EXPECT_EQ(s.identification.size(), 1u);
 }
 
 TEST(Segments, BlocksThatTheGuardMakesTooShortAreDropped) {
-  Segments s;
-  s.excited = {{0, 30}};
-  assign_blocks(s, {.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 4.6}, Neighbours::kJoined, 1.0);
+  const AssignedBlocks s =
+      assign_blocks(std::vector<TimeSpan>{{0, 30}}, {.holdout = 1.0 / 3.0, .block_s = 10.0, .guard_s = 4.6},
+                    Neighbours::kJoined, 1.0);
   EXPECT_THAT(s.holdout, IsEmpty());
   EXPECT_EQ(s.identification.size(), 2u);
 }

@@ -322,7 +322,7 @@ XYPlot ground_track() {
 
 Matrix correlation() {
   Matrix matrix{.title = "Correlation of the estimates",
-                .caption = "Above 0.9 in size, two parameters are hardly told apart."};
+                .caption = "Above 0.9 in size, two parameters are hardly distinguishable."};
   Samples noise;
   constexpr std::size_t kCount = 10;
   for (std::size_t i = 0; i < kCount; ++i) {

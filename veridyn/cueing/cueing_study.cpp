@@ -44,33 +44,44 @@ std::vector<MotionSample> at_driver(std::vector<MotionSample> samples, const Eig
   return samples;
 }
 
-/// The recorded drive of a `[data]`, at the driver's head.
-std::vector<MotionSample> recorded(const StudyTable& data, const recording::MotionOptions& options,
-                                   const Eigen::Vector3d& driver, CueingStudy& study) {
+/// A drive at the driver's head, and where it comes from.
+struct DrivenMotion {
+  std::string name = {};
+  std::vector<MotionSample> samples = {};
+  std::vector<std::filesystem::path> inputs = {};
+  std::vector<std::string> notes = {};
+};
+
+/// Adds inputs and notes of a drive to those of the study, each note once.
+void account_for(const DrivenMotion& drive, CueingStudy& study) {
+  study.inputs.insert(study.inputs.end(), drive.inputs.begin(), drive.inputs.end());
+  for (const std::string& note : drive.notes) {
+    if (std::find(study.notes.begin(), study.notes.end(), note) == study.notes.end()) study.notes.push_back(note);
+  }
+}
+
+/// The recorded drive of a `[data]`.
+DrivenMotion recorded(const StudyTable& data, const recording::MotionOptions& options, const Eigen::Vector3d& driver) {
   const vehicle::DriveLog log = vehicle::read_drive_log(data);
-  study.inputs.insert(study.inputs.end(), log.inputs.begin(), log.inputs.end());
+  DrivenMotion drive{.name = log.inputs.empty() ? "drive" : log.inputs.front().filename().string(),
+                     .inputs = log.inputs};
   const recording::RecordedMotion motion = recording::motion_samples(log.mapped.recording, options);
   for (const recording::DriveFault& f :
        recording::check_drive_axes(recording::drive_motion(log.mapped.recording), log.mapped.origins).faults) {
-    study.notes.push_back(
+    drive.notes.push_back(
         fmt::format("wrong: {} (correlation {:.2f}); {}", f.text, f.correlation,
                     f.lines.empty() ? "" : "mend it by " + fmt::format("{}", fmt::join(f.lines, "; "))));
   }
-  for (const auto* notes : {&log.mapped.notes, &motion.notes}) {
-    for (const std::string& note : *notes) {
-      if (std::find(study.notes.begin(), study.notes.end(), note) == study.notes.end()) study.notes.push_back(note);
-    }
-  }
-  return at_driver(motion.samples, driver);
+  for (const auto* notes : {&log.mapped.notes, &motion.notes})
+    drive.notes.insert(drive.notes.end(), notes->begin(), notes->end());
+  drive.samples = at_driver(motion.samples, driver);
+  return drive;
 }
 
-void read_drive(const StudyTable& root, CueingStudy& study, Progress& progress) {
-  if (root.has("data")) {
-    const std::size_t before = study.inputs.size();  // files of the drive that is tuned on
-    study.vehicle = recorded(root.table("data"), study.motion, study.driver, study);
-    study.drive = study.inputs.size() == before ? "drive" : study.inputs[before].filename().string();
-    return;
-  }
+/// The recorded drive, or one that is simulated.
+DrivenMotion read_drive(const StudyTable& root, const recording::MotionOptions& options, const Eigen::Vector3d& driver,
+                        Progress& progress) {
+  if (root.has("data")) return recorded(root.table("data"), options, driver);
   if (!root.has("drive"))
     throw InputError(root.place("data"),
                      "is missing: name a recorded drive, or simulate one with [subject] and [drive]");
@@ -78,15 +89,16 @@ void read_drive(const StudyTable& root, CueingStudy& study, Progress& progress) 
   progress.stage(fmt::format("driving {:.0f} s of {}", simulation.simulation.duration, simulation.vehicle.name));
   const vehicle::SimulationRun driven = vehicle::run_simulation_study(simulation, progress);
   if (!driven.trajectory.usable()) throw std::runtime_error(driven.trajectory.message());
-  study.inputs = simulation.inputs;
-  study.drive = fmt::format("{} of {}", to_string(simulation.manoeuvre.kind), simulation.vehicle.name);
   const vehicle::FourWheelOptions& options_of = simulation.four_wheel;
-  study.vehicle = at_driver(vehicle::motion_samples(driven.trajectory, options_of.gravity,
-                                                    options_of.longitudinal ? options_of.longitudinal->grade : 0.0),
-                            study.driver);
+  return {.name = fmt::format("{} of {}", to_string(simulation.manoeuvre.kind), simulation.vehicle.name),
+          .samples = at_driver(vehicle::motion_samples(driven.trajectory, options_of.gravity,
+                                                       options_of.longitudinal ? options_of.longitudinal->grade : 0.0),
+                               driver),
+          .inputs = simulation.inputs};
 }
 
-void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
+std::vector<StudyAlgorithm> read_algorithms(const StudyTable& root, const StudyTable& cue, const Platform& platform) {
+  std::vector<StudyAlgorithm> algorithms;
   const DriverSettings settings = DriverSettings::read(cue);
   const std::vector<std::string> names =
       cue.has("algorithms") ? cue.texts("algorithms") : std::vector<std::string>{"classical"};
@@ -100,30 +112,34 @@ void read_algorithms(const StudyTable& root, const StudyTable& cue, CueingStudy&
     StudyAlgorithm algorithm{name, washout_algorithm(name).design()};
     settings.apply(*algorithm.design);
     read_knobs(washouts.table_or_empty(name), algorithm.design->knobs());
-    static_cast<void>(algorithm.design->make(study.platform));  // refuses what cannot be made
-    study.algorithms.push_back(std::move(algorithm));
+    static_cast<void>(algorithm.design->make(platform));  // refuses what cannot be made
+    algorithms.push_back(std::move(algorithm));
   }
   // Numbers of algorithms that are not driven this time are read all the same: a misspelt one is refused.
   for (const std::string& name : known) {
     if (washouts.has(name) && std::find(names.begin(), names.end(), name) == names.end())
       read_knobs(washouts.table(name), washout_algorithm(name).design()->knobs());
   }
+  return algorithms;
 }
 
-/// A lap that was recorded. Notes where it is not another one.
-LapForesight read_lap(const StudyTable& cue, CueingStudy& study) {
+/// A lap that was recorded, with a note where it is not another one than the study's drives.
+DrivenMotion read_lap(const StudyTable& cue, const CueingStudy& study) {
   if (study.vehicle.front().position_from == recording::Origin::kAbsent)
     cue.fail("lap", "is of no use: the drive has no positions (channels pos_x and pos_y)");
-  const std::vector<std::filesystem::path> others = study.inputs;
-  const std::vector<MotionSample> lap = recorded(cue.table("lap"), study.motion, study.driver, study);
-  for (std::size_t i = others.size(); i < study.inputs.size(); ++i) {
-    if (std::find(others.begin(), others.end(), study.inputs[i]) != others.end())
-      study.notes.push_back(
+  DrivenMotion lap = recorded(cue.table("lap"), study.motion, study.driver);
+  for (const std::filesystem::path& input : lap.inputs) {
+    if (std::find(study.inputs.begin(), study.inputs.end(), input) != study.inputs.end())
+      lap.notes.push_back(
           fmt::format("the lap {} is also driven or tuned on: what is foreseen there is too good to be true",
-                      study.inputs[i].filename().string()));
+                      input.filename().string()));
   }
+  return lap;
+}
+
+LapForesight foresight_of(const StudyTable& cue, const DrivenMotion& lap) {
   try {
-    return LapForesight(lap);
+    return LapForesight(lap.samples);
   } catch (const InputError& error) {
     cue.fail("lap", error.what());
   }
@@ -149,7 +165,11 @@ void read_foresight(const StudyTable& root, const StudyTable& cue, CueingStudy& 
   if (choice == "lap" && !cue.has("lap")) cue.fail("foresee", "= 'lap' needs a lap of the same track: [cue.lap]");
   // What is there is read, also where the choice is another one.
   std::optional<LapForesight> lap;
-  if (cue.has("lap")) lap = read_lap(cue, study);
+  if (cue.has("lap")) {
+    const DrivenMotion driven = read_lap(cue, study);
+    account_for(driven, study);
+    lap = foresight_of(cue, driven);
+  }
   std::optional<DriverForesight> driver;
   if (cue.has("vehicle") || choice == "driver") driver = read_driver_foresight(root, cue, study);
   for (const StudyAlgorithm& a : study.algorithms) {
@@ -160,7 +180,7 @@ void read_foresight(const StudyTable& root, const StudyTable& cue, CueingStudy& 
 
 Cue read_cue(const StudyTable& table) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < kCues; ++i) names.emplace_back(name_of(static_cast<Cue>(i)));
+  for (const Cue cue : kAllCues) names.emplace_back(name_of(cue));
   const std::string name = table.choice_or("cue", names, names.front());
   return static_cast<Cue>(std::find(names.begin(), names.end(), name) - names.begin());
 }
@@ -203,7 +223,7 @@ bool renders(const Platform& platform, Cue cue) {
   const PlatformLimits& l = platform.limits;
   if (cue == Cue::kSurge) return l[PlatformAxis::kSurge].moves() || l[PlatformAxis::kPitch].moves();
   if (cue == Cue::kSway) return l[PlatformAxis::kSway].moves() || l[PlatformAxis::kRoll].moves();
-  return l.axes[static_cast<std::size_t>(cue)].moves();
+  return l[static_cast<PlatformAxis>(cue)].moves();
 }
 
 std::vector<std::string> described(WashoutDesign& design) {
@@ -224,7 +244,7 @@ CueingStudy read_rig(const StudyTable& root) {
   s.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
   const StudyTable cue = root.table_or_empty("cue");
   s.platform = root.has("platform") ? Platform::read(root.table("platform")) : built_in_platform("three_axis");
-  read_algorithms(root, cue, s);
+  s.algorithms = read_algorithms(root, cue, s.platform);
   std::vector<std::string> models;
   for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);
   s.perception = cue.choice_or("perception", models, s.perception);
@@ -265,9 +285,16 @@ CueingStudy read_study(const Study& study, Progress& progress) {
     if (evaluations < 1) tune.fail("evaluations", fmt::format("is {}; must be above 0", evaluations));
     s.tune->evaluations = static_cast<std::size_t>(evaluations);
     s.tune->strength = tune.positive_or("strength", "1", s.tune->strength);
-    if (tune.has("data")) s.tune_on = recorded(tune.table("data"), s.motion, s.driver, s);
+    if (tune.has("data")) {
+      DrivenMotion on = recorded(tune.table("data"), s.motion, s.driver);
+      account_for(on, s);
+      s.tune_on = std::move(on.samples);
+    }
   }
-  read_drive(root, s, progress);
+  DrivenMotion drive = read_drive(root, s.motion, s.driver, progress);
+  account_for(drive, s);
+  s.drive = std::move(drive.name);
+  s.vehicle = std::move(drive.samples);
   read_foresight(root, cue, s);
   return s;
 }
@@ -280,8 +307,9 @@ double duration_of(const std::vector<MotionSample>& drive) {
 }
 
 /// What of the drive the platform cannot render, or not yet.
-void note_drive(const CueingStudy& study, CueingResult& result) {
-  if (study.vehicle.size() < 2) return;
+std::vector<std::string> notes_on_drive(const CueingStudy& study) {
+  std::vector<std::string> notes;
+  if (study.vehicle.size() < 2) return notes;
   double longest = 0.0;
   int gaps = 0;
   for (std::size_t k = 1; k < study.vehicle.size(); ++k) {
@@ -290,8 +318,8 @@ void note_drive(const CueingStudy& study, CueingResult& result) {
     longest = std::max(longest, step);
   }
   if (gaps > 0)
-    result.notes.push_back(fmt::format("{} gap{} longer than {:g} s, up to {:.2g} s: the platform stops in them", gaps,
-                                       gaps == 1 ? "" : "s", AxisGuard::kLongestStep, longest));
+    notes.push_back(fmt::format("{} gap{} longer than {:g} s, up to {:.2g} s: the platform stops in them", gaps,
+                                gaps == 1 ? "" : "s", AxisGuard::kLongestStep, longest));
   const double duration = duration_of(study.vehicle);
   for (const StudyAlgorithm& a : study.algorithms) {
     double slowest = kInfinity;
@@ -307,11 +335,12 @@ void note_drive(const CueingStudy& study, CueingResult& result) {
     }
     constexpr double kSettled = 4.6;  // time constants to a hundredth
     if (duration * slowest < kSettled)
-      result.notes.push_back(
+      notes.push_back(
           fmt::format("{}: the drive lasts {:.3g} s, its slowest filter ({} = {:g} rad/s) settles in "
                       "{:.3g} s: the beginning weighs in the score",
                       a.name, duration, name, slowest, kSettled / slowest));
   }
+  return notes;
 }
 
 }  // namespace
@@ -327,7 +356,7 @@ AlgorithmResult scored(const CueingStudy& study, CueingRun run, WashoutDesign& d
 
 CueingResult cue(const CueingStudy& study, Progress& progress) {
   CueingResult result;
-  note_drive(study, result);
+  result.notes = notes_on_drive(study);
   const VestibularModel& model = vestibular_model(study.perception);
   for (const StudyAlgorithm& of : study.algorithms) {
     std::unique_ptr<WashoutDesign> design = of.design->clone();
@@ -353,9 +382,8 @@ CueingResult cue(const CueingStudy& study, Progress& progress) {
       progress.stage(fmt::format("turning the knobs of {}", of.name));
       a.effects = knob_effects(*design, study.platform, model, study.thresholds);
     }
-    for (std::size_t i = 0; study.response && i < kCues; ++i) {
-      const auto which = static_cast<Cue>(i);
-      if (!renders(study.platform, which)) continue;
+    for (const Cue which : kAllCues) {
+      if (!study.response || !renders(study.platform, which)) continue;
       progress.stage(fmt::format("response of {} in {}", of.name, name_of(which)));
       a.response[which] = frequency_response(*washout, study.platform, which, study.response->options, progress);
       const auto mask = study.response->mask.find(which);

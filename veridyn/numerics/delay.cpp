@@ -64,6 +64,45 @@ double interpolated(const std::vector<double>& c, double position) {
   return sum;
 }
 
+/// Where the sampled correlation c, of sign `sign`, is largest: golden-section search one lag to either side of `peak`.
+double refined_peak(const std::vector<double>& c, double peak, double sign) {
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  double low = std::max(peak - 1.0, static_cast<double>(kSincHalfWidth));
+  double high = std::min(peak + 1.0, static_cast<double>(c.size() - 1) - static_cast<double>(kSincHalfWidth));
+  for (int i = 0; i < 60; ++i) {
+    const double left = high - ratio * (high - low), right = low + ratio * (high - low);
+    if (sign * interpolated(c, left) > sign * interpolated(c, right)) {
+      high = right;
+    } else {
+      low = left;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+/// The standard deviation of a delay [s]: from the mean square bandwidth, by the curvature of the reference's own
+/// autocorrelation, and from how many independent samples differ.
+double delay_sigma(const Centred& a, const Centred& b, const DelayEstimate& found, double rate_Hz) {
+  double slope2 = 0.0;
+  for (std::size_t k = 1; k < a.value.size(); ++k) {
+    const double step = (a.value[k] - a.value[k - 1]) * a.known[k] * a.known[k - 1];
+    slope2 += step * step;
+  }
+  const double c2 = std::max(found.correlation * found.correlation, 1e-12);
+  const double bandwidth2 = slope2 * rate_Hz * rate_Hz / a.power;
+  const auto n = static_cast<std::ptrdiff_t>(a.value.size());
+  const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay_s * rate_Hz));
+  std::vector<double> mismatch;
+  for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag); k < std::min(n, n - lag); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const auto j = static_cast<std::size_t>(k + lag);
+    if (a.known[i] * b.known[j] > 0.0)
+      mismatch.push_back(b.value[j] / std::sqrt(b.power) - found.correlation * a.value[i] / std::sqrt(a.power));
+  }
+  const double samples = std::max(1.0, effective_sample_size_variance(mismatch));
+  return std::sqrt((1.0 - std::min(c2, 1.0)) / (c2 * samples * bandwidth2));
+}
+
 }  // namespace
 
 DelayEstimate estimate_delay(std::span<const double> reference, std::span<const double> delayed, double rate_Hz,
@@ -96,20 +135,7 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
       peak = lag;
   }
   const double sign = c[static_cast<std::size_t>(peak + span)] < 0.0 ? -1.0 : 1.0;
-  // Golden-section search one lag to either side of the peak.
-  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = static_cast<double>(peak + span) - 1.0, high = low + 2.0;
-  low = std::max(low, static_cast<double>(kSincHalfWidth));
-  high = std::min(high, static_cast<double>(2 * span - kSincHalfWidth));
-  for (int i = 0; i < 60; ++i) {
-    const double left = high - ratio * (high - low), right = low + ratio * (high - low);
-    if (sign * interpolated(c, left) > sign * interpolated(c, right)) {
-      high = right;
-    } else {
-      low = left;
-    }
-  }
-  const double position = 0.5 * (low + high);
+  const double position = refined_peak(c, static_cast<double>(peak + span), sign);
   result.delay_s = (position - static_cast<double>(span)) / rate_Hz;
   result.correlation = std::clamp(interpolated(c, position), -1.0, 1.0);
   result.at_zero = c[static_cast<std::size_t>(span)];
@@ -121,24 +147,7 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
       result.side_peak = std::max(result.side_peak, here / std::abs(result.correlation));
     }
   }
-  // Mean square bandwidth from the curvature of the reference's own autocorrelation.
-  double slope2 = 0.0;
-  for (std::size_t k = 1; k < a.value.size(); ++k) {
-    const double step = (a.value[k] - a.value[k - 1]) * a.known[k] * a.known[k - 1];
-    slope2 += step * step;
-  }
-  const double c2 = std::max(result.correlation * result.correlation, 1e-12);
-  const double bandwidth2 = slope2 * rate_Hz * rate_Hz / a.power;
-  const auto lag = static_cast<std::ptrdiff_t>(std::llround(result.delay_s * rate_Hz));
-  std::vector<double> mismatch;
-  for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag); k < std::min(n, n - lag); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const auto j = static_cast<std::size_t>(k + lag);
-    if (a.known[i] * b.known[j] > 0.0)
-      mismatch.push_back(b.value[j] / std::sqrt(b.power) - result.correlation * a.value[i] / std::sqrt(a.power));
-  }
-  const double samples = std::max(1.0, effective_sample_size_variance(mismatch));
-  result.sigma_s = std::sqrt((1.0 - std::min(c2, 1.0)) / (c2 * samples * bandwidth2));
+  result.sigma_s = delay_sigma(a, b, result, rate_Hz);
   if (std::abs(result.correlation) < options.min_correlation) {
     result.reason = "the signals correlate too little";
   } else if (std::abs(peak) == max_lag) {

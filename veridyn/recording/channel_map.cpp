@@ -194,8 +194,8 @@ std::vector<double> interpolated(const Channel& channel, std::span<const double>
   return result;
 }
 
-void keep_standard_channels(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
-                            MappedRecording& mapped) {
+MappedRecording with_standard_channels(MappedRecording mapped, const Recording& log,
+                                       std::span<const StandardChannel> standard, const StudyTable& map) {
   for (const StandardChannel& target : standard) {
     const Channel* channel = log.find(target.name);
     if (channel == nullptr || map.has(target.name)) continue;
@@ -213,6 +213,7 @@ void keep_standard_channels(const Recording& log, std::span<const StandardChanne
     mapped.origins.push_back({target.name, target.name, channel->rate_Hz(), ""});
     mapped.log_kind = "standard names";
   }
+  return mapped;
 }
 
 void check_channel_map(const StudyTable& map, std::span<const StandardChannel> standard) {
@@ -233,8 +234,8 @@ void check_channel_map(const StudyTable& map, std::span<const StandardChannel> s
   }
 }
 
-void apply_channel_map(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
-                       MappedRecording& mapped) {
+MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,
+                                 std::span<const StandardChannel> standard, const StudyTable& map) {
   std::vector<std::string> withdrawn;
   for (const std::string& name : map.keys()) {
     const StandardChannel& channel = standard_channel(map, name, standard);
@@ -249,12 +250,13 @@ void apply_channel_map(const Recording& log, std::span<const StandardChannel> st
     std::erase_if(mapped.origins, [&](const ChannelOrigin& origin) { return origin.channel == name; });
     mapped.origins.push_back({name, std::move(made.from), rate, "mapped in the study"});
   }
-  if (withdrawn.empty()) return;
+  if (withdrawn.empty()) return mapped;
   Recording kept = without_channels(mapped.recording);
   for (const Channel& channel : mapped.recording.channels()) {
     if (std::find(withdrawn.begin(), withdrawn.end(), channel.name) == withdrawn.end()) kept.add(channel);
   }
   mapped.recording = std::move(kept);
+  return mapped;
 }
 
 void require_channels(const MappedRecording& mapped, std::span<const std::string> needed, std::string_view purpose) {

@@ -40,8 +40,8 @@ struct MappedRecording {
 
 /// Channels of the log that bear standard names and that `map` does not name are taken as they are. One without a
 /// unit is passed over with a note. @throws InputError where a unit is of another kind.
-void keep_standard_channels(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
-                            MappedRecording& mapped);
+[[nodiscard]] MappedRecording with_standard_channels(MappedRecording mapped, const Recording& log,
+                                                     std::span<const StandardChannel> standard, const StudyTable& map);
 
 /// Applies the study's `[data.map]`. A key is a standard name, its value the name of a channel or a table:
 ///
@@ -54,8 +54,8 @@ void keep_standard_channels(const Recording& log, std::span<const StandardChanne
 /// off its stamps. `"none"` takes a channel away.
 /// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it
 /// has).
-void apply_channel_map(const Recording& log, std::span<const StandardChannel> standard, const StudyTable& map,
-                       MappedRecording& mapped);
+[[nodiscard]] MappedRecording with_channel_map(MappedRecording mapped, const Recording& log,
+                                               std::span<const StandardChannel> standard, const StudyTable& map);
 
 /// Reads the keys of `[data.map]` where there is no log to apply them to. @throws InputError for an unknown standard
 /// name and for values of the wrong kind.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -13,12 +14,12 @@
 namespace veridyn::recording {
 namespace {
 
-using enum DriveSignal;
+using enum InertialChannel;
 using Values = std::vector<double>;
 
-constexpr std::array<const char*, kDriveSignals> kSignalNames = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y",
-                                                                 "gyro_z",  "roll",    "pitch",   "yaw",    "speed",
-                                                                 "steer",   "pos_x",   "pos_y"};
+constexpr PerInertialChannel<const char*> kSignalNames = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y",
+                                                          "gyro_z",  "roll",    "pitch",   "yaw",    "speed",
+                                                          "steer",   "pos_x",   "pos_y"};
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSmoothing = 0.4;      // length of each of two moving averages [s]
 constexpr double kComparedBlock = 5.0;  // [s]
@@ -28,8 +29,6 @@ constexpr double kUnrelated = 0.3;      // below this, with much to compare, som
 constexpr double kShortest = 10.0;      // [s]
 constexpr double kFits = 0.4;           // largest logarithm of a slope over the foretold one: mph is 0.8 from m/s
 constexpr std::size_t kMostFaults = 3;  // looked for together
-
-std::size_t index_of(DriveSignal s) { return static_cast<std::size_t>(s); }
 
 Values averaged(const Values& x, double step) {
   const auto half = static_cast<std::ptrdiff_t>(0.5 * kSmoothing / step);
@@ -115,10 +114,10 @@ Moments total(const std::vector<Moments>& blocks) {
 
 /// Compares at the lag where they correlate best. @param least RMS of x that there has to be
 /// @param from_zero the line goes through zero: of signals that hardly change but are large
-DriveRelation related(std::string text, const Values& y_raw, const Values& x_raw, double step, double least,
-                      bool from_zero = false) {
+AxisRelation related(std::string text, const Values& y_raw, const Values& x_raw, double step, double least,
+                     bool from_zero = false) {
   const Values y = smooth(y_raw, step), x = smooth(x_raw, step);
-  DriveRelation r{.text = std::move(text)};
+  AxisRelation r{.text = std::move(text)};
   const auto with_lag = [&](std::ptrdiff_t lag) {
     std::vector<Moments> blocks = blocks_of(y, x, step, lag);
     for (Moments& m : blocks) {
@@ -155,17 +154,17 @@ DriveRelation related(std::string text, const Values& y_raw, const Values& x_raw
 }
 
 /// Factors by which signals are wrong.
-using Factors = PerDriveSignal<double>;
+using Factors = PerInertialChannel<double>;
 
 /// A relation with what factors of the signals do to its slope.
 struct Compared {
-  DriveRelation relation;
-  std::vector<DriveSignal> over, under;  ///< slope = factors of `over` / those of `under`
+  AxisRelation relation;
+  std::vector<InertialChannel> over, under;  ///< slope = factors of `over` / those of `under`
   bool sign_only = false;
   [[nodiscard]] double foretold(const Factors& f) const {
     double slope = 1.0;
-    for (const DriveSignal s : over) slope *= f[s];
-    for (const DriveSignal s : under) slope /= f[s];
+    for (const InertialChannel s : over) slope *= f[s];
+    for (const InertialChannel s : under) slope /= f[s];
     return slope;
   }
   [[nodiscard]] bool agrees(const Factors& f) const {
@@ -177,7 +176,7 @@ struct Compared {
 /// Something that may be wrong.
 struct Suspect {
   std::string text;
-  std::vector<DriveSignal> signals;
+  std::vector<InertialChannel> signals;
   double factor = -1.0;
   bool frame = false;
 };
@@ -188,10 +187,10 @@ std::vector<Suspect> suspects() {
                  {kAccelY, kAccelZ, kGyroY, kGyroZ, kPitch, kYaw, kSteer},
                  -1.0,
                  true});
-  for (const DriveSignal s : {kAccelX, kAccelY, kAccelZ, kGyroX, kGyroY, kGyroZ, kRoll, kPitch, kYaw, kSteer})
-    all.push_back({fmt::format("{} has the wrong sign", kSignalNames[index_of(s)]), {s}});
-  const std::vector<DriveSignal> accels = {kAccelX, kAccelY, kAccelZ}, gyros = {kGyroX, kGyroY, kGyroZ},
-                                 angles = {kRoll, kPitch, kYaw};
+  for (const InertialChannel s : {kAccelX, kAccelY, kAccelZ, kGyroX, kGyroY, kGyroZ, kRoll, kPitch, kYaw, kSteer})
+    all.push_back({fmt::format("{} has the wrong sign", kSignalNames[s]), {s}});
+  const std::vector<InertialChannel> accels = {kAccelX, kAccelY, kAccelZ}, gyros = {kGyroX, kGyroY, kGyroZ},
+                                     angles = {kRoll, kPitch, kYaw};
   all.push_back({"accelerations point where one is pushed: the specific force is the opposite", accels, -1.0});
   all.push_back({"accelerations are in g, not m/s^2", accels, 1.0 / kGravity});
   all.push_back({"accelerations are in m/s^2, not g", accels, kGravity});
@@ -205,33 +204,35 @@ std::vector<Suspect> suspects() {
   return all;
 }
 
-std::string source_of(DriveSignal s, std::span<const ChannelOrigin> origins) {
+std::string source_of(InertialChannel s, std::span<const ChannelOrigin> origins) {
   for (const ChannelOrigin& o : origins) {
-    if (o.channel == kSignalNames[index_of(s)] || (s == kGyroZ && o.channel == "yaw_rate") ||
+    if (o.channel == kSignalNames[s] || (s == kGyroZ && o.channel == "yaw_rate") ||
         (s == kGyroX && o.channel == "roll_rate"))
       return o.source;
   }
-  return kSignalNames[index_of(s)];
+  return kSignalNames[s];
 }
 
 /// Standard name that the drive has for it.
-std::string name_of(DriveSignal s, std::span<const ChannelOrigin> origins) {
+std::string name_of(InertialChannel s, std::span<const ChannelOrigin> origins) {
   for (const ChannelOrigin& o : origins) {
     if (s == kGyroZ && o.channel == "yaw_rate") return "yaw_rate";
     if (s == kGyroX && o.channel == "roll_rate") return "roll_rate";
     if (s == kSteer && o.channel == "steering_wheel") return "steering_wheel";
   }
-  return kSignalNames[index_of(s)];
+  return kSignalNames[s];
 }
 
-std::string line(DriveSignal s, const std::string& source, double scale, std::span<const ChannelOrigin> origins) {
+std::string line(InertialChannel s, const std::string& source, double scale, std::span<const ChannelOrigin> origins) {
   return fmt::format("{} = {{ channel = \"{}\", scale = {:.6g} }}", name_of(s, origins), source, scale);
 }
 
+constexpr std::array kAccelAxes = {kAccelX, kAccelY, kAccelZ};
+
 /// How an accelerometer's axis is led where it belongs.
 struct Exchange {
-  std::array<std::size_t, 3> from = {0, 1, 2};
-  [[nodiscard]] bool any() const { return from != std::array<std::size_t, 3>{0, 1, 2}; }
+  std::array<InertialChannel, 3> from = kAccelAxes;
+  [[nodiscard]] bool any() const { return from != kAccelAxes; }
 };
 
 /// The accelerometer's axes by what they correlate with, where their own hardly do and others clearly do.
@@ -239,30 +240,29 @@ Exchange exchanged(const DriveMotion& m, const Values& speed_change, const Value
   Exchange e;
   const auto& s = m.signals;
   if (s[kAccelX].empty() || s[kAccelY].empty()) return e;
-  const auto strength = [&](std::size_t axis, const Values& x, double least) {
-    const Values& y = s[static_cast<DriveSignal>(axis)];
+  const auto strength = [&](InertialChannel axis, const Values& x, double least) {
+    const Values& y = s[axis];
     if (y.empty() || x.empty()) return 0.0;
-    const DriveRelation r = related("", y, x, m.step, least);
+    const AxisRelation r = related("", y, x, m.step, least);
     return r.seconds >= kShortest ? std::abs(r.correlation) : 0.0;
   };
-  constexpr double kOwn = 0.4, kOther = 0.7;
-  const auto belongs = [&](std::size_t axis, const Values& x, double least) {
-    std::size_t best = axis;
-    if (strength(axis, x, least) > kOwn) return best;
-    for (std::size_t other = 0; other < 3; ++other) {
+  constexpr double kSure = 0.4, kOther = 0.7;
+  const auto belongs = [&](InertialChannel axis, const Values& x, double least) {
+    InertialChannel best = axis;
+    if (strength(axis, x, least) > kSure) return best;
+    for (const InertialChannel other : kAccelAxes) {
       if (other != axis && strength(other, x, least) > kOther) best = other;
     }
     return best;
   };
-  std::size_t x = belongs(0, speed_change, 0.15), y = belongs(1, turning, 0.2);
-  // Of two that want the same axis the one that is sure of its own keeps it.
-  if (x == 1 && y == 1 && strength(1, turning, 0.2) <= kOwn) y = 0;
-  if (x == 0 && y == 0 && strength(0, speed_change, 0.15) <= kOwn) x = 1;
+  InertialChannel x = belongs(kAccelX, speed_change, 0.15), y = belongs(kAccelY, turning, 0.2);
+  // Of two that want the same axis the one that is sure of it keeps it.
+  if (x == kAccelY && y == kAccelY && strength(kAccelY, turning, 0.2) <= kSure) y = kAccelX;
+  if (x == kAccelX && y == kAccelX && strength(kAccelX, speed_change, 0.15) <= kSure) x = kAccelY;
   if (x == y) return e;
-  e.from[0] = x;
-  e.from[1] = y;
-  // The third takes the axis that is left.
-  e.from[2] = 3 - e.from[0] - e.from[1];
+  const auto left =
+      std::find_if(kAccelAxes.begin(), kAccelAxes.end(), [&](InertialChannel axis) { return axis != x && axis != y; });
+  e.from = {x, y, *left};
   return e;
 }
 
@@ -277,10 +277,11 @@ double median_of(Values values) {
 std::vector<Compared> compare(const DriveMotion& m) {
   const auto& s = m.signals;
   std::vector<Compared> all;
-  const auto there = [&](std::initializer_list<DriveSignal> of) {
-    return std::all_of(of.begin(), of.end(), [&](DriveSignal x) { return !s[x].empty(); });
+  const auto there = [&](std::initializer_list<InertialChannel> of) {
+    return std::all_of(of.begin(), of.end(), [&](InertialChannel x) { return !s[x].empty(); });
   };
-  const auto add = [&](const char* text, DriveSignal y, const Values& x, double least, std::vector<DriveSignal> under) {
+  const auto add = [&](const char* text, InertialChannel y, const Values& x, double least,
+                       std::vector<InertialChannel> under) {
     all.push_back({related(text, s[y], x, m.step, least), {y}, std::move(under)});
   };
   if (there({kAccelX, kSpeed}))
@@ -324,7 +325,7 @@ void explain(const std::vector<Compared>& compared, const std::vector<Suspect>& 
   }
   for (std::size_t i = from; i < all.size(); ++i) {
     Factors changed = factors;
-    for (const DriveSignal s : all[i].signals) changed[s] *= all[i].factor;
+    for (const InertialChannel s : all[i].signals) changed[s] *= all[i].factor;
     chosen.push_back(i);
     explain(compared, all, count, i + 1, chosen, changed, vertical, found);
     chosen.pop_back();
@@ -333,10 +334,10 @@ void explain(const std::vector<Compared>& compared, const std::vector<Suspect>& 
 
 /// Whether the signals of a suspect are there and something was said of one of them.
 bool concerns(const Suspect& suspect, const std::vector<Compared>& compared, double vertical) {
-  return std::any_of(suspect.signals.begin(), suspect.signals.end(), [&](DriveSignal s) {
+  return std::any_of(suspect.signals.begin(), suspect.signals.end(), [&](InertialChannel s) {
     if (s == kAccelZ && std::isfinite(vertical)) return true;
     return std::any_of(compared.begin(), compared.end(), [&](const Compared& c) {
-      const auto in = [&](const std::vector<DriveSignal>& of) {
+      const auto in = [&](const std::vector<InertialChannel>& of) {
         return std::find(of.begin(), of.end(), s) != of.end();
       };
       return c.relation.judged && (in(c.over) || in(c.under));
@@ -348,7 +349,7 @@ DriveFault described(const Suspect& suspect, const DriveMotion& m, const std::ve
                      const Exchange& exchange, std::span<const ChannelOrigin> origins) {
   DriveFault f{.text = suspect.text, .correlation = 1.0, .lines = {}};
   for (const Compared& c : compared) {
-    const auto of = [&](DriveSignal s) {
+    const auto of = [&](InertialChannel s) {
       return std::find(c.over.begin(), c.over.end(), s) != c.over.end() ||
              std::find(c.under.begin(), c.under.end(), s) != c.under.end();
     };
@@ -359,9 +360,9 @@ DriveFault described(const Suspect& suspect, const DriveMotion& m, const std::ve
     f.lines.emplace_back("frame = \"frd\"");
     return f;
   }
-  for (const DriveSignal s : suspect.signals) {
+  for (const InertialChannel s : suspect.signals) {
     if (m.signals[s].empty()) continue;
-    const DriveSignal from = s <= kAccelZ ? static_cast<DriveSignal>(exchange.from[index_of(s)]) : s;
+    const InertialChannel from = s <= kAccelZ ? exchange.from[static_cast<std::size_t>(s)] : s;
     f.lines.push_back(line(s, source_of(from, origins), 1.0 / suspect.factor, origins));
   }
   return f;
@@ -391,21 +392,23 @@ std::optional<DriveFault> steering_fault(const DriveMotion& m, const Compared& c
 }
 
 /// What was compared and does not fit, or could not be.
-void note(const std::vector<Compared>& compared, bool explained, DriveAxisCheck& check) {
+std::vector<std::string> notes_on(const std::vector<Compared>& compared, bool explained) {
+  std::vector<std::string> notes;
   for (const Compared& c : compared) {
-    const DriveRelation& r = c.relation;
+    const AxisRelation& r = c.relation;
     if (r.seconds < kShortest) {
-      check.notes.push_back(fmt::format("{}: too little of it to compare", r.text));
+      notes.push_back(fmt::format("{}: too little of it to compare", r.text));
     } else if (!r.judged && std::abs(r.correlation) < kUnrelated) {
-      check.notes.push_back(fmt::format("{}: they have nothing to do with each other (correlation {:.2f} in {:.0f} s)",
-                                        r.text, r.correlation, r.seconds));
+      notes.push_back(fmt::format("{}: they have nothing to do with each other (correlation {:.2f} in {:.0f} s)",
+                                  r.text, r.correlation, r.seconds));
     } else if (!r.judged) {
-      check.notes.push_back(fmt::format("{}: correlation {:.2f}, too weak to say anything", r.text, r.correlation));
+      notes.push_back(fmt::format("{}: correlation {:.2f}, too weak to say anything", r.text, r.correlation));
     } else if (!explained && !r.fits) {
-      check.notes.push_back(fmt::format("{}: does not fit, slope {:.3g} ({:.3g} to {:.3g}), correlation {:.2f}", r.text,
-                                        r.slope, r.low, r.high, r.correlation));
+      notes.push_back(fmt::format("{}: does not fit, slope {:.3g} ({:.3g} to {:.3g}), correlation {:.2f}", r.text,
+                                  r.slope, r.low, r.high, r.correlation));
     }
   }
+  return notes;
 }
 
 }  // namespace
@@ -416,7 +419,7 @@ DriveMotion drive_motion(const Recording& recording) {
   const auto count = static_cast<std::size_t>(std::max(0.0, span.duration() / m.step)) + 1;
   std::vector<double> grid(count);
   for (std::size_t k = 0; k < count; ++k) grid[k] = span.begin + m.step * static_cast<double>(k);
-  const auto take = [&](DriveSignal to, const char* name) {
+  const auto take = [&](InertialChannel to, const char* name) {
     const Channel* channel = recording.find(name);
     if (!m.signals[to].empty() || channel == nullptr || channel->size() < 2) return;
     Channel whole = *channel;
@@ -428,7 +431,8 @@ DriveMotion drive_motion(const Recording& recording) {
     }
     m.signals[to] = interpolated(whole, grid);
   };
-  for (std::size_t i = 0; i < kDriveSignals; ++i) take(static_cast<DriveSignal>(i), kSignalNames[i]);
+  for (const InertialChannel channel : enumerators<InertialChannel, kInertialChannels>())
+    take(channel, kSignalNames[channel]);
   take(kGyroZ, "yaw_rate");
   take(kGyroX, "roll_rate");
   m.hand_wheel = m.signals[kSteer].empty();
@@ -443,13 +447,12 @@ DriveAxisCheck check_drive_axes(const DriveMotion& given, std::span<const Channe
   const Values speed_change = s[kSpeed].empty() ? Values() : change(s[kSpeed], m.step);
   const Values turning = s[kSpeed].empty() || s[kGyroZ].empty() ? Values() : product(s[kSpeed], s[kGyroZ]);
   const Exchange exchange = exchanged(given, speed_change, turning);
-  for (std::size_t i = 0; i < 3; ++i)
-    m.signals[static_cast<DriveSignal>(i)] = s[static_cast<DriveSignal>(exchange.from[i])];
+  for (std::size_t i = 0; i < 3; ++i) m.signals[kAccelAxes[i]] = s[exchange.from[i]];
 
   std::vector<Compared> compared = compare(m);
   const double vertical = median_of(m.signals[kAccelZ]);
   Factors right;
-  for (std::size_t i = 0; i < kDriveSignals; ++i) right[i] = 1.0;
+  right.fill(1.0);
   for (Compared& c : compared) c.relation.fits = c.relation.judged && c.agrees(right);
 
   std::vector<Suspect> all = suspects();
@@ -465,7 +468,7 @@ DriveAxisCheck check_drive_axes(const DriveMotion& given, std::span<const Channe
     if (i == 0) {
       check.faults = std::move(faults);
       for (const std::size_t k : found[i]) {
-        for (const DriveSignal x : all[k].signals) wrong[x] *= all[k].factor;
+        for (const InertialChannel x : all[k].signals) wrong[x] *= all[k].factor;
       }
     } else {
       check.or_else.push_back(std::move(faults));
@@ -477,7 +480,7 @@ DriveAxisCheck check_drive_axes(const DriveMotion& given, std::span<const Channe
   if (exchange.any()) {
     DriveFault f{.text = "axes of the accelerometer are exchanged", .correlation = 1.0, .lines = {}};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto to = static_cast<DriveSignal>(i), from = static_cast<DriveSignal>(exchange.from[i]);
+      const InertialChannel to = kAccelAxes[i], from = exchange.from[i];
       if (to != from && !s[from].empty()) f.lines.push_back(line(to, source_of(from, origins), 1.0, origins));
     }
     for (const Compared& c : compared) {
@@ -488,7 +491,7 @@ DriveAxisCheck check_drive_axes(const DriveMotion& given, std::span<const Channe
   }
   if (std::isfinite(vertical) && std::abs(vertical / kGravity - 2.0) < 0.3)
     check.notes.push_back(fmt::format("accel_z is {:.2f} m/s^2 in the median: gravity is counted twice", vertical));
-  note(compared, !found.empty(), check);
+  std::ranges::move(notes_on(compared, !found.empty()), std::back_inserter(check.notes));
   for (Compared& c : compared) check.relations.push_back(std::move(c.relation));
   return check;
 }

@@ -10,7 +10,7 @@
 namespace veridyn::recording {
 
 /// Signals of a drive that say something of each other, axes forward, left, up.
-enum class DriveSignal {
+enum class InertialChannel {
   kAccelX,
   kAccelY,
   kAccelZ,
@@ -26,20 +26,20 @@ enum class DriveSignal {
   kPosY
 };
 /// How many there are.
-inline constexpr std::size_t kDriveSignals = 13;
+inline constexpr std::size_t kInertialChannels = 13;
 /// A value for each of them.
 template <class T>
-using PerDriveSignal = EnumArray<DriveSignal, T, kDriveSignals>;
+using PerInertialChannel = EnumArray<InertialChannel, T, kInertialChannels>;
 
 /// A drive on an even grid; a signal that is missing is empty, a value that is missing NaN. Angles are not wrapped.
 struct DriveMotion {
   double step = 0.02;  ///< [s]
-  PerDriveSignal<std::vector<double>> signals;
+  PerInertialChannel<std::vector<double>> signals;
   bool hand_wheel = false;  ///< kSteer is the hand wheel's angle
 };
 
 /// One signal against what others say that it should be, low-passed by 0.8 s.
-struct DriveRelation {
+struct AxisRelation {
   std::string text;                           ///< "accel_x against the change of speed"
   double slope = 0.0, low = 0.0, high = 0.0;  ///< 1 where all is well; 95 % by leaving out blocks of 5 s
   double correlation = 0.0;
@@ -57,7 +57,7 @@ struct DriveFault {
 
 /// What the check says.
 struct DriveAxisCheck {
-  std::vector<DriveRelation> relations;
+  std::vector<AxisRelation> relations;
   /// The fewest faults that explain all relations. Empty: none is needed.
   std::vector<DriveFault> faults;
   /// Where several sets of as few faults explain them as well: those of the others.

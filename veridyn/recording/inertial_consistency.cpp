@@ -260,12 +260,14 @@ Equations::Delays delays_over(const InertialSeries& s, const Window& window) {
   return delays;
 }
 
-void compare_velocity(const Recording& recording, const InertialSeries& s, std::span<const TimeSpan> spans,
-                      InertialConsistency& out) {
+/// What only the velocity says: all but `gyro`.
+InertialConsistency compare_velocity(const Recording& recording, const InertialSeries& s,
+                                     std::span<const TimeSpan> spans) {
+  InertialConsistency out;
   const Channel& north = recording.at("vel_north");
   const Channel& east = recording.at("vel_east");
   const Channel& down = recording.at("vel_down");
-  if (east.size() != north.size() || down.size() != north.size()) return;
+  if (east.size() != north.size() || down.size() != north.size()) return out;
   const Vector3 gravity(0.0, 0.0, kGravity);
   Equations by_force, by_velocity;
   for (const Window& window : windows(north.times(), spans, kVelocityWindow_s, kVelocityHop_s)) {
@@ -283,6 +285,7 @@ void compare_velocity(const Recording& recording, const InertialSeries& s, std::
     out.accelerometer_delay_sigma = delay->second;
   }
   out.velocity = by_velocity.solve();
+  return out;
 }
 
 std::optional<SensorMatrix> compare_rates(const Recording& recording, const InertialSeries& s,
@@ -332,9 +335,9 @@ InertialConsistency inertial_consistency(const Recording& recording, std::span<c
   InertialConsistency out;
   if (!has_all(recording, {"gyro_x", "gyro_y", "gyro_z", "roll", "pitch", "yaw"})) return out;
   const InertialSeries series = on_one_grid(recording);
-  out.gyro = compare_rates(recording, series, spans);
   if (has_all(recording, {"accel_x", "accel_y", "accel_z", "vel_north", "vel_east", "vel_down"}))
-    compare_velocity(recording, series, spans, out);
+    out = compare_velocity(recording, series, spans);
+  out.gyro = compare_rates(recording, series, spans);
   return out;
 }
 

@@ -53,15 +53,21 @@ std::optional<std::vector<double>> held_angle(const Recording& recording, const 
   return held(unwrapped, {name}, at);
 }
 
-/// Decides what the accelerations hold. Nothing: accel_z is not recorded.
-bool holds_gravity(const Recording& recording, const std::vector<std::array<double, 3>>& a, GravityIn given, bool has_z,
-                   std::vector<std::string>& notes) {
+/// What accelerations hold.
+struct GravityDecision {
+  bool in = true;
+  std::string note = {};  ///< what was taken for granted
+};
+
+/// Decides what the accelerations hold.
+GravityDecision holds_gravity(const Recording& recording, const std::vector<std::array<double, 3>>& a, GravityIn given,
+                              bool has_z) {
   const auto refuse = [&](const std::string& what) { throw InputError(recording.source, what); };
   if (!has_z) {
-    notes.emplace_back(
-        "accel_z is not recorded: 1 g is taken for it; accel_x and accel_y are taken for an "
-        "accelerometer's, gravity in");
-    return true;
+    return {.in = true,
+            .note =
+                "accel_z is not recorded: 1 g is taken for it; accel_x and accel_y are taken for an "
+                "accelerometer's, gravity in"};
   }
   std::vector<double> size, up;
   for (const auto& v : a) {
@@ -70,7 +76,7 @@ bool holds_gravity(const Recording& recording, const std::vector<std::array<doub
   }
   const double middle = numerics::median(size), along = numerics::median(up);
   const double up_sign = recording.frame == Frame::kFrd ? -1.0 : 1.0;
-  if (given == GravityIn::kNo) return false;
+  if (given == GravityIn::kNo) return {.in = false};
   if (middle > 1.6 * kGravity && middle < 2.4 * kGravity && std::abs(along) > 1.5 * kGravity)
     refuse(fmt::format("accel_x, accel_y, accel_z are {:.2f} g long in the median: gravity seems to be in them twice",
                        middle / kGravity));
@@ -80,20 +86,19 @@ bool holds_gravity(const Recording& recording, const std::vector<std::array<doub
         fmt::format("accel_z is {:+.2f} m/s^2 in the median; an accelerometer that rests shows {:+.2f} in frame {}: "
                     "set `frame`, or turn its sign in [data.map]",
                     along, up_sign * kGravity, recording.frame == Frame::kFrd ? "frd" : "flu"));
-  if (about_one_g || given == GravityIn::kYes) return true;
+  if (about_one_g || given == GravityIn::kYes) return {.in = true};
   if (std::abs(along) > 0.9 && std::abs(along) < 1.1)
     refuse(
         fmt::format("accel_z is {:+.2f} m/s^2 in the median: it seems to be in g; give its unit in [data.map]", along));
   if (std::abs(along) < 0.3 * kGravity) {
-    notes.push_back(
-        fmt::format("accel_z is {:+.2f} m/s^2 in the median: accelerations are taken to be without gravity, "
-                    "and it is put in",
-                    along));
-    return false;
+    return {.in = false,
+            .note = fmt::format("accel_z is {:+.2f} m/s^2 in the median: accelerations are taken to be without "
+                                "gravity, and it is put in",
+                                along)};
   }
   refuse(fmt::format("accel_z is {:+.2f} m/s^2 in the median, neither 1 g nor none; say `gravity = \"in\"` or \"out\"",
                      along));
-  return true;
+  return {};
 }
 
 }  // namespace
@@ -139,7 +144,8 @@ RecordedMotion motion_samples(const Recording& recording, const MotionOptions& o
   const Eigen::Vector3d at_rest = force_at_rest(recording.frame);
   std::vector<std::array<double, 3>> a(at.size());
   for (std::size_t k = 0; k < at.size(); ++k) a[k] = {(*x)[k], (*y)[k], z ? (*z)[k] : at_rest.z()};
-  const bool gravity = holds_gravity(recording, a, options.gravity, z.has_value(), motion.notes);
+  const auto [gravity, gravity_note] = holds_gravity(recording, a, options.gravity, z.has_value());
+  if (!gravity_note.empty()) motion.notes.push_back(gravity_note);
   const bool attitude = angles[0].has_value() || angles[1].has_value();
   for (std::size_t k = 0; k < at.size(); ++k) {
     MotionSample s;

@@ -137,9 +137,11 @@ std::vector<TimeSpan> blocks(const TimeSpan& span, double block_s) {
   return result;
 }
 
-void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours neighbours, double least_s) {
+AssignedBlocks assign_blocks(std::span<const TimeSpan> excited, const SegmentOptions& options, Neighbours neighbours,
+                             double least_s) {
+  AssignedBlocks out;
   double total = 0.0, held = 0.0;
-  for (const TimeSpan& span : segments.excited) {
+  for (const TimeSpan& span : excited) {
     bool before_held = false;
     bool first = true;
     for (const TimeSpan& block : blocks(span, options.block_s)) {
@@ -147,7 +149,7 @@ void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours
       // Without a block of identification there is nothing to hold against the hold-out.
       const bool hold = options.holdout > 0.0 && total > 0.0 &&
                         held + 0.5 * length <= options.holdout * (total + length) - kRounding_s;
-      std::vector<TimeSpan>& list = hold ? segments.holdout : segments.identification;
+      std::vector<TimeSpan>& list = hold ? out.holdout : out.identification;
       if (neighbours == Neighbours::kJoined && !first && hold == before_held) {
         list.back().end = block.end;
       } else {
@@ -159,11 +161,12 @@ void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours
       first = false;
     }
   }
-  const std::vector<TimeSpan> identification = segments.identification;
-  guard(segments.identification, segments.holdout, options.guard_s);
-  guard(segments.holdout, identification, options.guard_s);
-  drop_shorter(segments.identification, least_s);
-  drop_shorter(segments.holdout, least_s);
+  const std::vector<TimeSpan> identification = out.identification;
+  guard(out.identification, out.holdout, options.guard_s);
+  guard(out.holdout, identification, options.guard_s);
+  drop_shorter(out.identification, least_s);
+  drop_shorter(out.holdout, least_s);
+  return out;
 }
 
 }  // namespace veridyn::recording

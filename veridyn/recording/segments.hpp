@@ -80,10 +80,16 @@ enum class Neighbours {
   kSeparate  ///< each gets an initial state, which keeps simulations short
 };
 
+/// Blocks by their use.
+struct AssignedBlocks {
+  std::vector<TimeSpan> identification, holdout;
+};
+
 /// Assigns every excited stretch in blocks to identification and hold-out, in turn, so that both see the recording's
 /// beginning and end and every manoeuvre that is repeated. The share of the hold-out, counted over the whole recording,
 /// is kept as closely as whole blocks allow; the first block is for identification. Where blocks of different use meet,
 /// both are shortened by the guard; what is left shorter than `least_s` is dropped.
-void assign_blocks(Segments& segments, const SegmentOptions& options, Neighbours neighbours, double least_s);
+[[nodiscard]] AssignedBlocks assign_blocks(std::span<const TimeSpan> excited, const SegmentOptions& options,
+                                           Neighbours neighbours, double least_s);
 
 }  // namespace veridyn::recording

@@ -11,7 +11,7 @@
 namespace veridyn::recording {
 
 /// How a sensor of three axes reads what it measures, as another source knows it: reading = gain * truth + bias.
-/// Diagonal of the gain: scale factors; beside it: cross-sensitivity, which for small angles is misalignment.
+/// Diagonal of the gain: scale factors; off it: cross-sensitivity, which for small angles is misalignment.
 struct SensorMatrix {
   Eigen::Matrix3d gain = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d gain_sigma = Eigen::Matrix3d::Zero();

@@ -19,12 +19,12 @@ namespace {
 
 using namespace veridyn::vehicle;
 
-std::string name_of(TrackedAxle axle) { return std::string(kTrackedAxleNames[static_cast<std::size_t>(axle)]); }
+std::string name_of(TrackedAxle axle) { return std::string(kTrackedAxleNames[axle]); }
 
 TimeSeries axle_figure(const DriveTracker& tracker, TrackedAxle axle, std::optional<double> truth) {
   const DriveTrackHistory& h = tracker.history(axle);
   const std::string name = name_of(axle);
-  const ReadableNumber unit = readable(1.0, std::string(kTrackedAxleUnits[static_cast<std::size_t>(axle)]));
+  const ReadableNumber unit = readable(1.0, std::string(kTrackedAxleUnits[axle]));
   TimeSeries figure{.title = fmt::format("{} over time", name),
                     .caption = "Bands are 95 %. Grey: not excited, the last value is held.",
                     .samples = h.time};
@@ -83,8 +83,7 @@ Document drive_tracking_report(const VehicleStudy& study, const TrackedDrive& dr
   document.sections.push_back(std::move(found));
 
   Section section{.title = "Over time"};
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const auto axle = static_cast<TrackedAxle>(i);
+  for (const TrackedAxle axle : kAllTrackedAxles) {
     if (tracker->history(axle).time.empty()) continue;
     const auto truth = study.truth.find(name_of(axle));
     section.blocks.emplace_back(

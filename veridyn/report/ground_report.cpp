@@ -56,21 +56,22 @@ Table inertia_table(const SwingTestResult& result) {
 }
 
 Table run_table(const SwingTestResult& result) {
-  Table table{.title = "Runs",
-              .caption =
-                  "Fit of e^(-s t) (a cos w t + b sin w t) + c to the free swing. Sigma of the frequency from the "
-                  "residual, its colour allowed for; what counts is the scatter of the runs where it is larger.",
-              .columns = {{.name = "Run"},
-                          {.name = "Axis"},
-                          {.name = "What hung"},
-                          {.name = "Undamped frequency", .unit = "rad/s"},
-                          {.name = "Sigma", .unit = "rad/s", .digits = 2},
-                          {.name = "Decay", .unit = "1/s", .digits = 3},
-                          {.name = "Amplitude", .unit = "deg", .digits = 3},
-                          {.name = "Residual", .unit = "deg", .digits = 2},
-                          {.name = "Cycles", .digits = 3},
-                          {.name = "Main axis", .unit = "%", .digits = 3},
-                          {.name = "Result"}}};
+  Table table{
+      .title = "Runs",
+      .caption =
+          "Fit of e^(-s t) (a cos w t + b sin w t) + c to the free swing. Sigma of the frequency from the "
+          "residual, its autocorrelation allowed for; what counts is the scatter of the runs where it is larger.",
+      .columns = {{.name = "Run"},
+                  {.name = "Axis"},
+                  {.name = "What hung"},
+                  {.name = "Undamped frequency", .unit = "rad/s"},
+                  {.name = "Sigma", .unit = "rad/s", .digits = 2},
+                  {.name = "Decay", .unit = "1/s", .digits = 3},
+                  {.name = "Amplitude", .unit = "deg", .digits = 3},
+                  {.name = "Residual", .unit = "deg", .digits = 2},
+                  {.name = "Cycles", .digits = 3},
+                  {.name = "Main axis", .unit = "%", .digits = 3},
+                  {.name = "Result"}}};
   for (const AxisInertia& i : result.axes) {
     for (const SwingRun& run : i.runs) {
       const auto& f = run.fit;

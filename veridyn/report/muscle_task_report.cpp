@@ -38,9 +38,10 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
     list.push_back(
         {"EMG", fmt::format("{} signals drive the muscles along the recorded angles", study.emg->signals.size())});
     for (std::size_t j = 0; j < a.outputs.size() && j < at(a.moment_noise.size()); ++j)
-      list.push_back({fmt::format("Noise of {}", a.outputs[j].name),
-                      fmt::format("{:.3g} {}{}", a.moment_noise(signed_index(j)), a.outputs[j].unit,
-                                  study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found beside the EMG's error)")});
+      list.push_back(
+          {fmt::format("Noise of {}", a.outputs[j].name),
+           fmt::format("{:.3g} {}{}", a.moment_noise(signed_index(j)), a.outputs[j].unit,
+                       study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found in addition to the EMG's error)")});
     if (!a.emg_share.empty())
       list.push_back(
           {"Error of the EMG", fmt::format("{:.0f} % of the residual's variance",

@@ -8,7 +8,7 @@
 namespace veridyn::report {
 
 /// The report of `veridyn scale`: the scaled vehicle, the table of groups with mismatches and what suffers, gravity
-/// apart, and the drives of prototype, twin and given model laid over each other.
+/// separately, and the drives of prototype, twin and given model laid over each other.
 [[nodiscard]] Document similarity_report(const vehicle::ScaleStudy& study, const vehicle::ScaleAnalysis& analysis,
                                          const std::string& program);
 

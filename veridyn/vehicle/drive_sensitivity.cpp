@@ -124,7 +124,7 @@ double value_of(std::span<const Metric> metrics, const std::string& name) {
   return found == metrics.end() ? kNaN : found->value;
 }
 
-/// Drives a study's vehicle with other numbers, on several threads at once.
+/// View of a study whose vehicle it drives with other numbers, on several threads at once.
 class ChangedDrives {
  public:
   explicit ChangedDrives(const DriveSensitivityStudy& study) : study_(study) {

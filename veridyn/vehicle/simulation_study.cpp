@@ -6,16 +6,18 @@
 #include <variant>
 
 #include "veridyn/core/at_place.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/road/road_study.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-const std::vector<std::string> kModels{"linear bicycle", "bicycle", "four-wheel"};
+constexpr EnumArray<VehicleModelKind, const char*, 3> kModels{"linear bicycle", "bicycle", "four-wheel"};
 
 VehicleModelKind read_model(const StudyTable& drive) {
-  const std::string word = drive.choice_or("model", kModels, "four-wheel");
+  const std::string word =
+      drive.choice_or("model", std::vector<std::string>(kModels.begin(), kModels.end()), "four-wheel");
   for (const auto kind : {VehicleModelKind::kLinearBicycle, VehicleModelKind::kBicycle}) {
     if (to_string(kind) == word) return kind;
   }
@@ -67,7 +69,7 @@ std::vector<GripChange> read_grip(const StudyTable& drive) {
 
 }  // namespace
 
-std::string_view to_string(VehicleModelKind kind) { return kModels[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(VehicleModelKind kind) { return kModels[kind]; }
 
 SimulationStudy read_simulation_study(const StudyTable& root, const Progress& progress) {
   SimulationStudy study;

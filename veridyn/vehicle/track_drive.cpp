@@ -113,11 +113,10 @@ Recording history_recording(const DriveTracker& tracker) {
   Recording out;
   out.source = "track.csv";
   out.frame = Frame::kFlu;
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const DriveTrackHistory& h = tracker.history(static_cast<TrackedAxle>(i));
+  for (const TrackedAxle axle : kAllTrackedAxles) {
+    const DriveTrackHistory& h = tracker.history(axle);
     if (h.time.empty()) continue;
-    const std::string name(kTrackedAxleNames[i]);
-    const std::string unit(i < 2 ? "N/rad" : "rad s^2/m");
+    const std::string name(kTrackedAxleNames[axle]), unit(kTrackedAxleUnits[axle]);
     const TimeBase time = make_time_base(h.time);
     const auto add = [&](std::string channel, const std::string& of, std::vector<double> values) {
       for (double& v : values) {

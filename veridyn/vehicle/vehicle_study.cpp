@@ -84,8 +84,7 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature,
                                DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale, DriveUnknown::kSteerDelay,
                                DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
-    const auto i = static_cast<std::size_t>(u);
-    take(kDriveUnknownNames[i], given.options.start[i]);
+    take(kDriveUnknownNames[u], given.options.start[u]);
   }
   if (estimate.find("mu") != nullptr) given.options.tyre = DriveTyre::kMagicFormula;
   return given;

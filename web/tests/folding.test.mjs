@@ -21,6 +21,17 @@ describe('a section', { skip }, () => {
     await close();
   });
 
+  test('keeps a long report short: what is folded takes a line', async () => {
+    const long = [sections[0], ...Array.from({ length: 12 }, (_, k) => ({ id: `s${k}`, title: `Section ${k}`, folded: true, blocks: [figure, figure, figure] }))];
+    const { page, close } = await tester.open_sections(long);
+    const height = () => page.evaluate(() => document.documentElement.scrollHeight);
+    assert.ok((await height()) < 2500, `36 figures in folded sections make a page of ${await height()} px`);
+    await page.locator('#expand-all').click();
+    await page.waitForTimeout(100);
+    assert.ok((await height()) > 5000, 'unfolded they are all there');
+    await close();
+  });
+
   test('opens and folds by the keyboard, its state told to whoever cannot see it', async () => {
     const { page, close } = await tester.open_sections(sections);
     await page.locator('#details summary').focus();

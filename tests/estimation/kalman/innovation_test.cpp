@@ -77,7 +77,7 @@ TEST(InnovationMonitor, TakesASensorBackThatWasRefusedForLong) {
   EXPECT_NEAR(20.0 / std::sqrt(1.0 + verdict.extra_variance), 5.0, 1e-12);
   EXPECT_TRUE(monitor.judge(1.1, 15.0, 1.0).accept) << "stays back while it walks towards the filter";
   EXPECT_TRUE(monitor.judge(1.2, 1.0, 1.0).accept);
-  EXPECT_FALSE(monitor.judge(1.3, 20.0, 1.0).accept) << "the rule starts anew after a sound sample";
+  EXPECT_FALSE(monitor.judge(1.3, 20.0, 1.0).accept) << "the rule starts again after a sound sample";
   EXPECT_EQ(monitor.summary().recovered, 2U);
 }
 

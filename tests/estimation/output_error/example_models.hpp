@@ -117,8 +117,8 @@ inline std::vector<RowMatrix> truth_of(const FirstOrder& model) {
 
 inline void add_noise(std::vector<RowMatrix>& z, std::mt19937_64& generator, double sd0, double sd1, double rho = 0.0) {
   for (RowMatrix& m : z) {
-    m.col(0) += sd0 * coloured_noise(generator, m.rows(), rho);
-    m.col(1) += sd1 * coloured_noise(generator, m.rows(), rho);
+    m.col(0) += sd0 * correlated_noise(generator, m.rows(), rho);
+    m.col(1) += sd1 * correlated_noise(generator, m.rows(), rho);
   }
 }
 

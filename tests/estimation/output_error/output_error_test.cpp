@@ -33,8 +33,8 @@ TEST(OutputError, IsOrdinaryLeastSquaresOnAStaticModel) {
   const Index N = 600;
   RowMatrix X(N, 3);
   X.col(0).setOnes();
-  for (Index j = 1; j < 3; ++j) X.col(j) = coloured_noise(generator, N, 0.9);
-  const VectorXd z = X * Eigen::Vector3d(0.3, -1.2, 0.7) + 0.5 * coloured_noise(generator, N, 0.7);
+  for (Index j = 1; j < 3; ++j) X.col(j) = correlated_noise(generator, N, 0.9);
+  const VectorXd z = X * Eigen::Vector3d(0.3, -1.2, 0.7) + 0.5 * correlated_noise(generator, N, 0.7);
   RegressionData data;
   data.regressors = X;
   data.regressand = z;
@@ -56,7 +56,7 @@ TEST(OutputError, IsOrdinaryLeastSquaresOnAStaticModel) {
       EXPECT_NEAR(oe.covariance(i, j), ols.covariance(i, j), 1e-7 * scale);
     }
   }
-  EXPECT_GT(ols.parameters[1].sigma, 1.5 * ols.parameters[1].sigma_white);  // or the coloured part was not tested
+  EXPECT_GT(ols.parameters[1].sigma, 1.5 * ols.parameters[1].sigma_white);  // or the autocorrelated part was not tested
   EXPECT_NEAR(oe.degrees_of_freedom, ols.degrees_of_freedom, 1e-9);
 }
 
@@ -65,8 +65,8 @@ TEST(OutputError, WithoutStepsSaysWhatTheDataSayWhereItBegins) {
   std::mt19937_64 generator(4);
   RowMatrix X(200, 2);
   X.col(0).setOnes();
-  X.col(1) = coloured_noise(generator, 200, 0.5);
-  const VectorXd z = X * Eigen::Vector2d(0.3, -1.2) + 0.1 * coloured_noise(generator, 200, 0.0);
+  X.col(1) = correlated_noise(generator, 200, 0.5);
+  const VectorXd z = X * Eigen::Vector2d(0.3, -1.2) + 0.1 * correlated_noise(generator, 200, 0.0);
   const Static model({{X}});
   OutputErrorOptions options{
       .noise = OutputNoise::kGiven, .noise_start = VectorXd::Constant(1, 0.1), .max_relaxations = 1, .max_steps = 0};
@@ -79,17 +79,18 @@ TEST(OutputError, WithoutStepsSaysWhatTheDataSayWhereItBegins) {
 }
 
 TEST(OutputError, UnknownsOfASegmentAreEliminatedAsTheirColumnsWouldBe) {
-  // A bias per segment is a column of ones there: OLS with those columns, coloured error bars included.
+  // A bias per segment is a column of ones there: OLS with those columns, error bars of autocorrelated residuals
+  // included.
   std::mt19937_64 generator(14);
   const Index N = 500, first = 180;
   RowMatrix X = RowMatrix::Zero(N, 4);
-  for (Index j = 0; j < 2; ++j) X.col(j) = coloured_noise(generator, N, 0.95);
+  for (Index j = 0; j < 2; ++j) X.col(j) = correlated_noise(generator, N, 0.95);
   X.col(0).array() += 2.0;  // far from its mean: the bias takes much of its information
   X.col(2).head(first).setOnes();
   X.col(3).tail(N - first).setOnes();
   RegressionData data;
   data.regressors = X;
-  data.regressand = X * Eigen::Vector4d(0.3, -1.2, 0.7, -0.4) + 0.5 * coloured_noise(generator, N, 0.7);
+  data.regressand = X * Eigen::Vector4d(0.3, -1.2, 0.7, -0.4) + 0.5 * correlated_noise(generator, N, 0.7);
   data.parameter_names = {"a", "b", "bias1", "bias2"};
   data.segment.assign(static_cast<std::size_t>(N), 0);
   std::fill(data.segment.begin() + first, data.segment.end(), 1);
@@ -116,8 +117,8 @@ TEST(OutputError, WithFullNoiseIsSeeminglyUnrelatedRegression) {
   std::normal_distribution<double> normal;
   const Index N = 300;
   RowMatrix X0 = RowMatrix::Zero(N, 2), X1 = RowMatrix::Zero(N, 2);
-  X0.col(0) = coloured_noise(generator, N, 0.5);
-  X1.col(1) = coloured_noise(generator, N, 0.5);
+  X0.col(0) = correlated_noise(generator, N, 0.5);
+  X1.col(1) = correlated_noise(generator, N, 0.5);
   RowMatrix z(N, 2);
   for (Index k = 0; k < N; ++k) {
     const double e0 = normal(generator), e1 = 0.9 * e0 + 0.3 * normal(generator);
@@ -163,8 +164,8 @@ TEST(OutputError, MissingValuesOfOneOutputAreLeftOutOrFilledByTheirExpectation) 
   std::normal_distribution<double> normal;
   const Index N = 200;
   RowMatrix X0 = RowMatrix::Zero(N, 2), X1 = RowMatrix::Zero(N, 2), z(N, 2);
-  X0.col(0) = coloured_noise(generator, N, 0.5);
-  X1.col(1) = coloured_noise(generator, N, 0.5);
+  X0.col(0) = correlated_noise(generator, N, 0.5);
+  X1.col(1) = correlated_noise(generator, N, 0.5);
   for (Index k = 0; k < N; ++k) {
     const double e0 = normal(generator);
     z(k, 0) = X0(k, 0) + e0;
@@ -249,10 +250,10 @@ TEST(OutputError, GivesTheSameBitsOnAnyNumberOfThreads) {
 TEST(OutputError, NamesWhatTheDataDoNotDetermineInsteadOfANumber) {
   RowMatrix X(100, 3);
   std::mt19937_64 generator(5);
-  X.col(0) = coloured_noise(generator, 100, 0.5);
+  X.col(0) = correlated_noise(generator, 100, 0.5);
   X.col(1) = X.col(0);  // only theta0 + theta1 can be known
-  X.col(2) = coloured_noise(generator, 100, 0.5);
-  const VectorXd z = X * Eigen::Vector3d(1.0, 0.5, -2.0) + 0.1 * coloured_noise(generator, 100, 0.0);
+  X.col(2) = correlated_noise(generator, 100, 0.5);
+  const VectorXd z = X * Eigen::Vector3d(1.0, 0.5, -2.0) + 0.1 * correlated_noise(generator, 100, 0.0);
   const Static model({{X}});
   const OutputErrorEstimate e = output_error(model, {z});
   ASSERT_TRUE(e.usable()) << e.message;
@@ -271,7 +272,7 @@ TEST(OutputError, APriorIsWorthAsManyDataAsItsSigmaSays) {
   // One parameter, unit regressor: posterior precision = N / R + 1 / sigma^2, mean in proportion.
   std::mt19937_64 generator(6);
   const RowMatrix X = RowMatrix::Ones(50, 1);
-  const VectorXd z = VectorXd::Constant(50, 2.0) + coloured_noise(generator, 50, 0.0);
+  const VectorXd z = VectorXd::Constant(50, 2.0) + correlated_noise(generator, 50, 0.0);
   Static model({{X}});
   model.unknowns[0] = {.name = "m", .start = 1.0, .prior_sigma = 0.1};
   const OutputErrorOptions options{

@@ -10,14 +10,14 @@ namespace veridyn::estimation {
 namespace {
 
 using Eigen::Index;
-using testing_support::coloured_noise;
+using testing_support::correlated_noise;
 
 TEST(ResidualSpectrum, ItsSumIsTheDoubleSumOverLags) {
   // Against the double sum written out, two outputs with cross-correlation.
   std::mt19937_64 generator(9);
   RowMatrix w(400, 2);
-  w.col(0) = coloured_noise(generator, 400, 0.6);
-  w.col(1).tail(398) = (0.6 * w.col(0).head(398) + 0.8 * coloured_noise(generator, 398, 0.3)).eval();
+  w.col(0) = correlated_noise(generator, 400, 0.6);
+  w.col(1).tail(398) = (0.6 * w.col(0).head(398) + 0.8 * correlated_noise(generator, 398, 0.3)).eval();
   w.col(1).head(2).setZero();
   const ResidualSpectrum spectrum = residual_spectrum({w}, 20);
   ASSERT_GT(spectrum.window, 0);
@@ -31,7 +31,7 @@ TEST(ResidualSpectrum, ItsSumIsTheDoubleSumOverLags) {
     return (lag == 0 ? 1.0 : weight) * sum / 400.0;
   };
   RowMatrix S(2 * 60, 3);
-  for (Index j = 0; j < 3; ++j) S.col(j) = coloured_noise(generator, 120, 0.5);
+  for (Index j = 0; j < 3; ++j) S.col(j) = correlated_noise(generator, 120, 0.5);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
   for (Index i = 0; i < 60; ++i) {
     for (Index j = 0; j < 60; ++j) {

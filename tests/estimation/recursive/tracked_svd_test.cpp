@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, TrackedSvdKeepsOrthogonal,
 // 1e8 updates in all.
 class TrackedSvdSoak : public ::testing::TestWithParam<Kind> {};
 TEST_P(TrackedSvdSoak, KeepsOrthogonalOverAHundredMillionUpdates) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running; set VERIDYN_SOAK=1 to run it";
   soak(GetParam(), 14300000, 0.9997);
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, TrackedSvdSoak,

@@ -16,16 +16,16 @@ namespace veridyn::estimation {
 namespace {
 
 using Eigen::Index;
-using testing_support::coloured_noise;
+using testing_support::correlated_noise;
 
 RegressionData rows_with(unsigned seed, double regressor_rho, double error_rho, Index N = 3000) {
   std::mt19937_64 generator(seed);
   RegressionData data;
   data.regressors.resize(N, 3);
   data.regressors.col(0).setOnes();
-  data.regressors.col(1) = coloured_noise(generator, N, regressor_rho);
-  data.regressors.col(2) = 0.5 * data.regressors.col(1) + coloured_noise(generator, N, regressor_rho);
-  data.regressand = data.regressors * Eigen::Vector3d(1.0, -0.5, 0.3) + coloured_noise(generator, N, error_rho);
+  data.regressors.col(1) = correlated_noise(generator, N, regressor_rho);
+  data.regressors.col(2) = 0.5 * data.regressors.col(1) + correlated_noise(generator, N, regressor_rho);
+  data.regressand = data.regressors * Eigen::Vector3d(1.0, -0.5, 0.3) + correlated_noise(generator, N, error_rho);
   data.parameter_names = {"c", "a", "b"};
   data.segment.assign(static_cast<std::size_t>(N), 0);
   std::fill(data.segment.begin() + N / 3, data.segment.end(), 1);
@@ -154,11 +154,11 @@ TEST(PolitisWhiteBlockLength, GrowsWithTheCorrelationAsItsFormulaSays) {
   // AR(1): G = 2 rho/(1 - rho)^2 and g = (1 + rho)/(1 - rho) times the variance, so G/g = 2 rho/(1 - rho^2).
   std::mt19937_64 generator(1);
   const Index N = 20000;
-  EXPECT_EQ(politis_white_block_length(coloured_noise(generator, N, 0.0)), 1);
+  EXPECT_EQ(politis_white_block_length(correlated_noise(generator, N, 0.0)), 1);
   for (const double rho : {0.5, 0.8}) {
     double mean = 0.0;
     for (int i = 0; i < 10; ++i)
-      mean += 0.1 * static_cast<double>(politis_white_block_length(coloured_noise(generator, N, rho)));
+      mean += 0.1 * static_cast<double>(politis_white_block_length(correlated_noise(generator, N, rho)));
     const double ratio = 2.0 * rho / (1.0 - rho * rho);
     const double expected = std::cbrt(1.5 * ratio * ratio * static_cast<double>(N));
     EXPECT_NEAR(mean, expected, 0.2 * expected) << rho;

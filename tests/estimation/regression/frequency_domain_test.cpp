@@ -16,7 +16,7 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-using testing_support::coloured_noise;
+using testing_support::correlated_noise;
 
 // Integral of t^n exp(-s t) over [0, T] by its recursion, s = j omega.
 Complex moment(int n, Complex s, double T) {
@@ -83,9 +83,9 @@ RegressionData flight_like(unsigned seed, double noise, double rho) {
   RegressionData data;
   data.regressors.resize(N, 3);
   data.regressors.col(0).setOnes();
-  data.regressors.col(1) = coloured_noise(generator, N, 0.95);
-  data.regressors.col(2) = 0.6 * data.regressors.col(1) + 0.8 * coloured_noise(generator, N, 0.95);
-  data.regressand = data.regressors * Eigen::Vector3d(0.4, -1.1, 0.6) + noise * coloured_noise(generator, N, rho);
+  data.regressors.col(1) = correlated_noise(generator, N, 0.95);
+  data.regressors.col(2) = 0.6 * data.regressors.col(1) + 0.8 * correlated_noise(generator, N, 0.95);
+  data.regressand = data.regressors * Eigen::Vector3d(0.4, -1.1, 0.6) + noise * correlated_noise(generator, N, rho);
   data.parameter_names = {"constant", "a", "b"};
   for (Index k = 0; k < N; ++k) data.segment.push_back(k < 500 ? 0 : (k < 1700 ? 1 : 2));
   return data;
@@ -99,8 +99,8 @@ TEST(FrequencyEquationError, AgreesWithTheTimeDomainWithinItsErrors) {
   EXPECT_EQ(f.left_out, std::vector<std::string>{"constant"});
   const RegressionEstimate time = estimate(data, Method::kOls);
   for (const char* name : {"a", "b"}) {
-    const double apart = f.estimate.find(name)->value - time.find(name)->value;
-    EXPECT_LT(std::abs(apart), 3.0 * std::hypot(f.estimate.find(name)->sigma, time.find(name)->sigma)) << name;
+    const double gap = f.estimate.find(name)->value - time.find(name)->value;
+    EXPECT_LT(std::abs(gap), 3.0 * std::hypot(f.estimate.find(name)->sigma, time.find(name)->sigma)) << name;
   }
 }
 

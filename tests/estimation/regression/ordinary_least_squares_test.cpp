@@ -121,8 +121,8 @@ TEST(ScoreCovariance, AddsWhatTheSquareOfTheResidualVaries) {
   const Eigen::Index N = 20000;
   Scores scores;
   scores.regressors.resize(N, 2);
-  for (Eigen::Index j = 0; j < 2; ++j) scores.regressors.col(j) = testing_support::coloured_noise(generator, N, 0.0);
-  scores.residual = 3.0 * testing_support::coloured_noise(generator, N, 0.0);
+  for (Eigen::Index j = 0; j < 2; ++j) scores.regressors.col(j) = testing_support::correlated_noise(generator, N, 0.0);
+  scores.residual = 3.0 * testing_support::correlated_noise(generator, N, 0.0);
   scores.quadratic = Eigen::Vector2d(0.0, 5.0);
   EXPECT_NEAR(scores.rows().col(1).sum(), scores.residual.dot(scores.regressors.col(1)), 1e-6);
   const Eigen::MatrixXd S = score_covariance(scores, {{0, N}}, 0).matrix / static_cast<double>(N);
@@ -133,7 +133,7 @@ TEST(ScoreCovariance, AddsWhatTheSquareOfTheResidualVaries) {
 
 TEST(CorrelationLength, IsZeroForWhiteNoiseAndThatOfAMovingAverageOtherwise) {
   std::mt19937_64 generator(4);
-  const Eigen::VectorXd white = testing_support::coloured_noise(generator, 20000, 0.0);
+  const Eigen::VectorXd white = testing_support::correlated_noise(generator, 20000, 0.0);
   const SegmentRanges whole = {{0, 20000}};
   EXPECT_LE(correlation_length(white, whole, 500), 2);
   Eigen::VectorXd average = Eigen::VectorXd::Zero(20000);  // of 8 samples: correlated to lag 7
@@ -141,7 +141,8 @@ TEST(CorrelationLength, IsZeroForWhiteNoiseAndThatOfAMovingAverageOtherwise) {
   EXPECT_NEAR(static_cast<double>(correlation_length(average, whole, 500)), 7.0, 1.0);
 }
 
-// The statement of the specification: nominal 95 % intervals hold under coloured residuals where white ones do not.
+// The statement of the specification: nominal 95 % intervals hold under autocorrelated residuals where white ones do
+// not.
 TEST(OrdinaryLeastSquares, IntervalsCoverUnderColouredResiduals) {
   Eigen::VectorXd theta(4);
   theta << 0.1, -0.98, 0.3, 0.0;

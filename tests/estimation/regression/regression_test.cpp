@@ -4,7 +4,7 @@
 
 namespace {
 using namespace veridyn::estimation;
-using testing_support::coloured_noise;
+using testing_support::correlated_noise;
 using testing_support::simulate_regression;
 
 Eigen::VectorXd regression_theta() {
@@ -69,7 +69,7 @@ TEST(Compare, EstimatesEquationErrorWhenAsked) {
 TEST(Compare, TakesPcaWhenADirectionIsNotExcited) {
   auto s = simulate_regression(5, regression_theta(), errors(0.02, 0.02));
   std::mt19937_64 generator(77);
-  const Eigen::VectorXd noise = coloured_noise(generator, s.data.rows(), 0.0);
+  const Eigen::VectorXd noise = correlated_noise(generator, s.data.rows(), 0.0);
   s.data.regressors.col(3) = noise * std::sqrt(0.02);
   s.data.regressand -= -1.2 * s.true_regressors.col(3);
   const RegressionComparison c = compare(s.data);
@@ -162,16 +162,16 @@ Lateral lateral(unsigned seed, const Eigen::VectorXd& theta, double snr, double 
   Lateral s;
   s.X.resize(rows, 6);
   s.X.col(0).setOnes();
-  for (Eigen::Index j = 0; j < 5; ++j) s.X.col(j + 1) = size[j] * coloured_noise(generator, rows, 0.95);
+  for (Eigen::Index j = 0; j < 5; ++j) s.X.col(j + 1) = size[j] * correlated_noise(generator, rows, 0.95);
   s.z = s.X * theta;
   const double power = (s.z.array() - s.z.mean()).square().mean();
   s.data.error_covariance = Eigen::MatrixXd::Zero(7, 7);
   s.data.error_covariance(6, 6) = power / snr;
   s.data.regressors = s.X;
-  s.data.regressand = s.z + std::sqrt(power / snr) * coloured_noise(generator, rows, 0.0);
+  s.data.regressand = s.z + std::sqrt(power / snr) * correlated_noise(generator, rows, 0.0);
   for (Eigen::Index j = 1; j < 6 && regressor_ratio > 0.0; ++j) {
     const double variance = regressor_ratio * size[j - 1] * size[j - 1];
-    s.data.regressors.col(j) += std::sqrt(variance) * coloured_noise(generator, rows, 0.0);
+    s.data.regressors.col(j) += std::sqrt(variance) * correlated_noise(generator, rows, 0.0);
     s.data.error_covariance(j, j) = variance;
   }
   s.data.parameter_names = {"0", "beta", "p", "r", "da", "dr"};

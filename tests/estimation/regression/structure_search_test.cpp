@@ -13,7 +13,7 @@ namespace veridyn::estimation {
 namespace {
 
 using Eigen::Index;
-using testing_support::coloured_noise;
+using testing_support::correlated_noise;
 
 /// Constant, six correlated terms and three products; z depends on columns 0, 1, 3 and 7 (the product 1 * 2).
 RegressionData candidates(unsigned seed, double noise, double rho = 0.0, Index N = 800) {
@@ -21,14 +21,14 @@ RegressionData candidates(unsigned seed, double noise, double rho = 0.0, Index N
   RegressionData data;
   data.regressors.resize(N, 10);
   data.regressors.col(0).setOnes();
-  for (Index j = 1; j < 7; ++j) data.regressors.col(j) = coloured_noise(generator, N, 0.9);
+  for (Index j = 1; j < 7; ++j) data.regressors.col(j) = correlated_noise(generator, N, 0.9);
   data.regressors.col(4) = 0.7 * data.regressors.col(4) + 0.7 * data.regressors.col(3);  // a distractor close to a term
   data.regressors.col(7) = data.regressors.col(1).cwiseProduct(data.regressors.col(2));
   data.regressors.col(8) = data.regressors.col(1).cwiseProduct(data.regressors.col(1));
   data.regressors.col(9) = data.regressors.col(3).cwiseProduct(data.regressors.col(5));
   for (Index j = 0; j < 10; ++j) data.parameter_names.push_back("c" + std::to_string(j));
   data.regressand = 0.5 * data.regressors.col(0) + 1.0 * data.regressors.col(1) - 0.8 * data.regressors.col(3) +
-                    0.6 * data.regressors.col(7) + noise * coloured_noise(generator, N, rho);
+                    0.6 * data.regressors.col(7) + noise * correlated_noise(generator, N, rho);
   return data;
 }
 
@@ -114,10 +114,10 @@ TEST(StructureSearch, RemovesATermThatOthersMakeSuperfluous) {
   const Index N = 3000;
   data.regressors.resize(N, 4);
   data.regressors.col(0).setOnes();
-  data.regressors.col(1) = coloured_noise(generator, N, 0.5);
-  data.regressors.col(2) = coloured_noise(generator, N, 0.5);
-  data.regressors.col(3) = data.regressors.col(1) + data.regressors.col(2) + 0.3 * coloured_noise(generator, N, 0.5);
-  data.regressand = data.regressors.col(1) + data.regressors.col(2) + 0.05 * coloured_noise(generator, N, 0.0);
+  data.regressors.col(1) = correlated_noise(generator, N, 0.5);
+  data.regressors.col(2) = correlated_noise(generator, N, 0.5);
+  data.regressors.col(3) = data.regressors.col(1) + data.regressors.col(2) + 0.3 * correlated_noise(generator, N, 0.5);
+  data.regressand = data.regressors.col(1) + data.regressors.col(2) + 0.05 * correlated_noise(generator, N, 0.0);
   data.parameter_names = {"1", "a", "b", "sum"};
   const StructureSearch search = search_structure(data, {.min_r2_change = 1e-4});
   EXPECT_EQ(search.history[1].term, "sum");

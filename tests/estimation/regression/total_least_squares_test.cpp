@@ -21,7 +21,7 @@ Eigen::MatrixXd augmented(const RegressionData& data) {
   return D;
 }
 
-// Errors of three regressors beside a constant, correlated among each other and with those of the regressand.
+// Errors of three regressors and a constant, correlated among each other and with those of the regressand.
 Eigen::MatrixXd correlated_errors(double ratio) {
   Eigen::MatrixXd W = Eigen::MatrixXd::Zero(5, 5);
   W(1, 1) = ratio;

@@ -86,14 +86,14 @@ TEST(PacketLog, CountsWhatItLeavesOut) {
   const float nan = std::nanf("");
   std::memcpy(broken.data() + 28, &nan, 4);
   bytes += broken + std::string(68, '\0');
-  bytes += outsim_circle(60, 1.0);  // time began anew
+  bytes += outsim_circle(60, 1.0);  // time started again
   const Log log = packet_log(known_packet("outsim_id"), bytes + "cut", "drive");
   EXPECT_EQ(log.topics.front().size(), 100U);
   EXPECT_EQ(log.damage.bytes_lost, 3U);
   ASSERT_FALSE(log.damage.notes.empty());
   EXPECT_EQ(log.damage.notes.front(),
             "64 packets were left out: 2 with a stamp that repeats or goes back, 2 without a drive, 60 of other runs, "
-            "between which time began anew");
+            "between which time started again");
 }
 
 TEST(PacketLog, IsNotSeenInOtherBytes) {

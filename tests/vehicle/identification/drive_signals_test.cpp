@@ -31,9 +31,10 @@ TEST(DriveSignals, NamesWhatIsMissing) {
   EXPECT_NE(why([&] { prepared(without(r, "speed")); }).find("has no speed"), std::string::npos);
   EXPECT_NE(why([&] { prepared(without(r, "yaw_rate")); }).find("has no yaw_rate"), std::string::npos);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(
-      why([&] { prepared(changed(r, "yaw_rate", [&](double, double) { return nan; })); }).find("holds no numbers"),
-      std::string::npos);
+  EXPECT_NE(why([&] {
+              prepared(changed(r, "yaw_rate", [&](double, double) { return nan; }));
+            }).find("holds no numeric values"),
+            std::string::npos);
   EXPECT_NE(why([&] { prepared(Recording{}); }), "");
 }
 

@@ -141,11 +141,5 @@ TEST(VehicleJudgement, RegressionsThatBelongToNoBicycleReject) {
   EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kIdentified);
 }
 
-TEST(VehicleMethod, NamesAreThoseOfTheStudy) {
-  for (const std::string_view name : kVehicleMethodNames) EXPECT_EQ(to_string(vehicle_method(name)), name);
-  EXPECT_EQ(vehicle_method("on line"), VehicleMethod::kGiven);
-  EXPECT_EQ(vehicle_method(estimation::Method::kPcaGtls), VehicleMethod::kPcaGtls);
-}
-
 }  // namespace
 }  // namespace veridyn::vehicle

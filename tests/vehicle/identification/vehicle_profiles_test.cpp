@@ -47,7 +47,7 @@ TEST(VehicleProfiles, AreTheErrorBarsOfWhatADriveDetermines) {
     EXPECT_EQ(p.low_end, ProfileEnd::kClosed) << p.name;
     EXPECT_EQ(p.high_end, ProfileEnd::kClosed) << p.name;
     const double inflation = std::max(1.0, std::pow(own.sigma / own.sigma_white, 2));
-    EXPECT_GT(inflation, 1.5);  // the smoothing that measured and simulated signals go through colours the residual
+    EXPECT_GT(inflation, 1.5);  // the smoothing that measured and simulated signals go through correlates the residual
     const double sigma = 0.5 * (p.high - p.low) / std::sqrt(3.841458820694124);
     EXPECT_NEAR(sigma / std::sqrt(inflation) / own.sigma_white, 1.0, 0.03) << p.name;
     EXPECT_NEAR(sigma / own.sigma, 1.0, 0.03) << p.name;

@@ -112,8 +112,7 @@ TEST(DriveTracker, DoesNotDependOnThePiecesInWhichARecordingComes) {
   static_cast<void>(pieces.advance(mapped(whole), true, silent));
   const DriveTracker &a = *at_once.drive.tracker(), &b = *pieces.tracker();
   EXPECT_EQ(a.rows(), b.rows());
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const auto axle = static_cast<TrackedAxle>(i);
+  for (const TrackedAxle axle : kAllTrackedAxles) {
     EXPECT_NEAR(a.value(axle), b.value(axle), 1e-9 * std::abs(a.value(axle)));
   }
 }

@@ -99,7 +99,10 @@ AxisSegments find_axis(Axis axis, const std::vector<TimeSpan>& given, const std:
         axis == Axis::kLongitudinal ? "elevator" : "aileron or rudder", options.window_s,
         found.input_threshold_rad / kDegree, found.ambient_input_rad / kDegree, options.min_rate_radps / kDegree);
   }
-  recording::assign_blocks(found, options, recording::Neighbours::kJoined, kShortestBlock_s);
+  recording::AssignedBlocks blocks =
+      recording::assign_blocks(found.excited, options, recording::Neighbours::kJoined, kShortestBlock_s);
+  found.identification = std::move(blocks.identification);
+  found.holdout = std::move(blocks.holdout);
   return found;
 }
 

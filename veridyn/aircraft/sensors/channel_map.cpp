@@ -67,7 +67,7 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     throw InputError(log.source, "its frame is flu (z up), an aircraft recording is frd (z down): convert it first");
   }
   mapped.log_kind = "study";
-  recording::keep_standard_channels(log, standard_channels(), map, mapped);
+  mapped = recording::with_standard_channels(std::move(mapped), log, standard_channels(), map);
   internal::MapBuilder builder(log, mapped);
   if (internal::is_ardupilot(log)) {
     mapped.log_kind = "ArduPilot";
@@ -76,7 +76,7 @@ MappedRecording map_channels(const Recording& log, const StudyTable& map, const 
     mapped.log_kind = "PX4";
     internal::map_px4(builder, throws);
   }
-  recording::apply_channel_map(log, standard_channels(), map, mapped);
+  mapped = recording::with_channel_map(std::move(mapped), log, standard_channels(), map);
   return mapped;
 }
 

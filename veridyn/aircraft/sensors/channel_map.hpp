@@ -27,7 +27,7 @@ struct SurfaceThrows {
 ///
 /// ArduPilot and PX4 logs are recognised by their messages and mapped through the tables in `ardupilot_map.cpp` and
 /// `px4_map.cpp`; channels that already bear standard names are kept; keys of `map` (the study's `[data.map]`, see
-/// recording::apply_channel_map) come last and win.
+/// recording::with_channel_map) come last and win.
 ///
 /// A source that never changes (an unconnected sensor) is passed over, with a note.
 /// @throws InputError for an unknown standard name (nearest suggested) or a source that the log lacks (lists what it

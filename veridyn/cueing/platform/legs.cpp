@@ -58,9 +58,7 @@ Legs::Legs(const LegGeometry& geometry, const PlatformLimits& limits) : geometry
   PlatformLimits one;
   one[PlatformAxis::kHeave] = geometry.leg;
   one.validate();
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (limits.axes[i].moves()) axes_.push_back(static_cast<PlatformAxis>(i));
-  }
+  axes_ = limits.moving_axes();
   if (geometry.feet.size() != axes_.size() || geometry.heads.size() != axes_.size())
     throw InputError("platform.legs", fmt::format("has {} feet and {} heads; a platform of {} axes takes as many",
                                                   geometry.feet.size(), geometry.heads.size(), axes_.size()));

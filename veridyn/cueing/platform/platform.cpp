@@ -52,9 +52,9 @@ Platform hexapod() {
 Platform ideal() {
   Platform p;
   p.name = "ideal";
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    const double range = turns(static_cast<PlatformAxis>(i)) ? 60.0 * kDegree : 10.0;
-    p.limits.axes[i] = {.lowest = -range, .highest = range, .rate = 1e2, .acceleration = 1e4, .jerk = 1e7};
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    const double range = turns(axis) ? 60.0 * kDegree : 10.0;
+    p.limits[axis] = {.lowest = -range, .highest = range, .rate = 1e2, .acceleration = 1e4, .jerk = 1e7};
   }
   p.actuators = {.omega = 0.0, .zeta = 1.0, .delay = 0.0};
   return p;
@@ -127,7 +127,7 @@ Platform Platform::read(const StudyTable& table) {
   p.actuators.omega = table.number_or("omega", "rad/s", p.actuators.omega);
   p.actuators.zeta = table.positive_or("zeta", "1", p.actuators.zeta);
   p.actuators.delay = table.number_or("delay", "s", p.actuators.delay);
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) read_reach(table, static_cast<PlatformAxis>(i), p.reach[i]);
+  for (const PlatformAxis axis : kAllPlatformAxes) read_reach(table, axis, p.reach[axis]);
   if (table.has("rider")) {
     const std::vector<double> place = table.numbers("rider", "m");
     if (place.size() != 3) table.fail("rider", "takes three numbers: forward, right, down");

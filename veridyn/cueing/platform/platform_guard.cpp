@@ -11,15 +11,15 @@ PlatformGuard::PlatformGuard(const PlatformLimits& limits) {
 }
 
 PlatformState PlatformGuard::reset(const PlatformCommand& at) {
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (moves_[i]) axes_[i].reset(position(at, static_cast<PlatformAxis>(i)));
+  for (const PlatformAxis i : kAllPlatformAxes) {
+    if (moves_[i]) axes_[i].reset(position(at, i));
   }
   return state();
 }
 
 PlatformState PlatformGuard::step(const PlatformCommand& wanted, double step) {
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (moves_[i]) axes_[i].step(position(wanted, static_cast<PlatformAxis>(i)), step);
+  for (const PlatformAxis i : kAllPlatformAxes) {
+    if (moves_[i]) axes_[i].step(position(wanted, i), step);
   }
   return state();
 }
@@ -46,7 +46,7 @@ std::bitset<kPlatformAxes> PlatformGuard::limited() const {
 
 PlatformState PlatformGuard::state() const {
   PlatformState s;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) set_axis(s, static_cast<PlatformAxis>(i), axes_[i].state());
+  for (const PlatformAxis i : kAllPlatformAxes) set_axis(s, i, axes_[i].state());
   return s;
 }
 

@@ -11,7 +11,7 @@
 namespace veridyn::cueing {
 namespace {
 
-constexpr std::array<std::string_view, kPlatformAxes> kNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr PerPlatformAxis<std::string_view> kNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 /// Jerk over acceleration where nothing else is known [1/s].
 constexpr double kUsualJerk = 20.0;
@@ -52,7 +52,7 @@ AxisLimits symmetric(double position, double rate, double acceleration) {
 
 }  // namespace
 
-std::string_view name_of(PlatformAxis axis) { return kNames[static_cast<std::size_t>(axis)]; }
+std::string_view name_of(PlatformAxis axis) { return kNames[axis]; }
 
 PlatformLimits PlatformLimits::read(const StudyTable& table) {
   PlatformLimits limits;
@@ -61,26 +61,33 @@ PlatformLimits PlatformLimits::read(const StudyTable& table) {
 }
 
 void PlatformLimits::read_over(const StudyTable& table) {
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) read_axis(table, static_cast<PlatformAxis>(i), axes[i]);
+  for (const PlatformAxis axis : kAllPlatformAxes) read_axis(table, axis, axes[axis]);
   validate();
 }
 
 void PlatformLimits::validate() const {
-  bool any = false;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    const AxisLimits& a = axes[i];
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    const AxisLimits& a = axes[axis];
     if (!(a.lowest <= 0.0 && a.highest >= 0.0 && std::isfinite(a.highest - a.lowest)))
       throw InputError(
-          fmt::format("platform.{}", kNames[i]),
+          fmt::format("platform.{}", kNames[axis]),
           fmt::format("goes from {:g} to {:g}; the neutral position, 0, has to lie between", a.lowest, a.highest));
     for (const double limit : {a.rate, a.acceleration, a.jerk}) {
       if (!(limit > 0.0) || !std::isfinite(limit))
-        throw InputError(fmt::format("platform.{}", kNames[i]),
+        throw InputError(fmt::format("platform.{}", kNames[axis]),
                          fmt::format("has a limit of {:g}; rate, acceleration and jerk must be above 0", limit));
     }
-    any = any || a.moves();
   }
-  if (!any) throw InputError("platform", "has no axis that moves; give roll = [-20, 20] deg and the like");
+  if (moving_axes().empty())
+    throw InputError("platform", "has no axis that moves; give roll = [-20, 20] deg and the like");
+}
+
+std::vector<PlatformAxis> PlatformLimits::moving_axes() const {
+  std::vector<PlatformAxis> moving;
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    if (axes[axis].moves()) moving.push_back(axis);
+  }
+  return moving;
 }
 
 PlatformLimits three_axis_limits() {

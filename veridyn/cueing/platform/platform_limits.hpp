@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <string_view>
+#include <vector>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
@@ -13,6 +13,8 @@ namespace veridyn::cueing {
 enum class PlatformAxis { kSurge, kSway, kHeave, kRoll, kPitch, kYaw };
 /// How many axes there are.
 inline constexpr std::size_t kPlatformAxes = 6;
+/// All of them, in order.
+inline constexpr auto kAllPlatformAxes = enumerators<PlatformAxis, kPlatformAxes>();
 /// A value for each axis.
 template <class T>
 using PerPlatformAxis = EnumArray<PlatformAxis, T, kPlatformAxes>;
@@ -44,6 +46,9 @@ struct PlatformLimits {
   void read_over(const StudyTable& table);
   /// @throws InputError where a range does not hold zero, a limit is not above zero, or no axis moves.
   void validate() const;
+
+  /// The axes that move, in order.
+  [[nodiscard]] std::vector<PlatformAxis> moving_axes() const;
 
   [[nodiscard]] const AxisLimits& operator[](PlatformAxis axis) const { return axes[axis]; }
   [[nodiscard]] AxisLimits& operator[](PlatformAxis axis) { return axes[axis]; }

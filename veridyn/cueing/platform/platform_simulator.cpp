@@ -80,10 +80,10 @@ PlatformState PlatformSimulator::act(const PlatformState& told, std::optional<do
   if (legs_) {
     before_reach_ = act_on_legs(told, step);
   } else {
-    for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-      const auto which = static_cast<PlatformAxis>(i);
+    for (const PlatformAxis which : kAllPlatformAxes) {
       const AxisState to = axis(told, which);
-      set_axis(before_reach_, which, step ? actuators_[i].step(to, *step) : actuators_[i].reset(to.position));
+      Actuator& a = actuators_[static_cast<std::size_t>(which)];
+      set_axis(before_reach_, which, step ? a.step(to, *step) : a.reset(to.position));
     }
   }
   state_ = at_rest_places(before_reach_);
@@ -109,11 +109,10 @@ PlatformState PlatformSimulator::act_on_legs(const PlatformState& told, std::opt
 
 PlatformState PlatformSimulator::at_rest_places(const PlatformState& s) const {
   PlatformState reached = s;
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (platform_.reach[i].empty()) continue;
-    const auto which = static_cast<PlatformAxis>(i);
+  for (const PlatformAxis which : kAllPlatformAxes) {
+    if (platform_.reach[which].empty()) continue;
     AxisState a = axis(s, which);
-    const StaticReach::Point there = platform_.reach[i].at(a.position);
+    const StaticReach::Point there = platform_.reach[which].at(a.position);
     a = {there.reached, there.slope * a.rate, there.slope * a.acceleration};
     set_axis(reached, which, a);
   }

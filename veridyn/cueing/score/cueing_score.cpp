@@ -87,23 +87,21 @@ CueingScore score(const CueingRun& run, const FeltMotion& felt, const Platform& 
   if (!(s.duration >= kShortestDrive))
     throw InputError("drive", fmt::format("lasts {:.2g} s; a score needs {:g} s at least", s.duration, kShortestDrive));
   const auto points = static_cast<std::size_t>(s.duration / kGrid) + 1;
-  for (std::size_t i = 0; i < kCues; ++i) {
-    const auto cue = static_cast<Cue>(i);
+  for (const Cue cue : kAllCues) {
     const auto pair = [&](const CuePair& p) {
       return std::pair(on_grid(felt.time, p.vehicle, points), on_grid(felt.time, p.platform, points));
     };
     const auto [vehicle, platform_felt] = pair(felt.felt[cue]);
     const auto [force, rendered] = pair(felt.physical[cue]);
-    s.felt_blocks.emplace_back(vehicle, platform_felt, kGrid, felt.threshold[cue]);
-    s.physical_blocks.emplace_back(force, rendered, kGrid, felt.threshold[cue]);
-    s.cues[cue] = measured(s.felt_blocks.back(), s.physical_blocks.back(), seed);
+    s.felt_blocks[cue] = BlockStatistics(vehicle, platform_felt, kGrid, felt.threshold[cue]);
+    s.physical_blocks[cue] = BlockStatistics(force, rendered, kGrid, felt.threshold[cue]);
+    s.cues[cue] = measured(s.felt_blocks[cue], s.physical_blocks[cue], seed);
     const std::vector<FalseCue> found =
         false_cues(cue, vehicle, platform_felt, felt.threshold[cue], felt.time.front(), kGrid);
     s.false_cues.insert(s.false_cues.end(), found.begin(), found.end());
   }
   for (const std::size_t pair : {0U, 1U}) {
-    const auto force = static_cast<std::size_t>(pair == 0 ? Cue::kSway : Cue::kSurge),
-               turn = static_cast<std::size_t>(pair == 0 ? Cue::kRoll : Cue::kPitch);
+    const Cue force = pair == 0 ? Cue::kSway : Cue::kSurge, turn = pair == 0 ? Cue::kRoll : Cue::kPitch;
     s.pairs[pair] = bootstrapped(
         s.felt_blocks[force].blocks(), seed, 1, [&](std::span<const double> weights, std::span<double> out) {
           out[0] = std::hypot(s.felt_blocks[force].figures(weights).rmse / felt.threshold[force],
@@ -112,10 +110,8 @@ CueingScore score(const CueingRun& run, const FeltMotion& felt, const Platform& 
   }
   std::stable_sort(s.false_cues.begin(), s.false_cues.end(),
                    [](const FalseCue& a, const FalseCue& b) { return a.begin < b.begin; });
-  for (std::size_t i = 0; i < kPlatformAxes; ++i) {
-    if (platform.limits.axes[i].moves())
-      s.axes[i] = axis_score(run, static_cast<PlatformAxis>(i), platform.limits.axes[i]);
-  }
+  for (const PlatformAxis axis : platform.limits.moving_axes())
+    s.axes[axis] = axis_score(run, axis, platform.limits[axis]);
   if (platform.legs) {
     for (const CueingStep& step : run.steps)
       s.leg_speed = std::max(s.leg_speed, step.leg_speed / platform.legs->leg.rate);
@@ -130,9 +126,8 @@ CueingScore score(const CueingRun& run, const FeltMotion& felt, const Platform& 
 Measured difference(const CueingScore& a, const CueingScore& b, Cue cue, CueFigure figure) {
   using Figures = BlockStatistics::Figures;
   const bool physical = figure == CueFigure::kPhysicalPearson || figure == CueFigure::kPhysicalLag;
-  const auto i = static_cast<std::size_t>(cue);
-  const BlockStatistics &of_a = physical ? a.physical_blocks[i] : a.felt_blocks[i],
-                        &of_b = physical ? b.physical_blocks[i] : b.felt_blocks[i];
+  const BlockStatistics &of_a = physical ? a.physical_blocks[cue] : a.felt_blocks[cue],
+                        &of_b = physical ? b.physical_blocks[cue] : b.felt_blocks[cue];
   double Figures::*which = &Figures::rmse;
   if (figure == CueFigure::kPearson || figure == CueFigure::kPhysicalPearson) which = &Figures::pearson;
   if (figure == CueFigure::kLag || figure == CueFigure::kPhysicalLag) which = &Figures::lag;

@@ -58,7 +58,7 @@ struct CueingScore {
   std::vector<std::string> notes;
 
   /// For comparisons.
-  std::vector<BlockStatistics> felt_blocks, physical_blocks;  ///< by cue
+  PerCue<BlockStatistics> felt_blocks = {}, physical_blocks = {};
   std::uint64_t seed = 1;
 };
 

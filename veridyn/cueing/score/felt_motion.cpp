@@ -5,16 +5,16 @@
 namespace veridyn::cueing {
 namespace {
 
-constexpr std::array<std::string_view, kCues> kCueNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
+constexpr PerCue<std::string_view> kCueNames = {"surge", "sway", "heave", "roll", "pitch", "yaw"};
 
 /// Forces less that of rest, then rates.
-std::array<double, kCues> cues_of(const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
+PerCue<double> cues_of(const Eigen::Vector3d& force, const Eigen::Vector3d& rate) {
   return {force.x(), force.y(), force.z() + kGravity, rate.x(), rate.y(), rate.z()};
 }
 
 }  // namespace
 
-std::string_view name_of(Cue cue) { return kCueNames[static_cast<std::size_t>(cue)]; }
+std::string_view name_of(Cue cue) { return kCueNames[cue]; }
 std::string_view unit_of(Cue cue) { return cue < Cue::kRoll ? "m/s^2" : "rad/s"; }
 
 FeltMotion felt_motion(const CueingRun& run, const VestibularModel& model, const MotionThresholds& thresholds) {

@@ -13,6 +13,8 @@ namespace veridyn::cueing {
 enum class Cue { kSurge, kSway, kHeave, kRoll, kPitch, kYaw };
 /// How many cues there are.
 inline constexpr std::size_t kCues = 6;
+/// All of them, in order.
+inline constexpr auto kAllCues = enumerators<Cue, kCues>();
 /// A value for each cue.
 template <class T>
 using PerCue = EnumArray<Cue, T, kCues>;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
 
 namespace veridyn::cueing {
@@ -71,16 +72,6 @@ void halve_gains(Tuning& result, const std::function<double(const WashoutDesign&
   }
 }
 
-/// A drive's run does not report of itself while many go on at once.
-class Silent : public Progress {
- public:
-  explicit Silent(const Progress& of) : of_(&of) {}
-  [[nodiscard]] bool interrupted() const override { return of_->interrupted(); }
-
- private:
-  const Progress* of_;
-};
-
 }  // namespace
 
 double tuning_cost(const CueingRun& run, const FeltMotion& felt, const TuningOptions& options) {
@@ -116,8 +107,8 @@ Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::v
   Tuning result;
   result.design = design.clone();
   const auto cost_of = [&](const WashoutDesign& of) {
-    Silent silent(progress);
-    const CueingRun run = drive_platform(drive, *of.make(platform), platform, silent);
+    QuietProgress quiet(progress);
+    const CueingRun run = drive_platform(drive, *of.make(platform), platform, quiet);
     return tuning_cost(run, felt_motion(run, model, thresholds), options);
   };
   result.cost_before = result.cost_after = cost_of(design);

@@ -54,7 +54,7 @@ class Foresight {
   Foresight& operator=(const Foresight&) = default;
 };
 
-/// How far forces that were foreseen half a second ahead missed those that came, beside a present force that was
+/// How far forces that were foreseen half a second ahead missed those that came, alongside a present force that was
 /// expected to stay.
 class ForesightAccount {
  public:

@@ -37,7 +37,7 @@ class OptimalChannel {
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostStates, kMostStates>;
   using Input = Eigen::Vector2d;  ///< force and rate of the vehicle, or angle's rate and shift's acceleration
 
-  /// What the design is of.
+  /// View of a model of perception, and what the design is of.
   struct Options {
     const VestibularModel* model = nullptr;
     std::size_t canal = 0;                           ///< the axis that turns

@@ -12,7 +12,7 @@ namespace veridyn::cueing {
 /// Time since the last sample [s]; nothing: the beginning.
 using SampleStep = std::optional<double>;
 
-/// What an algorithm knows of the vehicle, at the driver's head in axes forward, right, down.
+/// View of a sample: what an algorithm knows of the vehicle, at the driver's head in axes forward, right, down.
 struct VehicleMotion {
   Eigen::Vector3d force;         ///< specific force [m/s^2]
   Eigen::Vector3d acceleration;  ///< [m/s^2]; without a recorded attitude the vehicle is taken for level

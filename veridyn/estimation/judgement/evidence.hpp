@@ -13,7 +13,7 @@ namespace veridyn::estimation {
 enum class Purpose {
   kData,        ///< the recording agrees with itself and with physics
   kParameters,  ///< the numbers are physical constants of this individual, within their intervals
-  kPrediction   ///< the model predicts motion that it has not seen, inside the range that it was excited in
+  kPrediction   ///< the model predicts held-out motion, inside the range that it was excited in
 };
 /// In the order of reports.
 inline constexpr std::array<Purpose, 3> kPurposes{Purpose::kData, Purpose::kParameters, Purpose::kPrediction};

@@ -155,16 +155,16 @@ std::string sentence_of(const Judgement& judgement) {
     }
     return no;
   };
-  return fmt::format("{}; {}; {}.",
-                     one_of(judgement.data, "The recording agrees with itself and with physics",
-                            "The recording agrees with itself with reservations", "The recording was not judged",
-                            "The recording contradicts itself"),
-                     one_of(judgement.parameters, "the parameters may be used as physical constants",
-                            "the parameters may be used with care", "the parameters were not judged",
-                            "the parameters must not be taken for physical constants"),
-                     one_of(judgement.prediction, "the model predicts what it has not seen",
-                            "the model predicts what it has not seen, with care", "prediction was not judged",
-                            "the model does not predict what it has not seen"));
+  return fmt::format(
+      "{}; {}; {}.",
+      one_of(judgement.data, "The recording agrees with itself and with physics",
+             "The recording agrees with itself with reservations", "The recording was not judged",
+             "The recording contradicts itself"),
+      one_of(judgement.parameters, "the parameters may be used as physical constants",
+             "the parameters may be used with care", "the parameters were not judged",
+             "the parameters must not be taken for physical constants"),
+      one_of(judgement.prediction, "the model predicts held-out data", "the model predicts held-out data, with care",
+             "prediction was not judged", "the model does not predict held-out data"));
 }
 
 }  // namespace veridyn::estimation

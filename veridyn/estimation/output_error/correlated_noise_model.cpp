@@ -25,13 +25,13 @@ struct Linearised {
 
 /// All that a segment's unknowns are at an estimate: the shared ones, then its own.
 Eigen::VectorXd values_of(const ParametricModel& model, const OutputErrorEstimate& estimate, std::size_t segment) {
-  const auto own = model.initial_conditions(segment);
-  Eigen::VectorXd theta(estimate.theta.size() + signed_index(own.size()));
+  const auto initial = model.initial_conditions(segment);
+  Eigen::VectorXd theta(estimate.theta.size() + signed_index(initial.size()));
   theta.head(estimate.theta.size()) = estimate.theta;
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    double value = own[i].start;
+  for (std::size_t i = 0; i < initial.size(); ++i) {
+    double value = initial[i].start;
     for (const SegmentParameter& p : estimate.segment_parameters)
-      if (p.segment == segment && p.name == own[i].name) value = p.value;
+      if (p.segment == segment && p.name == initial[i].name) value = p.value;
     theta(estimate.theta.size() + signed_index(i)) = value;
   }
   return theta;
@@ -60,12 +60,12 @@ std::vector<SegmentUnknowns> free_unknowns(const ParametricModel& model, const O
     ++columns;
   }
   for (std::size_t s = 0; s < all.size() && starts; ++s) {
-    const auto own = model.initial_conditions(s);
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      if (own[i].fixed) continue;
+    const auto initial = model.initial_conditions(s);
+    for (std::size_t i = 0; i < initial.size(); ++i) {
+      if (initial[i].fixed) continue;
       all[s].active.push_back(signed_index(parameters.size() + i));
       all[s].column.push_back(columns++);
-      all[s].of.push_back(&own[i]);
+      all[s].of.push_back(&initial[i]);
     }
   }
   return all;
@@ -78,10 +78,10 @@ std::optional<Linearised> linearised(const ParametricModel& model, const std::ve
   out.columns.resize(measured.size());
   std::vector<char> good(measured.size(), 0);
   numerics::parallel_for(measured.size(), threads, [&](std::size_t s) {
-    const SegmentUnknowns& own = unknowns[s];
+    const SegmentUnknowns& of_segment = unknowns[s];
     const Eigen::VectorXd theta = values_of(model, estimate, s);
     ModelResponse response;
-    if (!model.respond(s, theta, own.active, response)) return;
+    if (!model.respond(s, theta, of_segment.active, response)) return;
     good[s] = 1;
     const Index outputs = sigma.size(), rows = measured[s].size();
     RowMatrix& part = out.columns[s];
@@ -89,13 +89,13 @@ std::optional<Linearised> linearised(const ParametricModel& model, const std::ve
     for (Index r = 0; r < rows; ++r)
       part(r, out.unknowns) =
           (measured[s](r / outputs, r % outputs) - response.output(r / outputs, r % outputs)) / sigma(r % outputs);
-    for (std::size_t i = 0; i < own.active.size(); ++i) {
+    for (std::size_t i = 0; i < of_segment.active.size(); ++i) {
       Eigen::VectorXd column = response.sensitivity.col(signed_index(i));
       for (Index r = 0; r < rows; ++r) column(r) /= sigma(r % outputs);
-      const double norm = column.norm(), prior = own.of[i]->prior_sigma;
+      const double norm = column.norm(), prior = of_segment.of[i]->prior_sigma;
       const bool known = std::isfinite(prior);
-      if (known) part.col(out.unknowns) += column * (theta(own.active[i]) - own.of[i]->start);
-      part.col(own.column[i]) = column * (known ? prior : norm > 0.0 ? kUnknownBefore / norm : 0.0);
+      if (known) part.col(out.unknowns) += column * (theta(of_segment.active[i]) - of_segment.of[i]->start);
+      part.col(of_segment.column[i]) = column * (known ? prior : norm > 0.0 ? kUnknownBefore / norm : 0.0);
     }
   });
   if (std::count(good.begin(), good.end(), 0) > 0) return std::nullopt;
@@ -116,20 +116,20 @@ double whiten(const RowMatrix& measured, const Eigen::VectorXd& phi, RowMatrix& 
         row.setZero();
         continue;
       }
-      const Eigen::RowVectorXd own = row;
+      const Eigen::RowVectorXd unwhitened = row;
       if (last >= 0) {
         const double kept = std::pow(phi(j), static_cast<double>(k - last));
-        row = (own - kept * before) / std::sqrt(1.0 - kept * kept);
+        row = (unwhitened - kept * before) / std::sqrt(1.0 - kept * kept);
         log_determinant += std::log(1.0 - kept * kept);
       }
-      before = own;
+      before = unwhitened;
       last = k;
     }
   }
   return log_determinant;
 }
 
-/// Twice the negative logarithm of the marginal likelihood, the noise's size at its best.
+/// View of a linearised model: twice the negative logarithm of the marginal likelihood, the noise's size at its best.
 class MarginalLikelihood {
  public:
   MarginalLikelihood(const std::vector<RowMatrix>& measured, const Linearised& linearised)

@@ -30,7 +30,7 @@ class LoggedModel final : public ParametricModel {
   using Misfit = std::function<double(std::size_t segment, const RowMatrix& output)>;
 
   /// Model and log must outlive it.
-  /// @param name  tells apart models whose responses are in one log
+  /// @param name  distinguishes models whose responses are in one log
   /// @param log  nullptr: nothing is kept
   LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log);
 

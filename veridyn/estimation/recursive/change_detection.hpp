@@ -74,8 +74,6 @@ class ChangeDetector {
 
   [[nodiscard]] bool watching() const;       ///< false while learning
   [[nodiscard]] double correlation() const;  ///< a, between neighbouring blocks
-  [[nodiscard]] double mean_threshold() const { return mean_threshold_; }
-  [[nodiscard]] double spread_threshold() const { return spread_threshold_; }
   /// Largest of the sums over their thresholds: 1 is an alarm.
   [[nodiscard]] double suspicion() const;
   [[nodiscard]] std::uint64_t alarms() const { return alarms_; }

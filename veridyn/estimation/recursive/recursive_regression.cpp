@@ -100,9 +100,6 @@ const SmallMatrix& RecursiveRegression::covariance_white() const {
 }
 const SmallVector& RecursiveRegression::sigma() const { return state_->error_bars(state_->options.covariance).sigma; }
 const SmallVector& RecursiveRegression::singular_values() const { return state_->singular_values; }
-SmallMatrix RecursiveRegression::right_singular_vectors() const {
-  return state_->options.method == Method::kOls ? SmallMatrix(0, 0) : state_->data.svd().vectors();
-}
 double RecursiveRegression::threshold() const { return state_->threshold; }
 Eigen::Index RecursiveRegression::excited_directions() const { return state_->excited_directions; }
 const SmallMatrix& RecursiveRegression::unexcited() const { return state_->unexcited_combinations; }

@@ -119,8 +119,6 @@ class RecursiveRegression {
   /// Singular values of the whitened part with errors (one more than regressor combinations with errors), descending;
   /// OLS: empty.
   [[nodiscard]] const SmallVector& singular_values() const;
-  /// Right singular vectors that go with them: columns, orthonormal to 1e-12. OLS: empty.
-  [[nodiscard]] SmallMatrix right_singular_vectors() const;
   /// Directions with larger singular values are excited (PCA-GTLS; the others only report it).
   [[nodiscard]] double threshold() const;
   /// Of n_p; exact ones included.

@@ -18,8 +18,6 @@ constexpr double kNoise = 3.0;        // standard deviations of the largest sing
 constexpr double kMoreNoise = 4.0;    // factor on h'Wh that an estimate may need in one step
 constexpr double kLargestValue = 1e150;
 
-using Buffer = std::array<double, kMaxRecursiveColumns>;
-
 SmallMatrix error_covariance_of(const RecursiveOptions& options, Eigen::Index parameters,
                                 const std::vector<Eigen::Index>& free, const std::vector<Eigen::Index>& pinned,
                                 const SmallVector& prior) {
@@ -110,17 +108,17 @@ void RecursiveRegression::State::start(const Eigen::VectorXd& theta_0, const Eig
   // Rows c_0 L^-1 diag(1/sd) with P = diag(sd) L L' diag(sd).
   const Eigen::MatrixXd scaled = sd.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd root = c_0 * cholesky.matrixL().solve(scaled);
-  Buffer row{};
+  internal::RecursiveRow row{};
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) row[static_cast<std::size_t>(j)] = root(i, j);
     row[static_cast<std::size_t>(n)] = root.row(i).dot(start_theta);
     if (!data.append(row.data(), 1.0))
       throw InputError("recursive.start", "P_0 is too small or theta_0 too large for a computation");
   }
-  const auto own_rows = static_cast<double>(n);
-  prior_rows = rows_behind > 0.0 ? rows_behind : own_rows;
+  const auto prior_count = static_cast<double>(n);
+  prior_rows = rows_behind > 0.0 ? rows_behind : prior_count;
   // The rows behind the estimate also held errors.
-  if (prior_rows > own_rows) data.append_errors((prior_rows - own_rows) * c_0 * c_0 / h_W_h);
+  if (prior_rows > prior_count) data.append_errors((prior_rows - prior_count) * c_0 * c_0 / h_W_h);
   samples = squared_weights = prior_rows;
   const Eigen::MatrixXd information = root.transpose() * root;
   squares = information;
@@ -139,7 +137,7 @@ void RecursiveRegression::State::set_equation_error(double variance) {
   SmallMatrix A;
   data.square_root(A);
   data = RecursiveTotalLeastSquares(W);
-  Buffer row{};
+  internal::RecursiveRow row{};
   for (Eigen::Index i = 0; i <= n; ++i) {
     for (Eigen::Index j = 0; j <= n; ++j) row[static_cast<std::size_t>(j)] = A(i, j);
     (void)data.append(row.data(), 1.0);
@@ -153,67 +151,21 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
   VERIDYN_ASSERT(x.size() == names.size());
   RecursiveUpdate result;
   result.innovation = result.innovation_sigma = kNaN;
-  const Eigen::Index n = count();
-  Buffer row{};
-  bool good = std::abs(z) <= kLargestValue;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double value = x[static_cast<std::size_t>(free[static_cast<std::size_t>(j)])];
-    row[static_cast<std::size_t>(j)] = value;
-    good = good && std::abs(value) <= kLargestValue;
-  }
-  double regressand = z;
-  for (const Eigen::Index i : pinned) {
-    good = good && std::abs(x[static_cast<std::size_t>(i)]) <= kLargestValue;
-    regressand -= x[static_cast<std::size_t>(i)] * prior(i);
-  }
-  row[static_cast<std::size_t>(n)] = regressand;
-  if (!good || !data.accepts(row.data())) {
+  internal::RecursiveRow row{};
+  if (!take_row(x, z, row)) {
     ++refused;
     return result;
   }
-
+  const Eigen::Index n = count();
   double predicted = 0.0;
   for (Eigen::Index j = 0; j < n; ++j) predicted += row[static_cast<std::size_t>(j)] * free_theta(j);
-  const double innovation = regressand - predicted;
-  result.innovation = innovation;
-  const bool known = termination == EstimateTermination::kEstimated;
-  double lambda = options.forgetting.square_weight();
-  if (known) {
-    // Maximum-likelihood regressor, and q = x_hat M^-1 x_hat' from S and V of the excited part; d_hat h = 0.
-    Buffer d_hat{}, along{}, along_exact{};
-    const double slope = innovation / h_W_h;
-    double fitted = 0.0;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      d_hat[static_cast<std::size_t>(j)] = row[static_cast<std::size_t>(j)] + slope * W_h(j);
-      fitted += d_hat[static_cast<std::size_t>(j)] * free_theta(j);
-    }
-    d_hat[static_cast<std::size_t>(n)] = fitted;
-    data.coordinates(d_hat.data(), along.data(), along_exact.data());
-    double q = 0.0;
-    for (int i = 0; i < data.exact_rank(); ++i)
-      q += along_exact[static_cast<std::size_t>(i)] * along_exact[static_cast<std::size_t>(i)];
-    const int last = data.noisy_columns() - 1;
-    const double smallest = data.singular_value(last);
-    const int excited = options.method == Method::kPcaGtls ? excited_noisy : last;
-    for (int j = 0; j < excited; ++j) {
-      const double s = data.singular_value(j);
-      const double f = along[static_cast<std::size_t>(j)];
-      q += f * f / ((s - smallest) * (s + smallest));
-    }
-    if (!(q < 1e300)) q = 1e300;
-    if (residual_variance >= 0.0)
-      result.innovation_sigma = std::sqrt(residual_variance * (1.0 + q * squared_weights / samples));
-    if (options.forgetting.variable) lambda = variable.update(innovation, q);
-    result.triggered = options.forgetting.variable && variable.triggered();
-    // A recursive residual e/sqrt(1 + q) has the variance of the error (Brown, Durbin & Evans 1975).
-    SmallVector score(n);
-    const double residual = innovation / std::sqrt(1.0 + q);
-    for (Eigen::Index j = 0; j < n; ++j) score(j) = d_hat[static_cast<std::size_t>(j)] * residual;
-    scores.add(d_hat.data(), score, lambda);
-  } else {
-    scores.forget(lambda);
-  }
-  result.lambda = lambda;
+  result.innovation = row[static_cast<std::size_t>(n)] - predicted;
+  result.lambda = options.forgetting.square_weight();
+  if (termination == EstimateTermination::kEstimated)
+    score_row(row, result);
+  else
+    scores.forget(result.lambda);
+  const double lambda = result.lambda;
   (void)data.append(row.data(), lambda);
   column_weight = lambda * column_weight + 1.0;
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -240,6 +192,59 @@ RecursiveUpdate RecursiveRegression::State::update(std::span<const double> x, do
     scores.restart();
   }
   return result;
+}
+
+bool RecursiveRegression::State::take_row(std::span<const double> x, double z, internal::RecursiveRow& row) const {
+  const Eigen::Index n = count();
+  bool good = std::abs(z) <= kLargestValue;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double value = x[static_cast<std::size_t>(free[static_cast<std::size_t>(j)])];
+    row[static_cast<std::size_t>(j)] = value;
+    good = good && std::abs(value) <= kLargestValue;
+  }
+  double regressand = z;
+  for (const Eigen::Index i : pinned) {
+    good = good && std::abs(x[static_cast<std::size_t>(i)]) <= kLargestValue;
+    regressand -= x[static_cast<std::size_t>(i)] * prior(i);
+  }
+  row[static_cast<std::size_t>(n)] = regressand;
+  return good && data.accepts(row.data());
+}
+
+void RecursiveRegression::State::score_row(const internal::RecursiveRow& row, RecursiveUpdate& result) {
+  const Eigen::Index n = count();
+  const double innovation = result.innovation;
+  // Maximum-likelihood regressor, and q = x_hat M^-1 x_hat' from S and V of the excited part; d_hat h = 0.
+  internal::RecursiveRow d_hat{}, along{}, along_exact{};
+  const double slope = innovation / h_W_h;
+  double fitted = 0.0;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    d_hat[static_cast<std::size_t>(j)] = row[static_cast<std::size_t>(j)] + slope * W_h(j);
+    fitted += d_hat[static_cast<std::size_t>(j)] * free_theta(j);
+  }
+  d_hat[static_cast<std::size_t>(n)] = fitted;
+  data.coordinates(d_hat.data(), along.data(), along_exact.data());
+  double q = 0.0;
+  for (int i = 0; i < data.exact_rank(); ++i)
+    q += along_exact[static_cast<std::size_t>(i)] * along_exact[static_cast<std::size_t>(i)];
+  const int last = data.noisy_columns() - 1;
+  const double smallest = data.singular_value(last);
+  const int excited = options.method == Method::kPcaGtls ? excited_noisy : last;
+  for (int j = 0; j < excited; ++j) {
+    const double s = data.singular_value(j);
+    const double f = along[static_cast<std::size_t>(j)];
+    q += f * f / ((s - smallest) * (s + smallest));
+  }
+  if (!(q < 1e300)) q = 1e300;
+  if (residual_variance >= 0.0)
+    result.innovation_sigma = std::sqrt(residual_variance * (1.0 + q * squared_weights / samples));
+  if (options.forgetting.variable) result.lambda = variable.update(innovation, q);
+  result.triggered = options.forgetting.variable && variable.triggered();
+  // A recursive residual e/sqrt(1 + q) has the variance of the error (Brown, Durbin & Evans 1975).
+  SmallVector score(n);
+  const double residual = innovation / std::sqrt(1.0 + q);
+  for (Eigen::Index j = 0; j < n; ++j) score(j) = d_hat[static_cast<std::size_t>(j)] * residual;
+  scores.add(d_hat.data(), score, result.lambda);
 }
 
 void RecursiveRegression::State::solve() {
@@ -312,7 +317,7 @@ bool RecursiveRegression::State::solve_least() {
     const double next = data.singular_value(last - 1);
     if (!(next - data.singular_value(last) > 1e-12 * next)) return false;
   }
-  Buffer b;
+  internal::RecursiveRow b;
   data.basis(last, b.data());
   if (!(data.share_of_last(b.data()) > kNotInData * kNotInData)) return false;
   const double factor = -1.0 / b[static_cast<std::size_t>(n)];

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,9 @@
 namespace veridyn::estimation {
 
 namespace internal {
+
+/// Columns of one row, on the stack.
+using RecursiveRow = std::array<double, kMaxRecursiveColumns>;
 
 /// Error bars of all parameters, computed at the first call after an update.
 struct RecursiveErrorBars {
@@ -32,6 +37,10 @@ struct RecursiveRegression::State {
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows_behind, double residual_sd);
   void set_equation_error(double variance);
   RecursiveUpdate update(std::span<const double> x, double z);
+  /// Free regressors, and z less the pinned part, as a row. @return whether it can be taken
+  [[nodiscard]] bool take_row(std::span<const double> x, double z, internal::RecursiveRow& row) const;
+  /// Score of a row before it is taken, and what its innovation says: forgetting and sigma go into `result`.
+  void score_row(const internal::RecursiveRow& row, RecursiveUpdate& result);
   void solve();
   bool solve_least();
   bool solve_excited(int excited);

@@ -22,7 +22,6 @@ class RecursiveTotalLeastSquares {
   explicit RecursiveTotalLeastSquares(const Eigen::MatrixXd& error_covariance);
 
   [[nodiscard]] int columns() const { return size_; }
-  [[nodiscard]] int exact_columns() const { return exact_; }
   /// Columns with error, w.
   [[nodiscard]] int noisy_columns() const { return noisy_; }
 

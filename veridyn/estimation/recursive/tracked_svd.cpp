@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
@@ -175,6 +176,44 @@ struct Tracked {
   std::uint64_t* updates;
 };
 
+// What a fresh row does to the decomposition before it: B'B = weight S^2 + y y', y = V' d. Turns V by that, and returns
+// the largest angle; nothing where the angles are too large to turn together.
+template <int kColumns>
+VERIDYN_INLINE std::optional<double> turn_for_row(Rows<kColumns>& V, Rows<kColumns>& G, Rows<kColumns>& K,
+                                                  const double* values, const double* fresh, double weight) {
+  constexpr auto kSize = at(kColumns);
+  constexpr std::size_t kPairs = Row<kColumns>::kPairs;
+  Row<kColumns> y = Row<kColumns>::zero(), power = y;
+  for (std::size_t i = 0; i < kSize; ++i) y.add(fresh[i], V[i]);
+  for (std::size_t j = 0; j < kPairs; ++j) {
+    const Pair s{values[2 * j], 2 * j + 1 < kSize ? values[2 * j + 1] : 0.0};
+    power.pair[j] = weight * s * s + y.pair[j] * y.pair[j];
+  }
+  for (std::size_t i = 0; i < kSize; ++i) {
+    const double current = y(static_cast<int>(i));
+    for (std::size_t j = 0; j < kPairs; ++j) G[i].pair[j] = Pair{current, current} * y.pair[j];
+  }
+  const Angles angles = angles_of<kColumns>(G, power, K);
+  if (!(angles.largest <= kLargestAngle)) return std::nullopt;
+  turn_all<kColumns>(V, K, angles.largest);
+  return angles.largest;
+}
+
+// Largest value first: the values, and with them the columns of V.
+template <int kColumns>
+VERIDYN_INLINE void sort_columns(double* values, Rows<kColumns>& V) {
+  for (std::size_t j = 1; j < at(kColumns); ++j) {
+    for (std::size_t i = j; i > 0 && values[i] > values[i - 1]; --i) {
+      std::swap(values[i], values[i - 1]);
+      for (auto& v : V) {
+        const double swapped = v(static_cast<int>(i));
+        v.set(static_cast<int>(i), v(static_cast<int>(i) - 1));
+        v.set(static_cast<int>(i) - 1, swapped);
+      }
+    }
+  }
+}
+
 template <int kColumns>
 VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int stride, const double* fresh,
                           double weight) {
@@ -201,22 +240,9 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
     if (largest > 0.0) (void)std::frexp(largest, &exponent);
     unit = std::ldexp(1.0, std::clamp(exponent, -1000, 1000));
   } else if (fresh != nullptr) {
-    // What the fresh row does to the decomposition before it: B'B = weight S^2 + y y', y = V' d.
-    Row<kColumns> y = Row<kColumns>::zero(), power = y;
-    for (std::size_t i = 0; i < kSize; ++i) y.add(fresh[i], V[i]);
-    for (std::size_t j = 0; j < kPairs; ++j) {
-      const Pair s{values[2 * j], 2 * j + 1 < kSize ? values[2 * j + 1] : 0.0};
-      power.pair[j] = weight * s * s + y.pair[j] * y.pair[j];
-    }
-    for (std::size_t i = 0; i < kSize; ++i) {
-      const double current = y(static_cast<int>(i));
-      for (std::size_t j = 0; j < kPairs; ++j) G[i].pair[j] = Pair{current, current} * y.pair[j];
-    }
-    const Angles angles = angles_of<kColumns>(G, power, K);
-    if (angles.largest <= kLargestAngle) {
-      turn_all<kColumns>(V, K, angles.largest);
+    if (const auto angle = turn_for_row<kColumns>(V, G, K, values, fresh, weight)) {
       ++*tracked.turns;
-      clean = angles.largest > kCleanAngle;
+      clean = *angle > kCleanAngle;
     }
   }
   const double inverse_unit = 1.0 / unit;
@@ -253,16 +279,7 @@ VERIDYN_INLINE void track(const Tracked& tracked, const double* triangle, int st
     multiply<kColumns>(B, G, -0.5, 1.5, B, V);
   }
   for (std::size_t i = 0; i < kSize; ++i) values[i] = power(static_cast<int>(i));
-  for (std::size_t j = 1; j < kSize; ++j) {
-    for (std::size_t i = j; i > 0 && values[i] > values[i - 1]; --i) {
-      std::swap(values[i], values[i - 1]);
-      for (auto& v : V) {
-        const double swapped = v(static_cast<int>(i));
-        v.set(static_cast<int>(i), v(static_cast<int>(i) - 1));
-        v.set(static_cast<int>(i) - 1, swapped);
-      }
-    }
-  }
+  sort_columns<kColumns>(values, V);
   for (std::size_t i = 0; i < kSize; ++i) values[i] = unit * std::sqrt(values[i]);
   for (std::size_t i = 0; i < kSize; ++i) {
     for (std::size_t j = 0; j < kPairs; ++j) {

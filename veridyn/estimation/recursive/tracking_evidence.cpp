@@ -130,7 +130,7 @@ Evidence prediction_row(const RegressionTracker& tracker) {
           .value = share,
           .limit = kPredicted,
           .scale = "R2",
-          .text = fmt::format("the estimates predicted {:.0f} % of the variance of rows that they had not seen{}",
+          .text = fmt::format("the estimates predicted {:.0f} % of the variance of held-out rows{}",
                               100.0 * std::max(0.0, share),
                               passed ? "" : fmt::format(", less than {:.0f} %", 100.0 * kPredicted)),
           .bears_on = Purpose::kPrediction};

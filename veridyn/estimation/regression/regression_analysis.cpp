@@ -190,21 +190,21 @@ RegressionEstimate RegressionAnalysis::run(Method method) const {
   result.condition_number = least_squares_.condition_number;
   switch (method) {
     case Method::kOls:
-      run_ols(result);
+      result = by_ols(std::move(result));
       break;
     case Method::kTls:
     case Method::kGtls:
-      run_tls(result);
+      result = by_tls(std::move(result));
       break;
     case Method::kPcaGtls:
-      run_pca(result);
+      result = by_pca(std::move(result));
       break;
   }
-  finish(result);
+  result = with_intervals(std::move(result));
   return result;
 }
 
-void RegressionAnalysis::run_ols(RegressionEstimate& result) const {
+RegressionEstimate RegressionAnalysis::by_ols(RegressionEstimate result) const {
   const OrdinaryLeastSquares& ols = least_squares_;
   const Eigen::Index n = data_.parameters();
   const double freedom = rows() - static_cast<double>(n);
@@ -216,7 +216,7 @@ void RegressionAnalysis::run_ols(RegressionEstimate& result) const {
     result.termination = EstimateTermination::kRankDeficient;
     result.message = fmt::format("regressors are linearly dependent (condition number {:.2g}): no unique estimate",
                                  ols.condition_number);
-    return;
+    return result;
   }
   const double variance = ols.residual_sum_of_squares / freedom;
   if (data_.has_error_covariance() && data_.error_scale_known) {
@@ -236,9 +236,10 @@ void RegressionAnalysis::run_ols(RegressionEstimate& result) const {
   result.termination = EstimateTermination::kEstimated;
   result.message =
       fmt::format("estimated from {} rows, all error taken to be in {}", result.rows, data_.regressand_name);
+  return result;
 }
 
-void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
+RegressionEstimate RegressionAnalysis::by_tls(RegressionEstimate result) const {
   const Eigen::Index n = data_.parameters();
   const double freedom = rows() - static_cast<double>(n);
   const Eigen::MatrixXd W = error_covariance(result.method);
@@ -252,14 +253,14 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
   if (!tls.full_rank) {
     result.termination = EstimateTermination::kRankDeficient;
     result.message = "exactly known regressors are linearly dependent: no unique estimate";
-    return;
+    return result;
   }
   if (!tls.solved) {
     result.termination = EstimateTermination::kNongeneric;
     result.message = fmt::format(
         "a combination of the regressors is as small as its assumed errors ({:.0f} % noise): no {} solution",
         100.0 * std::min(1.0, tls.noise_share), to_string(result.method));
-    return;
+    return result;
   }
   result.covariance_white = tls.covariance_white;
   result.covariance = tls.covariance_white;
@@ -275,6 +276,7 @@ void RegressionAnalysis::run_tls(RegressionEstimate& result) const {
   result.message =
       fmt::format("estimated from {} rows; noise is at most {:.2g} % of the power of any combination of regressors",
                   result.rows, 100.0 * tls.noise_share);
+  return result;
 }
 
 std::optional<Eigen::VectorXd> RegressionAnalysis::theta_under(Method method, const Eigen::MatrixXd& W) const {
@@ -300,7 +302,7 @@ std::optional<Eigen::VectorXd> RegressionAnalysis::theta_under(Method method, co
   return free.all_values(free.prior + directions * tls.theta);
 }
 
-void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
+RegressionEstimate RegressionAnalysis::by_pca(RegressionEstimate result) const {
   const Eigen::Index n = data_.parameters();
   const double freedom = rows() - static_cast<double>(n);
   const FreeParameters free = free_parameters(options_, triangle_, error_covariance(result.method));
@@ -317,7 +319,7 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
   if (!pca.solved) {
     result.termination = EstimateTermination::kNongeneric;
     result.message = "no combination of the excited directions explains the regressand: no PCA-GTLS solution";
-    return;
+    return result;
   }
 
   const Eigen::MatrixXd& inverse = pca.inverse_on_excited;
@@ -363,9 +365,10 @@ void RegressionAnalysis::run_pca(RegressionEstimate& result) const {
     const bool bound_dominates = by_bound > excited(j, j) && !(std::abs(pca.theta(j)) > critical * sigma);
     p.status = p.unexcited_share > 0.5 || bound_dominates ? ParameterStatus::kNotExcited : ParameterStatus::kIdentified;
   }
+  return result;
 }
 
-void RegressionAnalysis::finish(RegressionEstimate& result) const {
+RegressionEstimate RegressionAnalysis::with_intervals(RegressionEstimate result) const {
   const Eigen::Index n = data_.parameters();
   result.parameters.resize(static_cast<std::size_t>(n));
   const Eigen::VectorXd r = data_.regressand - data_.regressors * result.theta;
@@ -401,6 +404,7 @@ void RegressionAnalysis::finish(RegressionEstimate& result) const {
   if (!usable) {
     result.covariance = result.covariance_white = Eigen::MatrixXd::Constant(n, n, kInfinity);
   }
+  return result;
 }
 
 }  // namespace veridyn::estimation::internal

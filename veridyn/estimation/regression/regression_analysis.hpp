@@ -32,10 +32,10 @@ class RegressionAnalysis {
   [[nodiscard]] Eigen::MatrixXd error_covariance(Method method) const;
 
  private:
-  void run_ols(RegressionEstimate& result) const;
-  void run_tls(RegressionEstimate& result) const;
-  void run_pca(RegressionEstimate& result) const;
-  void finish(RegressionEstimate& result) const;
+  [[nodiscard]] RegressionEstimate by_ols(RegressionEstimate result) const;
+  [[nodiscard]] RegressionEstimate by_tls(RegressionEstimate result) const;
+  [[nodiscard]] RegressionEstimate by_pca(RegressionEstimate result) const;
+  [[nodiscard]] RegressionEstimate with_intervals(RegressionEstimate result) const;
   [[nodiscard]] const RowMatrix& X() const { return scaled_X_.size() > 0 ? scaled_X_ : data_.regressors; }
   [[nodiscard]] const Eigen::VectorXd& z() const { return scaled_z_.size() > 0 ? scaled_z_ : data_.regressand; }
 

@@ -75,15 +75,15 @@ Evidence error_scale(const RegressionEstimate& gtls, const Eigen::VectorXd& resi
 
 Evidence ols_agreement(const RegressionEstimate& ols, const RegressionEstimate& candidate) {
   const std::string_view name = to_string(candidate.method);
-  const Distance apart = distance(candidate, candidate.theta, ols.theta);
+  const Distance gap = distance(candidate, candidate.theta, ols.theta);
   Evidence check{.name = "agreement of OLS",
-                 .outcome = passed_or(apart.sigmas <= kSensitivityLimit, Outcome::kCare),
-                 .value = apart.sigmas,
+                 .outcome = passed_or(gap.sigmas <= kSensitivityLimit, Outcome::kCare),
+                 .value = gap.sigmas,
                  .limit = kSensitivityLimit,
                  .scale = "sigma"};
-  check.text = check.passed() ? fmt::format("OLS and {} agree to {:.1f} sigma", name, apart.sigmas)
+  check.text = check.passed() ? fmt::format("OLS and {} agree to {:.1f} sigma", name, gap.sigmas)
                               : fmt::format("OLS is {:.1f} sigma of {} away in {}: errors of the regressors matter",
-                                            apart.sigmas, name, apart.parameter);
+                                            gap.sigmas, name, gap.parameter);
   return check;
 }
 
@@ -234,12 +234,12 @@ RegressionComparison compare(const RegressionData& data, const RegressionOptions
                                  name, candidate.error_scale, other.moved.sigmas));
   }
   if (ols.usable() && other.theta) {
-    const Distance apart = distance(ols, ols.theta, *other.theta);
-    if (apart.sigmas <= 1.0) {
+    const Distance gap = distance(ols, ols.theta, *other.theta);
+    if (gap.sigmas <= 1.0) {
       return recommend(std::move(result), Method::kOls,
                        fmt::format("OLS: the residual variance is {:.2g} of what the assumed errors give; with that "
                                    "corrected the errors of the regressors matter by {:.1f} sigma at most",
-                                   candidate.error_scale, apart.sigmas));
+                                   candidate.error_scale, gap.sigmas));
     }
   }
   return refuse(std::move(result),

@@ -18,7 +18,8 @@ struct EvaluationOptions {
   std::filesystem::path log = {};  ///< empty: in memory only. A log that is there is continued
 };
 
-/// Evaluates a problem in batches, on the threads that `Progress` allows, with the same bits on any number of them.
+/// View of a `Progress`, on the threads of which it evaluates a problem in batches, with the same bits on any number of
+/// them.
 ///
 /// No point is evaluated twice; each evaluation goes to the log. Where the log comes from an earlier run, the same
 /// searches are answered from it until it ends: they then continue as if they had never been interrupted.

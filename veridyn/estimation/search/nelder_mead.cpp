@@ -5,7 +5,7 @@
 namespace veridyn::estimation {
 namespace {
 
-/// Trial points of a simplex.
+/// View of an evaluator: trial points of a simplex.
 class Trials {
  public:
   Trials(BatchEvaluator& evaluator, const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& snap,

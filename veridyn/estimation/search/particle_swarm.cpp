@@ -13,7 +13,7 @@
 namespace veridyn::estimation {
 namespace {
 
-/// Particles with their bests.
+/// View of an evaluator: particles with their bests.
 class Swarm {
  public:
   Swarm(const BlackBoxProblem& problem, std::size_t particles, std::uint64_t seed, std::size_t number)
@@ -60,9 +60,9 @@ class Swarm {
       for (Eigen::Index j = 0; j < problem_->size(); ++j) {
         double& v = v_[i](j);
         double& x = x_[i](j);
-        const double own = random_.uniform() * (best_x_[i](j) - x);
+        const double to_best = random_.uniform() * (best_x_[i](j) - x);
         const double others = random_.uniform() * (best_x_[leader](j) - x);
-        v = kInertia * v + kAttraction * (own + others);
+        v = kInertia * v + kAttraction * (to_best + others);
         x += v;
         if (x >= problem_->low(j) && x <= problem_->high(j)) continue;
         x = std::clamp(x, problem_->low(j), problem_->high(j));

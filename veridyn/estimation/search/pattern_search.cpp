@@ -53,7 +53,7 @@ class AdaptiveMesh {
   Eigen::VectorXd poll_;
 };
 
-/// State of one search.
+/// View of an evaluator: the state of one search.
 class PatternSearch {
  public:
   PatternSearch(BatchEvaluator& evaluator, const PatternOptions& options)

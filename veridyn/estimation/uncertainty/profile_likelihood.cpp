@@ -109,8 +109,8 @@ class Profiling {
     initial_.clear();
     std::vector<SegmentParameter> left = estimate.segment_parameters;
     for (std::size_t s = 0; s < model_.segments(); ++s) {
-      const auto own = model_.initial_conditions(s);
-      initial_.emplace_back(own.begin(), own.end());
+      const auto initial = model_.initial_conditions(s);
+      initial_.emplace_back(initial.begin(), initial.end());
       for (ModelParameter& p : initial_.back()) {
         const auto found = std::find_if(left.begin(), left.end(),
                                         [&](const SegmentParameter& q) { return q.segment == s && q.name == p.name; });

@@ -80,7 +80,7 @@ struct ResponseIndices {
   [[nodiscard]] std::vector<std::string> input_names() const;
 };
 
-/// Runs the simulation at the points of a design over all inputs at once and takes the variance of each response apart
+/// Runs the simulation at the points of a design over all inputs at once and decomposes the variance of each response
 /// (`result_indices`). Runs that cannot finish are counted and their samples left out. The same bits on any number of
 /// threads, and with any share of the store's blocks.
 /// @param store  its batch is called "indices"

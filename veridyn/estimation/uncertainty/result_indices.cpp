@@ -8,16 +8,10 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/core/study_numbers.hpp"
 
 namespace veridyn::estimation {
 namespace {
-
-std::size_t count_or(const StudyTable& table, const char* key, std::size_t otherwise, long long least) {
-  const long long value = table.integer_or(key, static_cast<long long>(otherwise));
-  constexpr long long kMost = 10000000;
-  if (value < least || value > kMost) table.fail(key, fmt::format("= {} must be from {} to {}", value, least, kMost));
-  return static_cast<std::size_t>(value);
-}
 
 /// A total order from which an input moves a result.
 constexpr double kInfluential = 0.05;

@@ -78,6 +78,7 @@ class RunningClock {
   bool started_ = false;
 };
 
+/// View of the bytes of a log: finds its messages and puts them in order.
 class Indexer {
  public:
   explicit Indexer(std::string_view bytes) : data_(bytes) {
@@ -415,7 +416,7 @@ Log read_dataflash(std::string_view bytes, std::string source) {
     log.topics.push_back(
         decode(bytes, layout, std::move(layout.records), std::move(layout.borrowed_time), std::nullopt));
   }
-  tell_dataflash_story(log);
+  read_dataflash_events(log);
   internal::finish(log);
   return log;
 }

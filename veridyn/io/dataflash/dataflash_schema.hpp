@@ -83,6 +83,6 @@ struct KnownUnit {
 
 /// Fills parameters, information and events from the topics PARM, MSG, VER, MODE, ARM, EV, STAT and ERR, and marks the
 /// topics that describe the log itself.
-void tell_dataflash_story(Log& log);
+void read_dataflash_events(Log& log);
 
 }  // namespace veridyn::io

@@ -110,7 +110,7 @@ void read_errors(Log& log, const LogTopic& topic) {
 
 }  // namespace
 
-void tell_dataflash_story(Log& log) {
+void read_dataflash_events(Log& log) {
   for (LogTopic& topic : log.topics) {
     const std::string& name = topic.name;
     topic.schema = name == "FMT" || name == "FMTU" || name == "UNIT" || name == "MULT" || name == "PARM" ||

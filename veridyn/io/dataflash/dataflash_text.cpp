@@ -49,6 +49,7 @@ struct TextTable {
   std::vector<double> stamps;                ///< [s]
 };
 
+/// View of the text of a log, read line by line into tables.
 class TextReader {
  public:
   TextReader(std::string_view bytes, Log& log) : data_(bytes), log_(log) {}
@@ -278,7 +279,7 @@ Log read_dataflash_text(std::string_view bytes, std::string source) {
     }
     table = TextTable{};
   }
-  tell_dataflash_story(log);
+  read_dataflash_events(log);
   internal::finish(log);
   return log;
 }

@@ -53,6 +53,7 @@ void set_series(LogTopic& topic, std::vector<double> stamps, std::vector<LogFiel
   topic.time = make_time_base(std::move(ordered.time));
 }
 
+/// View of the variables of a file, of which it builds the topics of a log.
 class Builder {
  public:
   explicit Builder(Log& log) : log_(log) { file_.kind = MatValue::Kind::kStruct; }

@@ -101,7 +101,7 @@ double number_at(const char* from, std::uint32_t type, bool swap) {
   }
 }
 
-/// Elements one after the other; each is a tag and data padded to eight bytes.
+/// View of elements one after the other; each is a tag and data padded to eight bytes.
 class Elements {
  public:
   Elements(std::string_view bytes, bool swap) : rest_(bytes), swap_(swap) {}

@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
-/// Lines one after the other, with their numbers.
+/// View of a text: its lines one after the other, with their numbers.
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {

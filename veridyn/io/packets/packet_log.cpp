@@ -142,7 +142,7 @@ Log packet_log(const PacketLayout& layout, std::string_view bytes, const std::st
     };
     say(left_out.repeated, "with a stamp that repeats or goes back");
     say(left_out.implausible, "without a drive");
-    say(left_out.of_other_runs, "of other runs, between which time began anew");
+    say(left_out.of_other_runs, "of other runs, between which time started again");
     log.damage.notes.push_back(fmt::format("{} packets were left out: {}", left_out.sum(), fmt::join(kinds, ", ")));
   }
   if (!layout.seen)

@@ -15,7 +15,7 @@ namespace veridyn::io {
 /// Packets one after the other as a drive in frame flu: `accel_x|y|z`, `gyro_x|y|z`, `roll`, `pitch`, `yaw`, `speed`,
 /// and the layout's other fields under their names. Accelerations and rates that a packet does not hold are derived
 /// from velocity and attitude over 0.1 s, since stamps jitter by as much as they are apart. Packets that are not
-/// plausible, repeat a stamp or go back are left out and counted; where time begins anew, the longest run is kept.
+/// plausible, repeat a stamp or go back are left out and counted; where time starts again, the longest run is kept.
 /// @throws InputError with fewer than ten packets of a drive, and of packets without a time.
 [[nodiscard]] Log packet_log(const PacketLayout& layout, std::string_view bytes, const std::string& source);
 

@@ -33,6 +33,7 @@ struct Growing {
   std::size_t infinite = 0;
 };
 
+/// View of the text of a table, parsed cell by cell.
 class CsvParser {
  public:
   CsvParser(std::string_view bytes, std::string source, const CsvOptions& options) : bytes_(bytes), options_(options) {

@@ -7,7 +7,7 @@
 namespace veridyn::io {
 namespace {
 
-/// Takes what a date stamp is made of from the front of a text.
+/// View of a text: takes what a date stamp is made of from its front.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : rest_(text) {}

@@ -24,7 +24,7 @@ struct ArrayHeader {
   std::vector<std::size_t> shape;
 };
 
-/// The header: a Python dictionary of exactly three keys, of which only this much Python is understood.
+/// View of a header: a Python dictionary of exactly three keys, of which only this much Python is understood.
 class HeaderParser {
  public:
   HeaderParser(std::string_view text, const std::string& source) : rest_(text), source_(source) {}

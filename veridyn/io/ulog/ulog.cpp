@@ -72,6 +72,7 @@ std::optional<double> number_of(const Key& key) {
   return std::nullopt;
 }
 
+/// View of the bytes of a log, walked from message to message.
 class Walker {
  public:
   Walker(std::string_view bytes, Log& log) : data_(bytes), log_(log), subscription_of_(kIds, -1) {}
@@ -404,7 +405,7 @@ LogTopic decode(std::string_view data, Subscription& subscription, const ULogLay
 }
 
 // nav_state and arming_state of PX4's vehicle_status.msg.
-void tell_story(Log& log) {
+void read_ulog_events(Log& log) {
   static const std::map<int, const char*> modes{{0, "MANUAL"},         {1, "ALTCTL"},      {2, "POSCTL"},
                                                 {3, "AUTO_MISSION"},   {4, "AUTO_LOITER"}, {5, "AUTO_RTL"},
                                                 {10, "ACRO"},          {12, "DESCEND"},    {13, "TERMINATION"},
@@ -465,7 +466,7 @@ Log read_ulog(std::string_view bytes, std::string source) {
   if (!undefined.empty()) {
     log.damage.notes.push_back(fmt::format("topics without a usable format: {}", fmt::join(undefined, ", ")));
   }
-  tell_story(log);
+  read_ulog_events(log);
   internal::finish(log);
   return log;
 }

@@ -21,6 +21,7 @@ constexpr BasicType kBasicTypes[] = {
     {"int64_t", GatherType::kInt64, 8},   {"uint64_t", GatherType::kUint64, 8}, {"float", GatherType::kFloat, 4},
     {"double", GatherType::kDouble, 8},   {"bool", GatherType::kUint8, 1},      {"char", GatherType::kText, 1}};
 
+/// View of the formats of a log, whose nested ones it resolves.
 struct Resolver {
   const ULogFormats& formats;
   ULogLayout layout;

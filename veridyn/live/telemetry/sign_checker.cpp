@@ -48,7 +48,7 @@ SignVerdict SignChecker::check() const {
       return {SignVerdict::Kind::kWrong, fmt::format("{}", fmt::join(faults, "; "))};
     }
     for (Needed& n : all) {
-      for (const recording::DriveRelation& r : check.relations)
+      for (const recording::AxisRelation& r : check.relations)
         n.fits = n.fits || (r.text.starts_with(n.relation) && r.judged && r.fits);
     }
   }

@@ -21,7 +21,7 @@ Bucket bucket(std::size_t k, std::size_t buckets, std::size_t samples) {
   return {k * samples / buckets, (k + 1) * samples / buckets};
 }
 
-/// Appends points; of a run of gaps one is left, and none before the first value.
+/// View of a line that it appends points to; of a run of gaps one is left, and none before the first value.
 class Pen {
  public:
   explicit Pen(Polyline& line) : line_(line) {}

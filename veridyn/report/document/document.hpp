@@ -341,7 +341,7 @@ struct SceneMotion {
 };
 
 /// A drawing in space that moves with a slider of time, seen from wherever it is turned to. Its time is marked in the
-/// figures of equal `axis`; a time series that follows it stands beside it where the page is wide enough. Samples are
+/// figures of equal `axis`; a time series that follows it stands next to it where the page is wide enough. Samples are
 /// stored as they are (thin them out before), and drawn with straight lines between them.
 struct Scene {
   std::string title = {};
@@ -352,7 +352,7 @@ struct Scene {
   std::vector<SceneShape> shapes = {};
   std::vector<SceneJoint> joints = {};
   std::vector<SceneMotion> motions = {};  ///< one is shown at a time
-  std::string choice = "motion";          ///< what tells motions apart: "algorithm"
+  std::string choice = "motion";          ///< what distinguishes motions: "algorithm"
   int height = 420;                       ///< [CSS px]
 };
 

@@ -53,7 +53,7 @@ std::string label_with_unit(const std::string& label, const std::string& unit) {
   return unit.empty() ? label : fmt::format("{} [{}]", label, unit);
 }
 
-/// Writes one block; holds what every block may need.
+/// View of a document while it is written: writes one block, and holds what every block may need.
 class BlockWriter {
  public:
   explicit BlockWriter(std::string_view note) : note_(note) {}

@@ -80,8 +80,7 @@ Section response_section(const cueing::ResponseStudy& study, const cueing::Cuein
                   study.options.force, study.options.rate / kDegree)});
   List outside{.tone = Tone::kWarning};
   std::vector<Block> plots;
-  for (std::size_t i = 0; i < cueing::kCues; ++i) {
-    const auto cue = static_cast<Cue>(i);
+  for (const Cue cue : cueing::kAllCues) {
     const auto mask = study.mask.find(cue);
     const bool wrapped = mask != study.mask.end() && limits_phase(mask->second);
     XYPlot gain = empty_plot(cue, "Gain", ""), phase = empty_plot(cue, "Phase", "deg");

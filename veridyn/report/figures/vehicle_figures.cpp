@@ -24,7 +24,7 @@ bool idle(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::abs(v) < 1e-12; });
 }
 
-/// Puts lines of several drives into panels over the first one's time.
+/// View of several drives, whose lines it puts into panels over the first one's time.
 class Panels {
  public:
   explicit Panels(std::span<const ShownDrive> drives) : drives_(drives) {}

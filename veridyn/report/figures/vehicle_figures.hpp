@@ -9,7 +9,7 @@
 
 namespace veridyn::report {
 
-/// A drive to be drawn, under its name; drives in one picture overlay.
+/// View of a drive to be drawn, under its name; drives in one picture overlay.
 struct ShownDrive {
   std::string name;
   const vehicle::VehicleTrajectory* trajectory = nullptr;

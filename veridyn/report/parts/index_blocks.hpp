@@ -8,7 +8,7 @@
 
 namespace veridyn::report {
 
-/// What indices are of.
+/// View of indices and of what they are of.
 struct IndexedResult {
   const estimation::ResultIndices& indices;
   std::span<const std::string> inputs;  ///< names

@@ -31,16 +31,16 @@ Table posterior_table(const PosteriorSample& s, std::span<const Parameter> param
                           {.name = "to", .group = "95 %, error bar"},
                           {.name = "unit", .align = Align::kLeft}}};
   for (const PosteriorParameter& p : s.parameters) {
-    const Parameter& own = parameters[p.parameter];
+    const Parameter& estimate = parameters[p.parameter];
     table.rows.push_back({.cells = {text_cell(p.name), measured_cell(p.median, p.sd), measured_cell(p.low, p.sd),
-                                    measured_cell(p.high, p.sd), measured_cell(own.low95, p.sd),
-                                    measured_cell(own.high95, p.sd), text_cell(unit_of(p.unit))}});
+                                    measured_cell(p.high, p.sd), measured_cell(estimate.low95, p.sd),
+                                    measured_cell(estimate.high95, p.sd), text_cell(unit_of(p.unit))}});
   }
   return table;
 }
 
 /// Density of the draws as steps, and that of a normal distribution of the error bar.
-XYPlot histogram(const PosteriorSample& s, std::size_t i, const Parameter& own) {
+XYPlot histogram(const PosteriorSample& s, std::size_t i, const Parameter& estimate) {
   const PosteriorParameter& p = s.parameters[i];
   const auto draws = s.ensemble.draws.col(signed_index(i));
   const double low = draws.minCoeff(), width = (draws.maxCoeff() - low) / kBins;
@@ -57,13 +57,13 @@ XYPlot histogram(const PosteriorSample& s, std::size_t i, const Parameter& own) 
     }
   }
   plot.series.push_back(std::move(steps));
-  if (std::isfinite(own.sigma) && own.sigma > 0.0) {
+  if (std::isfinite(estimate.sigma) && estimate.sigma > 0.0) {
     XYSeries normal{.name = "error bar", .role = Role::kReference, .style = Style::kLine};
     for (int k = 0; k <= 60; ++k) {
       const double x = low + kBins * width * k / 60.0;
       normal.x.push_back(x);
-      normal.y.push_back(std::exp(-0.5 * std::pow((x - own.value) / own.sigma, 2)) /
-                         (own.sigma * std::sqrt(2.0 * kPi)));
+      normal.y.push_back(std::exp(-0.5 * std::pow((x - estimate.value) / estimate.sigma, 2)) /
+                         (estimate.sigma * std::sqrt(2.0 * kPi)));
     }
     plot.series.push_back(std::move(normal));
   }

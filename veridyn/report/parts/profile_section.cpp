@@ -38,11 +38,12 @@ Table interval_table(const ProfileResult& result, std::span<const Parameter> par
                           {.name = "to", .group = "95 %, error bar"},
                           {.name = "unit", .align = Align::kLeft}}};
   for (const ParameterProfile& p : result.profiles) {
-    const Parameter& own = parameters[p.parameter];
+    const Parameter& estimate = parameters[p.parameter];
     table.rows.push_back(
-        {.cells = {text_cell(p.name), measured_cell(p.value, own.sigma), end_cell(p.low_end, p.low, own.sigma),
-                   end_cell(p.high_end, p.high, own.sigma), measured_cell(own.low95, own.sigma),
-                   measured_cell(own.high95, own.sigma), text_cell(shown_unit(p.unit))}});
+        {.cells = {text_cell(p.name), measured_cell(p.value, estimate.sigma),
+                   end_cell(p.low_end, p.low, estimate.sigma), end_cell(p.high_end, p.high, estimate.sigma),
+                   measured_cell(estimate.low95, estimate.sigma), measured_cell(estimate.high95, estimate.sigma),
+                   text_cell(shown_unit(p.unit))}});
   }
   return table;
 }
@@ -70,22 +71,22 @@ XYSeries curve_of(const ParameterProfile& p, double top) {
   return curve;
 }
 
-XYPlot profile_plot(const ParameterProfile& p, const Parameter& own, double threshold) {
+XYPlot profile_plot(const ParameterProfile& p, const Parameter& estimate, double threshold) {
   const double top = kTop * threshold;
   XYPlot plot{.title = p.name,
               .x = {.label = p.name, .unit = shown_unit(p.unit)},
               .y = {.label = "likelihood ratio"},
               .height = 200};
   plot.caption = p.text();
-  if (std::isfinite(own.sigma) && own.sigma > 0.0) {
+  if (std::isfinite(estimate.sigma) && estimate.sigma > 0.0) {
     XYSeries parabola{.name = "error bar", .role = Role::kReference, .style = Style::kLine};
     constexpr int kPoints = 60;
-    const double reach = std::sqrt(top) * own.sigma;
+    const double reach = std::sqrt(top) * estimate.sigma;
     for (int k = 0; k <= kPoints; ++k) {
-      const double x = own.value + reach * (2.0 * k / kPoints - 1.0);
+      const double x = estimate.value + reach * (2.0 * k / kPoints - 1.0);
       if (x < p.low_bound || x > p.high_bound) continue;
       parabola.x.push_back(x);
-      parabola.y.push_back(std::pow((x - own.value) / own.sigma, 2));
+      parabola.y.push_back(std::pow((x - estimate.value) / estimate.sigma, 2));
     }
     plot.series.push_back(std::move(parabola));
   }

@@ -34,7 +34,7 @@ constexpr double kVerified = 0.1;
 /// Square of the correlation below which two strong signals are not the same motion: with care, failed.
 constexpr double kCommonCare = 0.6, kCommonFailed = 0.25;
 
-using Powers = std::array<int, kDriveSuspects>;
+using Powers = PerDriveSuspect<int>;
 constexpr Powers powers(int steer, int speed, int yaw_rate, int accel_y, int accel_x) {
   return {steer, speed, yaw_rate, accel_y, accel_x};
 }
@@ -88,10 +88,10 @@ class Relations {
   }
 
   /// A relation of a gain that was found in a motion of at least `least` rms.
-  void add(DriveSuspect own, const char* name, std::string against, const std::optional<SignalGain>& found,
+  void add(DriveSuspect sensor, const char* name, std::string against, const std::optional<SignalGain>& found,
            double least, const Powers& power, const Tolerance& tolerance) {
     if (!found) return;
-    DriveRelation relation{.own = own, .name = name, .against = std::move(against), .power = power};
+    DriveRelation relation{.sensor = sensor, .name = name, .against = std::move(against), .power = power};
     relation.low = found->low - kBeyondChance * found->low_sigma;
     relation.high = found->high + kBeyondChance * found->high_sigma;
     relation.correlation = found->correlation;
@@ -228,7 +228,7 @@ void Relations::compare_steer() {
 }
 
 /// Whether a sensor that reads `factor` times the truth would leave nothing off.
-bool explains(std::span<const DriveRelation> relations, std::size_t sensor, double factor) {
+bool explains(std::span<const DriveRelation> relations, DriveSuspect sensor, double factor) {
   return std::ranges::all_of(relations, [&](const DriveRelation& relation) {
     const int power = relation.power[sensor];
     if (power == 0) return relation.outcome() == Outcome::kPassed;
@@ -268,7 +268,7 @@ std::vector<DriveCulprit> culprits(std::span<const DriveRelation> relations) {
   const DriveRelation& sharpest = **std::ranges::min_element(
       off, {}, [](const DriveRelation* r) { return (r->high - r->low) / std::abs(r->middle()); });
   std::vector<DriveCulprit> found;
-  for (std::size_t sensor = 0; sensor < kDriveSuspects; ++sensor) {
+  for (const DriveSuspect sensor : enumerators<DriveSuspect, kDriveSuspects>()) {
     if (!std::ranges::all_of(off, [&](const DriveRelation* r) { return r->power[sensor] != 0; })) continue;
     // A verified relation clears its sensors.
     const bool cleared = std::ranges::any_of(relations, [&](const DriveRelation& r) {
@@ -278,9 +278,9 @@ std::vector<DriveCulprit> culprits(std::span<const DriveRelation> relations) {
     const double doubt = 0.5 * (sharpest.high - sharpest.low) / std::abs(sharpest.middle());
     const double factor = sharpest.power[sensor] > 0 ? sharpest.middle() : 1.0 / sharpest.middle();
     if (unrelated)
-      found.push_back({static_cast<DriveSuspect>(sensor), kNaN});
+      found.push_back({sensor, kNaN});
     else if (explains(relations, sensor, factor))
-      found.push_back({static_cast<DriveSuspect>(sensor), factor, doubt});
+      found.push_back({sensor, factor, doubt});
   }
   return found;
 }

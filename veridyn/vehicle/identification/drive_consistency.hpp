@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/estimation/judgement/evidence.hpp"
 #include "veridyn/recording/channel_map.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
@@ -18,21 +19,24 @@ namespace veridyn::vehicle {
 enum class DriveSuspect : std::size_t { kSteer, kSpeed, kYawRate, kAccelY, kAccelX };
 /// How many there are.
 inline constexpr std::size_t kDriveSuspects = 5;
+/// A value for each of them.
+template <class T>
+using PerDriveSuspect = EnumArray<DriveSuspect, T, kDriveSuspects>;
 /// Their names in rows, in the order of the enum.
-inline constexpr std::array<std::string_view, kDriveSuspects> kDriveSuspectNames{"steer", "speed", "yaw_rate",
-                                                                                 "accel_y", "accel_x"};
+inline constexpr PerDriveSuspect<std::string_view> kDriveSuspectNames{"steer", "speed", "yaw_rate", "accel_y",
+                                                                      "accel_x"};
 
 /// What one sensor reads over what others imply; 1 where all are right.
 struct DriveRelation {
-  DriveSuspect own = DriveSuspect::kYawRate;  ///< the sensor that is compared
-  std::string name = {};                      ///< "yaw rate against heading"
-  std::string against = {};                   ///< "the rate of the heading"
-  double low = 0.0, high = 0.0;               ///< range of the ratio, three standard errors included
+  DriveSuspect sensor = DriveSuspect::kYawRate;  ///< the sensor that is compared
+  std::string name = {};                         ///< "yaw rate against heading"
+  std::string against = {};                      ///< "the rate of the heading"
+  double low = 0.0, high = 0.0;                  ///< range of the ratio, three standard errors included
   double correlation = 1.0;
   bool strong = false;    ///< the motion is large enough to compare
-  bool verified = false;  ///< the range is narrow enough to tell a scale
+  bool verified = false;  ///< the range is narrow enough to verify a scale
   /// To which power an error of each sensor's scale is in the ratio: 1, -1 or 0.
-  std::array<int, kDriveSuspects> power{};
+  PerDriveSuspect<int> power{};
   estimation::Tolerance tolerance = {};
 
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }

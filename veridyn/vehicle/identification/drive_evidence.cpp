@@ -25,7 +25,7 @@ using estimation::outcome_of;
 using estimation::Purpose;
 using estimation::Tolerance;
 
-std::string_view name_of(DriveSuspect sensor) { return kDriveSuspectNames[static_cast<std::size_t>(sensor)]; }
+std::string_view name_of(DriveSuspect sensor) { return kDriveSuspectNames[sensor]; }
 
 std::string ratio_text(const DriveRelation& r) {
   const double half = 0.5 * (r.high - r.low);
@@ -51,7 +51,7 @@ std::string fault_text(const DriveCulprit& culprit) {
 std::string advice_for(const std::vector<DriveCulprit>& suspects, const DriveRelation& relation) {
   std::vector<std::string_view> names;
   for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
-  if (names.empty()) names.push_back(name_of(relation.own));
+  if (names.empty()) names.push_back(name_of(relation.sensor));
   std::string advice = fmt::format("check unit, sign and scale of {} in [data.map]", fmt::join(names, ", "));
   if (std::ranges::find(names, name_of(DriveSuspect::kSteer)) != names.end())
     advice += ", signals.steering_ratio and the wheelbase a + b";
@@ -61,7 +61,7 @@ std::string advice_for(const std::vector<DriveCulprit>& suspects, const DriveRel
 /// A body that leans outward shows part of gravity as lateral acceleration.
 bool may_lean(const DriveRelation& r, bool gravity_removed) {
   constexpr double kMostByLean = 1.25;
-  return r.own == DriveSuspect::kAccelY && !gravity_removed && r.low > 1.0 && r.middle() < kMostByLean;
+  return r.sensor == DriveSuspect::kAccelY && !gravity_removed && r.low > 1.0 && r.middle() < kMostByLean;
 }
 
 Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& suspects, bool gravity_removed,
@@ -69,14 +69,14 @@ Evidence relation_row(const DriveRelation& r, const std::vector<DriveCulprit>& s
   std::vector<std::string_view> names;
   for (const DriveCulprit& culprit : suspects) names.push_back(name_of(culprit.sensor));
   Evidence row{.name = r.name,
-               .about = std::string(name_of(r.own)),
+               .about = std::string(name_of(r.sensor)),
                .outcome = r.outcome(),
                .value = r.middle(),
                .limit = r.tolerance.high,
                .scale = "reading over truth",
-               .bears_on = r.own == DriveSuspect::kAccelX ? estimation::Purposes(Purpose::kData) : kAllPurposes};
-  row.text = fmt::format("{} reads {} times what {}", name_of(r.own), ratio_text(r),
-                         r.own == DriveSuspect::kSteer ? r.against : fmt::format("{} says", r.against));
+               .bears_on = r.sensor == DriveSuspect::kAccelX ? estimation::Purposes(Purpose::kData) : kAllPurposes};
+  row.text = fmt::format("{} reads {} times what {}", name_of(r.sensor), ratio_text(r),
+                         r.sensor == DriveSuspect::kSteer ? r.against : fmt::format("{} says", r.against));
   if (row.outcome == Outcome::kPassed) {
     if (!r.verified) {
       row.outcome = Outcome::kNotVerified;

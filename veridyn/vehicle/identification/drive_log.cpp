@@ -115,8 +115,8 @@ recording::MappedRecording map_drive_channels(const Recording& log, const StudyT
   recording::MappedRecording mapped;
   mapped.recording = recording::without_channels(log);
   mapped.log_kind = "study";
-  recording::keep_standard_channels(log, standard_drive_channels(), map, mapped);
-  recording::apply_channel_map(log, standard_drive_channels(), map, mapped);
+  mapped = recording::with_standard_channels(std::move(mapped), log, standard_drive_channels(), map);
+  mapped = recording::with_channel_map(std::move(mapped), log, standard_drive_channels(), map);
   bool turn = log.frame == Frame::kFrd;
   if (frame == "flu") {
     turn = false;

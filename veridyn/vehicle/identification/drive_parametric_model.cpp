@@ -9,6 +9,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
+#include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
@@ -94,13 +95,12 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
 }
 
 estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
-  const auto i = static_cast<std::size_t>(unknown);
   estimation::ModelParameter p;
-  p.name = std::string(kDriveUnknownNames[i]);
-  p.unit = std::string(kDriveUnknownUnits[i]);
-  p.start = options.start[i];
-  p.prior_sigma = options.prior[i];
-  p.fixed = !options.free[i];
+  p.name = std::string(kDriveUnknownNames[unknown]);
+  p.unit = std::string(kDriveUnknownUnits[unknown]);
+  p.start = options.start[unknown];
+  p.prior_sigma = options.prior[unknown];
+  p.fixed = !options.free[unknown];
   // Bounds must hold at the start, whatever was given.
   const auto [low, high] = bounds_of(unknown, p.start, wheelbase, options.search_factor);
   p.low = std::min(low, p.start);
@@ -170,10 +170,9 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
   }
   if (tyre == DriveTyre::kLinear) {
     for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
-      const auto i = static_cast<std::size_t>(u);
-      if (free[i])
-        table.fail("estimate",
-                   fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")", names[i]));
+      if (free[u])
+        table.fail("estimate", fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")",
+                                           kDriveUnknownNames[u]));
     }
   }
   if (table.has("smoothing")) {
@@ -182,13 +181,14 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
   }
   const StudyTable starts = table.table_or_empty("start");
   const StudyTable priors = table.table_or_empty("prior");
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i) {
-    if (starts.has(names[i])) start[i] = starts.number(names[i], kDriveUnknownUnits[i]);
-    if (!priors.has(names[i])) continue;
-    if (priors.is_text(names[i]) && priors.text(names[i]) == "none")
-      prior[i] = kInfinity;
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    const std::string_view name = kDriveUnknownNames[u], unit = kDriveUnknownUnits[u];
+    if (starts.has(name)) start[u] = starts.number(name, unit);
+    if (!priors.has(name)) continue;
+    if (priors.is_text(name) && priors.text(name) == "none")
+      prior[u] = kInfinity;
     else
-      prior[i] = priors.positive(names[i], kDriveUnknownUnits[i]);
+      prior[u] = priors.positive(name, unit);
   }
 }
 
@@ -198,7 +198,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate}) {
     if (!signals[s].available()) {
       throw InputError(signals.source, fmt::format("has no {}, which output error is driven by or compared with",
-                                                   kDriveSignalNames[static_cast<std::size_t>(s)]));
+                                                   kDriveSignalNames[s]));
     }
   }
   accel_ = signals[DriveSignal::kAccelY].available();
@@ -219,8 +219,7 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
   for (std::size_t i = 0; i < of_the_vehicle.size(); ++i) {
     if (!std::isfinite(options_.start[i])) options_.start[i] = of_the_vehicle[i];
   }
-  for (std::size_t i = 0; i < kDriveUnknowns; ++i)
-    parameters_.push_back(model_parameter(static_cast<DriveUnknown>(i), options_, start.wheelbase()));
+  for (const DriveUnknown u : kAllDriveUnknowns) parameters_.push_back(model_parameter(u, options_, start.wheelbase()));
   for (const TimeSpan& span : spans) {
     const auto [begin, end] = signals.indices(span);
     if (end > begin + 1) segments_.push_back(make_segment(begin, end));
@@ -315,6 +314,7 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
   const double h = step / segment.substeps;
   const auto first = static_cast<Eigen::Index>(parameters_.size());
   Scalar v = theta(first), r = theta(first + 1);
+  using State = Eigen::Matrix<Scalar, 2, 1>;
   Input now = input(0.0);
   for (std::size_t k = 0; k < n; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
@@ -339,13 +339,14 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
       const double at = static_cast<double>(k) + static_cast<double>(i) / segment.substeps;
       const Input middle = input(at + 0.5 / segment.substeps);
       const Input next = input(at + 1.0 / segment.substeps);
-      const BicycleRates<Scalar> k2 =
-          model.rates(Scalar(v + 0.5 * h * k1.dv), Scalar(r + 0.5 * h * k1.dr), middle.delta, middle.u);
-      const BicycleRates<Scalar> k3 =
-          model.rates(Scalar(v + 0.5 * h * k2.dv), Scalar(r + 0.5 * h * k2.dr), middle.delta, middle.u);
-      const BicycleRates<Scalar> k4 = model.rates(Scalar(v + h * k3.dv), Scalar(r + h * k3.dr), next.delta, next.u);
-      v += (h / 6.0) * (k1.dv + 2.0 * (k2.dv + k3.dv) + k4.dv);
-      r += (h / 6.0) * (k1.dr + 2.0 * (k2.dr + k3.dr) + k4.dr);
+      const auto rate = [&](numerics::RungeKuttaMoment moment, const State& at) -> State {
+        const Input& there = moment == numerics::RungeKuttaMoment::kMiddle ? middle : next;
+        const BicycleRates<Scalar> k = model.rates(at(0), at(1), there.delta, there.u);
+        return {k.dv, k.dr};
+      };
+      const State moved = numerics::runge_kutta_4_from(State(k1.dv, k1.dr), rate, State(v, r), h);
+      v = moved(0);
+      r = moved(1);
       now = next;
     }
   }

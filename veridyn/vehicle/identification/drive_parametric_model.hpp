@@ -39,24 +39,26 @@ enum class DriveUnknown : std::size_t {
 };
 /// How many unknowns there are.
 inline constexpr std::size_t kDriveUnknowns = 15;
+/// All of them, in order.
+inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// Their names in studies and results, in the order of the enum.
-inline constexpr std::array<std::string_view, kDriveUnknowns> kDriveUnknownNames{"C_f",
-                                                                                 "C_r",
-                                                                                 "I_z",
-                                                                                 "a",
-                                                                                 "mu",
-                                                                                 "C",
-                                                                                 "E",
-                                                                                 "steer_bias",
-                                                                                 "steer_scale",
-                                                                                 "yaw_rate_bias",
-                                                                                 "accel_y_bias",
-                                                                                 "accel_y_scale",
-                                                                                 "steer_delay",
-                                                                                 "yaw_rate_delay",
-                                                                                 "accel_y_delay"};
+inline constexpr EnumArray<DriveUnknown, std::string_view, kDriveUnknowns> kDriveUnknownNames{"C_f",
+                                                                                              "C_r",
+                                                                                              "I_z",
+                                                                                              "a",
+                                                                                              "mu",
+                                                                                              "C",
+                                                                                              "E",
+                                                                                              "steer_bias",
+                                                                                              "steer_scale",
+                                                                                              "yaw_rate_bias",
+                                                                                              "accel_y_bias",
+                                                                                              "accel_y_scale",
+                                                                                              "steer_delay",
+                                                                                              "yaw_rate_delay",
+                                                                                              "accel_y_delay"};
 /// Their units, in the same order.
-inline constexpr std::array<std::string_view, kDriveUnknowns> kDriveUnknownUnits{
+inline constexpr EnumArray<DriveUnknown, std::string_view, kDriveUnknowns> kDriveUnknownUnits{
     "N/rad", "N/rad", "kg m^2", "m", "1", "1", "1", "rad", "1", "rad/s", "m/s^2", "1", "s", "s", "s"};
 
 /// Tyres of the drive model.

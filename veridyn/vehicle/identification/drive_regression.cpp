@@ -459,8 +459,7 @@ DriveRegressions drive_regressions(const DriveSignals& signals, std::span<const 
                                    const VehicleParameters<double>& known, double pass_Hz) {
   for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate, DriveSignal::kAccelY}) {
     if (!signals[s].available()) {
-      throw InputError(signals.source, fmt::format("has no {}, which equation error needs",
-                                                   kDriveSignalNames[static_cast<std::size_t>(s)]));
+      throw InputError(signals.source, fmt::format("has no {}, which equation error needs", kDriveSignalNames[s]));
     }
   }
   return RegressionRows(signals, spans, known, pass_Hz).run();

@@ -108,8 +108,9 @@ std::vector<TimeSpan> given_spans(const std::vector<TimeSpan>& spans, const char
 }
 
 /// Whole runs to identification and hold-out.
-void assign_runs(DriveSegments& out, const DriveSegmentOptions& o, const TimeSpan& whole,
-                 std::span<const TimeSpan> held) {
+recording::AssignedBlocks assign_runs(const std::vector<TimeSpan>& excited, const DriveSegmentOptions& o,
+                                      const TimeSpan& whole, std::span<const TimeSpan> held) {
+  recording::AssignedBlocks out;
   std::vector<TimeSpan> rest;
   double from = whole.begin;
   for (const TimeSpan& run : held) {
@@ -117,10 +118,11 @@ void assign_runs(DriveSegments& out, const DriveSegmentOptions& o, const TimeSpa
     from = run.end;
   }
   if (from < whole.end) rest.push_back({from, whole.end});
-  out.identification = in_blocks(within(out.excited, rest), o.block_s);
-  out.holdout = in_blocks(within(out.excited, held), o.block_s);
+  out.identification = in_blocks(within(excited, rest), o.block_s);
+  out.holdout = in_blocks(within(excited, held), o.block_s);
   drop_shorter(out.identification, o.min_duration_s);
   drop_shorter(out.holdout, o.min_duration_s);
+  return out;
 }
 
 std::string account(const DriveSegments& s, const DriveSegmentOptions& o) {
@@ -175,10 +177,13 @@ DriveSegments find_drive_segments(const DriveSignals& signals, const DriveSegmen
     out.identification = in_blocks(
         o.identification_spans.empty() ? out.excited : given(o.identification_spans, "identification"), o.block_s);
     out.holdout = in_blocks(given(o.holdout_spans, "holdout_spans"), o.block_s);
-  } else if (!holdout_runs.empty()) {
-    assign_runs(out, o, whole, holdout_runs);
   } else {
-    recording::assign_blocks(out, o, recording::Neighbours::kSeparate, o.min_duration_s);
+    recording::AssignedBlocks blocks =
+        holdout_runs.empty()
+            ? recording::assign_blocks(out.excited, o, recording::Neighbours::kSeparate, o.min_duration_s)
+            : assign_runs(out.excited, o, whole, holdout_runs);
+    out.identification = std::move(blocks.identification);
+    out.holdout = std::move(blocks.holdout);
   }
   out.text = account(out, o);
   return out;

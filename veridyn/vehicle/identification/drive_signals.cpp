@@ -26,7 +26,7 @@ std::vector<double> on_grid(const Channel& channel, const numerics::UniformGrid&
 const Channel* find_channel(const recording::MappedRecording& mapped, const char* name) {
   const Channel* channel = mapped.recording.find(name);
   if (channel != nullptr && !holds_numbers(*channel))
-    throw InputError(mapped.recording.source, fmt::format("channel {} holds no numbers", name));
+    throw InputError(mapped.recording.source, fmt::format("channel {} holds no numeric values", name));
   return channel;
 }
 
@@ -37,7 +37,7 @@ void require_channel(const recording::MappedRecording& mapped, const char* name,
 }
 
 double noise_of(DriveSignal which, const Channel& channel, double scale, const DriveSignalOptions& options) {
-  const std::string_view name = kDriveSignalNames[static_cast<std::size_t>(which)];
+  const std::string_view name = kDriveSignalNames[which];
   if (const std::optional<double> given = recording::given_noise(options.noise, name)) return *given;
   return scale * recording::noise_floor(channel);
 }

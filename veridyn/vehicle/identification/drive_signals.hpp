@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/recording/channel_map.hpp"
 #include "veridyn/recording/grid_signals.hpp"
@@ -27,11 +28,11 @@ enum class DriveSignal : std::size_t {
 /// How many signals there are.
 inline constexpr std::size_t kDriveSignals = 9;
 /// Their standard names, in the order of the enum.
-inline constexpr std::array<std::string_view, kDriveSignals> kDriveSignalNames{
+inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveSignalNames{
     "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "pos_x", "pos_y", "yaw"};
 /// Their units, in the same order.
-inline constexpr std::array<std::string_view, kDriveSignals> kDriveSignalUnits{"rad", "m/s", "rad/s", "m/s^2", "m/s^2",
-                                                                               "m/s", "m",   "m",     "rad"};
+inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveSignalUnits{
+    "rad", "m/s", "rad/s", "m/s^2", "m/s^2", "m/s", "m", "m", "rad"};
 
 /// How recorded channels become signals. Study table `[signals]`; every key is optional.
 struct DriveSignalOptions {
@@ -71,7 +72,8 @@ struct DriveSignals : recording::GridSignals<DriveSignal, kDriveSignals> {
 /// Resamples the mapped channels to one grid and derives what is missing: steering from the hand wheel, speed from the
 /// rear wheels (or, without them, the front wheels), yaw rate from `gyro_z`, lateral velocity from `sideslip`.
 /// @throws InputError when yaw rate, speed or steering is missing (the latter only with `needs_steer`), a signal holds
-/// no numbers, the yaw rate is slower than 5 Hz, or accel_y goes against yaw_rate x speed (a sign or frame error).
+/// no numeric values, the yaw rate is slower than 5 Hz, or accel_y goes against yaw_rate x speed (a sign or frame
+/// error).
 [[nodiscard]] DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped,
                                                  const DriveSignalOptions& options, bool needs_steer = true);
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string_view>
 
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 
 namespace veridyn::vehicle {
@@ -18,13 +18,13 @@ enum class VehicleMethod : std::size_t {
   kGiven,  ///< not found here: an estimate of a method that is none of these, which is validated
   kNone
 };
+/// How many there are.
+inline constexpr std::size_t kVehicleMethods = 7;
 /// Their names in studies and results, in the order of the enum.
-inline constexpr std::array<std::string_view, 7> kVehicleMethodNames{"output error", "OLS",   "TLS", "GTLS",
-                                                                     "PCA-GTLS",     "given", "none"};
+inline constexpr EnumArray<VehicleMethod, std::string_view, kVehicleMethods> kVehicleMethodNames{
+    "output error", "OLS", "TLS", "GTLS", "PCA-GTLS", "given", "none"};
 /// As study files and estimates name it.
-[[nodiscard]] constexpr std::string_view to_string(VehicleMethod method) {
-  return kVehicleMethodNames[static_cast<std::size_t>(method)];
-}
+[[nodiscard]] constexpr std::string_view to_string(VehicleMethod method) { return kVehicleMethodNames[method]; }
 
 /// Equation error by one of the regressions.
 [[nodiscard]] constexpr VehicleMethod vehicle_method(estimation::Method method) {
@@ -43,8 +43,8 @@ inline constexpr std::array<std::string_view, 7> kVehicleMethodNames{"output err
 
 /// The method of a name, kGiven for an unknown one.
 [[nodiscard]] constexpr VehicleMethod vehicle_method(std::string_view name) {
-  for (std::size_t i = 0; i < kVehicleMethodNames.size(); ++i) {
-    if (kVehicleMethodNames[i] == name) return static_cast<VehicleMethod>(i);
+  for (const VehicleMethod method : enumerators<VehicleMethod, kVehicleMethods>()) {
+    if (kVehicleMethodNames[method] == name) return method;
   }
   return VehicleMethod::kGiven;
 }

@@ -19,9 +19,9 @@ Eigen::VectorXd fit_drive_biases(const DriveSignals& signals, std::span<const Ti
   DriveModelOptions biases_only = options;
   biases_only.free.fill(false);
   for (const DriveUnknown u : {DriveUnknown::kSteerBias, DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
-    biases_only.free[index_of(u)] = true;
+    biases_only.free[u] = true;
   for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
-    biases_only.start[index_of(u)] = kNaN;
+    biases_only.start[u] = kNaN;
   const DriveParametricModel model(signals, spans, vehicle, biases_only);
   const estimation::OutputErrorEstimate biases = estimation::output_error(model, model.measured(), {}, progress);
   if (biases.usable()) return biases.theta;
@@ -69,7 +69,7 @@ DriveValidation with_noisier_inputs(const VehicleProblem& problem, const DriveTh
   DriveSignals noisier = problem.signals;
   for (const DriveSignal which : {DriveSignal::kSteer, DriveSignal::kSpeed}) {
     GridSignal& signal = noisier[which];
-    numerics::RandomStream noise(1, kDriveSignalNames[static_cast<std::size_t>(which)]);
+    numerics::RandomStream noise(1, kDriveSignalNames[which]);
     for (double& v : signal.value) v += signal.sigma * noise.normal();
   }
   DriveValidation other = predict_drive(noisier, problem.segments.identification, problem.start, problem.options.model,

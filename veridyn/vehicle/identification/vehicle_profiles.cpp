@@ -62,7 +62,7 @@ std::vector<estimation::Parameter> profiled_parameters(const VehicleIdentificati
   std::vector<estimation::Parameter> parameters = identification.output_error->parameters;
   const VehicleEstimate* shown = identification.find(VehicleMethod::kOutputError);
   for (estimation::Parameter& p : parameters) {
-    if (const estimation::Parameter* own = shown != nullptr ? shown->find(p.name) : nullptr) p = *own;
+    if (const estimation::Parameter* estimate = shown != nullptr ? shown->find(p.name) : nullptr) p = *estimate;
   }
   return parameters;
 }

@@ -45,8 +45,6 @@ class PreviewDriver : public Driver {
 
   void look(double time, const PlanarMotion& motion) override;
   [[nodiscard]] Controls controls(double time) const override;
-  /// Distance from the path at the last look, left positive [m].
-  [[nodiscard]] double lateral_error() const { return lateral_error_; }
 
  private:
   void predict(double u);

@@ -7,15 +7,15 @@
 #include <string>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/trigonometry.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
 #include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/longitudinal.hpp"
-#include "veridyn/vehicle/model/trigonometry.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
-#include "veridyn/vehicle/model/wheel_arrays.hpp"
-#include "veridyn/vehicle/model/wheels.hpp"
 #include "veridyn/vehicle/tyre/four_tyres.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
+#include "veridyn/vehicle/tyre/wheel_arrays.hpp"
+#include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
 
@@ -266,8 +266,8 @@ template <typename Scalar, typename Tyre>
   out.cos.setConstant(one);
   out.sin.setConstant(none);
   if (options_.geometry == BicycleGeometry::kExact) {
-    const SineCosine<Scalar> at_left = sine_cosine(left);
-    const SineCosine<Scalar> at_right = options_.ackermann == 0.0 ? at_left : sine_cosine(right);
+    const numerics::SineCosine<Scalar> at_left = numerics::sine_cosine(left);
+    const numerics::SineCosine<Scalar> at_right = options_.ackermann == 0.0 ? at_left : numerics::sine_cosine(right);
     out.cos << at_left.cos, at_right.cos, one, one;
     out.sin << at_left.sin, at_right.sin, none, none;
   }
@@ -296,7 +296,7 @@ void FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Sca
   Wheels slip_angle, slip_ratio, lag;
   if (options_.geometry == BicycleGeometry::kExact) {
     const Wheels across = controls.cos * contact_y - controls.sin * contact_x;
-    slip_angle = -arc_tangents<Scalar>(across / speed);
+    slip_angle = -numerics::arc_tangents<Scalar>(across / speed);
   } else {
     slip_angle = controls.steer - contact_y / contact_x;
   }
@@ -417,7 +417,7 @@ template <typename ChangeSlips>
   out.longitudinal_acceleration = longitudinal_acceleration;
   out.lateral_acceleration = lateral_acceleration;
   out.holding_force = holding_force;
-  const SineCosine<Scalar> yaw = sine_cosine<Scalar>(s(kYaw));
+  const numerics::SineCosine<Scalar> yaw = numerics::sine_cosine<Scalar>(s(kYaw));
 
   // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
   const Scalar tilting = tilting_ + contact_height_ * sum_lift;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "veridyn/core/constants.hpp"
-#include "veridyn/vehicle/model/wheels.hpp"
+#include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
 

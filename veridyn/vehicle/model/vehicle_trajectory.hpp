@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/simulation_end.hpp"
-#include "veridyn/vehicle/model/wheels.hpp"
+#include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
 

@@ -39,6 +39,7 @@ struct Channel {
   std::size_t line = 0;
 };
 
+/// View of the bytes of an OpenCRG file, parsed section by section.
 class CrgParser {
  public:
   CrgParser(std::string_view bytes, std::string source) : rest_(bytes), source_(std::move(source)) {}

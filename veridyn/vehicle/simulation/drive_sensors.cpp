@@ -51,11 +51,11 @@ DriveSensorSet read_drive_sensors(const StudyTable& table) {
     std::copy(p.begin(), p.end(), set.accel_position.begin());
   }
   set.feels_gravity = table.flag_or("feels_gravity", set.feels_gravity);
-  for (std::size_t i = 0; i < kDriveSensors; ++i) {
-    if (!table.has(kDriveSensorNames[i])) continue;
-    const StudyTable t = table.table(kDriveSensorNames[i]);
-    const std::string_view unit = kDriveSensorUnits[i];
-    DriveSensor& s = set.sensors[i];
+  for (const DriveSensorKind kind : enumerators<DriveSensorKind, kDriveSensors>()) {
+    if (!table.has(kDriveSensorNames[kind])) continue;
+    const StudyTable t = table.table(kDriveSensorNames[kind]);
+    const std::string_view unit = kDriveSensorUnits[kind];
+    DriveSensor& s = set[kind];
     s.enabled = t.flag_or("enabled", true);
     s.rate_Hz = t.positive_or("rate", "Hz", s.rate_Hz);
     s.sigma = t.number_or("sigma", unit, s.sigma);
@@ -119,8 +119,8 @@ Recording record_drive(const VehicleTrajectory& trajectory, const DriveSensorSet
       stamps.push_back(t + sensor.delay_s);
       values.push_back(bias + (1.0 + sensor.scale) * at(time, *source.value, t) + sensor.sigma * noise.normal());
     }
-    out.add(make_channel(source.channel, kDriveSensorUnits[static_cast<std::size_t>(source.kind)],
-                         make_time_base(std::move(stamps)), std::move(values)));
+    out.add(make_channel(source.channel, kDriveSensorUnits[source.kind], make_time_base(std::move(stamps)),
+                         std::move(values)));
   }
   return out;
 }

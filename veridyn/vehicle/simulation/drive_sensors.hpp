@@ -29,11 +29,11 @@ enum class DriveSensorKind : std::size_t { kSteer, kSpeed, kYawRate, kAccelY, kA
 /// How many sensors there are.
 inline constexpr std::size_t kDriveSensors = 7;
 /// Their names in studies, in the order of the enum.
-inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorNames{
+inline constexpr EnumArray<DriveSensorKind, std::string_view, kDriveSensors> kDriveSensorNames{
     "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "position"};
 /// Units of their errors, in the same order.
-inline constexpr std::array<std::string_view, kDriveSensors> kDriveSensorUnits{"rad",   "m/s", "rad/s", "m/s^2",
-                                                                               "m/s^2", "m/s", "m"};
+inline constexpr EnumArray<DriveSensorKind, std::string_view, kDriveSensors> kDriveSensorUnits{
+    "rad", "m/s", "rad/s", "m/s^2", "m/s^2", "m/s", "m"};
 
 /// The sensors of a vehicle and where its accelerometer is.
 struct DriveSensorSet {

@@ -143,40 +143,41 @@ void SteppedDrive<Tyre>::slow_rates(const FourWheelState<double>& state, const S
 
 template <typename Tyre>
 void SteppedDrive<Tyre>::slow_step(double h) noexcept {
-  using State = FourWheelState<double>;
-  const State start = state_.vehicle;
-  const Standing from{state_.deflection_x, state_.deflection_y};
+  // The vehicle's states and, after them, the deflections along and across.
+  constexpr int kAlong = kFourWheelStates, kAcross = kAlong + 4, kAll = kAcross + 4;
+  using State = Eigen::Matrix<double, kAll, 1>;
+  const FourWheelState<double> start = state_.vehicle;
   FourWheelRates<double> rates;
-  Standing change, sum;
-  State sum_of_states;
-  slow_rates(start, from, rates, change);
-  sum_of_states = rates.derivative;
-  sum = change;
+  const auto rates_at = [&](const State& at) {
+    Standing change;
+    slow_rates(at.template head<kFourWheelStates>(),
+               {at.template segment<4>(kAlong).array(), at.template segment<4>(kAcross).array()}, rates, change);
+    State out;
+    out << rates.derivative, change.x.matrix(), change.y.matrix();
+    return out;
+  };
   // Friction stops a wheel for one part at least. One that crosses zero in a stage stops too: with friction of both
   // signs in one part it would tremble on.
   std::array<bool, kWheels> stopped{};
-  const auto stop = [&](State& at) {
+  const auto stop = [&](auto& at) {
     for (std::size_t i = 0; i < kWheels; ++i) {
       const auto w = kWheelSpin + static_cast<Eigen::Index>(i);
       stopped[i] = stopped[i] || start(w) * at(w) < 0.0;
       if (stopped[i]) at(w) = 0.0;
     }
   };
-  constexpr double kReach[] = {0.5, 0.5, 1.0}, kWeight[] = {2.0, 2.0, 1.0};
-  for (int stage = 0; stage < 3; ++stage) {
-    const double reach = kReach[stage] * h, weight = kWeight[stage];
-    State at = start + reach * rates.derivative;
+  State stage_rate;
+  const auto rate = [&](numerics::RungeKuttaMoment, State& at) -> const State& {
     stop(at);
-    const Standing there{from.x + reach * change.x, from.y + reach * change.y};
-    slow_rates(at, there, rates, change);
-    sum_of_states += weight * rates.derivative;
-    sum.x += weight * change.x;
-    sum.y += weight * change.y;
-  }
-  state_.vehicle = start + h / 6.0 * sum_of_states;
+    return stage_rate = rates_at(at);
+  };
+  State state;
+  state << start, state_.deflection_x.matrix(), state_.deflection_y.matrix();
+  numerics::runge_kutta_4_in_place<kAll>(rates_at(state), rate, h, state);
   const WheelArray<double> most_x = sigma_ * most_ratio_, most_y = sigma_ * most_tangent_;
-  state_.deflection_x = (from.x + h / 6.0 * sum.x).max(-most_x).min(most_x);
-  state_.deflection_y = (from.y + h / 6.0 * sum.y).max(-most_y).min(most_y);
+  state_.deflection_x = state.template segment<4>(kAlong).array().max(-most_x).min(most_x);
+  state_.deflection_y = state.template segment<4>(kAcross).array().max(-most_y).min(most_y);
+  state_.vehicle = state.template head<kFourWheelStates>();
   stop(state_.vehicle);
 }
 

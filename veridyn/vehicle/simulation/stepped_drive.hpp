@@ -52,7 +52,8 @@ class SteppedDrive {
   /// @param usual_speed at which the fastest motion is looked for: `simulate` takes its starting speed [m/s]
   explicit SteppedDrive(const Model& model, std::shared_ptr<const Road> road = nullptr, double usual_speed = 20.0);
 
-  /// Starts anew, upright and straight ahead at `speed` [m/s], which may be 0 or negative (with longitudinal dynamics).
+  /// Starts again, upright and straight ahead at `speed` [m/s], which may be 0 or negative (with longitudinal
+  /// dynamics).
   void reset(double speed = 0.0);
   /// Goes on from a saved state.
   void reset(const DriveState& state);
@@ -66,8 +67,6 @@ class SteppedDrive {
   /// Rates, slips and forces of the wheels at the end of the last step.
   [[nodiscard]] const FourWheelRates<double>& rates() const { return rates_; }
   [[nodiscard]] const Model& model() const { return model_; }
-  /// The longest step that is made in one part at speed [s].
-  [[nodiscard]] double longest_step() const { return longest_step_; }
 
   /// The motion in all six directions at a place of the sprung body, flu. @param place from the centre of gravity [m]
   ///

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 
 /// The definitions behind vehicle_simulation.hpp, for tyres that vehicle_simulation.cpp does not compile.
@@ -20,26 +21,13 @@ template <int kMoving, typename Scalar, typename Tyre, typename Heights>
 void runge_kutta_step(const FourWheelModel<Scalar, Tyre>& model, const Heights& heights,
                       const std::array<WheelControls<Scalar>, 3>& controls, double h,
                       const FourWheelRates<Scalar>& first, FourWheelState<Scalar>& state) {
-  // Plain loops, which compilers vectorise everywhere.
-  const auto each = [](const auto& set) {
-    for (Eigen::Index i = 0; i < kMoving; ++i) set(i);
-  };
   FourWheelRates<Scalar> stage;
-  const FourWheelState<Scalar>&k = stage.derivative, &k1 = first.derivative;
-  FourWheelState<Scalar> at = state, sum;
-  each([&](Eigen::Index i) { at.data()[i] = state.data()[i] + 0.5 * h * k1.data()[i]; });
-  model.rates(at, controls[1], heights(at), stage);
-  each([&](Eigen::Index i) {
-    sum.data()[i] = k1.data()[i] + 2.0 * k.data()[i];
-    at.data()[i] = state.data()[i] + 0.5 * h * k.data()[i];
-  });
-  model.rates(at, controls[1], heights(at), stage);
-  each([&](Eigen::Index i) {
-    sum.data()[i] += 2.0 * k.data()[i];
-    at.data()[i] = state.data()[i] + h * k.data()[i];
-  });
-  model.rates(at, controls[2], heights(at), stage);
-  each([&](Eigen::Index i) { state.data()[i] += h / 6.0 * (sum.data()[i] + k.data()[i]); });
+  const auto rate = [&](numerics::RungeKuttaMoment moment,
+                        const FourWheelState<Scalar>& at) -> const FourWheelState<Scalar>& {
+    model.rates(at, controls[moment == numerics::RungeKuttaMoment::kMiddle ? 1 : 2], heights(at), stage);
+    return stage.derivative;
+  };
+  numerics::runge_kutta_4_in_place<kMoving>(first.derivative, rate, h, state);
 }
 
 }  // namespace internal
@@ -68,7 +56,7 @@ struct RoadUnderWheels {
   [[nodiscard]] PerWheel<double> operator()(const typename Model::State& state) const {
     if (road == nullptr) return {};
     PerWheel<double> heights;
-    const auto [s, c] = sine_cosine<double>(state(kYaw));
+    const auto [s, c] = numerics::sine_cosine<double>(state(kYaw));
     for (std::size_t i = 0; i < kWheels; ++i) {
       const auto w = static_cast<Eigen::Index>(i);
       const double ahead = model.wheel_x()[w], left = model.wheel_y()[w];
@@ -366,10 +354,10 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driv
     }
     const double middle = internal::controls_at(driver, begin + 0.5 * step, false).steer;
     const double end = internal::controls_at(driver, begin + step, false).steer;
-    const State k2 = derivative(state + 0.5 * step * k1, middle, unused);
-    const State k3 = derivative(state + 0.5 * step * k2, middle, unused);
-    const State k4 = derivative(state + step * k3, end, unused);
-    state += step / 6.0 * (k1 + 2.0 * (k2 + k3) + k4);
+    const auto rate = [&](numerics::RungeKuttaMoment moment, const State& at) {
+      return derivative(at, moment == numerics::RungeKuttaMoment::kMiddle ? middle : end, unused);
+    };
+    state = numerics::runge_kutta_4_from(k1, rate, state, step);
   }
   return out;
 }

@@ -32,7 +32,7 @@ constexpr double kHeldShare = 0.05;
 /// What the ring keeps of every sample.
 enum Column : std::size_t { kDelta, kCurvature, kAccel, kSpeedAccel, kSpeedYaw, kSpeedSteer, kYawRate, kSpeedColumn };
 
-/// Noise of a row [x..., z] from white noise of steer, speed, yaw rate and accel_y.
+/// Noise of a row [x..., z] from white noise of the sensors.
 class NoiseTerms {
  public:
   NoiseTerms(std::size_t columns, const std::array<double, 4>& noise, std::size_t taps) : noise_(noise) {
@@ -119,9 +119,7 @@ const estimation::RegressionTracker& DriveTracker::regression(TrackedAxle axle) 
   return trackers_[static_cast<std::size_t>(axle)];
 }
 
-const DriveTrackHistory& DriveTracker::history(TrackedAxle axle) const {
-  return history_[static_cast<std::size_t>(axle)];
-}
+const DriveTrackHistory& DriveTracker::history(TrackedAxle axle) const { return history_[axle]; }
 
 double DriveTracker::begin_value(TrackedAxle axle) const {
   return axle == TrackedAxle::kFront  ? start_.C_f
@@ -249,16 +247,16 @@ void DriveTracker::form_row(std::vector<DriveChange>& found) {
 void DriveTracker::remember(double time) {
   next_history_ = std::max(next_history_ + 1.0 / options_.history_Hz, time);
   if (!std::isfinite(next_history_)) next_history_ = time + 1.0 / options_.history_Hz;
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const auto axle = static_cast<TrackedAxle>(i);
-    const estimation::RecursiveRegression& r = trackers_[i].regression();
-    DriveTrackHistory& to = history_[i];
+  for (const TrackedAxle axle : kAllTrackedAxles) {
+    const estimation::RegressionTracker& tracker = regression(axle);
+    const estimation::RecursiveRegression& r = tracker.regression();
+    DriveTrackHistory& to = history_[axle];
     to.time.push_back(time);
     to.value.push_back(value(axle));
     to.sigma.push_back(sigma(axle));
     const auto& share = r.unexcited_share();
     to.held.push_back(!r.usable() || (share.size() > 0 && share(0) > kHeldShare));
-    to.suspicion.push_back(trackers_[i].detector().suspicion());
+    to.suspicion.push_back(tracker.detector().suspicion());
   }
 }
 
@@ -282,8 +280,9 @@ std::vector<DriveChange> DriveTracker::append(const DriveSample& s) {
 
 namespace {
 
-/// Values that no tyre has, and the grades that all rows give; what must not be used is marked.
-void judge_axles(estimation::Estimate& estimate) {
+/// The estimate with rows for values that no tyre has and the grades that all rows give; what must not be used is
+/// marked.
+estimation::Estimate judged(estimation::Estimate estimate) {
   std::vector<estimation::Judgement> parts;
   for (estimation::Parameter& p : estimate.parameters) {
     const bool plausible = p.name == "understeer_gradient" || p.value > 0.0;
@@ -298,14 +297,15 @@ void judge_axles(estimation::Estimate& estimate) {
                                    .bears_on = estimation::Purpose::kParameters,
                                    .advice = "check the signs of steer, yaw_rate and accel_y"});
     }
-    std::vector<estimation::Evidence> own;
+    std::vector<estimation::Evidence> rows;
     for (const estimation::Evidence& row : estimate.evidence)
-      if (row.about == p.name) own.push_back(row);
-    if (own.empty()) continue;
-    parts.push_back(estimation::judge(own));
+      if (row.about == p.name) rows.push_back(row);
+    if (rows.empty()) continue;
+    parts.push_back(estimation::judge(rows));
     p = estimation::marked({p}, estimation::verdict_of(parts.back())).front();
   }
   estimate.judgement = estimation::judge_together(parts);
+  return estimate;
 }
 
 }  // namespace
@@ -317,19 +317,19 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
   out.covariance =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kTrackedAxles), static_cast<Eigen::Index>(kTrackedAxles));
   std::vector<std::string> followed, held;
-  for (std::size_t i = 0; i < kTrackedAxles; ++i) {
-    const auto axle = static_cast<TrackedAxle>(i);
+  for (const TrackedAxle axle : kAllTrackedAxles) {
     const double v = value(axle), s = sigma(axle);
     estimation::Parameter p{
-        std::string(kTrackedAxleNames[i]), v, s, v - 1.96 * s, v + 1.96 * s, std::string(kTrackedAxleUnits[i]),
+        std::string(kTrackedAxleNames[axle]), v, s, v - 1.96 * s, v + 1.96 * s, std::string(kTrackedAxleUnits[axle]),
         ParameterStatus::kNotExcited};
-    const auto at = static_cast<Eigen::Index>(i);
+    const auto at = static_cast<Eigen::Index>(axle);
     out.covariance(at, at) = s * s;
     if (started()) {
-      const estimation::RecursiveRegression& r = trackers_[i].regression();
+      const estimation::RegressionTracker& tracker = regression(axle);
+      const estimation::RecursiveRegression& r = tracker.regression();
       p.status = r.status(0);
       // In units of the start's value, or its inverse: a relative error is the same in both.
-      const estimation::RegressionEstimate regression = trackers_[i].estimate();
+      const estimation::RegressionEstimate regression = tracker.estimate();
       const double factor = regression.parameters[0].sigma / r.sigma()(0);
       if (factor > 1.0 && std::isfinite(factor)) {
         p.sigma *= factor;
@@ -341,11 +341,11 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
               : 1.96;
       p.low95 = v - half * p.sigma;
       p.high95 = v + half * p.sigma;
-      for (estimation::Evidence& row : estimation::tracking_evidence(p.name, trackers_[i], regression))
+      for (estimation::Evidence& row : estimation::tracking_evidence(p.name, tracker, regression))
         out.evidence.push_back(std::move(row));
       out.fit[p.name + ".residual_sd"] = r.residual_sd();
       out.fit[p.name + ".samples"] = r.effective_samples();
-      const bool is_held = !history_[i].held.empty() && history_[i].held.back();
+      const bool is_held = !history_[axle].held.empty() && history_[axle].held.back();
       if (is_held) p.status = ParameterStatus::kNotExcited;
       (is_held ? held : followed).push_back(p.name);
     }
@@ -355,7 +355,7 @@ estimation::Estimate DriveTracker::estimate(const std::string& subject) const {
       started() ? fmt::format("followed: {}; started from the {}",
                               followed.empty() ? "nothing" : fmt::format("{}", fmt::join(followed, ", ")), begin_text_)
                 : "nothing was followed: no stretch without holes is as long as the filter";
-  judge_axles(out);
+  out = judged(std::move(out));
   if (!held.empty()) out.verdict += fmt::format("; held at the end, because not excited: {}", fmt::join(held, ", "));
   return out;
 }

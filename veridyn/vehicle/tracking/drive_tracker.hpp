@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/estimation/estimate.hpp"
 #include "veridyn/estimation/recursive/regression_tracker.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
@@ -33,10 +34,14 @@ enum class TrackedAxle : std::size_t {
 };
 /// How many quantities are followed.
 inline constexpr std::size_t kTrackedAxles = 3;
+/// All of them, in order.
+inline constexpr auto kAllTrackedAxles = enumerators<TrackedAxle, kTrackedAxles>();
 /// Their names, in the order of the enum.
-inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleNames{"C_f", "C_r", "understeer_gradient"};
+inline constexpr EnumArray<TrackedAxle, std::string_view, kTrackedAxles> kTrackedAxleNames{"C_f", "C_r",
+                                                                                           "understeer_gradient"};
 /// Their units, in the same order.
-inline constexpr std::array<std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad", "rad s^2/m"};
+inline constexpr EnumArray<TrackedAxle, std::string_view, kTrackedAxles> kTrackedAxleUnits{"N/rad", "N/rad",
+                                                                                           "rad s^2/m"};
 
 /// A change that one of the regressions revealed.
 struct DriveChange {
@@ -135,7 +140,7 @@ class DriveTracker {
   double last_ = -kInfinity;
   double next_history_ = -kInfinity;
   std::vector<estimation::RegressionTracker> trackers_;
-  std::array<DriveTrackHistory, kTrackedAxles> history_;
+  EnumArray<TrackedAxle, DriveTrackHistory, kTrackedAxles> history_;
   std::vector<DriveChange> changes_;
 };
 

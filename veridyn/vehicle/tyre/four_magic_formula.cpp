@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "veridyn/vehicle/model/trigonometry.hpp"
+#include "veridyn/numerics/trigonometry.hpp"
 
 // Vectors of four doubles are passed between functions of this file only, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -85,7 +85,7 @@ struct BothBits {
   const Both base =
       where(small, number(0.0), where(near, number(kAngleOfNear), where(far, number(kAngleOfFar), number(kPi / 2.0))));
   const Both y = where(far, a - centre, number(-1.0)) / where(far, 1.0 + centre * a, a);
-  const auto& c = internal::kArcTangent;
+  const auto& c = numerics::internal::kArcTangent;
   const Both z = y * y, z2 = z * z, z4 = z2 * z2;
   const Both low = (c[0] + c[1] * z) + z2 * (c[2] + c[3] * z);
   const Both high = (c[4] + c[5] * z) + z2 * (c[6] + c[7] * z) + z4 * (c[8] + c[9] * z);
@@ -98,8 +98,8 @@ struct BothBits {
   const FourBits quarter_x = bits_of(rounded.x), quarter_y = bits_of(rounded.y);
   const Both y = ((x - 1.5707963267341256 * k) - 6.077100506303966e-11 * k) - 2.0222662487959506e-21 * k;
   const Both z = y * y, z2 = z * z, z4 = z2 * z2;
-  const auto& a = internal::kSine;
-  const auto& b = internal::kCosine;
+  const auto& a = numerics::internal::kSine;
+  const auto& b = numerics::internal::kCosine;
   const Both s = y + (y * z) * ((a[0] + a[1] * z) + z2 * (a[2] + a[3] * z) + z4 * (a[4] + a[5] * z));
   const Both c = (1.0 - 0.5 * z) + z2 * ((b[0] + b[1] * z) + z2 * (b[2] + b[3] * z) + z4 * (b[4] + b[5] * z));
   const Both value = where({(quarter_x & 1) != 0, (quarter_y & 1) != 0}, c, s);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "veridyn/vehicle/model/wheel_arrays.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
+#include "veridyn/vehicle/tyre/wheel_arrays.hpp"
 
 namespace veridyn::vehicle {
 

@@ -360,7 +360,10 @@ MagicFormulaTyre<Scalar> MagicFormulaTyre<Scalar>::symmetric() const {
   return out;
 }
 
-}  // namespace veridyn::vehicle
+template <typename Tyre>
+class FourTyres;
+/// Declared wherever the tyre is known, so that the general one is never taken for it: see four_magic_formula.hpp.
+template <>
+class FourTyres<MagicFormulaTyre<double>>;
 
-// Wherever the tyre is known, four of them together must be: a specialisation.
-#include "veridyn/vehicle/tyre/four_magic_formula.hpp"
+}  // namespace veridyn::vehicle

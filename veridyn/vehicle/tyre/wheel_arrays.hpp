@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "veridyn/vehicle/model/wheels.hpp"
+#include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
 

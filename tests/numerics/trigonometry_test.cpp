@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/model/trigonometry.hpp"
+#include "veridyn/numerics/trigonometry.hpp"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace veridyn::vehicle {
+namespace veridyn::numerics {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -48,8 +48,8 @@ TEST(Trigonometry, GivesArcTangentsAsLongDoubleDoes) {
     std::uniform_real_distribution<double> any(-most, most);
     double worst = 0.0;
     for (int k = 0; k < 50000; ++k) {
-      const WheelArray<double> x(any(generator), any(generator), any(generator), any(generator));
-      const WheelArray<double> angles = arc_tangents<double>(x), reflected = arc_tangents<double>(-x);
+      const FourAngles<double> x(any(generator), any(generator), any(generator), any(generator));
+      const FourAngles<double> angles = arc_tangents<double>(x), reflected = arc_tangents<double>(-x);
       for (Eigen::Index i = 0; i < 4; ++i) {
         const long double exact = std::atan(static_cast<long double>(x[i]));
         worst = std::max(worst, static_cast<double>(std::abs((angles[i] - exact) / exact)));
@@ -65,8 +65,8 @@ TEST(Trigonometry, CarriesDerivatives) {
   const Jet x(0.3, 0);
   EXPECT_NEAR(sine_cosine(x).sin.v(0), std::cos(0.3), 1e-15);
   EXPECT_NEAR(sine_cosine(x).cos.v(0), -std::sin(0.3), 1e-15);
-  EXPECT_NEAR(arc_tangents<Jet>(WheelArray<Jet>(x, x, x, x))[2].v(0), 1.0 / 1.09, 1e-15);
+  EXPECT_NEAR(arc_tangents<Jet>(FourAngles<Jet>(x, x, x, x))[2].v(0), 1.0 / 1.09, 1e-15);
 }
 
 }  // namespace
-}  // namespace veridyn::vehicle
+}  // namespace veridyn::numerics

@@ -1,22 +1,25 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
 
-#include "veridyn/vehicle/model/wheel_arrays.hpp"
-
-/// Angles of vehicles are many and mostly small: their functions, inline, for the hot loops. Polynomials are ours
+/// Functions of angles, which in simulations are many and mostly small: inline, for the hot loops. Polynomials are
 /// Chebyshev fits in 50 digits, with errors below 2e-17.
-namespace veridyn::vehicle {
+namespace veridyn::numerics {
 
 /// Sine and cosine of one angle.
 template <typename Scalar>
 struct SineCosine {
   Scalar sin, cos;
 };
+
+/// Four angles or tangents, to calculate with element by element.
+template <typename Scalar>
+using FourAngles = Eigen::Array<Scalar, 4, 1>;
 
 namespace internal {
 
@@ -64,22 +67,22 @@ template <typename Scalar>
 /// Arc tangents of four numbers. For double within 1 unit in the last place; odd to the last bit. Up to 0.35 (19 deg)
 /// all four cost about one call of the library, beyond they cost a call each.
 template <typename Scalar>
-[[nodiscard, gnu::always_inline]] inline WheelArray<Scalar> arc_tangents(const WheelArray<Scalar>& x) {
+[[nodiscard, gnu::always_inline]] inline FourAngles<Scalar> arc_tangents(const FourAngles<Scalar>& x) {
   using std::atan;
   if constexpr (std::is_same_v<Scalar, double>) {
     constexpr double kMost = internal::kArcTangentMost;
     if (std::abs(x[0]) <= kMost && std::abs(x[1]) <= kMost && std::abs(x[2]) <= kMost && std::abs(x[3]) <= kMost) {
       const auto& c = internal::kArcTangent;
-      const WheelArray<double> z = x * x, z2 = z * z, z4 = z2 * z2;
+      const FourAngles<double> z = x * x, z2 = z * z, z4 = z2 * z2;
       // In short chains of operations, which the processor overlaps.
-      const WheelArray<double> low = (c[0] + c[1] * z) + z2 * (c[2] + c[3] * z);
-      const WheelArray<double> high = (c[4] + c[5] * z) + z2 * (c[6] + c[7] * z) + z4 * (c[8] + c[9] * z);
+      const FourAngles<double> low = (c[0] + c[1] * z) + z2 * (c[2] + c[3] * z);
+      const FourAngles<double> high = (c[4] + c[5] * z) + z2 * (c[6] + c[7] * z) + z4 * (c[8] + c[9] * z);
       return x + (x * z) * (low + z4 * high);
     }
   }
-  WheelArray<Scalar> out;
+  FourAngles<Scalar> out;
   for (Eigen::Index i = 0; i < 4; ++i) out[i] = atan(x[i]);
   return out;
 }
 
-}  // namespace veridyn::vehicle
+}  // namespace veridyn::numerics

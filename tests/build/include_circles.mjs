@@ -1,0 +1,80 @@
+// Fails where files or folders of the library include each other in a circle, or where a module includes one that is not
+// to its left in the line of layers of docs/architecture.md ("core < numerics < ... < (aircraft, vehicle, muscle) < ...").
+//   node include_circles.mjs SOURCE_FOLDER
+import { readdirSync, readFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+
+const root = process.argv[2];
+/// The sources of a folder, deep.
+function sources(folder) {
+  return readdirSync(join(root, folder), { withFileTypes: true }).flatMap((entry) => {
+    const path = `${folder}/${entry.name}`;
+    if (entry.isDirectory()) return sources(path);
+    return /\.[ch]pp$/.test(entry.name) ? [path] : [];
+  });
+}
+const files = ['veridyn', 'apps'].flatMap(sources);
+
+/// The edges of a graph as a map from each node to those that it includes, itself left out.
+function graph(edges) {
+  const to = new Map();
+  for (const [from, included] of edges) {
+    if (!to.has(from)) to.set(from, new Set());
+    if (from !== included) to.get(from).add(included);
+  }
+  return to;
+}
+
+/// One circle of a graph as the nodes on it, the first one again at the end; null: there is none.
+function circle(to) {
+  const done = new Set();
+  const path = [];
+  function visit(node) {
+    const begin = path.indexOf(node);
+    if (begin >= 0) return [...path.slice(begin), node];
+    if (done.has(node)) return null;
+    path.push(node);
+    for (const next of to.get(node) ?? []) {
+      const found = visit(next);
+      if (found) return found;
+    }
+    path.pop();
+    done.add(node);
+    return null;
+  }
+  for (const node of to.keys()) {
+    const found = visit(node);
+    if (found) return found;
+  }
+  return null;
+}
+
+/// The layer of each module, from the lowest.
+function layers() {
+  const text = readFileSync(join(root, 'docs/architecture.md'), 'utf8');
+  const line = text.match(/^ {4}(core < .+)$/m);
+  if (!line) throw new Error('docs/architecture.md: no line of layers, "core < numerics < ..."');
+  const of = new Map();
+  line[1].split('<').forEach((modules, layer) => {
+    for (const name of modules.match(/[a-z]+/g)) of.set(name, layer);
+  });
+  return of;
+}
+
+const edges = files.flatMap((file) =>
+  [...readFileSync(join(root, file), 'utf8').matchAll(/^\s*#\s*include "((?:veridyn|apps)\/[^"]+)"/gm)].map(([, included]) => [file, included]),
+);
+const moduleOf = (file) => (file.startsWith('apps/') ? 'apps' : file.split('/')[1]);
+const faults = [];
+for (const [what, named] of [['files', (file) => file], ['folders', dirname]]) {
+  const found = circle(graph(edges.map(([from, to]) => [named(from), named(to)])));
+  if (found) faults.push(`${what} include each other: ${found.join(' -> ')}`);
+}
+const layer = layers();
+for (const [from, to] of edges) {
+  const [above, below] = [moduleOf(from), moduleOf(to)];
+  if (!layer.has(above) || !layer.has(below)) faults.push(`docs/architecture.md: no layer for ${layer.has(above) ? below : above}`);
+  else if (above !== below && !(layer.get(below) < layer.get(above))) faults.push(`${from} includes ${to}, which is not of a layer below`);
+}
+for (const fault of new Set(faults)) console.error(fault);
+process.exit(faults.length > 0 ? 1 : 0);
