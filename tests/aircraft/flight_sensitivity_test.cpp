@@ -46,7 +46,6 @@ amplitude = "3 deg"
 [sensitivity]
 longest = 3
 index_samples = 64
-resamples = 50
 )";
 constexpr const char* kThreeInputs = R"(
 [[sensitivity.input]]

@@ -15,7 +15,7 @@ class ResponseProgram : public ProgramTest {
   static std::string example(const char* name) { return (test::source_folder() / "examples/studies" / name).string(); }
   static constexpr const char* kDrive =
       "[subject]\nkind = \"vehicle\"\nbuiltin = \"reference\"\n[drive]\nmodel = \"bicycle\"\n"
-      "manoeuvre = \"step steer\"\nspeed = 20\nstep = 0.01\n[sensitivity]\nindex_samples = 16\nresamples = 20\n";
+      "manoeuvre = \"step steer\"\nspeed = 20\nstep = 0.01\n[sensitivity]\nindex_samples = 16\n";
 };
 
 TEST_F(ResponseProgram, SaysWhatMovesADrive) {

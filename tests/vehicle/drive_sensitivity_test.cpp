@@ -39,7 +39,6 @@ duration = 6
 step = 0.01
 [sensitivity]
 index_samples = 512
-resamples = 100
 )";
 
 DriveSensitivityStudy read_varied(const std::string& text) {
@@ -139,7 +138,6 @@ speed = "15 m/s"
 step = 0.01
 [sensitivity]
 index_samples = 4
-resamples = 10
 )";
   const DriveSensitivityStudy study = read_varied(text);
   const ResponseIndices a = analyse_varied(study, 1), b = analyse_varied(study, 3);
@@ -181,7 +179,6 @@ step = 0.05
 output_step = 0.05
 [sensitivity]
 index_samples = 16
-resamples = 10
 [[sensitivity.input]]
 parameter = "C_r"
 low = 90000

@@ -36,7 +36,7 @@ struct SensitivityStudy {
 ///     least_nrmse = 1e-3     # below it in every task a muscle counts as not excited
 ///     method = "variance"    # first and total indices of the chosen tasks; "morris"; "none"
 ///     index_samples = 512    # N of N (inputs + 2) points; a power of two is best
-///     resamples = 1000       # of the bootstrap of the indices' intervals
+///     replicates = 16        # independent parts of these samples, whose spread makes the intervals
 ///     level = 0.95           # of these intervals
 ///     trajectories = 20      # of Morris
 ///     levels = 4             # of Morris' grid

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <boost/random/sobol.hpp>
 #include <cmath>
-#include <span>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -27,54 +27,69 @@ struct Rows {
   }
 };
 
-struct Estimate {
-  double mean = 0.0, variance = 0.0;
-  std::vector<double> first, total;
-};
-
-/// Saltelli's and Jansen's estimators over the rows named, some of them several times.
-Estimate estimate_over(const Rows& rows, std::span<const std::size_t> chosen, std::size_t inputs) {
-  Estimate e;
-  const auto n = static_cast<double>(chosen.size());
-  for (const std::size_t r : chosen) e.mean += 0.5 * (rows.A(r) + rows.B(r)) / n;
-  for (const std::size_t r : chosen)
-    e.variance += 0.5 * (std::pow(rows.A(r) - e.mean, 2) + std::pow(rows.B(r) - e.mean, 2)) / n;
-  for (std::size_t i = 0; i < inputs; ++i) {
-    double first = 0.0, total = 0.0;
-    for (const std::size_t r : chosen) {
-      // The mean is taken off: without it the products' own variance would hide small indices.
-      first += (rows.B(r) - e.mean) * (rows.mixed(i, r) - rows.A(r)) / n;
-      total += 0.5 * std::pow(rows.A(r) - rows.mixed(i, r), 2) / n;
-    }
-    e.first.push_back(e.variance > 0.0 ? first / e.variance : 0.0);
-    e.total.push_back(e.variance > 0.0 ? total / e.variance : 0.0);
-  }
-  return e;
+/// The replicate of the sequence that a row belongs to.
+std::size_t replicate_of(std::size_t row, const SensitivityOptions& options) {
+  return row * options.used_replicates() / options.samples;
 }
 
-void set_intervals(SensitivityIndices& result, const Rows& rows, const SensitivityOptions& options) {
-  const std::size_t inputs = result.inputs.size(), n = rows.kept.size();
-  RandomStream random(options.seed, "bootstrap of sensitivity indices");
-  std::vector<std::vector<double>> first(inputs), total(inputs);
-  std::vector<std::size_t> chosen(n);
-  for (std::size_t b = 0; b < options.resamples; ++b) {
-    for (std::size_t& r : chosen) r = rows.kept[random.index(n)];
-    const Estimate e = estimate_over(rows, chosen, inputs);
+/// Sums of the estimators over the rows of one replicate.
+struct ReplicateSums {
+  std::size_t rows = 0;
+  double variance = 0.0;
+  std::vector<double> first, total;  ///< by input
+};
+
+/// Saltelli's and Jansen's estimators, summed by replicate about the mean of all rows.
+std::vector<ReplicateSums> sums_of(const Rows& rows, double mean, std::size_t inputs,
+                                   const SensitivityOptions& options) {
+  std::vector<ReplicateSums> sums(options.used_replicates());
+  for (ReplicateSums& s : sums) {
+    s.first.assign(inputs, 0.0);
+    s.total.assign(inputs, 0.0);
+  }
+  for (const std::size_t r : rows.kept) {
+    ReplicateSums& s = sums[replicate_of(r, options)];
+    const double a = rows.A(r) - mean, b = rows.B(r) - mean;
+    ++s.rows;
+    s.variance += 0.5 * (a * a + b * b);
     for (std::size_t i = 0; i < inputs; ++i) {
-      first[i].push_back(e.first[i]);
-      total[i].push_back(e.total[i]);
+      const double m = rows.mixed(i, r) - mean;
+      // The mean is taken off: without it the products' own variance would hide small indices.
+      s.first[i] += b * (m - a);
+      s.total[i] += 0.5 * (a - m) * (a - m);
     }
   }
-  const double tail = 0.5 * (1.0 - options.level);
-  for (std::size_t i = 0; i < inputs; ++i) {
-    std::sort(first[i].begin(), first[i].end());
-    std::sort(total[i].begin(), total[i].end());
-    SensitivityIndex& index = result.inputs[i];
-    index.first_low = quantile_of_sorted(first[i], tail);
-    index.first_high = quantile_of_sorted(first[i], 1.0 - tail);
-    index.total_low = quantile_of_sorted(total[i], tail);
-    index.total_high = quantile_of_sorted(total[i], 1.0 - tail);
+  std::erase_if(sums, [](const ReplicateSums& s) { return s.rows == 0; });
+  return sums;
+}
+
+/// A ratio of two sums over replicates with its interval.
+struct Ratio {
+  double value = 0.0, low = 0.0, high = 0.0;
+};
+
+/// The ratio of sums of `part` and variance; the interval is Student's for the spread of the replicates, linear in
+/// their deviations.
+template <typename Part>
+Ratio ratio_of(const std::vector<ReplicateSums>& sums, const Part& part, double level) {
+  double above = 0.0, below = 0.0, squares = 0.0;
+  for (const ReplicateSums& s : sums) {
+    above += part(s);
+    below += s.variance;
   }
+  if (!(below > 0.0)) return {};
+  const double value = above / below;
+  for (const ReplicateSums& s : sums) squares += std::pow((part(s) - value * s.variance) / below, 2);
+  const auto n = static_cast<double>(sums.size());
+  if (n < 2.0) return {value, kNaN, kNaN};
+  const double half = student_t_quantile(0.5 * (1.0 + level), n - 1.0) * std::sqrt(n / (n - 1.0) * squares);
+  return {value, value - half, value + half};
+}
+
+std::vector<std::uint64_t> random_shift(std::size_t dimensions, RandomStream& random) {
+  std::vector<std::uint64_t> shift(dimensions);
+  for (std::uint64_t& s : shift) s = random.index(std::uint64_t{1} << 32) << 32 | random.index(std::uint64_t{1} << 32);
+  return shift;
 }
 
 /// Points whose bits are exchanged where those of `shift` are set, by dimension.
@@ -99,16 +114,19 @@ Eigen::MatrixXd shifted_sobol_points(std::size_t points, const std::vector<std::
 
 void SensitivityOptions::validate() const {
   if (samples < 2) throw InputError("sensitivity.samples", fmt::format("is {}; must be >= 2", samples));
-  if (resamples < 2) throw InputError("sensitivity.resamples", fmt::format("is {}; must be >= 2", resamples));
+  if (replicates < 2) throw InputError("sensitivity.replicates", fmt::format("is {}; must be >= 2", replicates));
   if (!(level > 0.0 && level < 1.0))
     throw InputError("sensitivity.level", fmt::format("is {}; must be in (0, 1)", level));
 }
 
+std::size_t SensitivityOptions::used_replicates() const {
+  constexpr std::size_t kLeastRows = 4;
+  return std::clamp<std::size_t>(samples / kLeastRows, 2, replicates);
+}
+
 Eigen::MatrixXd sobol_points(std::size_t points, std::size_t dimensions, std::uint64_t seed) {
   RandomStream random(seed, "digital shift of a Sobol sequence");
-  std::vector<std::uint64_t> shift(dimensions);
-  for (std::uint64_t& s : shift) s = random.index(std::uint64_t{1} << 32) << 32 | random.index(std::uint64_t{1} << 32);
-  return shifted_sobol_points(points, shift);
+  return shifted_sobol_points(points, random_shift(dimensions, random));
 }
 
 Eigen::MatrixXd plain_sobol_points(std::size_t points, std::size_t dimensions) {
@@ -118,7 +136,15 @@ Eigen::MatrixXd plain_sobol_points(std::size_t points, std::size_t dimensions) {
 Eigen::MatrixXd variance_design(std::size_t inputs, const SensitivityOptions& options) {
   options.validate();
   const auto k = static_cast<Eigen::Index>(inputs), n = static_cast<Eigen::Index>(options.samples);
-  const Eigen::MatrixXd both = sobol_points(options.samples, 2 * inputs, options.seed);
+  Eigen::MatrixXd both(n, 2 * k);
+  RandomStream random(options.seed, "digital shifts of replicates of a Sobol sequence");
+  for (std::size_t from = 0; from < options.samples;) {
+    std::size_t end = from;
+    while (end < options.samples && replicate_of(end, options) == replicate_of(from, options)) ++end;
+    both.middleRows(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(end - from)) =
+        shifted_sobol_points(end - from, random_shift(2 * inputs, random));
+    from = end;
+  }
   Eigen::MatrixXd design(n * (k + 2), k);
   design.topRows(n) = both.leftCols(k);
   design.middleRows(n, n) = both.rightCols(k);
@@ -147,15 +173,17 @@ SensitivityIndices variance_indices(const Eigen::VectorXd& results, std::size_t 
   SensitivityIndices result;
   result.evaluations = expected;
   result.dropped = options.samples - rows.kept.size();
-  const Estimate e = estimate_over(rows, rows.kept, inputs);
-  result.mean = e.mean;
-  result.variance = e.variance;
-  result.inputs.resize(inputs);
+  for (const std::size_t r : rows.kept)
+    result.mean += 0.5 * (rows.A(r) + rows.B(r)) / static_cast<double>(rows.kept.size());
+  const std::vector<ReplicateSums> sums = sums_of(rows, result.mean, inputs, options);
+  for (const ReplicateSums& s : sums) result.variance += s.variance / static_cast<double>(rows.kept.size());
   for (std::size_t i = 0; i < inputs; ++i) {
-    result.inputs[i].first = e.first[i];
-    result.inputs[i].total = e.total[i];
+    const Ratio first = ratio_of(
+        sums, [&](const ReplicateSums& s) { return s.first[i]; }, options.level);
+    const Ratio total = ratio_of(
+        sums, [&](const ReplicateSums& s) { return s.total[i]; }, options.level);
+    result.inputs.push_back({first.value, total.value, first.low, first.high, total.low, total.high});
   }
-  set_intervals(result, rows, options);
   return result;
 }
 

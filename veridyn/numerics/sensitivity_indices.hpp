@@ -11,8 +11,8 @@ namespace veridyn::numerics {
 /// and total order E(V(y|all but x_i))/V(y), what is left when only x_i is not. Their difference is interaction.
 struct SensitivityIndex {
   double first = 0.0, total = 0.0;
-  /// Bootstrap percentile interval of the level asked for. It takes the rows for independent ones, which a Sobol
-  /// sequence is better than: Ishigami's indices lie in the 95 % interval of 512 samples for each of 200 seeds.
+  /// Interval of the level asked for, from the spread of independent replicates of the sequence (`variance_indices`).
+  /// NaN where one replicate alone has results.
   double first_low = 0.0, first_high = 0.0;
   double total_low = 0.0, total_high = 0.0;
 };
@@ -27,12 +27,16 @@ struct SensitivityIndices {
 
 /// How many evaluations, and of which sequence.
 struct SensitivityOptions {
-  std::size_t samples = 512;     ///< N; evaluations are N (inputs + 2). A power of two uses the sequence best
-  std::size_t resamples = 1000;  ///< of the bootstrap
-  double level = 0.95;           ///< of its intervals
-  std::uint64_t seed = 1;        ///< of the sequence's scrambling and of the bootstrap
+  std::size_t samples = 512;  ///< N; evaluations are N (inputs + 2). A power of two uses the sequence best
+  /// R parts of N/R samples, each a Sobol sequence with a random shift of its own. Few: the sequence is better used,
+  /// and intervals are wider by Student's factor; at most N/4 are made.
+  std::size_t replicates = 16;
+  double level = 0.95;     ///< of the intervals
+  std::uint64_t seed = 1;  ///< of the shifts
   /// @throws InputError naming option, value and rule.
   void validate() const;
+  /// Replicates of the design: as many as wanted, but each of four rows or more, and at least two.
+  [[nodiscard]] std::size_t used_replicates() const;
 };
 
 /// Points of a Sobol sequence with a random digital shift: rows of `points` x `dimensions` in [0, 1), the same for the
@@ -46,7 +50,10 @@ struct SensitivityOptions {
 /// all of B, then A with column 0 of B, and so on. Evaluate them in any order, on any number of threads or machines.
 [[nodiscard]] Eigen::MatrixXd variance_design(std::size_t inputs, const SensitivityOptions& options);
 
-/// Indices from the results at these points, in their order: first order by Saltelli's, total by Jansen's estimator.
+/// Indices from the results at these points, in their order: first order by Saltelli's, total by Jansen's estimator, as
+/// ratios of sums over all rows. Replicates are independent of each other, whatever the sequence does within them, so
+/// that their spread gives the intervals (Student's, R - 1 degrees of freedom; L'Ecuyer & Lemieux 2002). A bootstrap
+/// over rows takes the rows for independent ones, and its intervals are far too wide.
 /// Rows with a result that is not finite (a simulation that could not finish) are left out and counted.
 /// @throws InputError when the number of results does not fit, or fewer than two rows are left.
 [[nodiscard]] SensitivityIndices variance_indices(const Eigen::VectorXd& results, std::size_t inputs,

@@ -39,7 +39,7 @@ ResponseProblem three_inputs() {
           .fingerprint = 3};
 }
 
-IndexOptions of_samples(std::size_t samples = 1024) { return {.variance = {.samples = samples, .resamples = 200}}; }
+IndexOptions of_samples(std::size_t samples = 1024) { return {.variance = {.samples = samples}}; }
 
 // Uniform inputs: variance (high - low)^2/12 of each; 3^2 : 4^2 of the sum, nothing but interaction of the product.
 TEST(ResponseIndices, AreThoseOfAClosedForm) {

@@ -28,11 +28,11 @@ std::string index_refusal(const std::string& text) {
 
 TEST(ResultIndices, AreReadWithTheirOptions) {
   const IndexOptions o = read_index_keys(
-      "method = \"morris\"\nindex_samples = 64\nresamples = 50\nlevel = 0.9\n"
+      "method = \"morris\"\nindex_samples = 64\nreplicates = 8\nlevel = 0.9\n"
       "trajectories = 8\nlevels = 6\n");
   EXPECT_EQ(o.method, IndexMethod::kMorris);
   EXPECT_EQ(o.variance.samples, 64u);
-  EXPECT_EQ(o.variance.resamples, 50u);
+  EXPECT_EQ(o.variance.replicates, 8u);
   EXPECT_EQ(o.variance.level, 0.9);
   EXPECT_EQ(o.variance.seed, 7u);
   EXPECT_EQ(o.morris_trajectories, 8u);
@@ -47,7 +47,7 @@ TEST(ResultIndices, AreReadWithTheirOptions) {
 }
 
 TEST(ResultIndices, SayWhereThereAreNone) {
-  const IndexOptions options{.variance = {.samples = 4, .resamples = 10}};
+  const IndexOptions options{.variance = {.samples = 4}};
   const Eigen::MatrixXd design = index_design(1, options);
   std::vector<std::string> warnings;
   const ResultIndices r =
@@ -69,7 +69,7 @@ TEST(ResultIndices, WarnOfWideIntervalsOfWhatIsInfluential) {
   const std::vector<std::string> names{"C_f", "mass"};
   EXPECT_EQ(wide_interval_warning(r, names, 64),
             "gain: 3 of 4 indices have an interval wider than 10 % of the index, of influential inputs C_f; with 256 "
-            "instead of 64 samples they are about half as wide");
+            "instead of 64 samples they are half as wide or less");
   const std::vector<ResultIndices> both{r, r};
   EXPECT_THAT(wide_interval_warning(both, 64),
               HasSubstr("6 of 8 indices have an interval wider than 10 % of the index, "

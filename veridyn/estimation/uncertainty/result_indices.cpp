@@ -49,7 +49,7 @@ IndexOptions read_index_options(const StudyTable& table, std::uint64_t seed) {
   for (const auto& [word, method] : kMethods)
     if (word == chosen) o.method = method;
   o.variance.samples = count_or(table, "index_samples", o.variance.samples, 2);
-  o.variance.resamples = count_or(table, "resamples", o.variance.resamples, 2);
+  o.variance.replicates = count_or(table, "replicates", o.variance.replicates, 2);
   o.variance.level = table.number_or("level", "1", o.variance.level);
   if (!(o.variance.level > 0.0 && o.variance.level < 1.0))
     table.fail("level", fmt::format("= {:g} must be above 0 and below 1", o.variance.level));
@@ -97,7 +97,7 @@ std::string wide_interval_warning(const ResultIndices& r, const std::vector<std:
   std::string text = fmt::format("{}: {} of {} indices have an interval wider than {:g} % of the index", r.result,
                                  wide.wide, wide.indices, 100.0 * kWideInterval);
   if (!wide.names.empty()) text += fmt::format(", of influential inputs {}", wide.names);
-  return text + fmt::format("; with {} instead of {} samples they are about half as wide", 4 * samples, samples);
+  return text + fmt::format("; with {} instead of {} samples they are half as wide or less", 4 * samples, samples);
 }
 
 std::string wide_interval_warning(std::span<const ResultIndices> results, std::size_t samples) {
@@ -111,8 +111,7 @@ std::string wide_interval_warning(std::span<const ResultIndices> results, std::s
   if (sum.wide == 0) return {};
   return fmt::format(
       "{} of {} indices have an interval wider than {:g} % of the index, {} of them of inputs that move their result "
-      "by "
-      "{:g} % or more; with {} instead of {} samples intervals are about half as wide",
+      "by {:g} % or more; with {} instead of {} samples intervals are half as wide or less",
       sum.wide, sum.indices, 100.0 * kWideInterval, sum.influential, 100.0 * kInfluential, 4 * samples, samples);
 }
 

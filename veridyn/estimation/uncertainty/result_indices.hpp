@@ -13,7 +13,7 @@ namespace veridyn::estimation {
 
 /// Which indices are computed.
 enum class IndexMethod {
-  kVariance,  ///< first and total order (Saltelli, Jansen) with bootstrap intervals
+  kVariance,  ///< first and total order (Saltelli, Jansen) with intervals
   kMorris,    ///< elementary effects: a screening at a small share of the cost
   kNone,
 };
@@ -30,12 +30,12 @@ struct IndexOptions {
 ///
 ///     method = "variance"    # first and total indices; "morris"; "none"
 ///     index_samples = 512    # N of N (inputs + 2) points; a power of two is best
-///     resamples = 1000       # of the bootstrap of the indices' intervals
+///     replicates = 16        # independent parts of these samples, whose spread makes the intervals
 ///     level = 0.95           # of these intervals
 ///     trajectories = 20      # of Morris
 ///     levels = 4             # of Morris' grid
 ///
-/// @param seed  of the design and the bootstrap
+/// @param seed  of the design
 /// @throws InputError with file, line and key.
 [[nodiscard]] IndexOptions read_index_options(const StudyTable& table, std::uint64_t seed);
 
