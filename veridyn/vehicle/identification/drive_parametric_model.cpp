@@ -339,10 +339,10 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
       const double at = static_cast<double>(k) + static_cast<double>(i) / segment.substeps;
       const Input middle = input(at + 0.5 / segment.substeps);
       const Input next = input(at + 1.0 / segment.substeps);
-      const auto rate = [&](numerics::RungeKuttaMoment moment, const State& at) -> State {
+      const auto rate = [&](numerics::RungeKuttaMoment moment, const State& stage) -> State {
         const Input& there = moment == numerics::RungeKuttaMoment::kMiddle ? middle : next;
-        const BicycleRates<Scalar> k = model.rates(at(0), at(1), there.delta, there.u);
-        return {k.dv, k.dr};
+        const BicycleRates<Scalar> rates = model.rates(stage(0), stage(1), there.delta, there.u);
+        return {rates.dv, rates.dr};
       };
       const State moved = numerics::runge_kutta_4_from(State(k1.dv, k1.dr), rate, State(v, r), h);
       v = moved(0);
