@@ -7,6 +7,7 @@
 
 #include "veridyn/muscle/path/geodesic_spheroid.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
+#include "veridyn/numerics/runge_kutta_nystrom.hpp"
 
 /// Wrapping over an ellipsoid along its geodesic.
 ///
@@ -55,12 +56,10 @@ TangentCircle<Scalar> tangent_circle(const Eigen::Matrix<Scalar, 3, 1>& p, const
   return circle;
 }
 
-/// Nystroem's method of order five with four evaluations (Hairer, Norsett, Wanner, Solving ODEs I, table II.14.2) for
-/// the geodesic and its Jacobi field.
+/// The geodesic and its Jacobi field by `numerics::nystrom_5_steps`.
 template <typename Scalar>
 void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::Matrix<Scalar, 3, 1>& inverse_square,
                         const Scalar& s, int steps, Eigen::Matrix<Scalar, 4, 1>& y, Eigen::Matrix<Scalar, 4, 1>& v) {
-  // With V = h v and K = h^2 f no step size is left in the formulas. Four scalars, not a matrix: nothing is shuffled.
   const Scalar h = s / Scalar(static_cast<double>(steps));
   const Scalar hh = -h * h;
   const Scalar l0 = lambda[0] * hh, l1 = lambda[1] * hh, l2 = lambda[2] * hh, l3 = lambda[3] * hh;
@@ -75,25 +74,12 @@ void integrate_geodesic(const Eigen::Matrix<Scalar, 4, 1>& lambda, const Eigen::
     k[2] = l2 * at[2] * w;
     k[3] = l3 * at[3] * w;
   };
-  Scalar x[4], u[4], at[4], k1[4], k2[4], k3[4], k4[4];
+  Scalar x[4], u[4];
   for (int c = 0; c < 4; ++c) {
     x[c] = y[c];
     u[c] = v[c] * h;
   }
-  for (int i = 0; i < steps; ++i) {
-    f(x, k1);
-    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * 0.2 + k1[c] * (1.0 / 50.0));
-    f(at, k2);
-    for (int c = 0; c < 4; ++c) at[c] = x[c] + (u[c] * (2.0 / 3.0) - k1[c] * (1.0 / 27.0)) + k2[c] * (7.0 / 27.0);
-    f(at, k3);
-    for (int c = 0; c < 4; ++c)
-      at[c] = x[c] + (u[c] + k1[c] * (21.0 / 70.0) - k2[c] * (4.0 / 70.0)) + k3[c] * (18.0 / 70.0);
-    f(at, k4);
-    for (int c = 0; c < 4; ++c) {
-      x[c] += u[c] + (k1[c] * (14.0 / 336.0) + k2[c] * (100.0 / 336.0) + k3[c] * (54.0 / 336.0));
-      u[c] += k1[c] * (14.0 / 336.0) + k2[c] * (125.0 / 336.0) + k3[c] * (162.0 / 336.0) + k4[c] * (35.0 / 336.0);
-    }
-  }
+  numerics::nystrom_5_steps<4>(f, steps, x, u);
   const Scalar per_h = Scalar(1.0) / h;
   for (int c = 0; c < 4; ++c) {
     y[c] = x[c];

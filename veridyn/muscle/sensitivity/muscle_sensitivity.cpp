@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
@@ -20,7 +21,7 @@ std::vector<std::string> bands_of(const PreparedTask& task, double accuracy) {
   Progress alone;
   const ForwardOptions options{
       .begin = task.time.front(), .end = task.time.back(), .rate_Hz = task.task.rate_Hz, .accuracy = accuracy};
-  const MuscleTrajectory motion = simulate_forward(*task.system, task.start, task.drive, options, alone);
+  const MuscleTrajectory motion = simulate_forward(*task.system, task.start, task.controls, options, alone);
   std::vector<std::string> sentences;
   for (const WrapBandVisit& visit : wrap_band_visits(*task.system, motion.time, motion.q))
     sentences.push_back(wrap_band_text(*task.system, visit));
@@ -48,8 +49,9 @@ std::vector<TaskFinding> find_bands(std::span<const PreparedTask> tasks, double 
   return findings;
 }
 
-/// Obstacles that the sampling shows.
-void judge_tasks(const TaskResponses& responses, const MuscleSampling& sampling, std::vector<TaskFinding>& findings) {
+/// The findings with the obstacles that the sampling shows.
+std::vector<TaskFinding> judged_tasks(const TaskResponses& responses, const MuscleSampling& sampling,
+                                      std::vector<TaskFinding> findings) {
   constexpr double kMostFailed = 0.05;
   for (std::size_t t = 0; t < findings.size(); ++t) {
     TaskFinding& f = findings[t];
@@ -65,22 +67,30 @@ void judge_tasks(const TaskResponses& responses, const MuscleSampling& sampling,
       f.obstacle = fmt::format("{} of {} simulations could not finish", f.failed, all);
     }
   }
+  return findings;
 }
 
+/// A cover, and whether tasks in a wrap's fading band could be chosen.
+struct ChosenCover {
+  TaskCover cover;
+  bool bands_allowed = false;
+};
+
 /// Cover from the tasks without an obstacle and outside the bands; with those inside where a muscle needs them.
-void choose(const SensitivityStudyOptions& options, MuscleSensitivity& s) {
+ChosenCover chosen_cover(const Eigen::MatrixXd& mean_nrmse, const std::vector<TaskFinding>& tasks,
+                         const CoverOptions& options) {
   std::vector<bool> clean, possible;
-  for (const TaskFinding& f : s.tasks) {
+  for (const TaskFinding& f : tasks) {
     possible.push_back(f.obstacle.empty());
     clean.push_back(f.obstacle.empty() && f.wrap_bands.empty());
   }
-  s.cover = choose_tasks(s.sampling.mean, clean, options.cover);
-  if (clean == possible) return;
-  const TaskCover all = choose_tasks(s.sampling.mean, possible, options.cover);
+  const TaskCover outside = choose_tasks(mean_nrmse, clean, options);
+  if (clean == possible) return {outside, false};
+  const TaskCover all = choose_tasks(mean_nrmse, possible, options);
   // A muscle that only tasks in a band excite, or too few tasks outside one.
-  s.bands_allowed = all.chosen && (!s.cover.chosen || s.cover.unexcited.size() > all.unexcited.size() ||
-                                   s.cover.chosen->tasks.size() < all.chosen->tasks.size());
-  if (s.bands_allowed) s.cover = all;
+  const bool needed = all.chosen && (!outside.chosen || outside.unexcited.size() > all.unexcited.size() ||
+                                     outside.chosen->tasks.size() < all.chosen->tasks.size());
+  return {needed ? all : outside, needed};
 }
 
 std::string names_of(const std::vector<std::size_t>& which, const std::vector<std::string>& names) {
@@ -89,30 +99,33 @@ std::string names_of(const std::vector<std::size_t>& which, const std::vector<st
   return fmt::format("{}", fmt::join(chosen, ", "));
 }
 
-void warn(const SensitivityStudyOptions& options, MuscleSensitivity& s) {
+/// What of the sampling and the choice has to be warned of.
+std::vector<std::string> warnings_of(const SensitivityStudyOptions& options, const MuscleSensitivity& s) {
+  std::vector<std::string> warnings;
   for (const TaskFinding& f : s.tasks) {
-    if (!f.obstacle.empty()) s.warnings.push_back(fmt::format("{}: not to be chosen, {}", f.name, f.obstacle));
+    if (!f.obstacle.empty()) warnings.push_back(fmt::format("{}: not to be chosen, {}", f.name, f.obstacle));
     if (f.obstacle.empty() && f.failed > 0)
-      s.warnings.push_back(fmt::format("{}: {} simulations could not finish and do not count", f.name, f.failed));
+      warnings.push_back(fmt::format("{}: {} simulations could not finish and do not count", f.name, f.failed));
   }
-  if (!s.cover.chosen) return;
+  if (!s.cover.chosen) return warnings;
   if (!s.cover.unexcited.empty())
-    s.warnings.push_back(fmt::format("no task excites {}: NRMSE below {:g} in all that may be chosen",
-                                     names_of(s.cover.unexcited, s.muscles), options.cover.least_nrmse));
+    warnings.push_back(fmt::format("no task excites {}: NRMSE below {:g} in all that may be chosen",
+                                   names_of(s.cover.unexcited, s.muscles), options.cover.least_nrmse));
   if (s.cover.missed > 0)
-    s.warnings.push_back(
+    warnings.push_back(
         fmt::format("{} tasks cannot excite every muscle: {} of {} are; choose more, or lower the "
                     "share of the greatest NRMSE from {:g} %",
                     s.cover.chosen->tasks.size(), s.cover.chosen->excited, s.cover.chosen->excited + s.cover.missed,
                     100.0 * options.cover.share));
   if (options.cover.tasks > s.cover.chosen->tasks.size())
-    s.warnings.push_back(fmt::format("only {} tasks may be chosen, {} were asked for", s.cover.chosen->tasks.size(),
-                                     options.cover.tasks));
-  if (!s.bands_allowed) return;
+    warnings.push_back(fmt::format("only {} tasks may be chosen, {} were asked for", s.cover.chosen->tasks.size(),
+                                   options.cover.tasks));
+  if (!s.bands_allowed) return warnings;
   for (const std::size_t t : s.cover.chosen->tasks) {
     for (const std::string& band : s.tasks[t].wrap_bands)
-      s.warnings.push_back(fmt::format("{} is chosen although: {}", s.tasks[t].name, band));
+      warnings.push_back(fmt::format("{} is chosen although: {}", s.tasks[t].name, band));
   }
+  return warnings;
 }
 
 }  // namespace
@@ -141,9 +154,11 @@ MuscleSensitivity analyse_sensitivity(const MusculoskeletalSystem& subject, std:
   s.sampling = sample_muscles(responses, options.sampling, store, progress);
   s.completed = s.sampling.completed;
   if (!s.completed) return s;
-  judge_tasks(responses, s.sampling, s.tasks);
-  choose(options, s);
-  warn(options, s);
+  s.tasks = judged_tasks(responses, s.sampling, std::move(s.tasks));
+  const ChosenCover chosen = chosen_cover(s.sampling.mean, s.tasks, options.cover);
+  s.cover = chosen.cover;
+  s.bands_allowed = chosen.bands_allowed;
+  s.warnings = warnings_of(options, s);
   if (!s.cover.chosen || options.indices.method == IndexMethod::kNone) return s;
   progress.stage(fmt::format("indices of {} tasks", s.cover.chosen->tasks.size()));
   std::vector<std::string> names;
