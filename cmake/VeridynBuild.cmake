@@ -3,6 +3,12 @@
 include(GNUInstallDirs)
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+# Libraries that the program loads while it runs, and where it looks for them.
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+set(CMAKE_BUILD_RPATH ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(VERIDYN_INSTALL_PLUGINS ${CMAKE_INSTALL_LIBDIR}/veridyn)
+file(RELATIVE_PATH from_bin_to_plugins /${CMAKE_INSTALL_BINDIR} /${VERIDYN_INSTALL_PLUGINS})
+set(CMAKE_INSTALL_RPATH $ORIGIN/${from_bin_to_plugins})
 set(CMAKE_CXX_EXTENSIONS OFF)
 # The difference to -O3 is not measurable here, that in compile time is.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
