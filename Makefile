@@ -43,14 +43,11 @@ tidy: setup ## clang-tidy on every module; TIDY="veridyn/io" for one
 	tools/tidy.sh $(BUILD) $(JOBS) $(TIDY)
 
 ASAN_MODULES ?= core numerics estimation io camera recording aircraft vehicle muscle cueing live report apps
-# Accuracy, coverage of intervals over many recordings, and the same work done again for equal bytes say nothing about
-# memory that one recording and one run do not say.
-ASAN_WITHOUT := Campaign|CostTheSameOnADrive|InTwoHundredCleanDrives|BeyondTheIntervals|WithManyMoreSimulations|EndsWhereTheGradientDoes|PredictsUnseenTasks|AWrongModelIsSaidToBeWrong|NullDirectionsAreTrue|ByWhatWasForetold|ItDoesSoOfAnotherPerson|LeavesWhatItDoesNotDetermineWhereItWas|CorrectsWhatTheFlightShows|DoesNotMoveACleanFlightsAnswer|FindsTheScaleOfTheVanes|IsNoneOfTheBuiltInAircrafts|FindsNoDelayInTurbulence|Cover|Alarm|StatesItsFrequencyError|DoesNotAllocate|HoldTheTruth|HoldsTheTruth|HaveRealisticSigmas|DoesNotClaim|ReachesTheBound|ReachesTheSpecificationsBound|RevertsFromAWrongModel|FindsTheTermsOfTheTrueModel|Mpirun|BitForBitWhenItIsKilled|ResumesSearchProfilesAndPosterior|ShardsMergeToTheSameBytes|ProcessesOfALauncherMeet|TheSameOnAnyNumberOfThreads|FollowsProfiles|CorrelatedNoiseIsFound|FarFromTheStandardModelWithParametersOpen|FilesOfARecordingGive|FindsFrictionAndShape|OfWhatIsWellDetermined|ComparesPersonsCaseByCase|NoModelConfirmsItself|ALogThatGrows|EveryKnobOfEveryAlgorithm|WithALapOfTheSameStagePlans|TheCameraTakesTheFalsePitch|BandsHoldOnRendered|BandsOfInclinationHold
 
 asan: setup ## tests of every module under the address and undefined-behaviour sanitizers; ASAN_MODULES="io" for one
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
-	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE soak -L '^($(subst $(space),|,$(ASAN_MODULES)))$$' -E '$(ASAN_WITHOUT)'
+	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
 
 bench: setup ## benchmarks; results in build/bench/*.json
 	cmake --preset bench --log-level=WARNING
@@ -60,7 +57,7 @@ bench: setup ## benchmarks; results in build/bench/*.json
 fuzz: setup ## each reader under libFuzzer for SECONDS_EACH (60)
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target fuzz
-	fuzz/run.sh $(or $(SECONDS_EACH),60) build/asan
+	JOBS=$(JOBS) fuzz/run.sh $(or $(SECONDS_EACH),60) build/asan
 
 soak: setup ## long-running campaigns (label soak), coverage of intervals
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING

@@ -3,6 +3,12 @@
 include(GNUInstallDirs)
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+# Libraries that the program loads while it runs, and where it looks for them.
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+set(CMAKE_BUILD_RPATH ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
+set(VERIDYN_INSTALL_PLUGINS ${CMAKE_INSTALL_LIBDIR}/veridyn)
+file(RELATIVE_PATH from_bin_to_plugins /${CMAKE_INSTALL_BINDIR} /${VERIDYN_INSTALL_PLUGINS})
+set(CMAKE_INSTALL_RPATH $ORIGIN/${from_bin_to_plugins})
 set(CMAKE_CXX_EXTENSIONS OFF)
 # The difference to -O3 is not measurable here, that in compile time is.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
@@ -138,7 +144,8 @@ endfunction()
 
 # veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
 # One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
-# label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs.
+# label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs. Those
+# that tests/long_tests.txt names have the label `NAME.long` instead, and do not run under the sanitizers.
 function(veridyn_module_tests name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
@@ -151,6 +158,11 @@ function(veridyn_module_tests name)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target} 24)
-  gtest_discover_tests(${target} TEST_FILTER -*Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt)
+  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt long REGEX "^[^#]")
+  list(TRANSFORM long REPLACE "(.+)" "*\\1*")
+  list(JOIN long ":" long)
+  gtest_discover_tests(${target} TEST_FILTER -*Soak*:${long} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
+  gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.long TIMEOUT 600)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
 endfunction()

@@ -37,5 +37,15 @@ TEST(GeneralEigen, GivesVectorsThatTheMatrixScales) {
   }
 }
 
+TEST(RealSchur, IsASimilarMatrixWithABlockForEachComplexPair) {
+  const Eigen::MatrixXd A = companion();
+  const RealSchur schur = real_schur(A);
+  EXPECT_TRUE((schur.U.transpose() * schur.U).isIdentity(1e-13));
+  EXPECT_TRUE((schur.U * schur.T * schur.U.transpose()).isApprox(A, 1e-13));
+  // Of the roots one pair is complex.
+  EXPECT_EQ((schur.T.diagonal(-1).array() != 0.0).count(), 1);
+  EXPECT_EQ((schur.T.diagonal(-2).array() != 0.0).count(), 0);
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

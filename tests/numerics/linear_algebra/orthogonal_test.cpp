@@ -66,5 +66,15 @@ TEST(ShortestLeastSquares, TakesPivotsBelowTheThresholdForZero) {
   EXPECT_TRUE(shortest_least_squares(A, b).isApprox(Eigen::Vector2d(1.0, 0.0), 1e-6));
 }
 
+TEST(Inverse, IsNothingForASingularMatrix) {
+  Eigen::MatrixXd A(2, 2);
+  A << 0.0, 2.0, 4.0, 6.0;
+  const std::optional<Eigen::MatrixXd> back = inverse(A);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE((*back * A).isIdentity(1e-14));
+  A << 1.0, 2.0, 2.0, 4.0 + 1e-15;
+  EXPECT_FALSE(inverse(A));
+}
+
 }  // namespace
 }  // namespace veridyn::numerics

@@ -14,6 +14,7 @@ TEST(Products, AreWhatTheirNamesSayElementByElement) {
   EXPECT_EQ(product(A, B), expected);
   EXPECT_EQ(transposed_product(A.transpose(), B), expected);
   EXPECT_EQ(product_transposed(A, B.transpose()), expected);
+  EXPECT_EQ(product(A, B, A), product(expected, A));
 }
 
 TEST(Products, ScaleRowsAndColumns) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -15,6 +14,8 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::camera {
@@ -97,12 +98,10 @@ void add_covariance(Calibration& c, const CalibrationPoints& points) {
     J.middleRows<2>(2 * signed_index(i)) = c.camera.J_image_parameters(points.points[i].track).leftCols(fitted);
   const Eigen::VectorXd scale = J.colwise().norm().cwiseMax(1e-300).cwiseInverse();
   J = J * scale.asDiagonal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J);
-  const Eigen::MatrixXd R = qr.matrixQR().topRows(fitted).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd back =
-      scale.asDiagonal() * R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(fitted, fitted));
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(fitted, fitted);
+  const Eigen::MatrixXd back = scale.asDiagonal() * numerics::solve_upper(numerics::HouseholderQr(J).R(), identity);
   c.covariance.setZero();
-  c.covariance.topLeftCorner(fitted, fitted) = c.sigma_image * c.sigma_image * (back * back.transpose());
+  c.covariance.topLeftCorner(fitted, fitted) = c.sigma_image * c.sigma_image * numerics::product_transposed(back, back);
 }
 
 }  // namespace

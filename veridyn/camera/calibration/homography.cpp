@@ -1,12 +1,11 @@
 #include "veridyn/camera/calibration/homography.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 #include <vector>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
 namespace veridyn::camera {
 
@@ -41,8 +40,7 @@ Eigen::Matrix3d direct_linear_homography(const CalibrationPoints& points) {
     rows.conservativeResize(9, 9);
     rows.bottomRows(9 - A.rows()).setZero();
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::ColPivHouseholderQRPreconditioner> svd(rows, Eigen::ComputeThinV);
-  const Eigen::VectorXd h = svd.matrixV().col(8);
+  const Eigen::VectorXd h = numerics::singular_values(rows, numerics::SingularVectors::kFullV).V.col(8);
   Eigen::Matrix3d H;
   H << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(), h.segment<3>(6).transpose();
   Eigen::Matrix3d from_track, to_image;

@@ -17,4 +17,10 @@ Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& matrix) {
   return Eigen::EigenSolver<Eigen::MatrixXd>(matrix, false).eigenvalues();
 }
 
+RealSchur real_schur(const Eigen::MatrixXd& matrix) {
+  VERIDYN_ASSERT(matrix.rows() == matrix.cols());
+  const Eigen::RealSchur<Eigen::MatrixXd> schur(matrix);
+  return {.T = schur.matrixT(), .U = schur.matrixU()};
+}
+
 }  // namespace veridyn::numerics

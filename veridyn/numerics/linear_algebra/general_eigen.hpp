@@ -18,4 +18,14 @@ struct GeneralEigen {
 /// Eigenvalues alone.
 [[nodiscard]] Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& matrix);
 
+/// A = U T U' with U orthogonal and T upper triangular but for blocks of two rows on its diagonal, one for each pair of
+/// complex eigenvalues; where there is no such pair the element below the diagonal is exactly zero.
+struct RealSchur {
+  Eigen::MatrixXd T;
+  Eigen::MatrixXd U;
+};
+
+/// The real Schur form, by the same iteration.
+[[nodiscard]] RealSchur real_schur(const Eigen::MatrixXd& matrix);
+
 }  // namespace veridyn::numerics

@@ -85,4 +85,11 @@ Eigen::VectorXd solve_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
   return A.partialPivLu().solve(b);
 }
 
+std::optional<Eigen::MatrixXd> inverse(const Eigen::MatrixXd& A) {
+  VERIDYN_ASSERT(A.rows() == A.cols());
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
+  if (!lu.isInvertible()) return std::nullopt;
+  return lu.inverse();
+}
+
 }  // namespace veridyn::numerics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace veridyn::numerics {
 
@@ -50,5 +51,8 @@ struct Eliminated {
 [[nodiscard]] Eigen::MatrixXd solve_linear(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 /// The same for one right-hand side.
 [[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+/// A^-1, by LU with full pivoting; nothing where A is singular to working precision.
+[[nodiscard]] std::optional<Eigen::MatrixXd> inverse(const Eigen::MatrixXd& A);
 
 }  // namespace veridyn::numerics

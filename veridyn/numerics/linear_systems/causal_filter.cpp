@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
+#include <optional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::numerics {
 
@@ -21,9 +22,9 @@ CausalFilter::CausalFilter(const StateSpace& system, Hold hold) : hold_(hold) {
   B_ = system.B.col(0);
   C_ = system.C.row(0).transpose();
   D_ = system.D(0, 0);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(system.A);
-  if (n > 0 && lu.isInvertible())
-    rest_ = -lu.inverse();
+  const std::optional<Eigen::MatrixXd> A_inverse = n > 0 ? inverse(system.A) : std::nullopt;
+  if (A_inverse)
+    rest_ = -*A_inverse;
   else
     rest_.setZero(n, n);
   x_.setZero(n);

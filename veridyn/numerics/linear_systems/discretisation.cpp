@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
+#include <optional>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 
 namespace veridyn::numerics {
 
@@ -34,7 +36,7 @@ StateSpace zero_order_hold(const StateSpace& system, double step) {
 StateSpace first_order_hold(const StateSpace& system, double step) {
   const HeldSystem h = held(system, step, Hold::kFirstOrder);
   // w = x - Slope u: w(k+1) = Phi w(k) + (Gamma + Phi Slope - Slope) u(k).
-  return {h.Phi, h.Gamma + h.Phi * h.Slope - h.Slope, system.C, system.D + system.C * h.Slope};
+  return {h.Phi, h.Gamma + product(h.Phi, h.Slope) - h.Slope, system.C, system.D + product(system.C, h.Slope)};
 }
 
 StateSpace bilinear(const StateSpace& system, double step, double omega) {
@@ -45,13 +47,12 @@ StateSpace bilinear(const StateSpace& system, double step, double omega) {
   const double a = omega == 0.0 ? 2.0 / step : omega / std::tan(0.5 * omega * step);
   const Eigen::Index n = system.states();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(a * identity - system.A);
-  if (!lu.isInvertible())
+  const std::optional<Eigen::MatrixXd> v_to_x = inverse(a * identity - system.A);
+  if (!v_to_x)
     throw InputError("step", fmt::format("of {} s makes a pole of the system one of the transformation", step));
   // States v = (a I - A) x - B u.
-  const Eigen::MatrixXd inverse = lu.inverse();
-  const Eigen::MatrixXd A = (a * identity + system.A) * inverse, C = system.C * inverse;
-  return {A, A * system.B + system.B, C, system.D + C * system.B};
+  const Eigen::MatrixXd A = product(a * identity + system.A, *v_to_x), C = product(system.C, *v_to_x);
+  return {A, product(A, system.B) + system.B, C, product(C, system.B) + system.D};
 }
 
 }  // namespace veridyn::numerics

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
 #include "veridyn/numerics/linear_systems/lyapunov.hpp"
 
 namespace veridyn::numerics {
@@ -23,49 +23,61 @@ constexpr int kNewtonSteps = 3;
 
 MatrixXd symmetric(const MatrixXd& m) { return 0.5 * (m + m.transpose()); }
 
+/// L L' of the problem's R, once the sizes were checked.
+Cholesky checked_weight(const MatrixXd& A, const MatrixXd& B, const MatrixXd& Q, const MatrixXd& R, const MatrixXd& N) {
+  const Index states = A.rows(), inputs = B.cols();
+  if (A.cols() != states || B.rows() != states || Q.rows() != states || Q.cols() != states || R.rows() != inputs ||
+      R.cols() != inputs || N.rows() != states || N.cols() != inputs)
+    throw InputError(
+        "linear-quadratic problem",
+        fmt::format("sizes do not fit: A {} x {}, B {} x {}, Q {} x {}, R {} x {}, N {} x {}", states, A.cols(),
+                    B.rows(), inputs, Q.rows(), Q.cols(), R.rows(), R.cols(), N.rows(), N.cols()));
+  if (!A.allFinite() || !B.allFinite() || !Q.allFinite() || !R.allFinite() || !N.allFinite())
+    throw InputError("linear-quadratic problem", "has an entry that is not finite");
+  Cholesky factor(symmetric(R));
+  if (!factor.positive_definite())
+    throw InputError("linear-quadratic problem", "R is not positive definite: some control would cost nothing");
+  return factor;
+}
+
 /// A problem whose sizes were checked, N of full size.
 struct Problem {
-  MatrixXd A, B, Q, R, N;
-  Eigen::LLT<MatrixXd> R_factor;
+  MatrixXd A, B, N;
+  Cholesky R_factor;
+  MatrixXd Q, R;
 
   Problem(const MatrixXd& a, const MatrixXd& b, const MatrixXd& q, const MatrixXd& r, const MatrixXd& n)
-      : A(a), B(b), Q(symmetric(q)), R(symmetric(r)), N(n.size() == 0 ? MatrixXd::Zero(b.rows(), b.cols()) : n) {
-    const Index states = A.rows(), inputs = B.cols();
-    if (A.cols() != states || B.rows() != states || Q.rows() != states || Q.cols() != states || R.rows() != inputs ||
-        R.cols() != inputs || N.rows() != states || N.cols() != inputs)
-      throw InputError(
-          "linear-quadratic problem",
-          fmt::format("sizes do not fit: A {} x {}, B {} x {}, Q {} x {}, R {} x {}, N {} x {}", states, A.cols(),
-                      B.rows(), inputs, Q.rows(), Q.cols(), R.rows(), R.cols(), N.rows(), N.cols()));
-    if (!A.allFinite() || !B.allFinite() || !Q.allFinite() || !R.allFinite() || !N.allFinite())
-      throw InputError("linear-quadratic problem", "has an entry that is not finite");
-    R_factor.compute(R);
-    if (R_factor.info() != Eigen::Success)
-      throw InputError("linear-quadratic problem", "R is not positive definite: some control would cost nothing");
-  }
+      : A(a),
+        B(b),
+        N(n.size() == 0 ? MatrixXd::Zero(b.rows(), b.cols()) : n),
+        R_factor(checked_weight(a, b, q, r, N)),
+        Q(symmetric(q)),
+        R(symmetric(r)) {}
 
   /// Of the problem without N: u = v - R^-1 N' x.
-  [[nodiscard]] MatrixXd drift() const { return A - B * R_factor.solve(N.transpose()); }
-  [[nodiscard]] MatrixXd weight() const { return symmetric(Q - N * R_factor.solve(N.transpose())); }
-  [[nodiscard]] MatrixXd authority() const { return symmetric(B * R_factor.solve(B.transpose())); }
+  [[nodiscard]] MatrixXd drift() const { return A - product(B, R_factor.solve(MatrixXd(N.transpose()))); }
+  [[nodiscard]] MatrixXd weight() const { return symmetric(Q - product(N, R_factor.solve(MatrixXd(N.transpose())))); }
+  [[nodiscard]] MatrixXd authority() const { return symmetric(product(B, R_factor.solve(MatrixXd(B.transpose())))); }
+  /// A - B K
+  [[nodiscard]] MatrixXd closed(const MatrixXd& K) const { return A - product(B, K); }
   /// x' W x, what the states cost under u = -K x.
   [[nodiscard]] MatrixXd cost_of(const MatrixXd& K) const {
-    const MatrixXd NK = N * K;
-    return symmetric(Q + K.transpose() * R * K - NK - NK.transpose());
+    const MatrixXd NK = product(N, K);
+    return symmetric(Q + transposed_product(K, product(R, K)) - NK - NK.transpose());
   }
 };
 
-/// sign(H) by Newton's iteration, scaled by the determinant. Empty where it does not converge: an eigenvalue on the
-/// imaginary axis has no sign.
+/// sign(H) by Newton's iteration, scaled so that H and its inverse are of one size. Empty where it does not converge:
+/// an eigenvalue on the imaginary axis has no sign.
 MatrixXd matrix_sign(MatrixXd H) {
   constexpr int kMost = 60;
   const auto n = static_cast<double>(H.rows());
+  const MatrixXd identity = MatrixXd::Identity(H.rows(), H.cols());
   for (int i = 0; i < kMost; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> lu(H);
-    const double size = lu.matrixLU().diagonal().array().abs().log().sum() / n;
-    if (!std::isfinite(size)) return {};
-    const double scale = std::exp(-size);
-    const MatrixXd next = 0.5 * (scale * H + lu.inverse() / scale);
+    const MatrixXd inverse = solve_linear(H, identity);
+    const double scale = std::sqrt(inverse.norm() / H.norm());
+    if (!std::isfinite(scale) || !(scale > 0.0)) return {};
+    const MatrixXd next = 0.5 * (scale * H + inverse / scale);
     const double change = (next - H).norm();
     H = next;
     if (!H.allFinite()) return {};
@@ -92,20 +104,20 @@ LinearQuadratic linear_quadratic(const MatrixXd& A, const MatrixXd& B, const Mat
   left.bottomRows(n).diagonal().array() += 1.0;
   right.topRows(n).diagonal().array() -= 1.0;
   LinearQuadratic s;
-  s.P = symmetric(left.colPivHouseholderQr().solve(right));
-  const auto gain = [&] { return MatrixXd(p.R_factor.solve(p.B.transpose() * s.P + p.N.transpose())); };
+  s.P = symmetric(shortest_least_squares(left, right));
+  const auto gain = [&] { return p.R_factor.solve(MatrixXd(transposed_product(p.B, s.P) + p.N.transpose())); };
   s.K = gain();
   const auto check = [&] {
-    s.slowest = largest_real_part(p.A - p.B * s.K);
+    s.slowest = largest_real_part(p.closed(s.K));
     if (!(s.slowest < 0.0)) throw InputError("linear-quadratic problem", kNoLoop);
   };
   check();
   for (int i = 0; i < kNewtonSteps; ++i) {
-    s.P = lyapunov((p.A - p.B * s.K).transpose(), p.cost_of(s.K)).X;
+    s.P = lyapunov(p.closed(s.K).transpose(), p.cost_of(s.K)).X;
     s.K = gain();
   }
   check();
-  const MatrixXd PA = s.P * p.A, KRK = s.K.transpose() * p.R * s.K;
+  const MatrixXd PA = product(s.P, p.A), KRK = transposed_product(s.K, product(p.R, s.K));
   s.residual = (PA + PA.transpose() - KRK + p.Q).norm() / std::max({PA.norm(), KRK.norm(), p.Q.norm()});
   return s;
 }
@@ -117,10 +129,12 @@ LinearQuadratic discrete_linear_quadratic(const MatrixXd& A, const MatrixXd& B, 
   MatrixXd F = p.drift(), G = p.authority(), H = p.weight();
   constexpr int kMost = 60;
   for (int i = 0; i < kMost; ++i) {
-    const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd::Identity(n, n) + G * H);
-    const MatrixXd F_next = F * lu.solve(F);
-    const MatrixXd change = F.transpose() * H * lu.solve(F);
-    G = symmetric(G + F * lu.solve(G) * F.transpose());
+    MatrixXd both(n, 2 * n);
+    both << F, G;
+    both = solve_linear(MatrixXd::Identity(n, n) + product(G, H), both);
+    const MatrixXd F_next = product(F, both.leftCols(n));
+    const MatrixXd change = transposed_product(F, product(H, both.leftCols(n)));
+    G = symmetric(G + product_transposed(product(F, both.rightCols(n)), F));
     H = symmetric(H + change);
     F = F_next;
     if (!H.allFinite()) throw InputError("linear-quadratic problem", kNoLoop);
@@ -129,21 +143,23 @@ LinearQuadratic discrete_linear_quadratic(const MatrixXd& A, const MatrixXd& B, 
   LinearQuadratic s;
   s.P = H;
   const auto gain = [&] {
-    return MatrixXd((p.R + p.B.transpose() * s.P * p.B).llt().solve(p.B.transpose() * s.P * p.A + p.N.transpose()));
+    const MatrixXd BP = transposed_product(p.B, s.P);
+    return Cholesky(p.R + product(BP, p.B)).solve(MatrixXd(product(BP, p.A) + p.N.transpose()));
   };
   s.K = gain();
   const auto check = [&] {
-    s.slowest = largest_modulus(p.A - p.B * s.K);
+    s.slowest = largest_modulus(p.closed(s.K));
     if (!(s.slowest < 1.0)) throw InputError("linear-quadratic problem", kNoLoop);
   };
   check();
   for (int i = 0; i < kNewtonSteps; ++i) {
-    s.P = discrete_lyapunov((p.A - p.B * s.K).transpose(), p.cost_of(s.K)).X;
+    s.P = discrete_lyapunov(p.closed(s.K).transpose(), p.cost_of(s.K)).X;
     s.K = gain();
   }
   check();
-  const MatrixXd APA = p.A.transpose() * s.P * p.A;
-  const MatrixXd KSK = s.K.transpose() * (p.R + p.B.transpose() * s.P * p.B) * s.K;
+  const MatrixXd APA = transposed_product(p.A, product(s.P, p.A));
+  const MatrixXd S = p.R + transposed_product(p.B, product(s.P, p.B));
+  const MatrixXd KSK = transposed_product(s.K, product(S, s.K));
   s.residual = (APA - KSK + p.Q - s.P).norm() / std::max({APA.norm(), KSK.norm(), p.Q.norm(), s.P.norm()});
   return s;
 }

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/real_form.hpp"
 
 namespace veridyn::numerics {
 namespace {
@@ -15,8 +17,15 @@ namespace {
 Eigen::MatrixXcd response_at(const StateSpace& system, std::complex<double> s) {
   const Eigen::Index n = system.states();
   if (n == 0) return system.D.cast<std::complex<double>>();
-  const Eigen::MatrixXcd shifted = s * Eigen::MatrixXcd::Identity(n, n) - system.A;
-  return system.C * shifted.partialPivLu().solve(system.B.cast<std::complex<double>>()) + system.D;
+  Eigen::MatrixXcd shifted = -system.A.cast<std::complex<double>>();
+  shifted.diagonal().array() += s;
+  Eigen::MatrixXd real_B = Eigen::MatrixXd::Zero(2 * n, system.inputs());
+  real_B.topRows(n) = system.B;
+  const Eigen::MatrixXd states = solve_linear(real_form(shifted), real_B);
+  Eigen::MatrixXcd response(system.outputs(), system.inputs());
+  response.real() = product(system.C, states.topRows(n)) + system.D;
+  response.imag() = product(system.C, states.bottomRows(n));
+  return response;
 }
 
 }  // namespace
@@ -69,12 +78,12 @@ StateSpace in_series(const StateSpace& first, const StateSpace& second) {
     throw InputError("state space", fmt::format("{} outputs do not fit {} inputs", first.outputs(), second.inputs()));
   const Eigen::Index n = first.states(), m = second.states();
   StateSpace s{Eigen::MatrixXd::Zero(n + m, n + m), Eigen::MatrixXd(n + m, first.inputs()),
-               Eigen::MatrixXd(second.outputs(), n + m), second.D * first.D};
+               Eigen::MatrixXd(second.outputs(), n + m), product(second.D, first.D)};
   s.A.topLeftCorner(n, n) = first.A;
-  s.A.bottomLeftCorner(m, n) = second.B * first.C;
+  s.A.bottomLeftCorner(m, n) = product(second.B, first.C);
   s.A.bottomRightCorner(m, m) = second.A;
-  s.B << first.B, second.B * first.D;
-  s.C << second.D * first.C, second.C;
+  s.B << first.B, product(second.B, first.D);
+  s.C << product(second.D, first.C), second.C;
   return s;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
@@ -107,7 +106,7 @@ class HorizonProgramme {
   std::vector<State> x_, dx_, gx_, dgx_;
   std::vector<Input> u_, du_, gu_, k_;
   std::vector<Eigen::Matrix<double, kInputs, kStates>> K_, G_;
-  std::vector<Eigen::LLT<InputMatrix>> F_;
+  std::vector<InputMatrix> F_;  // lower triangles of Cholesky factors
   std::vector<StateMatrix> P_;
   std::vector<Bounds<kStates>> of_x_;
   std::vector<Bounds<kInputs>> of_u_;
