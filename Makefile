@@ -5,7 +5,7 @@ JOBS   ?= $(shell nproc)
 SHELL  := /bin/bash
 space  := $(subst ,, )
 
-.PHONY: help setup build demo test docs format format-check tidy asan bench fuzz soak install clean
+.PHONY: help setup build demo test docs format format-check tidy asan tsan bench fuzz soak install clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1|/' | column -t -s '|'
@@ -48,6 +48,14 @@ asan: setup ## tests of every module under the address and undefined-behaviour s
 	cmake --preset asan --log-level=WARNING
 	cmake --build build/asan -j $(JOBS) --target $(ASAN_MODULES:%=veridyn_%_tests)
 	ctest --test-dir build/asan --output-on-failure -j $(JOBS) -LE 'soak|long' -L '^($(subst $(space),|,$(ASAN_MODULES)))$$'
+
+# What runs in threads beside each other. The sanitizer's shadow memory wants addresses that are not shuffled.
+TSAN_TESTS ?= TripleBuffer.*:LiveLoop*:RunningLoop*:LivePage*:LiveRecorder*:*Teleoperation*:*PseudoTerminal*
+
+tsan: setup ## tests of the live module's threads under the thread sanitizer
+	cmake --preset tsan --log-level=WARNING
+	cmake --build build/tsan -j $(JOBS) --target veridyn_live_tests
+	TSAN_OPTIONS=halt_on_error=1 setarch $$(uname -m) -R build/tsan/bin/veridyn_live_tests --gtest_filter='$(TSAN_TESTS):-*Soak*:*AllocatesNothing*'
 
 bench: setup ## benchmarks; results in build/bench/*.json
 	cmake --preset bench --log-level=WARNING

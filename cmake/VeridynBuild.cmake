@@ -33,8 +33,10 @@ target_compile_options(
             -Wshadow
             $<$<BOOL:${VERIDYN_WERROR}>:-Werror>
             $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=all;-fno-omit-frame-pointer>
+            $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread;-fno-omit-frame-pointer>
             $<$<BOOL:${VERIDYN_FUZZ}>:-fsanitize=fuzzer-no-link>)
-target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>)
+target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
+                    $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread>)
 
 # Headers that nearly every source needs, precompiled once for the library and once for the tests. They must be built with the
 # flags of those who use them: GCC takes the level of optimisation from the precompiled header, whatever the command line says,

@@ -221,7 +221,7 @@ Command camera_command() {
                       "tracker.markers_x=[0.1,-0.08,-0.06] --set tracker.markers_y=[0,0.05,-0.04]",
            .run = track_video},
           {.name = "fuse",
-           .summary = "inclination and acceleration apart, from inertial sensors and the camera's poses",
+           .summary = "inclination and acceleration separately, from inertial sensors and the camera's poses",
            .arguments = {{.name = "INERTIAL",
                           .help = "table: time, rate_x, rate_y, rate_z, force_x, force_y, force_z",
                           .type = "FILE",

@@ -18,6 +18,7 @@
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/stderr_text.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -209,7 +210,7 @@ int run_program(std::span<const Command> commands, const Interruption& interrupt
   const auto fail = [&](const std::string& message, int exit_code) {
     // Work that a signal stopped may end in an error that says nothing about the input.
     const bool interrupted = interruption.requested();
-    fmt::print(stderr, "veridyn: {}\n", interrupted ? Interrupted().what() : message);
+    print_to_stderr(fmt::format("veridyn: {}\n", interrupted ? Interrupted().what() : message));
     return interrupted ? kFailed : exit_code;
   };
   try {

@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
+#include "veridyn/core/stderr_text.hpp"
+
 namespace veridyn::app {
 
 void print_line(const CommonOptions& options, const std::string& line) {
-  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+  if (!options.quiet) print_to_stderr(line + "\n");
 }
+
+void ignore_broken_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 TerminalProgress progress_of(const CommonOptions& options) {
   return TerminalProgress(options.quiet, options.threads, options.interruption);

@@ -9,8 +9,12 @@
 
 namespace veridyn::app {
 
-/// A line for people on stderr, unless quiet.
+/// A line for people on stderr, unless quiet. A stderr that takes nothing is no error: what a line says is in the
+/// results too.
 void print_line(const CommonOptions& options, const std::string& line);
+
+/// A reader of our lines or packets that goes away is no reason to end: SIGPIPE is ignored from here on.
+void ignore_broken_pipes();
 
 /// The progress of a command with these options.
 [[nodiscard]] TerminalProgress progress_of(const CommonOptions& options);

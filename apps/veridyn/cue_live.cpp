@@ -4,33 +4,24 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <poll.h>
-#include <termios.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <random>
-#include <thread>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/live_operator.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/rig/live_replay.hpp"
-#include "veridyn/live/telemetry/sign_checker.hpp"
+#include "veridyn/live/rig/running_loop.hpp"
 #include "veridyn/live/threads/timely_thread.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/live_report.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_links.hpp"
-#endif
-#ifdef VERIDYN_HAS_PAGE
-#include "veridyn/live/page/live_page.hpp"
-#include "veridyn/live/page/page_token.hpp"
-#include "veridyn/live/page/status_json.hpp"
 #endif
 
 namespace veridyn::app {
@@ -77,8 +68,11 @@ Summary summary_of(const OutputFolder& folder, const LiveReplay& r, const std::f
   s["fingerprint"] = r.orders_fingerprint;
   s["deadlines_left_out"] = r.times.left_out;
   s["pauses"] = r.gaps;
+  s["orders_extrapolated"] = r.extrapolated.steps;
   for (const auto& [name, h] :
-       {std::pair("receive_to_send_s", &r.times.receive_to_send), std::pair("jitter_s", &r.times.jitter)}) {
+       {std::pair("receive_to_send_s", &r.times.receive_to_send), std::pair("wait_s", &r.times.wait),
+        std::pair("work_s", &r.times.work), std::pair("jitter_s", &r.times.jitter)}) {
+    if (h->count() == 0 && (h == &r.times.wait || h == &r.times.work)) continue;  // of a replay they are not known
     s[name]["p50"] = h->quantile(0.5);
     s[name]["p99"] = h->quantile(0.99);
     s[name]["p9999"] = h->quantile(0.9999);
@@ -103,11 +97,16 @@ cueing::CueingResult scored(const LiveReplay& r) {
 }
 
 /// Replays a recording and writes all that is said of the run.
+/// @param measured by the run itself; null of one that is only replayed
 int report_run(const CommonOptions& options, const RunRecord& record, OutputFolder& folder,
-               const std::filesystem::path& recording, const std::vector<std::string>& notes,
+               const std::filesystem::path& recording, const std::vector<std::string>& notes, const LoopTimes* measured,
                const Interruption& interruption) {
   TerminalProgress progress(options.quiet, options.threads, interruption);
-  const LiveReplay r = replay(read_live_file(recording), recording.string(), progress);
+  LiveReplay r = replay(read_live_file(recording), recording.string(), progress);
+  if (measured != nullptr) {
+    r.times.wait = measured->wait;
+    r.times.work = measured->work;
+  }
   if (progress.interrupted()) throw Interrupted();
   progress.stage("scoring what was felt");
   const cueing::CueingResult score = scored(r);
@@ -128,234 +127,6 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
   return kDone;
 }
 
-#ifdef VERIDYN_HAS_SOCKETS
-
-// A handler gets nothing but the number of its signal, so that what it stops is static.
-std::atomic<LiveControl*> stopped_by_signal{nullptr};
-extern "C" void stop_on_signal(int) {
-  if (LiveControl* control = stopped_by_signal.load()) control->emergency();
-}
-
-/// Keys without Enter while it lives, where stdin is a terminal; letters from a pipe otherwise.
-class Keys {
- public:
-  Keys() {
-    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-    terminal_ = true;
-    termios now = before_;
-    now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &now);
-  }
-  ~Keys() {
-    if (terminal_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
-  }
-  Keys(const Keys&) = delete;
-  Keys& operator=(const Keys&) = delete;
-  /// The next key; 0 where there is none.
-  char next() {
-    pollfd one{STDIN_FILENO, POLLIN, 0};
-    char key = 0;
-    if (ended_ || ::poll(&one, 1, 0) <= 0) return 0;
-    if (::read(STDIN_FILENO, &key, 1) <= 0) ended_ = true;
-    return key;
-  }
-
- private:
-  termios before_{};
-  bool terminal_ = false, ended_ = false;
-};
-
-/// What the operator is told, once for each change.
-class Console {
- public:
-  explicit Console(const CommonOptions& options) : options_(options) {}
-  void show(const RigStatus& s, double time) {
-    const std::string line = s.step.state == RigState::kRunning || s.readiness == Readiness::kReady
-                                 ? std::string(name_of(s.step.state))
-                                 : fmt::format("{}: {}", name_of(s.step.state), name_of(s.readiness));
-    if (line == last_) return;
-    last_ = line;
-    print_line(options_, fmt::format("{:8.2f} s  {}", time, line));
-  }
-  void say(double time, const std::string& what) const {
-    print_line(options_, fmt::format("{:8.2f} s  {}", time, what));
-  }
-
- private:
-  CommonOptions options_;
-  std::string last_;
-};
-
-#ifdef VERIDYN_HAS_PAGE
-
-/// The page of a run, and what is asked there.
-class PageOfRun {
- public:
-  PageOfRun(const LiveStudy& study, const CommonOptions& options)
-      : design_(study.cueing.algorithms.front().design->clone()) {
-    if (!study.page) return;
-    const bool drawn = study.page_token.empty() && study.page->address >> 24U == 127;
-    const std::string token = drawn                      ? random_token()
-                              : study.page_token.empty() ? ""
-                                                         : read_token_file(study.page_token);
-    page_ = std::make_unique<LivePage>(PageOptions{*study.page, token});
-    print_line(options, fmt::format("page: http://{}{}", to_string(*study.page), drawn ? "  token: " + token : ""));
-  }
-
-  /// Shows the newest status, 20 times a second, and does what was asked for.
-  void update(const RigStatus& status, const LiveStudy& study, LiveControl& control, double time,
-              const std::string& message) {
-    if (!page_) return;
-    if (time - shown_ >= 0.05) {
-      shown_ = time;
-      page_->show(status_json(status, study, *design_, time, page_->refused(), message));
-    }
-    for (const PageRequest& r : page_->take_requests()) {
-      if (r.kind == PageRequest::Kind::kWish) {
-        if (r.wish == OperatorWish::kEmergency)
-          control.emergency();
-        else
-          control.wish(r.wish);
-        continue;
-      }
-      std::vector<double> values = knob_values(*design_);
-      if (r.kind == PageRequest::Kind::kUndo) {
-        if (before_.empty()) continue;
-        values = before_.back();
-        before_.pop_back();
-      } else {
-        if (r.knob >= values.size()) continue;
-        before_.push_back(values);
-        values[r.knob] = r.value;
-      }
-      turn(values, study, control);
-    }
-  }
-
- private:
-  /// Another algorithm with these numbers; those that it refuses are left.
-  void turn(const std::vector<double>& values, const LiveStudy& study, LiveControl& control) {
-    std::unique_ptr<cueing::WashoutDesign> design = design_->clone();
-    set_knob_values(*design, values);
-    try {
-      auto setting = std::make_unique<KnobSetting>();
-      setting->values = values;
-      setting->washout = design->make(study.cueing.platform);
-      control.turn(std::move(setting));
-      design_ = std::move(design);
-    } catch (const InputError&) {
-      if (!before_.empty()) before_.pop_back();
-    }
-  }
-
-  std::unique_ptr<cueing::WashoutDesign> design_;
-  std::vector<std::vector<double>> before_;  ///< values of the knobs, the last ones last
-  std::unique_ptr<LivePage> page_;
-  double shown_ = -1.0;
-};
-
-#else
-
-class PageOfRun {
- public:
-  PageOfRun(const LiveStudy& study, const CommonOptions&) {
-    if (study.page) throw InputError("live.page", "this program was built without the page (see VERIDYN_PAGE)");
-  }
-  void update(const RigStatus&, const LiveStudy&, LiveControl&, double, const std::string&) {}
-};
-
-#endif
-
-/// The operator's side of a run: keys, signals, page, the check of the signs, and the end.
-void supervise(const StudyRun& run, const LiveStudy& study, LiveControl& control, LiveRecorder& recorder,
-               PageOfRun& page, RealClock& clock, Nanoseconds start, std::vector<std::string>& notes) {
-  const CommonOptions& options = run.options();
-  Keys keys;
-  Console console(options);
-  SignChecker signs;
-  std::vector<Telemetry> motions;
-  std::vector<recording::MotionSample> samples;
-  const double length = run.arguments.number("--seconds");
-  bool ending = false, signs_done = study.options.signs == SignCheck::kOff, loss_said = false;
-  Nanoseconds give_up = 0, next_check = start + kSecond;
-  std::string signs_text;
-  if (run.arguments.flag("--start")) control.wish(OperatorWish::kStart);
-  while (true) {
-    const Nanoseconds now = clock.now();
-    const double time = seconds(now - start);
-    const RigStatus& status = control.status();
-    console.show(status, time);
-    page.update(status, study, control, time, signs_text.empty() || signs_done ? "" : "still to drive: " + signs_text);
-    control.tidy();
-    motions.clear();
-    control.take_motions(motions);
-    for (const Telemetry& t : motions) {
-      if (signs_done) break;
-      if (t.restarted) {
-        signs.reset();
-        samples.clear();
-      }
-      samples.push_back(t.sample);
-    }
-    if (!signs_done && now >= next_check) {
-      next_check = now + kSecond;
-      signs.add(samples);
-      samples.clear();
-      const SignVerdict verdict = signs.check();
-      if (verdict.kind != SignVerdict::Kind::kUnknown) {
-        const bool right = verdict.kind == SignVerdict::Kind::kRight;
-        control.wish(right ? OperatorWish::kSignsRight : OperatorWish::kSignsWrong);
-        signs_done = true;
-        console.say(time, right ? "signs, axes and units of the telemetry are right" : "wrong: " + verdict.text);
-        if (!right) notes.push_back("the platform was kept parked: " + verdict.text);
-      } else if (verdict.text != signs_text && status.packets[PacketFate::kAccepted] > 0) {
-        signs_text = verdict.text;
-        console.say(time, "signs are not yet checked; still to drive: " + verdict.text);
-      }
-    }
-    if (!loss_said && recorder.lost() > 0) {
-      loss_said = true;
-      const std::string trouble = recorder.trouble();
-      console.say(time, trouble.empty() ? "the recording is too slow for what comes in: it has gaps" : trouble);
-      notes.push_back(trouble.empty() ? "the recording has gaps" : trouble);
-    }
-    switch (keys.next()) {
-      case 's':
-        control.wish(OperatorWish::kStart);
-        break;
-      case 'p':
-        control.wish(OperatorWish::kPark);
-        break;
-      case ' ':
-      case 'e':
-        control.emergency();
-        break;
-      case 'r':
-        control.wish(OperatorWish::kRelease);
-        break;
-      case 'q':
-        ending = true;
-        break;
-      default:
-        break;
-    }
-    const bool over = options.interruption.requested() || (length > 0.0 && time >= length);
-    if ((over || ending) && give_up == 0) {
-      control.wish(OperatorWish::kPark);
-      give_up = now + nanoseconds(study.options.fade + 10.0);
-    }
-    if (give_up != 0 &&
-        (status.step.state == RigState::kParked || status.step.state == RigState::kStopped || now > give_up))
-      break;
-    constexpr Nanoseconds kStuck = kSecond;
-    if (status.times.steps > 0 && now - status.step.time > kStuck) console.say(time, "the loop stands still");
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  control.end();
-}
-
-#endif
-
 }  // namespace
 
 int cue_live(const StudyRun& run) {
@@ -365,9 +136,11 @@ int cue_live(const StudyRun& run) {
   OutputFolder folder(run.options().out);
   const LiveStudy study = read_live_study(run.study);
   run.study.root().finish();
+  constexpr double kLongestToPark = 10.0;  // [s], on top of the fade
   const auto session = static_cast<std::uint32_t>(std::random_device()());
   LiveLoop loop(study, session);
-  UdpLinks links(study.telemetry, study.platform);
+  UdpLinks links = study.platform_line.device.empty() ? UdpLinks(study.telemetry, study.platform)
+                                                      : UdpLinks(study.telemetry, study.platform_line);
   PageOfRun page(study, run.options());
   RealClock clock;
   const Nanoseconds start = clock.now();
@@ -385,24 +158,25 @@ int cue_live(const StudyRun& run) {
                                       .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
                                       .session = session});
     LiveControl control;
-    stopped_by_signal = &control;
-    std::signal(SIGUSR1, stop_on_signal);
+    const LiveSignals signals(control);
     print_line(run.options(),
                fmt::format("listening at {}, orders to {} at {:g} Hz; recording {}", to_string(study.telemetry),
-                           to_string(study.platform), study.options.rate, recording.string()));
+                           platform_name(study), study.options.rate, recording.string()));
     print_line(run.options(), "keys: s start, p park, e or space emergency stop, r release it, q park and end");
     std::string late;
-    std::thread thread([&] {
+    RunningLoop running(control, study.options.fade + kLongestToPark, [&] {
       late = make_thread_timely();
       loop.run(links, clock, control, &recorder, std::nullopt);
     });
-    supervise(run, study, control, recorder, page, clock, start, notes);
-    thread.join();
-    std::signal(SIGUSR1, SIG_DFL);
-    stopped_by_signal = nullptr;
+    const OperatorOptions led{.common = run.options(),
+                              .length = run.arguments.number("--seconds"),
+                              .start = run.arguments.flag("--start"),
+                              .at = start};
+    for (std::string& note : lead_run(led, study, control, recorder, page)) notes.push_back(std::move(note));
+    running.end();
     if (!late.empty()) notes.push_back(late);
   }
-  return report_run(run.options(), run.record(study.cueing.seed, {}), folder, recording, notes,
+  return report_run(run.options(), run.record(study.cueing.seed, {}), folder, recording, notes, &loop.times(),
                     Interruption());  // the Ctrl-C that ended the run does not end its report; a second one does
 #endif
 }
@@ -413,7 +187,7 @@ int cue_replay(const Arguments& arguments) {
   const LiveFile recorded = read_live_file(file);
   const StudyRun run = parse_study("cue", recorded.head.study_name, recorded.head.study, arguments);
   RunRecord record = run.record(0, {file});
-  return report_run(arguments.common, record, folder, file, {}, arguments.common.interruption);
+  return report_run(arguments.common, record, folder, file, {}, nullptr, arguments.common.interruption);
 }
 
 }  // namespace veridyn::app

@@ -31,9 +31,20 @@ class UntilOver {
   Nanoseconds end_;
 };
 
+/// The virtual platform reads the project's own packet only.
+void refuse_others_platform(const LiveStudy& study) {
+  if (study.format.kind != OrderFormatKind::kVeridyn)
+    throw InputError("live.format", fmt::format("= '{}' is not read by the virtual platform; 'veridyn' is",
+                                                name_of(study.format.kind)));
+}
+
 int rig_platform(const Arguments& arguments) {
   const CommonOptions& options = arguments.common;
-  const LiveStudy study = read_live_study(Study::load(arguments.text("STUDY"), options.overrides));
+  const Study file = Study::load(arguments.text("STUDY"), options.overrides);
+  const LiveStudy study = read_live_study(file);
+  file.root().finish();
+  refuse_others_platform(study);
+  ignore_broken_pipes();
   UdpSocket socket(study.platform, "live.platform");
   VirtualPlatform platform(study.cueing.platform);
   RealClock clock;
@@ -67,15 +78,18 @@ int rig_platform(const Arguments& arguments) {
   summary["orders_followed"] = c.followed;
   summary["orders_outside_limits"] = c.outside;
   summary["jumps"] = c.jumps;
+  summary["orders_beyond_acceleration"] = c.too_hard;
   summary["orders_of_others_refused"] = c.refused;
   summary["orders_old"] = c.old;
   summary["unreadable"] = c.unreadable;
   summary["silences"] = c.silences;
   print_summary(summary, options);
-  print_line(options,
-             fmt::format("{} orders followed, {} beyond limits, {} jumps, {} of other programs refused, {} unreadable",
-                         c.followed, c.outside, c.jumps, c.refused, c.unreadable));
-  return c.outside + c.jumps > 0 ? kFailed : kDone;
+  print_line(
+      options,
+      fmt::format("{} orders followed, {} beyond limits, {} jumps, {} beyond its acceleration, {} of other programs "
+                  "refused, {} unreadable",
+                  c.followed, c.outside, c.jumps, c.too_hard, c.refused, c.unreadable));
+  return c.outside + c.jumps + c.too_hard > 0 ? kFailed : kDone;
 }
 
 int rig_vehicle(const Arguments& arguments) {
@@ -85,6 +99,8 @@ int rig_vehicle(const Arguments& arguments) {
   TerminalProgress progress = progress_of(options);
   cueing::CueingStudy drive = cueing::read_study(file, progress);
   if (progress.interrupted()) throw Interrupted();
+  file.root().finish();
+  ignore_broken_pipes();
   if (drive.vehicle.size() < 2)
     throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
   // Packets say what happens where the sensor is.

@@ -1,10 +1,12 @@
-// veridyn rig test STUDY: a platform told by hand (home, min, max, wave, steps, sweep), and how it follows.
+// veridyn rig test STUDY: a platform told by hand (home, zero, pose, force, min, max, wave, steps, sweep), and how it
+// follows.
 #include "apps/veridyn/rig_test.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/core/units.hpp"
 #include "veridyn/cueing/platform/platform_guard.hpp"
 #include "veridyn/live/platform/platform_packet.hpp"
 #include "veridyn/live/platform/platform_response.hpp"
@@ -31,12 +34,9 @@ namespace {
 using namespace veridyn::live;
 using cueing::PlatformAxis;
 
-constexpr std::array<TestSignal, 6> kSignals = {TestSignal::kHome, TestSignal::kMin,   TestSignal::kMax,
-                                                TestSignal::kWave, TestSignal::kSteps, TestSignal::kSweep};
-
 std::vector<std::string> signal_names() {
   std::vector<std::string> names;
-  for (const TestSignal s : kSignals) names.emplace_back(name_of(s));
+  for (std::size_t i = 0; i < kTestSignals; ++i) names.emplace_back(name_of(static_cast<TestSignal>(i)));
   return names;
 }
 
@@ -48,9 +48,14 @@ class PlatformByHand {
   explicit PlatformByHand(const LiveStudy& study)
       : limits_(study.cueing.platform.limits),
         guard_(study.cueing.platform.limits),
-        socket_(UdpSocket::connected(study.platform, "live.platform")),
+        format_(study.format, study.cueing.platform),
         session_(static_cast<std::uint32_t>(std::random_device()())),
-        rate_(clock_.now(), nanoseconds(1.0 / study.options.rate)) {}
+        rate_(clock_.now(), nanoseconds(1.0 / study.options.rate)) {
+    if (study.platform_line.device.empty())
+      socket_ = UdpSocket::connected(study.platform, "live.platform");
+    else
+      line_.emplace(study.platform_line);
+  }
 
   /// One order at its time. @return where the axis was told to be
   double tell(PlatformAxis axis, double wanted) {
@@ -65,14 +70,12 @@ class PlatformByHand {
     order.motion = guard_.step(to, begun_ ? seconds(rate_.next() - last_) : 0.0);
     begun_ = true;
     last_ = rate_.next();
-    const OrderBytes bytes = encode(order);
-    socket_.send({bytes.data(), bytes.size()});
-    while (const auto datagram = socket_.receive()) {
-      const auto answer = decode_answer(datagram->bytes);
-      if (!answer || answer->session != session_) continue;
-      if (answer->verdict == PlatformVerdict::kCommandedByAnother)
-        throw InputError("live.platform", "another program commands the platform");
-      answers_[answer->sequence] = answer->reached;
+    const std::string_view bytes = format_.encode(order);
+    if (line_) {
+      line_->write({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    } else {
+      socket_->send(bytes);
+      take_answers();
     }
     rate_.advance(clock_.now());
     return cueing::axis(order.motion, axis).position;
@@ -88,9 +91,24 @@ class PlatformByHand {
   }
 
  private:
+  void take_answers() {
+    while (const auto datagram = socket_->receive()) {
+      const auto answer = decode_answer(datagram->bytes);
+      if (!answer || answer->session != session_) continue;
+      if (answer->verdict == PlatformVerdict::kCommandedByAnother)
+        throw InputError("live.platform",
+                         answer->commander.port == 0
+                             ? "another program commands the platform"
+                             : "the program at " + to_string(answer->commander) + " commands the platform");
+      answers_[answer->sequence] = answer->reached;
+    }
+  }
+
   cueing::PlatformLimits limits_;
   cueing::PlatformGuard guard_;
-  UdpSocket socket_;
+  OrderFormat format_;
+  std::optional<UdpSocket> socket_;
+  std::optional<SerialLine> line_;
   RealClock clock_;
   std::uint32_t session_, sequence_ = 0;
   FixedRate rate_;
@@ -117,6 +135,38 @@ ToldAndReached play(PlatformByHand& platform, PlatformAxis axis, const TestSigna
     motion.reached.push_back(last);
   }
   return motion;
+}
+
+/// Where pose or force take an axis, from "5 deg", "20 mm", "1.5 m/s^2"; 0 of other signals.
+double position_asked_for(const std::string& text, TestSignal signal, PlatformAxis axis,
+                          const cueing::AxisLimits& limits) {
+  const bool force = signal == TestSignal::kForce;
+  if (signal != TestSignal::kPose && !force) {
+    if (!text.empty()) throw InputError("--value", "is of `--signal pose` and `force` only");
+    return 0.0;
+  }
+  const char* const si = force ? "m/s^2" : turns(axis) ? "rad" : "m";
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !std::isfinite(number))
+    throw InputError("--value", fmt::format("= '{}' is no number with a unit (5deg, 20mm, 1.5m/s^2)", text));
+  std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  while (unit.starts_with(' ')) unit.remove_prefix(1);
+  double value = number;
+  try {
+    if (!unit.empty()) value = parse_unit_like(unit, parse_unit(si)).to_si(number);
+  } catch (const InputError& wrong) {
+    throw InputError("--value", fmt::format("= '{}' for {}: {}", text, name_of(axis), wrong.what()));
+  }
+  const double position = force ? tilt_of(axis, value) : value;
+  if (force && !std::isfinite(position))
+    throw InputError("--value", fmt::format("= '{}' of {}: a lasting force is a tilt: pitch or roll, below gravity",
+                                            text, name_of(axis)));
+  if (!(position >= limits.lowest && position <= limits.highest))
+    throw InputError("--value",
+                     fmt::format("= '{}' takes {} to {:.4g} {}; its range is {:.4g} to {:.4g}", text, name_of(axis),
+                                 position, turns(axis) ? "rad" : "m", limits.lowest, limits.highest));
+  return position;
 }
 
 /// `[platform]` of the platform that was measured.
@@ -156,8 +206,9 @@ int rig_test(const Arguments& arguments) {
   const LiveStudy study = read_live_study(run.study);
   run.study.root().finish();
   TestSignalOptions signal;
-  signal.signal = *std::find_if(kSignals.begin(), kSignals.end(),
-                                [&](TestSignal s) { return name_of(s) == arguments.text("--signal"); });
+  const std::vector<std::string> signals = signal_names();
+  signal.signal =
+      static_cast<TestSignal>(std::find(signals.begin(), signals.end(), arguments.text("--signal")) - signals.begin());
   signal.size = arguments.number("--size");
   if (!(signal.size <= 1.0))
     throw InputError("--size", fmt::format("is {:g}; takes up to 1, the whole range", signal.size));
@@ -174,6 +225,10 @@ int rig_test(const Arguments& arguments) {
   if (axes.empty())
     throw InputError("--axis", fmt::format("'{}' is no axis of this platform (all, {})", arguments.text("--axis"),
                                            fmt::join(names, ", ")));
+  for (const PlatformAxis axis : axes)
+    signal.position =
+        position_asked_for(arguments.text("--value"), signal.signal, axis, study.cueing.platform.limits[axis]);
+  ignore_broken_pipes();
   OutputFolder folder(options.out);
   PlatformByHand platform(study);
   std::string csv = "axis,time[s],told[m or rad],reached[m or rad]\n";
@@ -183,7 +238,7 @@ int rig_test(const Arguments& arguments) {
     const ToldAndReached motion = play(platform, axis, signal, study, signal.duration, options.interruption);
     if (options.interruption.requested()) throw Interrupted();
     if (platform.answers() == 0 && study.options.answers)
-      throw InputError("live.platform", fmt::format("{} does not answer", to_string(study.platform)));
+      throw InputError("live.platform", fmt::format("{} does not answer", platform_name(study)));
     for (std::size_t k = 0; k < motion.told.size(); ++k)
       csv += fmt::format("{},{:.5g},{:.7g},{:.7g}\n", name_of(axis), static_cast<double>(k) * motion.step,
                          motion.told[k], motion.reached[k]);
@@ -233,6 +288,7 @@ Command rig_test_command() {
           {{.name = "STUDY", .help = "study file with [live]", .required = true},
            {.name = "--axis", .help = "of the platform; all: one after the other", .value = std::string("all")},
            {.name = "--signal", .help = "what it is told", .value = std::string("sweep"), .choices = signal_names()},
+           {.name = "--value", .help = "of pose (5deg, 20mm) or force (1.5m/s^2)", .value = std::string("")},
            {.name = "--size", .help = "share of what the limits allow", .value = 0.5, .positive = true},
            {.name = "--frequency", .help = "of wave and steps [Hz]", .value = 0.5, .positive = true},
            {.name = "--seconds", .help = "for each axis", .value = 30.0, .positive = true}},

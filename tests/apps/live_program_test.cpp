@@ -1,13 +1,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/apps/page_reader.hpp"
 #include "tests/apps/process.hpp"
 #include "tests/apps/program.hpp"
+#include "tests/apps/udp_relay.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -15,13 +22,15 @@ namespace veridyn {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// The virtual rig, each part a process; ports of this test's own.
 class LiveProgramTest : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    const int base = 20000 + 4 * (static_cast<int>(::getpid()) % 10000);
+    const int base = 20000 + 6 * (static_cast<int>(::getpid()) % 6000);
+    base_ = base;
     study_ = (test::source_folder() / "examples/studies/cueing/live.toml").string();
     page_ = base + 2;
     sets_ = {"--set", fmt::format("live.page=127.0.0.1:{}", page_),
@@ -38,15 +47,43 @@ class LiveProgramTest : public ProgramTest {
     command.insert(command.end(), sets_.begin(), sets_.end());
     return command;
   }
-  [[nodiscard]] std::unique_ptr<Process> vehicle() const {
-    return std::make_unique<Process>(words({"rig", "vehicle", study_}), folder_ / "vehicle.txt");
+  /// @param more words of it
+  [[nodiscard]] std::unique_ptr<Process> vehicle(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = words({"rig", "vehicle", study_});
+    all.insert(all.end(), more.begin(), more.end());
+    return std::make_unique<Process>(all, folder_ / "vehicle.txt");
   }
   [[nodiscard]] std::unique_ptr<Process> platform() const {
     return std::make_unique<Process>(words({"rig", "platform", study_, "--json"}), folder_ / "platform.txt");
   }
-  [[nodiscard]] std::unique_ptr<Process> rig(const std::string& name = "rig") const {
-    return std::make_unique<Process>(words({"cue", study_, "--live", "--start", "--out", (folder_ / name).string()}),
-                                     folder_ / (name + ".txt"));
+  /// @param more words of it @param errors where its stderr goes instead
+  [[nodiscard]] std::unique_ptr<Process> rig(const std::string& name = "rig", const std::vector<std::string>& more = {},
+                                             const std::filesystem::path& errors = {}) const {
+    std::vector<std::string> all = words({"cue", study_, "--live", "--start", "--out", (folder_ / name).string()});
+    all.insert(all.end(), more.begin(), more.end());
+    return std::make_unique<Process>(all, folder_ / (name + ".txt"), errors);
+  }
+  /// Says what no platform of ours may ever say.
+  static void expect_within_limits(Process& platform) {
+    platform.signal(SIGINT);
+    EXPECT_EQ(platform.wait(), 0) << platform.said();
+    for (const char* what : {"orders_outside_limits", "jumps", "orders_beyond_acceleration"})
+      EXPECT_THAT(platform.said(), HasSubstr(fmt::format("\"{}\": 0", what)));
+  }
+  /// Resident memory of a process [bytes].
+  static double memory_of(const Process& process) {
+    std::ifstream status(fmt::format("/proc/{}/status", process.id()));
+    std::string word;
+    while (status >> word && word != "VmRSS:") continue;
+    double kilobytes = 0.0;
+    status >> kilobytes;
+    return 1024.0 * kilobytes;
+  }
+  /// What a program printed with --json.
+  static nlohmann::json json_of(const Process& process) {
+    const std::string said = process.said();
+    const std::size_t begin = said.find("\n{") == std::string::npos ? said.find('{') : said.find("\n{") + 1;
+    return nlohmann::json::parse(said.substr(begin, said.rfind('}') + 1 - begin), nullptr, false);
   }
   [[nodiscard]] std::filesystem::path recording(const std::string& name = "rig") const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / name)) {
@@ -56,10 +93,13 @@ class LiveProgramTest : public ProgramTest {
   }
   /// Kills and stops parts of the rig again and again; the platform stays within its limits and the run comes back.
   void disturb(int times, std::uint64_t seed);
+  /// A rig at 100 Hz with somebody at its page: nothing is lost, and after a while its memory does not grow.
+  /// @param duration of the drive @param settled when memory is looked at first [s]
+  void run_for(double duration, double settled);
 
   std::string study_;
   std::vector<std::string> sets_;
-  int page_ = 0;
+  int page_ = 0, base_ = 0;
 };
 
 void LiveProgramTest::disturb(int times, std::uint64_t seed) {
@@ -97,10 +137,7 @@ void LiveProgramTest::disturb(int times, std::uint64_t seed) {
   std::this_thread::sleep_for(std::chrono::seconds(8));
   r->signal(SIGINT);
   EXPECT_EQ(r->wait(), 0) << r->said();
-  p->signal(SIGINT);
-  EXPECT_EQ(p->wait(), 0) << p->said();
-  EXPECT_THAT(p->said(), HasSubstr("\"orders_outside_limits\": 0"));
-  EXPECT_THAT(p->said(), HasSubstr("\"jumps\": 0"));
+  expect_within_limits(*p);
   const auto summary =
       run("cue --replay " + recording().string() + " --quiet --json --out " + (folder_ / "replay").string());
   ASSERT_EQ(summary.exit_code, 0) << summary.text;
@@ -125,6 +162,15 @@ TEST_F(LiveProgramTest, RecordingOfARigThatWasKilledIsReplayedToItsEnd) {
   ASSERT_TRUE(r->says("running", 20.0)) << r->said();
   std::this_thread::sleep_for(std::chrono::seconds(2));
   r.reset();  // SIGKILL
+  // The same orders on one thread and on two.
+  std::vector<std::string> fingerprints;
+  for (const char* threads : {"1", "2"}) {
+    const auto again = run("cue --replay " + recording().string() + " --quiet --json --threads " + threads + " --out " +
+                           (folder_ / threads).string());
+    ASSERT_EQ(again.exit_code, 0) << again.text;
+    fingerprints.push_back(nlohmann::json::parse(again.text)["fingerprint"]);
+  }
+  EXPECT_EQ(fingerprints[0], fingerprints[1]);
   const auto replay = run("cue --replay " + recording().string() + " --out " + (folder_ / "replay").string());
   EXPECT_EQ(replay.exit_code, 0) << replay.text;
   EXPECT_THAT(replay.text, HasSubstr("0 beyond limits, 0 different when replayed"));
@@ -141,6 +187,197 @@ TEST_F(LiveProgramTest, StopsOnASignal) {
   EXPECT_TRUE(r->says("stopped", 2.0)) << r->said();
   r->signal(SIGINT);
   EXPECT_EQ(r->wait(), 0) << r->said();
+}
+
+TEST_F(LiveProgramTest, ComesBackFromANetworkThatWasPulled) {
+  const auto telemetry = static_cast<std::uint16_t>(base_), platform_at = static_cast<std::uint16_t>(base_ + 1),
+             far_telemetry = static_cast<std::uint16_t>(base_ + 3),
+             far_platform = static_cast<std::uint16_t>(base_ + 4);
+  UdpRelay to_rig(far_telemetry, telemetry), to_platform(far_platform, platform_at);
+  const auto pull = [&](double time) {
+    to_rig.cut(true);
+    to_platform.cut(true);
+    std::this_thread::sleep_for(std::chrono::duration<double>(time));
+    to_rig.cut(false);
+    to_platform.cut(false);
+  };
+  auto p = platform();
+  ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
+  auto r = rig("rig", {"--set", fmt::format("live.platform=127.0.0.1:{}", far_platform), "--set", "live.hold=1.5",
+                       "--set", "live.soft_start=0.5", "--set", "live.fade=0.5"});
+  auto v = vehicle({"--set", fmt::format("live.telemetry=127.0.0.1:{}", far_telemetry)});
+  ASSERT_TRUE(r->says("running", 20.0)) << r->said();
+  std::size_t from = r->said().size();
+  pull(0.05);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ(r->said().substr(from), "") << "50 ms do not matter";
+  pull(0.5);
+  EXPECT_TRUE(r->says("hold", 5.0, from)) << r->said();
+  EXPECT_TRUE(r->says("soft start", 5.0, from)) << r->said();
+  EXPECT_TRUE(r->says("running", 10.0, from)) << r->said();
+  EXPECT_EQ(r->said().find("fade", from), std::string::npos) << r->said();
+  from = r->said().size();
+  pull(5.0);
+  EXPECT_TRUE(r->says("fade", 1.0, from)) << r->said();
+  EXPECT_TRUE(r->says("parked", 5.0, from)) << r->said();
+  EXPECT_TRUE(r->says("running", 10.0, from)) << r->said();
+  r->signal(SIGINT);
+  EXPECT_EQ(r->wait(), 0) << r->said();  // the replay does not differ in an order
+  expect_within_limits(*p);
+}
+
+TEST_F(LiveProgramTest, GoesOnWhileTheDiskIsFullAndStopsOnAKey) {
+  auto p = platform();
+  ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
+  auto r = rig();
+  auto v = vehicle();
+  ASSERT_TRUE(r->says("running", 20.0)) << r->said();
+  const rlimit full{std::filesystem::file_size(recording()), RLIM_INFINITY}, unlimited{RLIM_INFINITY, RLIM_INFINITY};
+  ASSERT_EQ(::prlimit(r->id(), RLIMIT_FSIZE, &full, nullptr), 0);
+  EXPECT_TRUE(r->says("the recording cannot be written: File too large", 5.0)) << r->said();
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  ASSERT_EQ(::prlimit(r->id(), RLIMIT_FSIZE, &unlimited, nullptr), 0);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ(r->said().find("hold"), std::string::npos) << r->said();
+  r->press('e');
+  EXPECT_TRUE(r->says("stopped", 2.0)) << r->said();
+  r->press('r');
+  EXPECT_TRUE(r->says("parked", 10.0, r->said().find("stopped"))) << r->said();
+  r->press('q');
+  EXPECT_EQ(r->wait(), 1) << r->said();  // orders are missing in the recording
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "rig/report.html"));
+  EXPECT_THAT(read_file(folder_ / "rig/report.html"), HasSubstr("the recording cannot be written: File too large"));
+  expect_within_limits(*p);
+  EXPECT_THAT(p->said(), HasSubstr("\"silences\": 0"));
+  const auto replay =
+      run("cue --replay " + recording().string() + " --quiet --json --out " + (folder_ / "replay").string());
+  EXPECT_EQ(replay.exit_code, 1) << replay.text;
+  EXPECT_THAT(read_file(folder_ / "replay/report.html"), Not(HasSubstr("the recording is damaged")));
+}
+
+TEST_F(LiveProgramTest, LinesThatNobodyCanReadDoNotEndARunAndAClosedTerminalParksIt) {
+  auto p = platform();
+  ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
+  auto r = rig("rig", {"--json"}, "/dev/full");
+  auto v = vehicle();
+  std::this_thread::sleep_for(std::chrono::seconds(6));
+  r->signal(SIGHUP);
+  EXPECT_EQ(r->wait(), 0) << r->said();
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "rig/report.html"));
+  const nlohmann::json json = json_of(*r);
+  ASSERT_TRUE(json.is_object()) << r->said();
+  ASSERT_GE(json["states"].size(), 2U) << r->said();
+  EXPECT_EQ(json["states"].back()["state"], "parked");
+  expect_within_limits(*p);
+}
+
+void LiveProgramTest::run_for(double duration, double settled) {
+  const std::string token = file("token.txt", "0123456789abcdef0123456789abcdef\n");
+  std::filesystem::permissions(token, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  const std::vector<std::string> evenly = {"--json",
+                                           "--set",
+                                           "live.rate=100",
+                                           "--set",
+                                           "live.vehicle.loss=0",
+                                           "--set",
+                                           "live.vehicle.clock_drift=300e-6",
+                                           "--set",
+                                           "live.page_token=" + token};
+  auto p = platform();
+  ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
+  auto r = rig("rig", evenly);
+  ASSERT_TRUE(r->says("keys:", 20.0)) << r->said();
+  EXPECT_THAT(r->said(), Not(HasSubstr("token:")));
+  std::vector<std::string> driven = evenly;
+  driven.insert(driven.end(), {"--seconds", fmt::format("{}", duration)});
+  auto v = vehicle(driven);
+  ASSERT_TRUE(r->says("running", 20.0)) << r->said();
+  const PageReader events(page_, "GET /events HTTP/1.1\r\n");
+  std::atomic<std::size_t> read{0};
+  std::string last;
+  std::thread reader([&] {
+    for (std::string text = events.read(); !text.empty(); text = events.read()) {
+      read += text.size();
+      last = text;
+    }
+  });
+  std::this_thread::sleep_for(std::chrono::duration<double>(settled));
+  const double before = memory_of(*r);
+  EXPECT_EQ(v->wait(), 0) << v->said();
+  const double growth = memory_of(*r) - before;
+  EXPECT_GT(before, 1e6);
+  EXPECT_LT(growth, 1024.0 * 1024.0) << "from " << before;
+  EXPECT_TRUE(r->says("ppm fast against ours", 1.0)) << r->said();
+  EXPECT_GT(static_cast<double>(read.load()), 1000.0 * duration);
+  const std::string body = "{\"request\": \"park\"}";
+  const PageReader control(page_, fmt::format("POST /control HTTP/1.1\r\nContent-Length: {}\r\nContent-Type: "
+                                              "application/json\r\nConnection: close\r\nAuthorization: Bearer "
+                                              "0123456789abcdef0123456789abcdef\r\n",
+                                              body.size()));
+  control.send(body);
+  EXPECT_THAT(control.read(), HasSubstr("204"));
+  r->signal(SIGINT);
+  EXPECT_EQ(r->wait(), 0) << r->said();
+  events.hang_up();
+  reader.join();
+  EXPECT_THAT(last, HasSubstr("ppm fast against ours"));
+  const nlohmann::json rig_says = json_of(*r), vehicle_says = json_of(*v);
+  ASSERT_TRUE(rig_says.is_object() && vehicle_says.is_object()) << r->said() << v->said();
+  std::uint64_t all = 0;
+  for (const auto& [fate, count] : rig_says["packets"].items()) all += count.get<std::uint64_t>();
+  EXPECT_EQ(all, vehicle_says["packets_sent"].get<std::uint64_t>());
+  EXPECT_GT(static_cast<double>(all), 95.0 * duration);
+  EXPECT_EQ(rig_says["orders_different_when_replayed"], 0);
+  EXPECT_GT(rig_says["wait_s"]["p99"].get<double>(), 0.0);
+  EXPECT_GT(rig_says["work_s"]["p99"].get<double>(), 0.0);
+  fmt::print("{} packets in {:g} s, all taken; memory {:.2f} MB, {:+.0f} kB in the end; {} bytes of the page read\n",
+             all, duration, before / 1e6, growth / 1e3, read.load());
+  expect_within_limits(*p);
+}
+
+TEST_F(LiveProgramTest, RunsHalfAMinuteWithSomebodyAtItsPageAndLosesNothing) { run_for(30.0, 12.0); }
+
+/// As long as VERIDYN_SOAK_SECONDS says, an hour without.
+TEST_F(LiveProgramTest, SoakOfAnHourAtAHundredHertz) {
+  const char* seconds = std::getenv("VERIDYN_SOAK_SECONDS");
+  run_for(seconds != nullptr ? std::stod(seconds) : 3600.0, 60.0);
+}
+
+TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoCommandsIt) {
+  auto p = platform();
+  ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
+  const auto test_of = [&](const std::string& name, const std::string& more, const std::string& axis = "pitch") {
+    std::string command =
+        "rig test " + study_ + " --quiet --json --axis " + axis + " --out " + (folder_ / name).string() + more;
+    for (const std::string& word : sets_) command += " " + word;
+    return command;
+  };
+  auto r = rig();
+  ASSERT_TRUE(r->says("listening", 20.0)) << r->said();
+  ASSERT_TRUE(p->says("commands the platform", 10.0)) << p->said();
+  const Outcome refused = run(test_of("refused", " --signal home --seconds 1"));
+  EXPECT_EQ(refused.exit_code, 2) << refused.text;
+  EXPECT_THAT(refused.text, ::testing::ContainsRegex("the program at 127.0.0.1:[0-9]+ commands the platform"));
+  r.reset();
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // until it may be commanded by another
+  const Outcome sweep = run(test_of("sweep", " --signal sweep --seconds 8"));
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.text;
+  const auto json = nlohmann::json::parse(sweep.text);
+  const auto& pitch = json["axes"]["pitch"];
+  EXPECT_NEAR(pitch["gain"]["value"].get<double>(), 1.0, 0.1) << sweep.text;
+  EXPECT_NEAR(pitch["omega_rad_s"]["value"].get<double>(), 30.0, 9.0) << sweep.text;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "sweep/told_and_reached.csv"));
+  EXPECT_THAT(read_file(folder_ / "sweep/platform.toml"), HasSubstr("subject = \"three_axis\""));
+  const Outcome force = run(test_of("force", " --signal force --value 1m/s^2 --seconds 3"));
+  ASSERT_EQ(force.exit_code, 0) << force.text;
+  const std::string told = read_file(folder_ / "force/told_and_reached.csv");
+  EXPECT_NEAR(std::stod(told.substr(told.rfind(',') + 1)), std::asin(1.0 / 9.80665), 1e-3);  // reached at last
+  expect_refusal(test_of("wrong", " --signal pose --value 40deg"),
+                 "takes pitch to 0.6981 rad; its range is -0.2618 to");
+  expect_refusal(test_of("wrong", " --signal pose --value 40mm"), "--value: = '40mm' for pitch");
+  expect_refusal(test_of("wrong", " --signal wave --value 4deg"), "is of `--signal pose` and `force` only");
+  expect_refusal(test_of("wrong", "", "surge"), "'surge' is no axis of this platform");
+  expect_within_limits(*p);
 }
 
 TEST_F(LiveProgramTest, SecondProgramAtTheSamePortIsRefusedAndTheFirstGoesOn) {
@@ -164,6 +401,14 @@ TEST_F(LiveProgramTest, RefusesInOneLine) {
                  "Cannot assign requested address");
   expect_refusal("cue " + study_ + " --live --set live.ratte=5" + out(), "did you mean 'rate'");
   expect_refusal("rig platform " + file("s.toml", "[cue]\n"), "the table [live] says where telemetry comes from");
+  for (const char* command : {"rig platform ", "rig vehicle ", "rig test "})
+    expect_refusal(command + study_ + " --set live.ratte=5", "did you mean 'rate'");
+  expect_refusal("rig platform " + study_ + " --set live.format=flypt --set live.answers=false",
+                 "is not read by the virtual platform");
+  expect_refusal("rig platform " + file("no_limits.toml",
+                                        "[cue]\nalgorithms = ['classical']\n[live]\n"
+                                        "telemetry = '127.0.0.1:4123'\nplatform = '127.0.0.1:5123'\n"),
+                 "platform: is missing: the limits of a platform that moves are not guessed");
 }
 
 }  // namespace

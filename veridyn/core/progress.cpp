@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "veridyn/core/stderr_text.hpp"
+
 namespace veridyn {
 
 void Progress::stage(std::string_view) {}
@@ -29,7 +31,7 @@ void TerminalProgress::stage(std::string_view name) {
   end_line();
   stage_ = name;
   begun_ = shown_ = Clock::now();
-  if (!quiet_ && !terminal_) fmt::print(stderr, "{}\n", stage_);
+  if (!quiet_ && !terminal_) print_to_stderr(stage_ + "\n");
 }
 
 bool TerminalProgress::update(double fraction) {
@@ -42,8 +44,8 @@ bool TerminalProgress::update(double fraction) {
     const int cells = static_cast<int>(std::lround(24.0 * done));
     // A first guess of the remaining time from the very beginning would be noise.
     const std::string remaining = done > 0.02 ? duration_text(elapsed_s * (1.0 - done) / done) + " left" : "";
-    fmt::print(stderr, "\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", stage_, "", cells, "", 24 - cells, 100.0 * done,
-               remaining);
+    print_to_stderr(fmt::format("\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} % {}", stage_, "", cells, "", 24 - cells,
+                                100.0 * done, remaining));
     std::fflush(stderr);
   }
   return !interrupted();
@@ -54,7 +56,7 @@ bool TerminalProgress::interrupted() const { return interruption_.requested(); }
 int TerminalProgress::threads() const { return threads_; }
 
 void TerminalProgress::end_line() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) print_to_stderr("\r\033[K");
   drawn_ = false;
 }
 

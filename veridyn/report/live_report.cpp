@@ -14,7 +14,6 @@ namespace {
 using namespace veridyn::live;
 
 constexpr double kPerMillisecondOf = 1e3;
-constexpr double kMostDrift = 100e-6;
 
 Cell milliseconds(double s) { return number_cell(s * kPerMillisecondOf, 3); }
 
@@ -47,6 +46,11 @@ Section timing_section(const LiveReplay& run) {
                {.name = "longest", .unit = "ms"},       {.name = "of"}};
   t.sortable = false;
   t.rows.push_back(times_row("packet's arrival to order sent", run.times.receive_to_send));
+  // Of a run that is replayed they are not known.
+  if (run.times.work.count() > 0) {
+    t.rows.push_back(times_row("of that: waiting for the next order", run.times.wait));
+    t.rows.push_back(times_row("of that: from the step's beginning to the order sent", run.times.work));
+  }
   t.rows.push_back(times_row("step's time to order sent", run.times.wake));
   t.rows.push_back(times_row("interval against the period, either way", run.times.jitter));
   section.blocks.emplace_back(std::move(t));
@@ -61,6 +65,9 @@ Section timing_section(const LiveReplay& run) {
   section.blocks.emplace_back(
       FactList{{{"Deadlines left out", fmt::format("{}", run.times.left_out)},
                 {"Pauses in which the platform stopped", fmt::format("{}", run.gaps)},
+                {"Orders whose motion was continued beyond the last packet",
+                 fmt::format("{} of {}, by {:.0f} ms at most", run.extrapolated.steps, run.extrapolated.of,
+                             run.extrapolated.longest * kPerMillisecondOf)},
                 {"Sender's clock against ours",
                  std::isfinite(run.drift) ? fmt::format("{:+.0f} ppm", -1e6 * run.drift) : "not known within 10 s"}}});
   return section;
@@ -132,11 +139,7 @@ Verdict verdict_of(const LiveReplay& run, const std::vector<std::string>& notes)
       v.word = "Look";
     }
   };
-  if (std::abs(run.drift) > kMostDrift)
-    caution(
-        fmt::format("the sender's clock runs {:.0f} ppm {} against ours: its stamps are followed, but one of the two "
-                    "clocks is poor",
-                    std::abs(run.drift) * 1e6, run.drift < 0.0 ? "fast" : "slow"));
+  if (const std::string warning = drift_warning(run.drift); !warning.empty()) caution(warning);
   constexpr double kOften = 1e-3;
   if (const auto missed = static_cast<double>(run.times.left_out);
       missed > kOften * static_cast<double>(run.times.steps))

@@ -44,7 +44,7 @@ async function largest(ms) {
   const end = Date.now() + ms;
   let most = 0;
   while (Date.now() < end) {
-    const cells = await page.$$eval('#axes td.n', (all) => all.map((c) => c.textContent));
+    const cells = await page.$$eval('#axes td.n:not(.use)', (all) => all.map((c) => c.textContent));
     for (const c of cells) if (c.endsWith('°')) most = Math.max(most, Math.abs(parseFloat(c)));
     await sleep(30);
   }
@@ -89,6 +89,21 @@ test('values move while the rig runs', { skip }, async () => {
   assert.ok(second > first + 50 && second < first + 500, `${first} then ${second} packets`);
   assert.ok((await largest(3000)) > 0.3);
   assert.ok((await page.$$('#latency rect')).length > 3);
+});
+
+test('what is felt and what is left of the platform are shown', { skip }, async () => {
+  assert.equal((await page.$$('#perceived tr')).length, 6);
+  const seen = new Set();
+  for (let k = 0; k < 20; ++k) {
+    seen.add(await page.textContent('#perceived tr:nth-child(2) td.n'));
+    await sleep(100);
+  }
+  assert.ok(seen.size > 5, [...seen].join());
+  assert.match([...seen][0], /^-?[0-9.]+ \/ -?[0-9.]+ m\/s²$/);
+  for (const text of await page.$$eval('#axes td.use', (all) => all.map((c) => c.textContent))) {
+    assert.match(text, /^-?[0-9]+ % range, [0-9]+ % rate, [0-9.]+ (°|mm) left$/);
+    assert.ok(parseFloat(text) <= 100 && parseFloat(text.split(', ')[1]) <= 100, text);
+  }
 });
 
 test('a control without the token is refused and counted', { skip }, async () => {

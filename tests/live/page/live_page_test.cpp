@@ -68,14 +68,14 @@ TEST_F(LivePageTest, SendsWhatIsShownAsEventsAndASlowReaderDelaysNobody) {
 }
 
 TEST_F(LivePageTest, TakesControlsFromWhoeverHasTheToken) {
-  EXPECT_EQ(control("{\"wish\": \"park\"}"), 204);
-  EXPECT_EQ(control("{\"wish\": \"emergency\"}"), 204);
+  EXPECT_EQ(control("{\"request\": \"park\"}"), 204);
+  EXPECT_EQ(control("{\"request\": \"emergency\"}"), 204);
   EXPECT_EQ(control("{\"knob\": 3, \"value\": 0.7}"), 204);
   EXPECT_EQ(control("{\"undo\": true}"), 204);
   const std::vector<PageRequest> requests = page_.take_requests();
   ASSERT_EQ(requests.size(), 4U);
-  EXPECT_EQ(requests[0].wish, OperatorWish::kPark);
-  EXPECT_EQ(requests[1].wish, OperatorWish::kEmergency);
+  EXPECT_EQ(requests[0].request, OperatorRequest::kPark);
+  EXPECT_EQ(requests[1].request, OperatorRequest::kEmergency);
   EXPECT_EQ(requests[2].kind, PageRequest::Kind::kKnob);
   EXPECT_EQ(requests[2].knob, 3U);
   EXPECT_EQ(requests[2].value, 0.7);
@@ -85,7 +85,7 @@ TEST_F(LivePageTest, TakesControlsFromWhoeverHasTheToken) {
 }
 
 TEST_F(LivePageTest, RefusesAndCountsControlsWithoutTheRightToken) {
-  const std::string park = "{\"wish\": \"park\"}";
+  const std::string park = "{\"request\": \"park\"}";
   EXPECT_EQ(control(park, {}), 401);
   EXPECT_EQ(control(park, {{"Authorization", kToken}}), 401);
   EXPECT_EQ(control(park, {{"Authorization", "Bearer 0123456789abcdee"}}), 403);
@@ -100,8 +100,8 @@ TEST_F(LivePageTest, RefusesAndCountsControlsWithoutTheRightToken) {
 }
 
 TEST_F(LivePageTest, RefusesWhatIsNoRequest) {
-  for (const char* body : {"", "{", "[]", "{}", "{\"wish\": \"fly\"}", "{\"wish\": 3}", "{\"knob\": -1, \"value\": 1}",
-                           "{\"knob\": 1}", "{\"knob\": 1, \"value\": \"a\"}"})
+  for (const char* body : {"", "{", "[]", "{}", "{\"request\": \"fly\"}", "{\"request\": 3}",
+                           "{\"knob\": -1, \"value\": 1}", "{\"knob\": 1}", "{\"knob\": 1, \"value\": \"a\"}"})
     EXPECT_EQ(control(body), 400) << body;
   EXPECT_EQ(control(std::string(100000, ' ')), 413);
   EXPECT_TRUE(page_.take_requests().empty());
@@ -140,15 +140,47 @@ TEST(PageToken, IsComparedWhole) {
   EXPECT_EQ(random_token().size(), 32U);
 }
 
+TEST(StatusJson, SaysHowMuchOfThePlatformIsUsedAndWhatIsFelt) {
+  const LiveStudy study = test::rig_study();
+  const auto design = study.cueing.algorithms.front().design->clone();
+  RigStatus status;
+  const auto pitch = cueing::PlatformAxis::kPitch;
+  const cueing::AxisLimits& limits = study.cueing.platform.limits[pitch];
+  set_axis(status.step.cueing.told, pitch,
+           {.position = 0.75 * limits.lowest, .rate = -0.5 * limits.rate, .acceleration = 0.0});
+  status.step.motion.emplace();
+  status.step.motion->sample.frame = Frame::kFrd;
+  status.step.motion->sample.force = recording::force_at_rest(Frame::kFrd);
+  FeltNow felt(study.cueing);
+  felt.update(status);
+  const auto json = nlohmann::json::parse(status_json(status, study, felt, *design, 1.5, 0, ""));
+  const auto& axis = json["axes"][2];
+  ASSERT_EQ(axis["name"], "pitch");
+  EXPECT_NEAR(axis["to_limit"].get<double>(), -0.25 * limits.lowest, 1e-12);
+  EXPECT_NEAR(axis["range_used"].get<double>(), 0.75, 1e-12);
+  EXPECT_NEAR(axis["rate_used"].get<double>(), 0.5, 1e-12);
+  ASSERT_EQ(json["felt"].size(), cueing::kCues);
+  EXPECT_EQ(json["felt"][0]["name"], "surge");
+  EXPECT_NEAR(json["felt"][2]["vehicle"].get<double>(), 0.0, 1e-12);  // at rest nothing is felt
+  EXPECT_EQ(json["felt"][3]["threshold"], study.cueing.thresholds.rate[0]);
+}
+
 TEST(StatusJson, HoldsWhatThePageDraws) {
   const LiveStudy study = test::rig_study();
   const auto design = study.cueing.algorithms.front().design->clone();
   RigStatus status;
   status.times.receive_to_send.add(kMillisecond);
-  const auto json = nlohmann::json::parse(status_json(status, study, *design, 1.5, 2, "a message"));
+  const auto json =
+      nlohmann::json::parse(status_json(status, study, FeltNow(study.cueing), *design, 1.5, 2, "a message"));
   EXPECT_EQ(json["state"], "parked");
   EXPECT_EQ(json["readiness"], "no telemetry");
   EXPECT_EQ(json["axes"].size(), 3U);  // heave, roll, pitch
+  for (const auto& axis : json["axes"]) {
+    EXPECT_GT(axis["to_limit"], 0.0);
+    EXPECT_EQ(axis["range_used"], 0.0);
+    EXPECT_EQ(axis["rate_used"], 0.0);
+  }
+  EXPECT_FALSE(json.contains("felt"));  // no motion yet
   EXPECT_EQ(json["refused"], 2);
   EXPECT_EQ(json["latency"]["bins"].size(), 1U);
   EXPECT_EQ(json["packets"].size(), kPacketFates);

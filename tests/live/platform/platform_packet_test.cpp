@@ -77,6 +77,29 @@ TEST(PlatformAnswer, ComesOutAsItWentIn) {
   EXPECT_FALSE(decode_order(view(bytes)));
 }
 
+TEST(PlatformAnswer, OfVersionTwoSaysWhoCommandsThePlatform) {
+  PlatformAnswer a;
+  a.session = 9;
+  a.sequence = 8;
+  a.verdict = PlatformVerdict::kCommandedByAnother;
+  a.outside_limits = 11;
+  a.commander = {0x7f000001, 4711};
+  const auto bytes = encode(a);
+  const std::string_view b = view(bytes);
+  ASSERT_EQ(b.size(), 64U);
+  EXPECT_EQ(b.substr(0, 4), "VPA2");
+  EXPECT_EQ(number_at<std::uint32_t>(b, 48), 11U);
+  EXPECT_EQ(number_at<std::uint32_t>(b, 52), 0x7f000001U);
+  EXPECT_EQ(number_at<std::uint16_t>(b, 56), 4711U);
+  EXPECT_EQ(number_at<std::uint32_t>(b, 60), crc32(b.substr(0, 60)));
+  const auto back = decode_answer(b);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->commander, a.commander);
+  EXPECT_EQ(back->verdict, a.verdict);
+  EXPECT_EQ(back->outside_limits, 11U);
+  EXPECT_FALSE(decode_answer(b.substr(0, 56)));
+}
+
 TEST(PlatformPackets, AnyByteThatIsWrongIsNoticed) {
   const OrderBytes good = encode(some_order());
   for (std::size_t i = 0; i < good.size(); ++i) {

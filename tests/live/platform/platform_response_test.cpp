@@ -127,6 +127,8 @@ TEST(TestSignal, StaysWithinTheLimitsAndBeginsAndEndsAtRest) {
 TEST(TestSignal, GoesWhereItIsNamed) {
   const cueing::AxisLimits limits = cueing::three_axis_limits()[PlatformAxis::kPitch];
   EXPECT_EQ(wanted_position({.signal = TestSignal::kHome}, limits, 3.0), 0.0);
+  EXPECT_EQ(wanted_position({.signal = TestSignal::kZero, .position = 0.1}, limits, 3.0), 0.0);
+  EXPECT_EQ(wanted_position({.signal = TestSignal::kPose, .position = 0.1}, limits, 3.0), 0.1);
   EXPECT_EQ(wanted_position({.signal = TestSignal::kMax, .size = 1.0}, limits, 3.0), limits.highest);
   EXPECT_EQ(wanted_position({.signal = TestSignal::kMin, .size = 0.5}, limits, 3.0), 0.5 * limits.lowest);
   const TestSignalOptions steps{.signal = TestSignal::kSteps, .size = 1.0, .frequency = 0.25};
@@ -134,6 +136,17 @@ TEST(TestSignal, GoesWhereItIsNamed) {
   EXPECT_EQ(wanted_position(steps, limits, 1.5), 0.0);
   EXPECT_EQ(wanted_position(steps, limits, 2.5), limits.lowest);
   EXPECT_EQ(wanted_position(steps, limits, 3.5), 0.0);
+}
+
+TEST(TestSignal, ATiltGivesTheRiderTheForceThatWasAskedFor) {
+  for (const auto axis : {cueing::PlatformAxis::kPitch, cueing::PlatformAxis::kRoll}) {
+    cueing::PlatformState tilted;
+    set_axis(tilted, axis, {.position = tilt_of(axis, 1.5), .rate = 0.0, .acceleration = 0.0});
+    const recording::MotionSample felt = rider_motion(tilted);
+    EXPECT_NEAR(axis == cueing::PlatformAxis::kPitch ? felt.force.x() : felt.force.y(), 1.5, 1e-12);
+  }
+  EXPECT_TRUE(std::isnan(tilt_of(cueing::PlatformAxis::kHeave, 1.0)));
+  EXPECT_TRUE(std::isnan(tilt_of(cueing::PlatformAxis::kPitch, 10.0)));
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ std::vector<LiveRecord> some_records() {
   datagram.time = 10;
   datagram.link = LinkOf::kPlatform;
   datagram.datagram = {.bytes = "bytes \0 of it", .sender = {0x7f000001, 99}, .arrival = 9};
-  LiveRecord wish;
-  wish.kind = LiveRecord::Kind::kWish;
-  wish.time = 11;
-  wish.wish = OperatorWish::kEmergency;
+  LiveRecord request;
+  request.kind = LiveRecord::Kind::kRequest;
+  request.time = 11;
+  request.request = OperatorRequest::kEmergency;
   LiveRecord knob;
   knob.kind = LiveRecord::Kind::kKnob;
   knob.time = 12;
@@ -45,7 +45,7 @@ std::vector<LiveRecord> some_records() {
   step.time = 13;
   step.sent = 14;
   step.order = "an order";
-  return {datagram, wish, knob, step};
+  return {datagram, request, knob, step};
 }
 
 std::string encoded(const std::vector<LiveRecord>& records) {
@@ -66,7 +66,7 @@ TEST(LiveRecord, ComesOutAsItWentIn) {
     EXPECT_EQ(r.datagram.bytes, w.datagram.bytes);
     EXPECT_EQ(r.datagram.sender, w.datagram.sender);
     EXPECT_EQ(r.datagram.arrival, w.datagram.arrival);
-    EXPECT_EQ(r.wish, w.wish);
+    EXPECT_EQ(r.request, w.request);
     EXPECT_EQ(r.knob, w.knob);
     EXPECT_EQ(r.count, w.count);
     EXPECT_EQ(r.value, w.value);
@@ -162,7 +162,7 @@ TEST_F(LiveRecorderTest, WritesEveryRecordInOrder) {
   }
   int k = 0;
   const LiveFile file = read_live_file(path_);
-  for (const std::string& block : file.blocks)
+  for (const std::string_view block : file.blocks)
     EXPECT_TRUE(for_each_record(block, [&](const LiveRecord& r) { EXPECT_EQ(r.time, k++); }));
   EXPECT_EQ(k, kCount);
   EXPECT_EQ(file.cut_bytes, 0U);

@@ -39,7 +39,7 @@ TEST(LiveRig, StaysParkedUntilItIsStarted) {
 TEST(LiveRig, StartsSoftlyFollowsTheDriveAndParks) {
   DrivenRig r(rig_study());
   r.run(1.0);
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   double share = 0.0;
   r.run(2.9, [&](const RigStep& s) {
     EXPECT_EQ(s.state, RigState::kSoftStart);
@@ -50,7 +50,7 @@ TEST(LiveRig, StartsSoftlyFollowsTheDriveAndParks) {
   r.run(8.0, [&](const RigStep& s) { most = std::max(most, largest_position(s)); });
   EXPECT_EQ(r.rig.state(), RigState::kRunning);
   EXPECT_GT(most, 0.02);
-  r.rig.wish(OperatorWish::kPark);
+  r.rig.request(OperatorRequest::kPark);
   r.run(0.02);
   EXPECT_EQ(r.rig.state(), RigState::kFade);
   r.run(6.0);
@@ -63,7 +63,7 @@ TEST(LiveRig, GivesThePlatformWhatTheReplayedDriveGivesIt) {
   // Once the whole motion is let through, the chain of `veridyn cue` on the same samples, with the rig's delay.
   LiveStudy study = rig_study("delay = 0\nsoft_start = 0.5\nsigns = 'off'\n");
   DrivenRig r(study);
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   std::vector<RigStep> steps;
   r.run(20.0, [&](const RigStep& s) { steps.push_back(s); });
   std::vector<recording::MotionSample> samples;
@@ -86,7 +86,7 @@ TEST(LiveRig, GivesThePlatformWhatTheReplayedDriveGivesIt) {
 
 TEST(LiveRig, HoldsFadesAndComesBackWithoutTelemetry) {
   DrivenRig r(rig_study());
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(8.0);
   ASSERT_EQ(r.rig.state(), RigState::kRunning);
   r.vehicle_sends = false;
@@ -111,7 +111,7 @@ TEST(LiveRig, HoldsFadesAndComesBackWithoutTelemetry) {
 
 TEST(LiveRig, HoldsAndFadesWhereThePlatformDoesNotAnswer) {
   DrivenRig r(rig_study());
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(6.0);
   r.platform_answers = false;
   r.run(0.4);
@@ -126,9 +126,9 @@ TEST(LiveRig, HoldsAndFadesWhereThePlatformDoesNotAnswer) {
 
 TEST(LiveRig, StopsWithinOneStepAndStaysUntilItIsReleased) {
   DrivenRig r(rig_study());
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(10.0);
-  r.rig.wish(OperatorWish::kEmergency);
+  r.rig.request(OperatorRequest::kEmergency);
   bool first = true;
   RigStep before;
   r.run(2.0, [&](const RigStep& s) {
@@ -138,15 +138,15 @@ TEST(LiveRig, StopsWithinOneStepAndStaysUntilItIsReleased) {
   });
   EXPECT_FALSE(first);
   const double stopped_at = largest_position(before);
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(5.0, [&](const RigStep& s) {
     EXPECT_EQ(s.state, RigState::kStopped);
     EXPECT_EQ(largest_position(s), stopped_at);
   });
-  r.rig.wish(OperatorWish::kPark);  // no release
+  r.rig.request(OperatorRequest::kPark);  // no release
   r.run(0.1);
   EXPECT_EQ(r.rig.state(), RigState::kStopped);
-  r.rig.wish(OperatorWish::kRelease);
+  r.rig.request(OperatorRequest::kRelease);
   r.run(0.02);
   EXPECT_EQ(r.rig.state(), RigState::kFade);
   r.run(6.0);
@@ -156,7 +156,7 @@ TEST(LiveRig, StopsWithinOneStepAndStaysUntilItIsReleased) {
 
 TEST(LiveRig, StopsOnAPacketWhoeverSendsIt) {
   DrivenRig r(rig_study());
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(5.0);
   r.rig.take(LinkOf::kTelemetry, {"VSTOP1", {0x7f000001, 9999}, r.now});
   r.run(0.01, [](const RigStep& s) { EXPECT_EQ(s.state, RigState::kStopped); });
@@ -165,30 +165,30 @@ TEST(LiveRig, StopsOnAPacketWhoeverSendsIt) {
 
 TEST(LiveRig, AnEmergencyStopAndAReleaseAtOnceStop) {
   DrivenRig r(rig_study());
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(5.0);
-  r.rig.wish(OperatorWish::kRelease);
-  r.rig.wish(OperatorWish::kEmergency);
+  r.rig.request(OperatorRequest::kRelease);
+  r.rig.request(OperatorRequest::kEmergency);
   r.run(1.0);
   EXPECT_EQ(r.rig.state(), RigState::kStopped);
 }
 
 TEST(LiveRig, DoesNotStartBeforeSignsAreCheckedNorOnAWrongOne) {
   DrivenRig before(rig_study("signs = 'before'\n"));
-  before.rig.wish(OperatorWish::kStart);
+  before.rig.request(OperatorRequest::kStart);
   before.run(2.0);
   EXPECT_EQ(before.rig.state(), RigState::kParked);
   EXPECT_EQ(before.rig.readiness(), Readiness::kSignsUnknown);
-  before.rig.wish(OperatorWish::kSignsRight);
+  before.rig.request(OperatorRequest::kSignsRight);
   before.run(0.1);
   EXPECT_EQ(before.rig.state(), RigState::kSoftStart);
 
   DrivenRig during(rig_study("signs = 'while'\n"));
-  during.rig.wish(OperatorWish::kStart);
+  during.rig.request(OperatorRequest::kStart);
   during.run(5.0);
   EXPECT_EQ(during.rig.state(), RigState::kRunning);
-  during.rig.wish(OperatorWish::kSignsWrong);
-  during.rig.wish(OperatorWish::kSignsRight);  // what was wrong once stays so
+  during.rig.request(OperatorRequest::kSignsWrong);
+  during.rig.request(OperatorRequest::kSignsRight);  // what was wrong once stays so
   during.run(8.0);
   EXPECT_EQ(during.rig.state(), RigState::kParked);
   EXPECT_EQ(during.rig.readiness(), Readiness::kSignsWrong);
@@ -196,7 +196,7 @@ TEST(LiveRig, DoesNotStartBeforeSignsAreCheckedNorOnAWrongOne) {
 
 TEST(LiveRig, IsNotReadyForFrozenOrSlowTelemetry) {
   DrivenRig slow(rig_study(), {.rate = 15.0});
-  slow.rig.wish(OperatorWish::kStart);
+  slow.rig.request(OperatorRequest::kStart);
   slow.run(5.0);
   EXPECT_EQ(slow.rig.state(), RigState::kParked);
   EXPECT_EQ(slow.rig.readiness(), Readiness::kTooSlow);
@@ -237,7 +237,7 @@ TEST(LiveRig, AnotherCommanderOfThePlatformIsNotFoughtWith) {
     EXPECT_EQ(answer->verdict, PlatformVerdict::kCommandedByAnother);
     const AnswerBytes back = encode(*answer);
     r.rig.take(LinkOf::kPlatform, {{back.data(), back.size()}, DrivenRig::kPlatform, r.now});
-    r.rig.wish(OperatorWish::kStart);
+    r.rig.request(OperatorRequest::kStart);
   }
   EXPECT_EQ(r.rig.state(), RigState::kParked);
   EXPECT_EQ(platform.commander(), "127.0.0.1:7000");
@@ -249,21 +249,21 @@ TEST(LiveRig, KeepsThePlatformWithinItsLimitsWhateverHappens) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     DrivenRig r(rig_study("rate = '200 Hz'\nsigns = 'off'\n"), {.jitter = 0.03, .loss = 0.05, .seed = seed});
     numerics::RandomStream random(seed, "what happens");
-    r.rig.wish(OperatorWish::kStart);
+    r.rig.request(OperatorRequest::kStart);
     for (int k = 0; k < 120; ++k) {
       r.vehicle_sends = random.uniform() < 0.8;
       r.platform_answers = random.uniform() < 0.9;
       const double what = random.uniform();
-      if (what < 0.1) r.rig.wish(OperatorWish::kEmergency);
-      if (what > 0.1 && what < 0.4) r.rig.wish(OperatorWish::kRelease);
-      if (what > 0.4 && what < 0.8) r.rig.wish(OperatorWish::kStart);
-      if (what > 0.9) r.rig.wish(OperatorWish::kPark);
+      if (what < 0.1) r.rig.request(OperatorRequest::kEmergency);
+      if (what > 0.1 && what < 0.4) r.rig.request(OperatorRequest::kRelease);
+      if (what > 0.4 && what < 0.8) r.rig.request(OperatorRequest::kStart);
+      if (what > 0.9) r.rig.request(OperatorRequest::kPark);
       if (what > 0.8 && what < 0.85) r.now += nanoseconds(random.uniform(0.0, 3.0));  // the loop stood still
       r.run(random.uniform(0.05, 2.0));
     }
     expect_within_limits(r);
-    EXPECT_GT(r.rig.entered()[static_cast<std::size_t>(RigState::kRunning)], 0U);
-    EXPECT_GT(r.rig.entered()[static_cast<std::size_t>(RigState::kStopped)], 0U);
+    EXPECT_GT(r.rig.entered()[RigState::kRunning], 0U);
+    EXPECT_GT(r.rig.entered()[RigState::kStopped], 0U);
     EXPECT_GT(r.rig.gaps(), 0U);
   }
 }
@@ -271,7 +271,7 @@ TEST(LiveRig, KeepsThePlatformWithinItsLimitsWhateverHappens) {
 TEST(LiveRig, TheSameInGivesTheSameOut) {
   const auto orders = [] {
     DrivenRig r(rig_study(), {.jitter = 0.02});
-    r.rig.wish(OperatorWish::kStart);
+    r.rig.request(OperatorRequest::kStart);
     std::string all;
     r.run(10.0, [&](const RigStep& s) { all.append(s.order.data(), s.order.size()); });
     return all;
@@ -282,7 +282,7 @@ TEST(LiveRig, TheSameInGivesTheSameOut) {
 TEST(LiveRig, AnotherAlgorithmTakesOverFromWhereThePlatformIs) {
   LiveStudy study = rig_study();
   DrivenRig r(study);
-  r.rig.wish(OperatorWish::kStart);
+  r.rig.request(OperatorRequest::kStart);
   r.run(10.0);
   const auto other = cueing::washout_algorithm("tilt").design();
   const auto old = r.rig.take_over(other->make(study.cueing.platform));
@@ -295,6 +295,32 @@ TEST(LiveRig, AnotherAlgorithmTakesOverFromWhereThePlatformIs) {
   });
   EXPECT_LE(most, study.cueing.platform.limits[PlatformAxis::kPitch].rate * 0.01 * 1.001);
   expect_within_limits(r);
+}
+
+TEST(LiveRig, SaysWhoCommandsThePlatformWhereThatSaysSo) {
+  LiveRig::Answers answers;
+  answers.verdict = PlatformVerdict::kCommandedByAnother;
+  EXPECT_EQ(described(Readiness::kRefused, answers), name_of(Readiness::kRefused));
+  answers.commander = {0x7f000001, 4711};
+  EXPECT_EQ(described(Readiness::kRefused, answers),
+            "the platform refuses orders: the program at 127.0.0.1:4711 commands it");
+  EXPECT_EQ(described(Readiness::kFrozen, answers), name_of(Readiness::kFrozen));
+}
+
+TEST(LiveRig, CountsTheOrdersWhoseMotionWasContinued) {
+  test::DrivenRig r(test::rig_study("signs = 'off'\ndelay = '0 ms'\n"));
+  r.rig.request(OperatorRequest::kStart);
+  r.run(5.0);
+  const LiveRig::Extrapolated& e = r.rig.extrapolated();
+  EXPECT_GT(e.of, 300U);
+  EXPECT_GT(e.steps, e.of / 2);
+  EXPECT_GT(e.longest, 0.0);
+  EXPECT_LE(e.longest, 0.03);
+  test::DrivenRig late(test::rig_study("signs = 'off'\ndelay = '50 ms'\n"));
+  late.rig.request(OperatorRequest::kStart);
+  late.run(5.0);
+  EXPECT_EQ(late.rig.extrapolated().steps, 0U);
+  EXPECT_GT(late.rig.extrapolated().of, 300U);
 }
 
 }  // namespace

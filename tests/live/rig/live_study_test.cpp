@@ -58,22 +58,62 @@ TEST(LiveStudy, RefusesAnAddressThatIsNone) {
   EXPECT_EQ(parse_address("0.0.0.0:4123", ""), (Sender{0, 4123}));
 }
 
+TEST(LiveStudy, ReadsHowOrdersAreWritten) {
+  const LiveStudy text = test::rig_study("format = 'flypt'\nanswers = false\ntext = '{pitch:deg:.1f}'\n");
+  EXPECT_EQ(text.format.kind, OrderFormatKind::kFlypt);
+  EXPECT_EQ(text.format.text, "{pitch:deg:.1f}");
+  EXPECT_EQ(platform_name(text), "127.0.0.1:47124");
+  EXPECT_THAT(refusal("format = 'motion_68'\n"),
+              HasSubstr("live.answers: must be false: a platform of format 'motion_68' does not answer orders"));
+  EXPECT_THAT(refusal("format = 'flypt'\nanswers = false\ntext = '{pitsch}'\n"),
+              HasSubstr("rig.toml:10: live.text: flypt: {pitsch} is no axis"));
+  EXPECT_THAT(refusal("text = 'x'\n"), HasSubstr("live.text: is of 'flypt'; format is 'veridyn'"));
+  EXPECT_THAT(refusal("format = 'flyp'\nanswers = false\n"), HasSubstr("live.format"));
+  EXPECT_THAT(refusal("baud = 9600\n"), HasSubstr("live.baud: is of a serial line; the platform has an address"));
+}
+
+TEST(LiveStudy, OrdersMayGoOnASerialLine) {
+  const auto study = [](const std::string& lines) {
+    return read_live_study(
+        Study::parse("[cue]\nalgorithms = ['classical']\n[platform]\nsubject = 'hexapod'\n[live]\n"
+                     "telemetry = '127.0.0.1:47123'\nplatform = '/dev/ttyUSB0'\n" +
+                         lines,
+                     "rig.toml"));
+  };
+  const LiveStudy s = study("format = 'amc_aasd15a'\nanswers = false\n");
+  EXPECT_EQ(platform_name(s), "/dev/ttyUSB0");
+  EXPECT_EQ(s.platform_line.baud, 250000);
+  EXPECT_THAT(why([&] { static_cast<void>(study("")); }), HasSubstr("'veridyn' takes an address"));
+  EXPECT_THAT(
+      why([&] { static_cast<void>(study("format = 'amc_aasd15a'\nanswers = false\nbaud = 9600\nrate = '100 Hz'\n")); }),
+      HasSubstr("live.rate: is 100 Hz; 9600 bit/s carry 48 orders of 20 bytes a second"));
+}
+
+TEST(LiveStudy, DoesNotGuessThePlatformsLimits) {
+  EXPECT_THAT(why([] {
+                static_cast<void>(read_live_study(
+                    Study::parse("[cue]\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n", "rig.toml")));
+              }),
+              HasSubstr("platform: is missing: the limits of a platform that moves are not guessed"));
+}
+
 TEST(LiveStudy, NeedsItsTableAndOneAlgorithm) {
   EXPECT_THAT(why([] { static_cast<void>(read_live_study(Study::parse("[cue]\n", "rig.toml"))); }),
               HasSubstr("the table [live] says where telemetry comes from"));
-  EXPECT_THAT(
-      why([] {
-        static_cast<void>(read_live_study(Study::parse(
-            "[cue]\nalgorithms = ['classical', 'tilt']\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n",
-            "rig.toml")));
-      }),
-      HasSubstr("names 2; a platform follows one"));
-  EXPECT_THAT(
-      why([] {
-        static_cast<void>(read_live_study(Study::parse(
-            "[cue]\nforesee = 'lap'\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n", "rig.toml")));
-      }),
-      HasSubstr("foresee"));
+  EXPECT_THAT(why([] {
+                static_cast<void>(read_live_study(
+                    Study::parse("[cue]\nalgorithms = ['classical', 'tilt']\n[platform]\nsubject = "
+                                 "'three_axis'\n[live]\ntelemetry = '127.0.0.1:1'\nplatform = '127.0.0.1:2'\n",
+                                 "rig.toml")));
+              }),
+              HasSubstr("names 2; a platform follows one"));
+  EXPECT_THAT(why([] {
+                static_cast<void>(read_live_study(
+                    Study::parse("[cue]\nforesee = 'lap'\n[platform]\nsubject = 'three_axis'\n[live]\ntelemetry = "
+                                 "'127.0.0.1:1'\nplatform = '127.0.0.1:2'\n",
+                                 "rig.toml")));
+              }),
+              HasSubstr("foresee"));
 }
 
 }  // namespace

@@ -47,5 +47,12 @@ TEST(SenderClock, DoesNotJudgeADriftTooEarly) {
   EXPECT_TRUE(std::isnan(clock_after(8.0, 0.0, 0.0, stamp).drift()));
 }
 
+TEST(SenderClock, SaysWhichClockIsPoorAboveAHundredPartsInAMillion) {
+  EXPECT_EQ(drift_warning(99e-6), "");
+  EXPECT_EQ(drift_warning(std::nan("")), "");
+  EXPECT_EQ(drift_warning(-250e-6).substr(0, 49), "the sender's clock runs 250 ppm fast against ours");
+  EXPECT_EQ(drift_warning(101e-6).substr(0, 49), "the sender's clock runs 101 ppm slow against ours");
+}
+
 }  // namespace
 }  // namespace veridyn::live

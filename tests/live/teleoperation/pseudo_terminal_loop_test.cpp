@@ -27,6 +27,25 @@ struct PseudoTerminalRun {
   std::uint64_t damaged_at_car = 0;
 };
 
+/// A line of 250 kbit/s between two pseudo-terminals that flips bytes, until it is stopped.
+void pass_bytes(testing::PseudoTerminal& at_operator, testing::PseudoTerminal& at_car, double flipped,
+                const std::atomic<bool>& stop) {
+  RealClock own;
+  testing::SimulatedLine to_car(flipped, 1), to_operator(flipped, 2);
+  std::array<std::uint8_t, 4096> from_operator, from_car;
+  while (!stop) {
+    // The time after reading: no byte is older than it says, however long this thread had to wait.
+    const Bytes out = Bytes(from_operator).first(at_operator.read_some(from_operator));
+    const Bytes back = Bytes(from_car).first(at_car.read_some(from_car));
+    const Nanoseconds now = own.now();
+    to_car.send(out, now);
+    to_operator.send(back, now);
+    at_car.write(to_car.arrived(now));
+    at_operator.write(to_operator.arrived(now));
+    own.sleep_until(now + 100'000);
+  }
+}
+
 /// Both ends in threads of their own, each on a serial line of its own, and between these a line of 250 kbit/s that
 /// flips bytes: 100 commands and 100 reports a second.
 PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
@@ -38,22 +57,7 @@ PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
   RealClock clock;
   const Nanoseconds start = clock.now();
 
-  std::thread line([&] {
-    RealClock own;
-    testing::SimulatedLine to_car(flipped, 1), to_operator(flipped, 2);
-    std::array<std::uint8_t, 4096> from_operator, from_car;
-    while (!stop) {
-      // The time after reading: no byte is older than it says, however long this thread had to wait.
-      const Bytes out = Bytes(from_operator).first(at_operator.read_some(from_operator));
-      const Bytes back = Bytes(from_car).first(at_car.read_some(from_car));
-      const Nanoseconds now = own.now();
-      to_car.send(out, now);
-      to_operator.send(back, now);
-      at_car.write(to_car.arrived(now));
-      at_operator.write(to_operator.arrived(now));
-      own.sleep_until(now + 100'000);
-    }
-  });
+  std::thread line([&] { pass_bytes(at_operator, at_car, flipped, stop); });
   std::thread car_thread([&] {
     RealClock own;
     SerialLine serial({.device = at_car.device()});

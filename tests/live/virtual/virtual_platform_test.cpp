@@ -42,6 +42,17 @@ TEST(VirtualPlatform, CountsOrdersBeyondItsLimitsAndJumps) {
   EXPECT_EQ(platform.counts().unreadable, 1U);
 }
 
+TEST(VirtualPlatform, CountsOrdersThatAskForMoreThanItsAcceleration) {
+  VirtualPlatform platform(cueing::built_in_platform("three_axis"));
+  Orders orders;
+  orders.pitch(platform, 0.0);
+  orders.pitch(platform, 0.0001, 0.03);  // 3 rad/s^2; 200 deg/s^2 = 3.49 are allowed
+  EXPECT_EQ(platform.counts().too_hard, 0U);
+  orders.pitch(platform, 0.0006, 0.07);  // 4 rad/s^2
+  EXPECT_EQ(platform.counts().too_hard, 1U);
+  EXPECT_EQ(platform.counts().outside + platform.counts().jumps, 0U);
+}
+
 TEST(VirtualPlatform, FollowsWithItsActuatorsAndGoesHomeWhereOrdersStop) {
   VirtualPlatform platform(cueing::built_in_platform("three_axis"));
   Orders orders;

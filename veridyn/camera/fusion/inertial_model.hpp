@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/estimation/kalman/additive_model.hpp"
 #include "veridyn/estimation/kalman/kalman_model.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -29,7 +30,7 @@ struct InertialNoise {
 ///     p' = v,   v' = horizontal part of R (f - b_a) + g,   g = (0, 0, -9.80665) m/s^2,
 /// and the attitude follows the gyro less its bias. Biases and the time offset of the camera are random walks; a
 /// positive offset: a frame stamped t shows what was at t - offset.
-struct InertialModel {
+struct InertialModel : estimation::AdditiveModel<14> {
   /// x, y [m]; velocity along track x, y [m/s]; heading, pitch, roll [rad]; gyro bias [rad/s]; accelerometer bias
   /// [m/s^2]; time offset [s].
   enum Index {
@@ -42,10 +43,7 @@ struct InertialModel {
     kAccelBias = 10,
     kOffset = 13
   };
-  static constexpr int kStates = 14;
   static constexpr int kDynamic = 7;
-  template <typename Scalar>
-  using State = Eigen::Matrix<Scalar, kStates, 1>;
   /// What the sensors measured: rates [rad/s] and specific force [m/s^2] in the body frame.
   struct Input {
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();
@@ -85,14 +83,6 @@ struct InertialModel {
     after(kPitch) += rates(1) * dt;
     after(kHeading) += rates(2) * dt;
     return after;
-  }
-  template <typename Scalar>
-  [[nodiscard]] static State<Scalar> retract(const State<double>& x, const State<Scalar>& error) {
-    return x.template cast<Scalar>() + error;
-  }
-  template <typename Scalar>
-  [[nodiscard]] static State<Scalar> local(const State<double>& from, const State<Scalar>& to) {
-    return to - from.template cast<Scalar>();
   }
   void add_process_noise(const State<double>& /*unused*/, const Input& u, double dt,
                          Eigen::Matrix<double, kStates, kStates>& P) const {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "veridyn/estimation/kalman/additive_model.hpp"
 #include "veridyn/estimation/kalman/kalman_model.hpp"
 
 namespace veridyn::camera {
@@ -12,11 +13,8 @@ namespace veridyn::camera {
 ///
 /// Error: x, y [m], heading [rad] on the track; velocity forward and left [m/s], yaw rate [rad/s]. For the shared
 /// Kalman filter.
-struct CarMotionModel {
-  static constexpr int kStates = 6;
+struct CarMotionModel : estimation::AdditiveModel<6> {
   static constexpr int kDynamic = 3;
-  template <typename Scalar>
-  using State = Eigen::Matrix<Scalar, 6, 1>;
   struct Input {};
 
   double forward = 1.0;  ///< spectral density of the acceleration along the car [m^2/s^3]: 1 m/s^2 that lasts about 1 s
@@ -36,14 +34,6 @@ struct CarMotionModel {
     after(1) += (s * x(3) + c * x(4)) * dt;
     after(2) += x(5) * dt;
     return after;
-  }
-  template <typename Scalar>
-  [[nodiscard]] static State<Scalar> retract(const State<double>& x, const State<Scalar>& error) {
-    return x.template cast<Scalar>() + error;
-  }
-  template <typename Scalar>
-  [[nodiscard]] static State<Scalar> local(const State<double>& from, const State<Scalar>& to) {
-    return to - from.template cast<Scalar>();
   }
   /// White noise on the three velocities, integrated over the step.
   void add_process_noise(const State<double>& x, const Input& /*unused*/, double dt,

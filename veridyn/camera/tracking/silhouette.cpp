@@ -86,118 +86,127 @@ void SilhouetteFinder::learn(const GreyView& image) {
   }
 }
 
+void SilhouetteFinder::begin(const GreyView& image) {
+  width_ = image.width;
+  height_ = image.height;
+  across_ = (width_ + kCell - 1) / kCell;
+  down_ = (height_ + kCell - 1) / kCell;
+  mask_.resize(at(width_) * at(height_));
+  cells_.resize(at(across_) * at(down_));
+  part_.resize(cells_.size());
+  for (int y = 0; y < height_; ++y) background_.insert(background_.end(), image.row(y), image.row(y) + width_);
+}
+
+template <typename Use>
+void SilhouetteFinder::for_each_cell_around(int cx, int cy, Use use) const {
+  for (int y = std::max(0, cy - 1); y <= std::min(down_ - 1, cy + 1); ++y) {
+    for (int x = std::max(0, cx - 1); x <= std::min(across_ - 1, cx + 1); ++x) use(y * across_ + x);
+  }
+}
+
+std::optional<int> SilhouetteFinder::largest_part() {
+  std::fill(part_.begin(), part_.end(), -1);
+  constexpr int kHalf = kCell * kCell / 2;
+  std::optional<int> largest;
+  int number = 0, most = 0;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (part_[i] >= 0 || cells_[i] < kHalf) continue;
+    stack_.assign(1, static_cast<int>(i));
+    part_[i] = number;
+    int pixels = 0;
+    while (!stack_.empty()) {
+      const int cell = stack_.back();
+      stack_.pop_back();
+      pixels += cells_[at(cell)];
+      for_each_cell_around(cell % across_, cell / across_, [&](int other) {
+        if (part_[at(other)] >= 0 || cells_[at(other)] < kHalf) return;
+        part_[at(other)] = number;
+        stack_.push_back(other);
+      });
+    }
+    if (pixels > most) {
+      most = pixels;
+      largest = number;
+    }
+    ++number;
+  }
+  return largest;
+}
+
+double SilhouetteFinder::inside_difference(const GreyView& image, int part) const {
+  double sum = 0.0, count = 0.0;
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      if (part_[at(y / kCell * across_ + x / kCell)] != part || mask_[at(y) * at(width_) + at(x)] == 0) continue;
+      sum += difference(image, x, y);
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+std::optional<SilhouetteFinder::Shape> SilhouetteFinder::shape(const GreyView& image, const Calibration& calibration,
+                                                               int part) const {
+  // The height of the difference inside: a mean over the pixels that the contrast lets in, weak edges among them, is a
+  // little low; half of the noise of a full pixel lies above 1 and is cut off: the level is a little below the mean,
+  // for all alike.
+  const double level = 0.9 * inside_difference(image, part);
+  Shape shape;
+  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  constexpr double kNothing = 0.1, kFull = 0.9;
+  for (int cell = 0; cell < across_ * down_; ++cell) {
+    const int cx = cell % across_, cy = cell / across_;
+    bool belongs = false;
+    for_each_cell_around(cx, cy, [&](int other) { belongs = belongs || part_[at(other)] == part; });
+    if (!belongs) continue;
+    if (cx == 0 || cy == 0 || cx + 1 == across_ || cy + 1 == down_) return std::nullopt;  // cut off by the picture
+    for (int pixel = 0; pixel < kCell * kCell; ++pixel) {
+      const int x = cx * kCell + pixel % kCell, y = cy * kCell + pixel / kCell;
+      const double weight = std::min(1.0, difference(image, x, y) / level);
+      if (weight < kNothing) continue;
+      const auto p = calibration.camera.to_track({x, y});
+      if (!p) return std::nullopt;
+      // The scale changes over the car, so that its middle in the image is not that on the track.
+      const double covered = weight / std::abs(calibration.camera.J_image_track(*p).determinant());
+      shape.area += covered;
+      shape.pixel = covered / weight;
+      shape.mean += covered * *p;
+      square += covered * *p * p->transpose();
+      if (weight < kFull) shape.edge.push_back(*p);
+    }
+  }
+  if (!(shape.area > 0.0)) return std::nullopt;
+  shape.mean /= shape.area;
+  shape.moments = square / shape.area - shape.mean * shape.mean.transpose();
+  return shape;
+}
+
 std::span<const PoseMeasurement> SilhouetteFinder::find(const GreyView& image, const Calibration& calibration) {
   poses_.clear();
   if (background_.empty()) {
-    width_ = image.width;
-    height_ = image.height;
-    across_ = (width_ + kCell - 1) / kCell;
-    down_ = (height_ + kCell - 1) / kCell;
-    mask_.resize(at(width_) * at(height_));
-    cells_.resize(at(across_) * at(down_));
-    part_.resize(cells_.size());
-    for (int y = 0; y < height_; ++y) background_.insert(background_.end(), image.row(y), image.row(y) + width_);
+    begin(image);
     return poses_;
   }
   if (image.width != width_ || image.height != height_)
     throw InputError("frame",
                      fmt::format("is {} x {} px, the first was {} x {}", image.width, image.height, width_, height_));
   compare(image);
-  // Parts of neighbouring cells of which at least half of the pixels are not the background.
-  std::fill(part_.begin(), part_.end(), -1);
-  struct Part {
-    int cells = 0, pixels = 0;
-  };
-  std::vector<Part> parts;
-  constexpr int kHalf = kCell * kCell / 2;
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (part_[i] >= 0 || cells_[i] < kHalf) continue;
-    const int number = static_cast<int>(parts.size());
-    parts.emplace_back();
-    stack_.assign(1, static_cast<int>(i));
-    part_[i] = number;
-    while (!stack_.empty()) {
-      const int cell = stack_.back(), cx = cell % across_, cy = cell / across_;
-      stack_.pop_back();
-      ++parts.back().cells;
-      parts.back().pixels += cells_[at(cell)];
-      for (int y = std::max(0, cy - 1); y <= std::min(down_ - 1, cy + 1); ++y) {
-        for (int x = std::max(0, cx - 1); x <= std::min(across_ - 1, cx + 1); ++x) {
-          const int other = y * across_ + x;
-          if (part_[at(other)] >= 0 || cells_[at(other)] < kHalf) continue;
-          part_[at(other)] = number;
-          stack_.push_back(other);
-        }
-      }
-    }
-  }
+  const std::optional<int> part = largest_part();
   learn(image);
-  const auto largest =
-      std::max_element(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.pixels < b.pixels; });
-  if (largest == parts.end()) return poses_;
-  const int number = static_cast<int>(largest - parts.begin());
-
-  // Pixels of the part and of the cells around it.
-  const auto belongs = [&](int cx, int cy) {
-    for (int y = std::max(0, cy - 1); y <= std::min(down_ - 1, cy + 1); ++y)
-      for (int x = std::max(0, cx - 1); x <= std::min(across_ - 1, cx + 1); ++x)
-        if (part_[at(y * across_ + x)] == number) return true;
-    return false;
-  };
-  // The height of the difference inside: a mean over the pixels that the contrast lets in, weak edges among them, is a
-  // little low; the weight of the inside is cut at 1.
-  double inside = 0.0, count = 0.0;
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      if (part_[at(y / kCell * across_ + x / kCell)] != number || mask_[at(y) * at(width_) + at(x)] == 0) continue;
-      inside += difference(image, x, y);
-      count += 1.0;
-    }
-  }
-  inside /= count;
-  // Half of the noise of a full pixel lies above 1 and is cut off: the level is a little below the mean, for all alike.
-  const double level = 0.9 * inside;
-  double area = 0.0, pixel = 0.0;  // [m^2]
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
-  std::vector<Eigen::Vector2d> edge;
-  constexpr double kNothing = 0.1, kFull = 0.9;
-  for (int cy = 0; cy < down_; ++cy) {
-    for (int cx = 0; cx < across_; ++cx) {
-      if (!belongs(cx, cy)) continue;
-      if (cx == 0 || cy == 0 || cx + 1 == across_ || cy + 1 == down_) return poses_;  // cut off by the picture
-      for (int y = cy * kCell; y < (cy + 1) * kCell; ++y) {
-        for (int x = cx * kCell; x < (cx + 1) * kCell; ++x) {
-          const double weight = std::min(1.0, difference(image, x, y) / level);
-          if (weight < kNothing) continue;
-          const auto p = calibration.camera.to_track({x, y});
-          if (!p) return poses_;
-          // The scale changes over the car, so that its middle in the image is not that on the track.
-          const double covered = weight / std::abs(calibration.camera.J_image_track(*p).determinant());
-          area += covered;
-          pixel = covered / weight;
-          mean += covered * *p;
-          square += covered * *p * p->transpose();
-          if (weight < kFull) edge.push_back(*p);
-        }
-      }
-    }
-  }
-  if (!(area > 0.0)) return poses_;
-  mean /= area;
-  if (!(std::abs(area / (options_.length * options_.width) - 1.0) < options_.area_tolerance)) return poses_;
-  const Eigen::Matrix2d moments = square / area - mean * mean.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(moments);
+  const std::optional<Shape> found = part ? shape(image, calibration, *part) : std::nullopt;
+  if (!found) return poses_;
+  if (!(std::abs(found->area / (options_.length * options_.width) - 1.0) < options_.area_tolerance)) return poses_;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(found->moments);
   const double minor = axes.eigenvalues()(0), major = axes.eigenvalues()(1);
   if (!(major > 1.2 * minor)) return poses_;
   const Eigen::Vector2d along = axes.eigenvectors().col(1), across(-along(1), along(0));
   // A pixel of area a at offset d, in or out, moves the middle by a d / A and turns the long axis by
   // a (d . along)(d . across) / (A (major - minor)).
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector2d& e : edge) {
-    const Eigen::Vector2d d = e - mean;
+  for (const Eigen::Vector2d& e : found->edge) {
+    const Eigen::Vector2d d = e - found->mean;
     const Eigen::Vector3d effect(d(0), d(1), d.dot(along) * d.dot(across) / (major - minor));
-    P += kEdgeVariance * pixel * pixel / (area * area) * effect * effect.transpose();
+    P += kEdgeVariance * found->pixel * found->pixel / (found->area * found->area) * effect * effect.transpose();
   }
   for (const double turn : {0.0, kPi}) {
     PoseMeasurement m;
@@ -205,13 +214,13 @@ std::span<const PoseMeasurement> SilhouetteFinder::find(const GreyView& image, c
     const double c = std::cos(heading), s = std::sin(heading);
     const Eigen::Vector2d arm(c * options_.middle(0) - s * options_.middle(1),
                               s * options_.middle(0) + c * options_.middle(1));
-    m.pose << mean - arm, heading;
+    m.pose << found->mean - arm, heading;
     Eigen::Matrix3d J_pose = Eigen::Matrix3d::Identity();
     J_pose(0, 2) = arm(1);
     J_pose(1, 2) = -arm(0);
     m.noise = J_pose * P * J_pose.transpose();
-    m.map.topLeftCorner<2, 2>() =
-        calibration.track_covariance(mean, Eigen::Matrix2d::Zero()) + calibration.systematic_covariance(mean);
+    m.map.topLeftCorner<2, 2>() = calibration.track_covariance(found->mean, Eigen::Matrix2d::Zero()) +
+                                  calibration.systematic_covariance(found->mean);
     poses_.push_back(m);
   }
   return poses_;

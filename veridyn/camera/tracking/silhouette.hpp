@@ -13,7 +13,7 @@
 
 namespace veridyn::camera {
 
-/// How a car without markers is told from the track under it.
+/// How a car without markers is distinguished from the track under it.
 struct SilhouetteOptions {
   double contrast = 25.0;        ///< least difference to the background [grey levels]
   double learning_frames = 200;  ///< over which the background is averaged; it follows the light of the room
@@ -56,9 +56,26 @@ class SilhouetteFinder {
   static constexpr double kEdgeVariance = 0.02;
 
  private:
+  /// The part of a picture that may be the car, on the track.
+  struct Shape {
+    double area = 0.0, pixel = 0.0;  ///< of all, and of one of its pixels [m^2]
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();  ///< second, about the mean [m^2]
+    std::vector<Eigen::Vector2d> edge;                  ///< places of its pixels that are not full
+  };
+  void begin(const GreyView& image);
   void compare(const GreyView& image);
   void learn(const GreyView& image);
   [[nodiscard]] double brightness(const GreyView& image);
+  /// Numbers the parts of neighbouring cells of which at least half of the pixels are not the background.
+  /// @return number of the one with most pixels; nothing where there is none
+  std::optional<int> largest_part();
+  /// Mean difference of a part's pixels.
+  [[nodiscard]] double inside_difference(const GreyView& image, int part) const;
+  /// Nothing where the picture cuts it off, or a pixel is not on the track.
+  [[nodiscard]] std::optional<Shape> shape(const GreyView& image, const Calibration& calibration, int part) const;
+  template <typename Use>
+  void for_each_cell_around(int cx, int cy, Use use) const;
   /// Difference of a pixel from the background.
   [[nodiscard]] double difference(const GreyView& image, int x, int y) const;
 

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/live/link/arrival.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -25,18 +26,16 @@ Nanoseconds time_of(clockid_t which) {
   return static_cast<Nanoseconds>(t.tv_sec) * kSecond + t.tv_nsec;
 }
 
-/// The kernel stamps by the time of day; somebody may set that at any moment, so that a stamp that cannot be is not
-/// taken.
-Nanoseconds arrival_of(msghdr& message) {
+Nanoseconds arrival_of(msghdr& message, Nanoseconds empty_at) {
   const Nanoseconds now = time_of(CLOCK_MONOTONIC);
   for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
     if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_TIMESTAMPNS) continue;
     timespec stamp{};
     std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
-    const Nanoseconds waited =
-        time_of(CLOCK_REALTIME) - (static_cast<Nanoseconds>(stamp.tv_sec) * kSecond + stamp.tv_nsec);
-    constexpr Nanoseconds kLongestWait = 10 * kSecond;
-    return waited >= 0 && waited < kLongestWait ? now - waited : now;
+    return arrival_by_monotonic({.stamp = static_cast<Nanoseconds>(stamp.tv_sec) * kSecond + stamp.tv_nsec,
+                                 .time_of_day = time_of(CLOCK_REALTIME),
+                                 .now = now,
+                                 .empty_at = empty_at});
   }
   return now;
 }
@@ -47,6 +46,7 @@ struct UdpSocket::Socket {
   asio::io_context context{1};
   udp::socket socket{context};
   std::array<char, 65536> bytes{};
+  Nanoseconds empty_at = 0;  ///< when it was last seen to hold nothing
 };
 
 UdpSocket::UdpSocket(std::unique_ptr<Socket> socket) : socket_(std::move(socket)) {}
@@ -60,6 +60,7 @@ UdpSocket::UdpSocket(const Sender& bound_to, std::string_view place) : socket_(s
   static_cast<void>(s.open(udp::v4(), error));
   if (!error) static_cast<void>(s.non_blocking(true, error));
   if (!error) static_cast<void>(s.bind(endpoint_of(bound_to), error));
+  socket_->empty_at = time_of(CLOCK_MONOTONIC);
   if (error) throw InputError(place, fmt::format("{} cannot be listened to: {}", to_string(bound_to), error.message()));
   const int on = 1;
   ::setsockopt(s.native_handle(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
@@ -88,15 +89,17 @@ std::optional<Datagram> UdpSocket::receive() {
   message.msg_controllen = control.size();
   // A port that nobody listens to is told to the sender by an error of its next call: not of what is there to read.
   ssize_t n = -1;
+  const Nanoseconds looked = time_of(CLOCK_MONOTONIC);
   for (int k = 0; k < 4 && n < 0; ++k) {
     n = ::recvmsg(socket_->socket.native_handle(), &message, MSG_DONTWAIT);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) socket_->empty_at = looked;
     if (n < 0 && errno != ECONNREFUSED && errno != EINTR) return std::nullopt;
   }
   if (n < 0) return std::nullopt;
   Datagram d;
   d.bytes = {socket_->bytes.data(), static_cast<std::size_t>(n)};
   d.sender = {ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)};
-  d.arrival = arrival_of(message);
+  d.arrival = arrival_of(message, socket_->empty_at);
   return d;
 }
 

@@ -28,19 +28,20 @@ std::string text_of(const Sender& s) {
   return all.substr(0, all.find(':'));
 }
 
-/// A request as the page writes it: {"wish": "park"}, {"knob": 3, "value": 0.7}, {"undo": true}.
+/// A request as the page writes it: {"request": "park"}, {"knob": 3, "value": 0.7}, {"undo": true}.
 std::optional<PageRequest> parse(const std::string& body) {
   const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) return std::nullopt;
   PageRequest r;
-  if (json.contains("wish") && json["wish"].is_string()) {
-    constexpr std::array<std::pair<const char*, OperatorWish>, 4> kWishes = {{{"start", OperatorWish::kStart},
-                                                                              {"park", OperatorWish::kPark},
-                                                                              {"emergency", OperatorWish::kEmergency},
-                                                                              {"release", OperatorWish::kRelease}}};
-    for (const auto& [name, wish] : kWishes) {
-      if (json["wish"] != name) continue;
-      r.wish = wish;
+  if (json.contains("request") && json["request"].is_string()) {
+    constexpr std::array<std::pair<const char*, OperatorRequest>, 4> kRequests = {
+        {{"start", OperatorRequest::kStart},
+         {"park", OperatorRequest::kPark},
+         {"emergency", OperatorRequest::kEmergency},
+         {"release", OperatorRequest::kRelease}}};
+    for (const auto& [name, request] : kRequests) {
+      if (json["request"] != name) continue;
+      r.request = request;
       return r;
     }
     return std::nullopt;

@@ -12,12 +12,12 @@ namespace veridyn::live {
 /// What somebody at the page asks for.
 struct PageRequest {
   enum class Kind {
-    kWish,  ///< `wish`
-    kKnob,  ///< value `knob` of the algorithm's knobs becomes `value`
-    kUndo,  ///< the knobs as they were before the last turn
+    kOperator,  ///< `request`
+    kKnob,      ///< value `knob` of the algorithm's knobs becomes `value`
+    kUndo,      ///< the knobs as they were before the last turn
   };
-  Kind kind = Kind::kWish;
-  OperatorWish wish = OperatorWish::kPark;
+  Kind kind = Kind::kOperator;
+  OperatorRequest request = OperatorRequest::kPark;
   std::size_t knob = 0;
   double value = 0.0;
 };

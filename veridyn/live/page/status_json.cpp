@@ -1,5 +1,6 @@
 #include "veridyn/live/page/status_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -7,13 +8,13 @@ namespace veridyn::live {
 
 using nlohmann::json;
 
-std::string status_json(const RigStatus& status, const LiveStudy& study, cueing::WashoutDesign& design, double time,
-                        std::uint64_t refused, const std::string& message) {
+std::string status_json(const RigStatus& status, const LiveStudy& study, const FeltNow& felt,
+                        cueing::WashoutDesign& design, double time, std::uint64_t refused, const std::string& message) {
   json j;
   j["title"] = study.cueing.title;
   j["time"] = time;
   j["state"] = std::string(name_of(status.step.state));
-  j["readiness"] = std::string(name_of(status.readiness));
+  j["readiness"] = described(status.readiness, status.answers);
   j["share"] = status.step.share;
   j["message"] = message;
   j["refused"] = refused;
@@ -21,11 +22,15 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, cueing:
     const auto which = static_cast<cueing::PlatformAxis>(i);
     const cueing::AxisLimits& l = study.cueing.platform.limits.axes[i];
     if (!l.moves()) continue;
+    const cueing::AxisState told = axis(status.step.cueing.told, which);
     j["axes"].push_back({{"name", std::string(name_of(which))},
                          {"turns", turns(which)},
                          {"lowest", l.lowest},
                          {"highest", l.highest},
-                         {"told", axis(status.step.cueing.told, which).position},
+                         {"told", told.position},
+                         {"to_limit", std::min(told.position - l.lowest, l.highest - told.position)},
+                         {"range_used", told.position < 0.0 ? told.position / l.lowest : told.position / l.highest},
+                         {"rate_used", std::abs(told.rate) / l.rate},
                          {"reached", study.options.answers ? static_cast<double>(status.answers.reached[i])
                                                            : axis(status.step.cueing.reached, which).position},
                          {"limited", static_cast<bool>(status.step.cueing.limited[i])}});
@@ -38,6 +43,14 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, cueing:
     j["rider"] = {r.force.x(), r.force.y(), r.force.z()};
     j["speed"] = v.speed;
   }
+  for (std::size_t i = 0; felt.now() && i < cueing::kCues; ++i) {
+    const auto cue = static_cast<cueing::Cue>(i);
+    j["felt"].push_back({{"name", std::string(name_of(cue))},
+                         {"turns", cue >= cueing::Cue::kRoll},
+                         {"vehicle", felt.now()->vehicle[cue]},
+                         {"rider", felt.now()->rider[cue]},
+                         {"threshold", felt.threshold()[cue]}});
+  }
   for (std::size_t i = 0; i < kPacketFates; ++i)
     j["packets"].push_back({{"name", std::string(name_of(static_cast<PacketFate>(i)))}, {"count", status.packets[i]}});
   const LatencyHistogram& h = status.times.receive_to_send;
@@ -45,7 +58,12 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, cueing:
   for (std::size_t i = 0; i + 1 < LatencyHistogram::kBins; ++i) {
     if (h.bins()[i] > 0) bins.push_back({LatencyHistogram::upper_edge(i), h.bins()[i]});
   }
-  j["latency"] = {{"bins", bins}, {"p50", h.quantile(0.5)}, {"p99", h.quantile(0.99)}};
+  j["latency"] = {{"bins", bins},
+                  {"p50", h.quantile(0.5)},
+                  {"p99", h.quantile(0.99)},
+                  {"wait_p99", status.times.wait.quantile(0.99)},
+                  {"work_p99", status.times.work.quantile(0.99)}};
+  j["extrapolated"] = {{"steps", status.extrapolated.steps}, {"of", status.extrapolated.of}};
   j["orders"] = status.times.steps;
   j["left_out"] = status.times.left_out;
   std::size_t index = 0;

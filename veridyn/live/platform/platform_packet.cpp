@@ -12,14 +12,31 @@ using cueing::AxisState;
 using cueing::kPlatformAxes;
 using cueing::PlatformAxis;
 
-constexpr std::string_view kOrderStart = "VPL1", kAnswerStart = "VPA1";
+constexpr std::string_view kOrderStart = "VPL1", kAnswerStart = "VPA1", kRefusalStart = "VPA2";
 // Both begin alike: start, sequence, time, session, one byte, three of zero, six floats.
 constexpr std::size_t kSequence = 4, kTime = 8, kSession = 16, kCode = 20, kPositions = 24, kRates = 48, kOutside = 48;
+constexpr std::size_t kCommander = 52, kCommanderPort = 56;  // of version 2 of the answer
 
-template <std::size_t kBytes>
-void seal(std::array<char, kBytes>& bytes, std::string_view start) {
+void seal(std::span<char> bytes, std::string_view start) {
   start.copy(bytes.data(), start.size());
-  put_at(std::span(bytes), kBytes - 4, crc32({bytes.data(), kBytes - 4}));
+  put_at(bytes, bytes.size() - 4, crc32({bytes.data(), bytes.size() - 4}));
+}
+
+/// What order and answer begin with.
+template <typename Packet>
+void put_packet_head(std::span<char> bytes, const Packet& packet) {
+  put_at(bytes, kSequence, packet.sequence);
+  put_at(bytes, kTime, packet.time);
+  put_at(bytes, kSession, packet.session);
+}
+
+template <typename Packet>
+Packet read_packet_head(std::string_view bytes) {
+  Packet packet;
+  packet.sequence = number_at<std::uint32_t>(bytes, kSequence);
+  packet.time = number_at<Nanoseconds>(bytes, kTime);
+  packet.session = number_at<std::uint32_t>(bytes, kSession);
+  return packet;
 }
 
 bool is_sealed(std::string_view bytes, std::string_view start, std::size_t size) {
@@ -32,9 +49,7 @@ bool is_sealed(std::string_view bytes, std::string_view start, std::size_t size)
 OrderBytes encode(const PlatformOrder& order) {
   OrderBytes bytes{};
   const std::span<char> b(bytes);
-  put_at(b, kSequence, order.sequence);
-  put_at(b, kTime, order.time);
-  put_at(b, kSession, order.session);
+  put_packet_head(b, order);
   put_at(b, kCode, static_cast<std::uint8_t>(order.state));
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
     const AxisState a = axis(order.motion, static_cast<PlatformAxis>(i));
@@ -42,29 +57,29 @@ OrderBytes encode(const PlatformOrder& order) {
     put_at(b, kRates + 4 * i, static_cast<float>(a.rate));
   }
   // 8 bytes are left for what a later version of the same size may say.
-  seal(bytes, kOrderStart);
+  seal(b, kOrderStart);
   return bytes;
 }
 
 AnswerBytes encode(const PlatformAnswer& answer) {
-  AnswerBytes bytes{};
-  const std::span<char> b(bytes);
-  put_at(b, kSequence, answer.sequence);
-  put_at(b, kTime, answer.time);
-  put_at(b, kSession, answer.session);
+  const bool says_who = answer.commander.port != 0;
+  AnswerBytes bytes(says_who ? kRefusalBytes : kAnswerBytes);
+  const std::span<char> b(bytes.data(), bytes.size());
+  put_packet_head(b, answer);
   put_at(b, kCode, answer.verdict);
   for (std::size_t i = 0; i < kPlatformAxes; ++i) put_at(b, kPositions + 4 * i, answer.reached[i]);
   put_at(b, kOutside, answer.outside_limits);
-  seal(bytes, kAnswerStart);
+  if (says_who) {
+    put_at(b, kCommander, answer.commander.address);
+    put_at(b, kCommanderPort, answer.commander.port);
+  }
+  seal(b, says_who ? kRefusalStart : kAnswerStart);
   return bytes;
 }
 
 std::optional<PlatformOrder> decode_order(std::string_view bytes) {
   if (!is_sealed(bytes, kOrderStart, kOrderBytes)) return std::nullopt;
-  PlatformOrder order;
-  order.sequence = number_at<std::uint32_t>(bytes, kSequence);
-  order.time = number_at<Nanoseconds>(bytes, kTime);
-  order.session = number_at<std::uint32_t>(bytes, kSession);
+  auto order = read_packet_head<PlatformOrder>(bytes);
   const auto state = number_at<std::uint8_t>(bytes, kCode);
   if (state >= kRigStates) return std::nullopt;
   order.state = static_cast<RigState>(state);
@@ -79,11 +94,11 @@ std::optional<PlatformOrder> decode_order(std::string_view bytes) {
 }
 
 std::optional<PlatformAnswer> decode_answer(std::string_view bytes) {
-  if (!is_sealed(bytes, kAnswerStart, kAnswerBytes)) return std::nullopt;
-  PlatformAnswer answer;
-  answer.sequence = number_at<std::uint32_t>(bytes, kSequence);
-  answer.time = number_at<Nanoseconds>(bytes, kTime);
-  answer.session = number_at<std::uint32_t>(bytes, kSession);
+  const bool says_who = is_sealed(bytes, kRefusalStart, kRefusalBytes);
+  if (!says_who && !is_sealed(bytes, kAnswerStart, kAnswerBytes)) return std::nullopt;
+  auto answer = read_packet_head<PlatformAnswer>(bytes);
+  if (says_who)
+    answer.commander = {number_at<std::uint32_t>(bytes, kCommander), number_at<std::uint16_t>(bytes, kCommanderPort)};
   const auto verdict = number_at<std::uint8_t>(bytes, kCode);
   if (verdict > static_cast<std::uint8_t>(PlatformVerdict::kFault)) return std::nullopt;
   answer.verdict = static_cast<PlatformVerdict>(verdict);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "veridyn/cueing/platform/platform_state.hpp"
+#include "veridyn/live/link/datagram.hpp"
 #include "veridyn/live/platform/rig_state.hpp"
 #include "veridyn/live/time/clock.hpp"
 
@@ -36,13 +37,27 @@ struct PlatformAnswer {
   PlatformVerdict verdict = PlatformVerdict::kFollows;
   cueing::PerPlatformAxis<float> reached = {};  ///< positions [m, rad]
   std::uint32_t outside_limits = 0;             ///< orders outside its limits so far
+  Sender commander;                             ///< who commands it, where another program does; port 0: not said
 };
 
-inline constexpr std::size_t kOrderBytes = 84, kAnswerBytes = 56;
+inline constexpr std::size_t kOrderBytes = 84, kAnswerBytes = 56, kRefusalBytes = 64;
 using OrderBytes = std::array<char, kOrderBytes>;
-using AnswerBytes = std::array<char, kAnswerBytes>;
+
+/// An answer's bytes: of 56, or of the 64 that say who commands the platform.
+class AnswerBytes {
+ public:
+  explicit AnswerBytes(std::size_t size = kAnswerBytes) : size_(size) {}
+  [[nodiscard]] char* data() { return bytes_.data(); }
+  [[nodiscard]] const char* data() const { return bytes_.data(); }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  std::array<char, kRefusalBytes> bytes_{};
+  std::size_t size_;
+};
 
 [[nodiscard]] OrderBytes encode(const PlatformOrder& order);
+/// Of version 1, as every program knows it; of version 2 where it says who commands the platform.
 [[nodiscard]] AnswerBytes encode(const PlatformAnswer& answer);
 /// Nothing where size, start, version or CRC are wrong, a number is not finite or a state is none.
 [[nodiscard]] std::optional<PlatformOrder> decode_order(std::string_view bytes);

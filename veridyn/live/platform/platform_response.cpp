@@ -57,6 +57,53 @@ Unknowns best_start(const ToldAndReached& m, const Eigen::VectorXd& y) {
   return best;
 }
 
+/// Of the simulated motion by each unknown, by differences.
+Eigen::MatrixXd derivatives(const ToldAndReached& m, const Unknowns& u) {
+  Eigen::MatrixXd J(static_cast<Eigen::Index>(m.told.size()), 4);
+  const Eigen::Vector4d steps(1e-4, 1e-4, 1e-4, 1e-2 * m.step);
+  for (int i = 0; i < 4; ++i) {
+    Eigen::Vector4d up = u.vector(), down = up;
+    up(i) += steps(i);
+    down(i) -= steps(i);
+    J.col(i) = (simulated(m, Unknowns::of(up)) - simulated(m, Unknowns::of(down))) / (2.0 * steps(i));
+  }
+  return J;
+}
+
+/// The unknowns with the least sum of squares, by damped Gauss-Newton steps within what an actuator can be.
+Unknowns fitted(const ToldAndReached& m, const Eigen::VectorXd& y) {
+  Unknowns u = best_start(m, y);
+  double cost = sum_of_squares(y, u, m), damping = 1e-3;
+  constexpr int kMost = 100;
+  for (int iteration = 0; iteration < kMost && damping < 1e10; ++iteration) {
+    const Eigen::MatrixXd J = derivatives(m, u);
+    const Eigen::VectorXd r = y - simulated(m, u);
+    const Eigen::Matrix4d H = J.transpose() * J;
+    const Eigen::Vector4d g = J.transpose() * r;
+    bool better = false;
+    while (!better && damping < 1e10) {
+      Eigen::Matrix4d D = H;
+      D.diagonal() *= 1.0 + damping;
+      Unknowns next = Unknowns::of(u.vector() + D.ldlt().solve(g));
+      next.delay = std::max(next.delay, 0.0);
+      next.log_omega = std::clamp(next.log_omega, std::log(0.3), std::log(1e3));
+      next.log_zeta = std::clamp(next.log_zeta, std::log(0.05), std::log(20.0));
+      const double then = sum_of_squares(y, next, m);
+      better = then < cost;
+      if (better) {
+        const bool done = cost - then < 1e-10 * cost;
+        u = next;
+        cost = then;
+        damping = std::max(damping / 10.0, 1e-9);
+        if (done) iteration = kMost;
+      } else {
+        damping *= 10.0;
+      }
+    }
+  }
+  return u;
+}
+
 }  // namespace
 
 PlatformResponse fit_response(const ToldAndReached& m) {
@@ -76,46 +123,8 @@ PlatformResponse fit_response(const ToldAndReached& m) {
   if (!(asked > kStands)) throw InputError("platform response", "the platform was told nothing");
   if (!(moved > 0.01 * asked)) throw InputError("platform response", "the platform does not move");
 
-  Unknowns u = best_start(centred, y);
-  double cost = sum_of_squares(y, u, centred), damping = 1e-3;
-  Eigen::MatrixXd J(y.size(), 4);
-  const Eigen::Vector4d steps(1e-4, 1e-4, 1e-4, 1e-2 * m.step);
-  const auto derivatives = [&] {
-    for (int i = 0; i < 4; ++i) {
-      Eigen::Vector4d up = u.vector(), down = up;
-      up(i) += steps(i);
-      down(i) -= steps(i);
-      J.col(i) = (simulated(centred, Unknowns::of(up)) - simulated(centred, Unknowns::of(down))) / (2.0 * steps(i));
-    }
-  };
-  constexpr int kMost = 100;
-  for (int iteration = 0; iteration < kMost && damping < 1e10; ++iteration) {
-    derivatives();
-    const Eigen::VectorXd r = y - simulated(centred, u);
-    const Eigen::Matrix4d H = J.transpose() * J;
-    const Eigen::Vector4d g = J.transpose() * r;
-    bool better = false;
-    while (!better && damping < 1e10) {
-      Eigen::Matrix4d D = H;
-      D.diagonal() *= 1.0 + damping;
-      Unknowns next = Unknowns::of(u.vector() + D.ldlt().solve(g));
-      next.delay = std::max(next.delay, 0.0);
-      next.log_omega = std::clamp(next.log_omega, std::log(0.3), std::log(1e3));
-      next.log_zeta = std::clamp(next.log_zeta, std::log(0.05), std::log(20.0));
-      const double then = sum_of_squares(y, next, centred);
-      better = then < cost;
-      if (better) {
-        const bool done = cost - then < 1e-10 * cost;
-        u = next;
-        cost = then;
-        damping = std::max(damping / 10.0, 1e-9);
-        if (done) iteration = kMost;
-      } else {
-        damping *= 10.0;
-      }
-    }
-  }
-  derivatives();
+  const Unknowns u = fitted(centred, y);
+  const Eigen::MatrixXd J = derivatives(centred, u);
   const Eigen::VectorXd r = y - simulated(centred, u);
   const double n = static_cast<double>(r.size());
   PlatformResponse p;

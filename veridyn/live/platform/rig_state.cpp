@@ -3,15 +3,14 @@
 namespace veridyn::live {
 
 std::string_view name_of(RigState state) {
-  constexpr std::array<std::string_view, kRigStates> kNames = {"parked", "soft start", "running",
-                                                               "hold",   "fade",       "stopped"};
-  return kNames[static_cast<std::size_t>(state)];
+  constexpr PerRigState<std::string_view> kNames = {{"parked", "soft start", "running", "hold", "fade", "stopped"}};
+  return kNames[state];
 }
 
 std::string_view name_of(RigEvent event) {
-  constexpr std::array<std::string_view, kRigEvents> kNames = {"start", "started", "lost",      "back",   "held long",
-                                                               "faded", "park",    "emergency", "release"};
-  return kNames[static_cast<std::size_t>(event)];
+  constexpr EnumArray<RigEvent, std::string_view, kRigEvents> kNames = {
+      {"start", "started", "lost", "back", "held long", "faded", "park", "emergency", "release"}};
+  return kNames[event];
 }
 
 const std::array<RigTransition, 16>& rig_transitions() {

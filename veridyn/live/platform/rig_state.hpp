@@ -5,6 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include "veridyn/core/enum_array.hpp"
+
 namespace veridyn::live {
 
 /// What the rig does with its platform.
@@ -17,6 +19,9 @@ enum class RigState {
   kStopped,  ///< emergency stop: at rest where it stopped, until it is released by hand
 };
 inline constexpr std::size_t kRigStates = 6;
+/// A value for each state.
+template <class T>
+using PerRigState = EnumArray<RigState, T, kRigStates>;
 
 enum class RigEvent {
   kStart,      ///< the operator wants motion, and telemetry and platform are ready

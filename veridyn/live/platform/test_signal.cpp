@@ -1,10 +1,10 @@
 #include "veridyn/live/platform/test_signal.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -30,8 +30,16 @@ double led_in(double time) {
 }  // namespace
 
 std::string_view name_of(TestSignal signal) {
-  constexpr std::array<std::string_view, 6> kNamesOfSignals = {"home", "min", "max", "wave", "steps", "sweep"};
-  return kNamesOfSignals[static_cast<std::size_t>(signal)];
+  constexpr EnumArray<TestSignal, std::string_view, kTestSignals> kNamesOfSignals = {
+      {"home", "zero", "pose", "force", "min", "max", "wave", "steps", "sweep"}};
+  return kNamesOfSignals[signal];
+}
+
+double tilt_of(cueing::PlatformAxis axis, double force) {
+  // The rider's forward axis points up where the nose does, the one to the right where the left side is down.
+  if (axis == cueing::PlatformAxis::kPitch) return std::asin(force / kGravity);
+  if (axis == cueing::PlatformAxis::kRoll) return -std::asin(force / kGravity);
+  return kNaN;
 }
 
 double sweep_frequency(const TestSignalOptions& o, double time) {
@@ -41,7 +49,11 @@ double sweep_frequency(const TestSignalOptions& o, double time) {
 double wanted_position(const TestSignalOptions& o, const cueing::AxisLimits& limits, double time) {
   switch (o.signal) {
     case TestSignal::kHome:
+    case TestSignal::kZero:
       return 0.0;
+    case TestSignal::kPose:
+    case TestSignal::kForce:
+      return o.position;
     case TestSignal::kMin:
       return o.size * limits.lowest;
     case TestSignal::kMax:

@@ -9,6 +9,9 @@ namespace veridyn::live {
 /// What a platform is told by hand, one axis at a time.
 enum class TestSignal {
   kHome,   ///< neutral
+  kZero,   ///< the same: the zero of every command
+  kPose,   ///< a position
+  kForce,  ///< the tilt that gives the rider a lasting force
   kMin,    ///< the lowest position
   kMax,    ///< the highest
   kWave,   ///< a sine about neutral
@@ -16,12 +19,15 @@ enum class TestSignal {
   kSweep,  ///< a sine whose frequency grows, which finds how the platform follows
 };
 
-/// "home", "min", "max", "wave", "steps", "sweep".
+/// How many there are.
+inline constexpr std::size_t kTestSignals = 9;
+/// "home", "zero", "pose", "force", "min", "max", "wave", "steps", "sweep".
 [[nodiscard]] std::string_view name_of(TestSignal signal);
 
 /// How a signal is played.
 struct TestSignalOptions {
   TestSignal signal = TestSignal::kSweep;
+  double position = 0.0;         ///< of a pose or a tilt [m or rad]
   double size = 0.5;             ///< of what the limits allow, 0 to 1
   double frequency = 0.5;        ///< of the wave; steps change as often as it turns [Hz]
   double low = 0.1, high = 6.0;  ///< of the sweep [Hz]
@@ -32,6 +38,10 @@ struct TestSignalOptions {
 /// of the axis allow at their frequency, times `size`, so that a guard has nothing to hold back. They begin and end at
 /// rest within a second.
 [[nodiscard]] double wanted_position(const TestSignalOptions& options, const cueing::AxisLimits& limits, double time);
+
+/// Angle at which a platform at rest gives its rider this specific force [rad]: pitch of a force forward, roll of one
+/// to the right, positive as `cueing::PlatformCommand` has them. NaN of another axis and of more than gravity.
+[[nodiscard]] double tilt_of(cueing::PlatformAxis axis, double force);
 
 /// Frequency of the sweep at a time [Hz]: it grows by the same factor every second.
 [[nodiscard]] double sweep_frequency(const TestSignalOptions& options, double time);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/files.hpp"
 #include "veridyn/live/link/bytes.hpp"
 #include "veridyn/live/link/crc32.hpp"
 
@@ -39,7 +38,7 @@ class RecordWriter {
   std::size_t at_ = 0;
 };
 
-/// Reads them back; after the end everything is zero and `ok` false.
+/// Reads numbers and texts as `RecordWriter` writes them; after the end everything is zero and `ok` false.
 class RecordReader {
  public:
   explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}
@@ -89,10 +88,10 @@ bool read_record(RecordReader& r, LiveRecord& record) {
       record.datagram.bytes = r.text<std::uint16_t>();
       return r.ok();
     }
-    case LiveRecord::Kind::kWish: {
-      const auto wish = r.get<std::uint8_t>();
-      record.wish = static_cast<OperatorWish>(wish);
-      return r.ok() && wish <= static_cast<std::uint8_t>(OperatorWish::kSignsWrong);
+    case LiveRecord::Kind::kRequest: {
+      const auto request = r.get<std::uint8_t>();
+      record.request = static_cast<OperatorRequest>(request);
+      return r.ok() && request <= static_cast<std::uint8_t>(OperatorRequest::kSignsWrong);
     }
     case LiveRecord::Kind::kKnob:
       record.knob = r.get<std::uint16_t>();
@@ -131,8 +130,8 @@ std::size_t encode(const LiveRecord& record, std::span<char> into) {
       w.add(record.link).add(record.datagram.arrival).add(record.datagram.sender.address);
       w.add(record.datagram.sender.port).text(record.datagram.bytes);
       break;
-    case LiveRecord::Kind::kWish:
-      w.add(record.wish);
+    case LiveRecord::Kind::kRequest:
+      w.add(record.request);
       break;
     case LiveRecord::Kind::kKnob:
       w.add(record.knob).add(record.count).add(record.value);
@@ -193,8 +192,8 @@ LiveFile parse_live_file(std::string_view bytes, const std::string& name) {
     const std::size_t length = number_at<std::uint32_t>(rest, 4);
     const std::string_view content = rest.substr(kFrame, length);
     if (length <= kLargestBlock && content.size() == length && crc32(content) == number_at<std::uint32_t>(rest, 8)) {
-      if (const auto head = has_head ? std::nullopt : read_head(content)) {
-        file.head = *head;
+      if (auto head = has_head ? std::nullopt : read_head(content)) {
+        file.head = std::move(*head);
         has_head = true;
       } else {
         file.blocks.emplace_back(content);
@@ -212,6 +211,11 @@ LiveFile parse_live_file(std::string_view bytes, const std::string& name) {
   return file;
 }
 
-LiveFile read_live_file(const std::filesystem::path& path) { return parse_live_file(read_file(path), path.string()); }
+LiveFile read_live_file(const std::filesystem::path& path) {
+  auto mapped = std::make_shared<const io::MappedFile>(path);
+  LiveFile file = parse_live_file(mapped->bytes(), path.string());
+  file.mapped = std::move(mapped);
+  return file;
+}
 
 }  // namespace veridyn::live

@@ -8,7 +8,7 @@
 namespace veridyn::live {
 
 /// What the operator, the page or a signal asks of the rig.
-enum class OperatorWish : std::uint8_t {
+enum class OperatorRequest : std::uint8_t {
   kStart = 0,
   kPark = 1,
   kEmergency = 2,
@@ -22,7 +22,7 @@ enum class OperatorWish : std::uint8_t {
 struct LiveRecord {
   enum class Kind : std::uint8_t {
     kDatagram = 1,  ///< `link`, `datagram`
-    kWish = 2,      ///< `wish`
+    kRequest = 2,   ///< `request`
     kKnob = 3,      ///< `knob`, `count`, `value`: one of `count`, which take effect together
     kStep = 4,      ///< `order`: what was sent to the platform
   };
@@ -30,7 +30,7 @@ struct LiveRecord {
   Nanoseconds time = 0;  ///< when the rig saw it; of a step its own time
   LinkOf link = LinkOf::kTelemetry;
   Datagram datagram;
-  OperatorWish wish = OperatorWish::kStart;
+  OperatorRequest request = OperatorRequest::kStart;
   std::uint16_t knob = 0, count = 0;  ///< which of the values of the design's knobs, of how many
   double value = 0.0;
   std::string_view order;  ///< bytes

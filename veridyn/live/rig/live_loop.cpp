@@ -25,7 +25,7 @@ void set_knob_values(cueing::WashoutDesign& design, const std::vector<double>& v
 }
 
 struct LiveControl::Queues {
-  boost::lockfree::spsc_queue<OperatorWish, boost::lockfree::capacity<64>> wishes;
+  boost::lockfree::spsc_queue<OperatorRequest, boost::lockfree::capacity<64>> requests;
   boost::lockfree::spsc_queue<Telemetry, boost::lockfree::capacity<8000>> motions;
   std::atomic<KnobSetting*> setting{nullptr};
   boost::lockfree::spsc_queue<KnobSetting*, boost::lockfree::capacity<64>> done;
@@ -42,7 +42,7 @@ struct LiveControl::Queues {
 LiveControl::LiveControl() : queues_(std::make_unique<Queues>()) {}
 LiveControl::~LiveControl() = default;
 
-void LiveControl::wish(OperatorWish wish) { queues_->wishes.push(wish); }
+void LiveControl::request(OperatorRequest request) { queues_->requests.push(request); }
 
 void LiveControl::turn(std::unique_ptr<KnobSetting> setting) {
   delete queues_->setting.exchange(setting.release(), std::memory_order_acq_rel);
@@ -62,7 +62,9 @@ void LiveControl::take_motions(std::vector<Telemetry>& motions) {
 }
 
 LiveLoop::LiveLoop(const LiveStudy& study, std::uint32_t session)
-    : rig_(study, session), period_(nanoseconds(1.0 / study.options.rate)) {}
+    : rig_(study, session),
+      format_(study.format, study.cueing.platform),
+      period_(nanoseconds(1.0 / study.options.rate)) {}
 
 void LiveLoop::take(const Incoming& incoming, Nanoseconds now, LiveControl& control, LiveRecorder* recorder) {
   if (recorder != nullptr) {
@@ -75,23 +77,23 @@ void LiveLoop::take(const Incoming& incoming, Nanoseconds now, LiveControl& cont
   }
   if (const std::optional<Telemetry> t = rig_.take(incoming.link, incoming.datagram)) {
     control.queues_->motions.push(*t);
-    if (arrived_ < kArrivals) arrivals_[arrived_++] = t->arrival;
+    if (t->arrival >= begun_ && arrived_ < kArrivals) arrivals_[arrived_++] = t->arrival;
   }
 }
 
-void LiveLoop::take_wishes(LiveControl& control, Nanoseconds now, LiveRecorder* recorder) {
-  const auto wish = [&](OperatorWish w) {
-    rig_.wish(w);
+void LiveLoop::take_requests(LiveControl& control, Nanoseconds now, LiveRecorder* recorder) {
+  const auto request = [&](OperatorRequest w) {
+    rig_.request(w);
     if (recorder == nullptr) return;
     LiveRecord r;
-    r.kind = LiveRecord::Kind::kWish;
+    r.kind = LiveRecord::Kind::kRequest;
     r.time = now;
-    r.wish = w;
+    r.request = w;
     recorder->record(r);
   };
-  OperatorWish w{};
-  while (control.queues_->wishes.pop(w)) wish(w);
-  if (control.emergency_.exchange(false)) wish(OperatorWish::kEmergency);
+  OperatorRequest w{};
+  while (control.queues_->requests.pop(w)) request(w);
+  if (control.emergency_.exchange(false)) request(OperatorRequest::kEmergency);
   // What was done with goes back to be freed elsewhere; without room for it nothing new is taken.
   if (control.queues_->done.write_available() == 0) return;
   KnobSetting* setting = control.queues_->setting.exchange(nullptr, std::memory_order_acq_rel);
@@ -113,14 +115,16 @@ void LiveLoop::take_wishes(LiveControl& control, Nanoseconds now, LiveRecorder* 
 
 void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRecorder* recorder,
                    std::optional<Nanoseconds> end) {
-  FixedRate rate(clock.now() + period_, period_);
+  begun_ = clock.now();
+  FixedRate rate(begun_ + period_, period_);
   while (!control.ended() && (!end || rate.next() <= *end)) {
     while (const std::optional<Incoming> incoming = links.next(clock, rate.next()))
       take(*incoming, clock.now(), control, recorder);
     const Nanoseconds woke = clock.now();
-    take_wishes(control, woke, recorder);
+    take_requests(control, woke, recorder);
     const RigStep& step = rig_.step(rate.next());
-    if (!links.send({step.order.data(), step.order.size()})) ++times_.not_sent;
+    const std::string_view order(step.order.data(), step.order.size());
+    if (!links.send(format_.own() ? order : format_.encode(step.to_platform))) ++times_.not_sent;
     const Nanoseconds sent = clock.now();
     for (std::size_t i = 0; i < arrived_; ++i) {
       times_.receive_to_send.add(sent - arrivals_[i]);
@@ -137,7 +141,7 @@ void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRec
       r.kind = LiveRecord::Kind::kStep;
       r.time = step.time;
       r.sent = sent;
-      r.order = {step.order.data(), step.order.size()};
+      r.order = order;
       recorder->record(r);
     }
     rate.advance(clock.now());
@@ -149,6 +153,7 @@ void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRec
     status.packets = rig_.intake().counts();
     status.drives = rig_.intake().drives();
     status.gaps = rig_.gaps();
+    status.extrapolated = rig_.extrapolated();
     status.drift = rig_.intake().clock().drift();
     status.times = times_;
     control.status_.publish();

@@ -16,11 +16,12 @@ namespace veridyn::live {
 
 /// How well the loop kept its time.
 struct LoopTimes {
+  /// What came in before the loop began waited for it, not for an order: it is not in the first two.
   LatencyHistogram receive_to_send;  ///< kernel's stamp of an accepted packet to the first order that could know of it
   LatencyHistogram wait;             ///< of that: until the step began
-  LatencyHistogram work;    ///< of that: decoding apart, from the step's beginning to the order handed to the kernel
-  LatencyHistogram wake;    ///< how late steps began
-  LatencyHistogram jitter;  ///< interval between orders against the period, either way
+  LatencyHistogram work;             ///< of that: from the step's beginning to the order handed to the kernel
+  LatencyHistogram wake;             ///< how late steps began
+  LatencyHistogram jitter;           ///< interval between orders against the period, either way
   std::uint64_t steps = 0, left_out = 0, not_sent = 0;
 };
 
@@ -31,6 +32,7 @@ struct RigStatus {
   LiveRig::Answers answers;
   PerPacketFate<std::uint64_t> packets = {};
   std::uint64_t drives = 0, gaps = 0;
+  LiveRig::Extrapolated extrapolated;
   double drift = 0.0;  ///< of the sender's clock, NaN where not known
   LoopTimes times;
 };
@@ -53,7 +55,7 @@ class LiveControl {
   LiveControl& operator=(const LiveControl&) = delete;
 
   // By the operator's thread.
-  void wish(OperatorWish wish);
+  void request(OperatorRequest request);
   /// Takes effect at one step, whole; a setting that the loop has not taken yet is replaced.
   void turn(std::unique_ptr<KnobSetting> setting);
   /// Frees what the loop has done with.
@@ -93,15 +95,16 @@ class LiveLoop {
 
  private:
   void take(const Incoming& incoming, Nanoseconds now, LiveControl& control, LiveRecorder* recorder);
-  void take_wishes(LiveControl& control, Nanoseconds now, LiveRecorder* recorder);
+  void take_requests(LiveControl& control, Nanoseconds now, LiveRecorder* recorder);
 
   LiveRig rig_;
+  OrderFormat format_;
   Nanoseconds period_;
   LoopTimes times_;
   static constexpr std::size_t kArrivals = 64;
   std::array<Nanoseconds, kArrivals> arrivals_{};  ///< of packets accepted since the last order
   std::size_t arrived_ = 0;
-  Nanoseconds last_sent_ = 0;
+  Nanoseconds last_sent_ = 0, begun_ = 0;
 };
 
 }  // namespace veridyn::live

@@ -21,7 +21,7 @@ LiveStudy study_of(const LiveFile& file) {
   return s;
 }
 
-/// Feeds records one after the other and keeps what came of them.
+/// Feeds the records of a file to a rig and keeps what the replay says of the run.
 class Replayer {
  public:
   Replayer(LiveReplay& into, Nanoseconds start, std::uint32_t session)
@@ -38,8 +38,8 @@ class Replayer {
       case LiveRecord::Kind::kDatagram:
         if (const auto t = rig_.take(record.link, record.datagram)) arrivals_.push_back(t->arrival);
         break;
-      case LiveRecord::Kind::kWish:
-        rig_.wish(record.wish);
+      case LiveRecord::Kind::kRequest:
+        rig_.request(record.request);
         break;
       case LiveRecord::Kind::kKnob:
         turn(record);
@@ -55,6 +55,7 @@ class Replayer {
     r_.senders = rig_.intake().senders();
     r_.drives = rig_.intake().drives();
     r_.gaps = rig_.gaps();
+    r_.extrapolated = rig_.extrapolated();
     r_.answers = rig_.answers();
     r_.drift = rig_.intake().clock().drift();
     if (rig_.intake().layout() != nullptr) r_.layout = rig_.intake().layout()->sender;
@@ -90,7 +91,11 @@ class Replayer {
     std::memcpy(chained.data(), &fingerprint_, sizeof fingerprint_);
     std::copy(order.begin(), order.end(), chained.begin() + 4);
     fingerprint_ = crc32({chained.data(), chained.size()});
-    for (const Nanoseconds arrival : arrivals_) r_.times.receive_to_send.add(record.sent - arrival);
+    // As the loop does: what came before it began waited for that.
+    if (r_.times.steps == 0) begun_ = record.time - period_;
+    for (const Nanoseconds arrival : arrivals_) {
+      if (arrival >= begun_) r_.times.receive_to_send.add(record.sent - arrival);
+    }
     arrivals_.clear();
     if (r_.times.steps > 0) {
       r_.times.jitter.add(std::abs(record.sent - last_sent_ - period_));
@@ -127,7 +132,7 @@ class Replayer {
   std::unique_ptr<cueing::WashoutDesign> design_;
   std::vector<double> values_;
   std::vector<Nanoseconds> arrivals_;
-  Nanoseconds start_, apart_ = 0, period_ = 0, last_kept_ = 0, last_sent_ = 0, last_time_ = 0;
+  Nanoseconds start_, apart_ = 0, period_ = 0, last_kept_ = 0, last_sent_ = 0, last_time_ = 0, begun_ = 0;
   std::uint32_t last_sequence_ = 0, fingerprint_ = 0;
 };
 

@@ -27,10 +27,11 @@ struct LiveReplay {
     std::vector<double> values;  ///< of all knobs
   };
   std::vector<Turn> turns;
-  LoopTimes times;  ///< `wait` and `work` are not recorded
+  LoopTimes times;  ///< `wait` and `work` are not recorded: empty, or those that the run itself measured
   PerPacketFate<std::uint64_t> packets = {};
   std::vector<PacketIntake::FromSender> senders;
   std::uint64_t drives = 0, gaps = 0;
+  LiveRig::Extrapolated extrapolated;
   std::string layout;  ///< the sender that packets were of
   std::string derived;
   double drift = 0.0;  ///< NaN: not known

@@ -42,6 +42,13 @@ std::string_view name_of(Readiness readiness) {
   return "";
 }
 
+std::string described(Readiness readiness, const LiveRig::Answers& answers) {
+  if (readiness != Readiness::kRefused || answers.verdict != PlatformVerdict::kCommandedByAnother ||
+      answers.commander.port == 0)
+    return std::string(name_of(readiness));
+  return "the platform refuses orders: the program at " + to_string(answers.commander) + " commands it";
+}
+
 LiveRig::LiveRig(const LiveStudy& study, std::uint32_t session)
     : options_(study.options),
       intake_(study.layouts, study.options.intake),
@@ -54,7 +61,7 @@ LiveRig::LiveRig(const LiveStudy& study, std::uint32_t session)
   still.force = recording::force_at_rest(Frame::kFlu);
   step_.cueing = chain_.reset(still);
   last_sample_ = still;
-  entered_[0] = 1;
+  entered_[RigState::kParked] = 1;
 }
 
 std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
@@ -69,11 +76,12 @@ std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
     answers_.outside_limits = a->outside_limits;
     answers_.round_trip = datagram.arrival - a->time;
     answers_.reached = a->reached;
+    answers_.commander = a->commander;
     last_answer_ = datagram.arrival;
     return std::nullopt;
   }
   if (datagram.bytes == kEmergencyPacket) {
-    wish(OperatorWish::kEmergency);
+    request(OperatorRequest::kEmergency);
     return std::nullopt;
   }
   std::optional<Telemetry> t = intake_.take(datagram);
@@ -101,26 +109,26 @@ void LiveRig::watch_frozen(const Telemetry& t) {
   last_telemetry_ = s;
 }
 
-void LiveRig::wish(OperatorWish wish) {
-  switch (wish) {
-    case OperatorWish::kStart:
+void LiveRig::request(OperatorRequest request) {
+  switch (request) {
+    case OperatorRequest::kStart:
       wants_motion_ = true;
       break;
-    case OperatorWish::kPark:
+    case OperatorRequest::kPark:
       wants_motion_ = false;
       wants_park_ = true;
       break;
-    case OperatorWish::kEmergency:
+    case OperatorRequest::kEmergency:
       wants_motion_ = false;
       emergency_ = true;
       break;
-    case OperatorWish::kRelease:
+    case OperatorRequest::kRelease:
       release_ = true;
       break;
-    case OperatorWish::kSignsRight:
+    case OperatorRequest::kSignsRight:
       signs_right_ = signs_right_.value_or(true);
       break;
-    case OperatorWish::kSignsWrong:
+    case OperatorRequest::kSignsWrong:
       signs_right_ = false;
       break;
   }
@@ -150,7 +158,7 @@ void LiveRig::handle(RigEvent event, Nanoseconds time) {
   if (to == step_.state) return;
   const RigState from = std::exchange(step_.state, to);
   state_since_ = time;
-  ++entered_[static_cast<std::size_t>(to)];
+  ++entered_[to];
   // The algorithm begins again, from where the platform is, whenever motion is let through again, and behind an
   // emergency stop, to be led to park from there.
   if (to == RigState::kSoftStart && from == RigState::kParked) phase_ = 0.0;
@@ -177,6 +185,14 @@ void LiveRig::drive(double dt) {
       s.cueing = chain_.hold(dt, s.share);
       break;
   }
+}
+
+void LiveRig::count_extrapolated() {
+  if (!step_.motion || (step_.state != RigState::kSoftStart && step_.state != RigState::kRunning)) return;
+  ++extrapolated_.of;
+  if (!(step_.motion->extrapolated > 0.0)) return;
+  ++extrapolated_.steps;
+  extrapolated_.longest = std::max(extrapolated_.longest, step_.motion->extrapolated);
 }
 
 bool LiveRig::at_rest_in_neutral() const {
@@ -235,7 +251,9 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   order.time = time;
   order.state = step_.state;
   order.motion = step_.cueing.told;
+  step_.to_platform = order;
   step_.order = encode(order);
+  count_extrapolated();
   return step_;
 }
 

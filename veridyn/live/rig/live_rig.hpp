@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "veridyn/cueing/chain/cueing_chain.hpp"
@@ -24,7 +25,8 @@ struct RigStep {
   double share = 0.0;                ///< of the motion that the platform is given
   std::optional<EvenSample> motion;  ///< of the vehicle, at the driver's head
   cueing::CueingStep cueing;
-  OrderBytes order = {};
+  PlatformOrder to_platform;  ///< position and rate of each axis as the guard lets them through
+  OrderBytes order = {};      ///< the same as the project's own packet, which is what is recorded
   std::uint32_t sequence = 0;
 };
 
@@ -41,7 +43,7 @@ enum class Readiness {
 };
 [[nodiscard]] std::string_view name_of(Readiness readiness);
 
-/// The rig without clocks, sockets and threads: datagrams, the operator's wishes and times in, orders to the platform
+/// The rig without clocks, sockets and threads: datagrams, the operator's requests and times in, orders to the platform
 /// out. The same in gives the same out, bit for bit: a recorded run is replayed by feeding it again.
 ///
 /// Platform and motion pass through `cueing::CueingChain` and its guard as in `veridyn cue`. Nothing is allocated or
@@ -54,7 +56,7 @@ class LiveRig {
   /// Something came in. @return of telemetry, the motion it holds where it was accepted
   std::optional<Telemetry> take(LinkOf link, const Datagram& datagram);
   /// Takes effect with the next step.
-  void wish(OperatorWish wish);
+  void request(OperatorRequest request);
   /// An algorithm that was made elsewhere takes over, from where the platform is.
   /// @return the one before, for whoever frees it
   std::unique_ptr<cueing::Washout> take_over(std::unique_ptr<cueing::Washout> washout);
@@ -72,12 +74,20 @@ class LiveRig {
     std::uint32_t outside_limits = 0;
     Nanoseconds round_trip = 0;
     cueing::PerPlatformAxis<float> reached = {};
+    Sender commander;  ///< who commands it, where another program does and it says so; port 0: not known
   };
   [[nodiscard]] const Answers& answers() const { return answers_; }
+  /// Steps, of those in which the platform followed the motion, for which it was continued beyond the last packet, and
+  /// how far at most.
+  struct Extrapolated {
+    std::uint64_t steps = 0, of = 0;
+    double longest = 0.0;  ///< [s]
+  };
+  [[nodiscard]] const Extrapolated& extrapolated() const { return extrapolated_; }
   /// Steps that came so late that the platform had to stop.
   [[nodiscard]] std::uint64_t gaps() const { return gaps_; }
   /// How often each state began.
-  [[nodiscard]] const std::array<std::uint64_t, kRigStates>& entered() const { return entered_; }
+  [[nodiscard]] const PerRigState<std::uint64_t>& entered() const { return entered_; }
 
  private:
   [[nodiscard]] Readiness ready_at(Nanoseconds time) const;
@@ -85,6 +95,7 @@ class LiveRig {
   void drive(double dt);
   [[nodiscard]] bool at_rest_in_neutral() const;
   void watch_frozen(const Telemetry& telemetry);
+  void count_extrapolated();
 
   RigOptions options_;
   PacketIntake intake_;
@@ -105,7 +116,11 @@ class LiveRig {
   RigStep step_;
   Answers answers_;
   std::uint64_t gaps_ = 0;
-  std::array<std::uint64_t, kRigStates> entered_ = {};
+  Extrapolated extrapolated_;
+  PerRigState<std::uint64_t> entered_ = {};
 };
+
+/// Readiness in words; where the platform says which program commands it, with its address.
+[[nodiscard]] std::string described(Readiness readiness, const LiveRig::Answers& answers);
 
 }  // namespace veridyn::live

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -92,11 +94,67 @@ VirtualVehicleOptions read_virtual_vehicle(const StudyTable& live) {
   return o;
 }
 
+namespace {
+
+/// An address, or the device of a serial line.
+void read_platform(const StudyTable& live, LiveStudy& s) {
+  const std::string platform = live.text("platform");
+  if (!platform.starts_with('/')) {
+    s.platform = parse_address(platform, live.place("platform"));
+    if (s.telemetry == s.platform) live.fail("platform", "is where telemetry comes in");
+    if (live.has("baud")) live.fail("baud", "is of a serial line; the platform has an address");
+    return;
+  }
+  s.platform_line.device = platform;
+  const long long baud = live.integer_or("baud", s.platform_line.baud);
+  if (!(baud >= 1200 && baud <= 4'000'000)) live.fail("baud", fmt::format("is {}; takes 1200 to 4000000", baud));
+  s.platform_line.baud = static_cast<int>(baud);
+}
+
+/// How orders are written, and whether they are answered.
+void read_format(const StudyTable& live, LiveStudy& s) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kOrderFormats; ++i) names.emplace_back(name_of(static_cast<OrderFormatKind>(i)));
+  const std::string name = live.choice_or("format", names, names.front());
+  s.format.kind = static_cast<OrderFormatKind>(std::find(names.begin(), names.end(), name) - names.begin());
+  const bool own = s.format.kind == OrderFormatKind::kVeridyn;
+  s.options.answers = live.flag_or("answers", s.options.answers);
+  if (!own && s.options.answers)
+    live.fail("answers", fmt::format("must be false: a platform of format '{}' does not answer orders", name));
+  if (live.has("text")) {
+    if (s.format.kind != OrderFormatKind::kFlypt) live.fail("text", fmt::format("is of 'flypt'; format is '{}'", name));
+    s.format.text = live.text("text");
+  }
+  if (own && !s.platform_line.device.empty())
+    live.fail("platform", "is a serial line, on which formats without answers go only; 'veridyn' takes an address");
+  std::size_t longest = 0;
+  try {
+    longest = OrderFormat(s.format, s.cueing.platform).longest();
+  } catch (const InputError& error) {
+    live.fail(s.format.kind == OrderFormatKind::kFlypt ? "text" : "format", error.what());
+  }
+  constexpr double kBitsAByte = 10.0;
+  const double most = static_cast<double>(s.platform_line.baud) / (kBitsAByte * static_cast<double>(longest));
+  if (!s.platform_line.device.empty() && s.options.rate > most)
+    live.fail("rate", fmt::format("is {:g} Hz; {} bit/s carry {:.0f} orders of {} bytes a second", s.options.rate,
+                                  s.platform_line.baud, std::floor(most), longest));
+}
+
+}  // namespace
+
+std::string platform_name(const LiveStudy& study) {
+  return study.platform_line.device.empty() ? to_string(study.platform) : study.platform_line.device.string();
+}
+
 LiveStudy read_live_study(const Study& study) {
   const StudyTable& root = study.root();
   if (!root.has("live"))
     throw InputError(root.place("live"),
                      "is missing: the table [live] says where telemetry comes from and orders go to");
+  if (!root.has("platform"))
+    throw InputError(root.place("platform"),
+                     "is missing: the limits of a platform that moves are not guessed; [platform] names one "
+                     "(subject = \"three_axis\") or states them");
   LiveStudy s;
   s.cueing = cueing::read_study_without_drive(study);
   for (const char* key : {"data", "drive", "subject", "road"}) root.accept(key);
@@ -106,14 +164,13 @@ LiveStudy read_live_study(const Study& study) {
   const StudyTable live = root.table("live");
   static_cast<void>(read_virtual_vehicle(live));  // refused here too where it is wrong
   s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
-  s.platform = parse_address(live.text("platform"), live.place("platform"));
-  if (s.telemetry == s.platform) live.fail("platform", "is where telemetry comes in");
+  read_platform(live, s);
   if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
   if (live.has("page_token")) s.page_token = live.file("page_token");
   s.layouts = read_layouts(live);
   RigOptions& o = s.options;
   o.rate = number_within(live, "rate", "Hz", o.rate, 20.0, 4000.0);
-  o.answers = live.flag_or("answers", o.answers);
+  read_format(live, s);
   o.even.delay = number_within(live, "delay", "s", o.even.delay, 0.0, 0.5);
   o.even.extrapolate = number_within(live, "extrapolate", "s", o.even.extrapolate, 0.0, 0.2);
   o.soft_start = number_within(live, "soft_start", "s", o.soft_start, 0.5, 60.0);

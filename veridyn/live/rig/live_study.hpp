@@ -8,7 +8,9 @@
 
 #include "veridyn/cueing/cueing_study.hpp"
 #include "veridyn/live/link/datagram.hpp"
+#include "veridyn/live/platform/order_format.hpp"
 #include "veridyn/live/rig/rig_options.hpp"
+#include "veridyn/live/serial/serial_line.hpp"
 #include "veridyn/live/virtual/virtual_vehicle.hpp"
 
 namespace veridyn::live {
@@ -21,7 +23,9 @@ namespace veridyn::live {
 ///     packet = "outsim"             # see io::known_packets; "any" (when left out) recognises them by content
 ///     [live.packet]                 # or a layout of one's own, see io::read_packet_layout
 ///     platform = "127.0.0.1:5123"   # orders go there
-///     answers = true                # whether the platform answers them
+///     format = "veridyn"            # how orders are written, see OrderFormatKind; text = "P={pitch:deg:.3f}" of flypt
+///     baud = 250000                 # where platform is a serial line: "/dev/ttyUSB0"
+///     answers = true                # whether the platform answers them; formats of others have no answers
 ///     rate = "100 Hz"               # of orders, 20 Hz to 4 kHz
 ///     delay = "20 ms"               # of the motion, for packets that come late
 ///     extrapolate = "30 ms"         # how far it goes on where they come later still
@@ -34,12 +38,17 @@ namespace veridyn::live {
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
   std::vector<io::PacketLayout> layouts;
-  Sender telemetry;                  ///< where we listen
-  Sender platform;                   ///< where orders go
+  Sender telemetry;             ///< where we listen
+  Sender platform;              ///< where orders go
+  SerialOptions platform_line;  ///< or the serial line on which they go; its device is empty where there is none
+  OrderFormatOptions format;
   std::optional<Sender> page;        ///< where the run's page is shown
   std::filesystem::path page_token;  ///< file of its token; empty: one is drawn and printed
   RigOptions options;
 };
+
+/// Where orders go, for people: an address or a device.
+[[nodiscard]] std::string platform_name(const LiveStudy& study);
 
 /// All keys but those of a drive are read; [data], [drive], [subject], [road] are known and left alone.
 /// @throws InputError for anything that is wrong in it.

@@ -106,7 +106,7 @@ void SerialLine::close() {
 std::size_t SerialLine::read(std::span<std::uint8_t> out) {
   const ssize_t count = ::read(descriptor_, out.data(), out.size());
   if (count > 0) return static_cast<std::size_t>(count);
-  // With VMIN = 0 an idle line reads as nothing, like one whose other end is gone: only poll tells them apart.
+  // With VMIN = 0 an idle line reads as nothing, like one whose other end is gone: only poll distinguishes them.
   if (count < 0 && errno != EAGAIN && errno != EINTR) hung_up_ = true;
   if (count == 0 && !out.empty()) {
     pollfd state = {.fd = descriptor_, .events = POLLIN, .revents = 0};

@@ -1,5 +1,7 @@
 #include "veridyn/live/telemetry/sender_clock.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -61,6 +63,14 @@ double SenderClock::drift() const {
     ty += t * (blocks_[k].offset - y0);
   }
   return tt > 0.0 ? ty / tt : kNaN;
+}
+
+std::string drift_warning(double drift) {
+  constexpr double kMost = 100e-6;
+  if (!(std::abs(drift) > kMost)) return "";
+  return fmt::format(
+      "the sender's clock runs {:.0f} ppm {} against ours: its stamps are followed, but one of the two clocks is poor",
+      std::abs(drift) * 1e6, drift < 0.0 ? "fast" : "slow");
 }
 
 }  // namespace veridyn::live

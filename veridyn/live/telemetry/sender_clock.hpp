@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "veridyn/live/time/clock.hpp"
 
@@ -42,5 +43,9 @@ class SenderClock {
   double offset_ = 0.0;                    ///< in use: it follows the least one without a jump [s]
   bool begun_ = false;
 };
+
+/// What is said of a sender's clock that runs more than 100 ppm fast or slow; empty below that or where it is not
+/// known.
+[[nodiscard]] std::string drift_warning(double drift);
 
 }  // namespace veridyn::live

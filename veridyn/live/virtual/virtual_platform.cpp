@@ -15,17 +15,19 @@ VirtualPlatform::VirtualPlatform(const cueing::Platform& platform)
 void VirtualPlatform::judge(const PlatformOrder& order) {
   if (!is_within(order.motion, platform_.limits)) ++counts_.outside;
   if (!last_order_ || silent_) return;
-  const double dt = seconds(order.time - last_order_->time);
+  const double dt = std::max(seconds(order.time - last_order_->time), 0.0);
+  bool jumps = false, too_hard = false;
   for (std::size_t i = 0; i < kPlatformAxes; ++i) {
     const auto which = static_cast<PlatformAxis>(i);
-    const double way = axis(order.motion, which).position - axis(last_order_->motion, which).position;
-    // Floats of positions of a metre or a radian are exact to 1e-7.
+    const AxisState now = axis(order.motion, which), before = axis(last_order_->motion, which);
+    // Floats of positions of a metre or a radian are exact to 1e-7, those of rates as well.
     constexpr double kRounding = 1e-6;
-    if (std::abs(way) > platform_.limits.axes[i].rate * std::max(dt, 0.0) + kRounding) {
-      ++counts_.jumps;
-      break;
-    }
+    const cueing::AxisLimits& limits = platform_.limits.axes[i];
+    jumps = jumps || std::abs(now.position - before.position) > limits.rate * dt + kRounding;
+    too_hard = too_hard || std::abs(now.rate - before.rate) > limits.acceleration * dt + kRounding;
   }
+  counts_.jumps += jumps ? 1U : 0U;
+  counts_.too_hard += too_hard ? 1U : 0U;
 }
 
 void VirtualPlatform::follow(const PlatformOrder& order) {
@@ -61,6 +63,7 @@ std::optional<PlatformAnswer> VirtualPlatform::take(const Datagram& datagram) {
     ++counts_.refused;
     refused_ = datagram.sender;
     answer.verdict = PlatformVerdict::kCommandedByAnother;
+    answer.commander = commander_;
   } else {
     if (session_ != order->session) last_order_.reset();
     session_ = order->session;

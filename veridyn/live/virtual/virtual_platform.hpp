@@ -12,8 +12,8 @@
 namespace veridyn::live {
 
 /// A platform without hardware: follows orders with the dynamics of `cueing::PlatformSimulator`, answers each, counts
-/// those that leave its limits or ask for a jump, takes orders of one program at a time, and leads itself to its
-/// neutral position where orders do not come. Knows nothing of clocks and sockets.
+/// those that leave its limits, ask for a jump or for more than its acceleration, takes orders of one program at a
+/// time, and leads itself to its neutral position where orders do not come. Knows nothing of clocks and sockets.
 class VirtualPlatform {
  public:
   explicit VirtualPlatform(const cueing::Platform& platform);
@@ -26,10 +26,11 @@ class VirtualPlatform {
   /// What it was told and what it did, since the beginning.
   struct Counts {
     std::uint64_t followed = 0;
-    std::uint64_t outside = 0;  ///< beyond position or rate; not followed
-    std::uint64_t jumps = 0;    ///< farther from the order before than the largest rate leads in the time between
-    std::uint64_t refused = 0;  ///< of a program that does not command it
-    std::uint64_t old = 0;      ///< repeated or out of order
+    std::uint64_t outside = 0;   ///< beyond position or rate; not followed
+    std::uint64_t jumps = 0;     ///< farther from the order before than the largest rate leads in the time between
+    std::uint64_t too_hard = 0;  ///< its rate changes by more than the largest acceleration allows in that time
+    std::uint64_t refused = 0;   ///< of a program that does not command it
+    std::uint64_t old = 0;       ///< repeated or out of order
     std::uint64_t unreadable = 0;
     std::uint64_t silences = 0;  ///< orders did not come for longer than `kSilence`
   };

@@ -4,7 +4,7 @@
 #include "tests/support/refusal.hpp"
 
 #ifdef VERIDYN_HAS_SOCKETS
-#include "veridyn/live/link/udp_links.hpp"
+#include "veridyn/live/link/udp_socket.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -69,35 +69,6 @@ TEST(UdpSocket, RefusesAPortInUseAndAnAddressThatIsNotOurs) {
                 UdpSocket({0x08080808, 4123}, "live.telemetry");
               }),
               HasSubstr("live.telemetry: 8.8.8.8:4123 cannot be listened to: Cannot assign requested address"));
-}
-
-TEST(UdpLinks, ReturnAtTheDeadlineWhateverIsThere) {
-  UdpSocket platform({kLoopback, 0}, "test");
-  UdpSocket probe({kLoopback, 0}, "test");
-  const Sender telemetry = probe.bound_to();
-  { const UdpSocket freed = std::move(probe); }
-  UdpLinks links(telemetry, platform.bound_to());
-  UdpSocket vehicle = UdpSocket::connected(telemetry, "test");
-  RealClock clock;
-  ASSERT_TRUE(vehicle.send("packet"));
-  const auto first = links.next(clock, clock.now() + kSecond);
-  ASSERT_TRUE(first);
-  EXPECT_EQ(first->link, LinkOf::kTelemetry);
-  EXPECT_EQ(first->datagram.bytes, "packet");
-  ASSERT_TRUE(links.send("order"));
-  ASSERT_TRUE(platform.wait(clock.now() + kSecond));
-  const auto order = platform.receive();
-  ASSERT_TRUE(order);
-  EXPECT_EQ(order->bytes, "order");
-  ASSERT_TRUE(platform.send_to(order->sender, "answer"));
-  const auto answer = links.next(clock, clock.now() + kSecond);
-  ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->link, LinkOf::kPlatform);
-  const Nanoseconds until = clock.now() + 5 * kMillisecond;
-  EXPECT_FALSE(links.next(clock, until));
-  EXPECT_GE(clock.now(), until);
-  ASSERT_TRUE(vehicle.send("late"));
-  EXPECT_FALSE(links.next(clock, clock.now() - 1));
 }
 
 }  // namespace
