@@ -7,6 +7,10 @@
 #include <vector>
 
 #include "veridyn/estimation/kalman/smoother.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::estimation {
@@ -136,9 +140,7 @@ Batch batch(const Problem& p, std::size_t last) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + static_cast<Eigen::Index>(used.size()), n);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(A.rows());
   using M5 = Eigen::Matrix<double, 5, 5>;
-  const auto whitener = [](const M5& C) -> M5 {
-    return M5(C.llt().matrixL()).triangularView<Eigen::Lower>().solve(M5::Identity());
-  };
+  const auto whitener = [](const M5& C) -> M5 { return numerics::Cholesky(C).solve_lower(M5::Identity()); };
   const M5 W0 = whitener(p.P0);
   A.topLeftCorner<5, 5>() = W0;
   b.head<5>() = W0 * p.x0;
@@ -156,10 +158,9 @@ Batch batch(const Problem& p, std::size_t last) {
     A.block<1, 5>(row, static_cast<Eigen::Index>(5 * used[i]->step)) = used[i]->H.transpose() / std::sqrt(used[i]->r);
     b(row) = used[i]->z / std::sqrt(used[i]->r);
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(A);
-  const Eigen::MatrixXd R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse = R.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
-  return {qr.solve(b), inverse * inverse.transpose()};
+  const numerics::HouseholderQr qr(A);
+  const Eigen::MatrixXd inverse = numerics::solve_upper(qr.R(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
+  return {qr.solve(b), numerics::product_transposed(inverse, inverse)};
 }
 
 TEST(KalmanFilter, EqualsTheBatchSolutionOfAllDataSoFar) {
@@ -195,7 +196,7 @@ TEST(Smoother, EqualsTheBatchSolutionOfAllData) {
   }
 }
 
-// The classical recursion, written from Rauch, Tung & Striebel (1965) with the inverse that ours avoids.
+// The classical recursion, written from Rauch, Tung & Striebel (1965) with the system of equations that ours avoids.
 TEST(Smoother, EqualsRauchTungStriebel) {
   using M5 = Eigen::Matrix<double, 5, 5>;
   using V5 = Eigen::Matrix<double, 5, 1>;
@@ -214,7 +215,8 @@ TEST(Smoother, EqualsRauchTungStriebel) {
     const M5 Pp = F * P[k] * F.transpose() + Oscillator::Q(p.dt[k]);
     V5 xp = F * x[k];
     xp(1) += p.push[k] * p.dt[k];
-    const M5 C = P[k] * F.transpose() * Pp.inverse();
+    // C = P F' Pp^-1
+    const M5 C = numerics::solve_symmetric(Pp, Eigen::MatrixXd(F * P[k])).transpose();
     xs[k] = x[k] + C * (xs[k + 1] - xp);
     Ps[k] = P[k] + C * (Ps[k + 1] - Pp) * C.transpose();
   }
@@ -262,8 +264,8 @@ TEST(KalmanFilter, StaysPositiveWhenAPreciseSensorMeetsAnUnknownState) {
   }
   const auto& P = filter.covariance();
   EXPECT_EQ(P, P.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(P);
-  EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.0) << eigen.eigenvalues().transpose();
+  const Eigen::VectorXd values = numerics::symmetric_eigenvalues(P);
+  EXPECT_GT(values.minCoeff(), 0.0) << values.transpose();
 }
 
 }  // namespace
