@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::numerics {
@@ -80,9 +80,9 @@ TEST(NearestCorrelation, LeavesACorrelationMatrixAloneAndRepairsTheOthersToTheFl
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index j = 0; j < i; ++j) a(i, j) = a(j, i) = random.uniform(-1.0, 1.0);
     }
-    const double before = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a).eigenvalues()(0);
+    const double before = symmetric_eigenvalues(a)(0);
     const NearestCorrelation nearest = nearest_correlation(a, 1e-6);
-    const double after = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(nearest.matrix).eigenvalues()(0);
+    const double after = symmetric_eigenvalues(nearest.matrix)(0);
     EXPECT_GE(after, 1e-6 - 1e-12);
     EXPECT_LT((nearest.matrix.diagonal().array() - 1.0).abs().maxCoeff(), 1e-15);
     EXPECT_EQ(nearest.largest_change == 0.0, before >= 1e-6) << before;

@@ -140,9 +140,7 @@ Batch batch(const Problem& p, std::size_t last) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + static_cast<Eigen::Index>(used.size()), n);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(A.rows());
   using M5 = Eigen::Matrix<double, 5, 5>;
-  const auto whitener = [](const M5& C) -> M5 {
-    return numerics::Cholesky(C).solve_lower(Eigen::MatrixXd(M5::Identity()));
-  };
+  const auto whitener = [](const M5& C) -> M5 { return numerics::Cholesky(C).solve_lower(M5::Identity()); };
   const M5 W0 = whitener(p.P0);
   A.topLeftCorner<5, 5>() = W0;
   b.head<5>() = W0 * p.x0;
@@ -162,7 +160,7 @@ Batch batch(const Problem& p, std::size_t last) {
   }
   const numerics::HouseholderQr qr(A);
   const Eigen::MatrixXd inverse = numerics::solve_upper(qr.R(), Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
-  return {qr.solve(b), inverse * inverse.transpose()};
+  return {qr.solve(b), numerics::product_transposed(inverse, inverse)};
 }
 
 TEST(KalmanFilter, EqualsTheBatchSolutionOfAllDataSoFar) {
@@ -198,7 +196,7 @@ TEST(Smoother, EqualsTheBatchSolutionOfAllData) {
   }
 }
 
-// The classical recursion, written from Rauch, Tung & Striebel (1965) with the inverse that ours avoids.
+// The classical recursion, written from Rauch, Tung & Striebel (1965) with the system of equations that ours avoids.
 TEST(Smoother, EqualsRauchTungStriebel) {
   using M5 = Eigen::Matrix<double, 5, 5>;
   using V5 = Eigen::Matrix<double, 5, 1>;
@@ -217,7 +215,8 @@ TEST(Smoother, EqualsRauchTungStriebel) {
     const M5 Pp = F * P[k] * F.transpose() + Oscillator::Q(p.dt[k]);
     V5 xp = F * x[k];
     xp(1) += p.push[k] * p.dt[k];
-    const M5 C = P[k] * F.transpose() * numerics::solve_linear(Pp, Eigen::MatrixXd(M5::Identity()));
+    // C = P F' Pp^-1
+    const M5 C = numerics::solve_symmetric(Pp, Eigen::MatrixXd(F * P[k])).transpose();
     xs[k] = x[k] + C * (xs[k + 1] - xp);
     Ps[k] = P[k] + C * (Ps[k + 1] - Pp) * C.transpose();
   }
@@ -265,8 +264,8 @@ TEST(KalmanFilter, StaysPositiveWhenAPreciseSensorMeetsAnUnknownState) {
   }
   const auto& P = filter.covariance();
   EXPECT_EQ(P, P.transpose());
-  const Eigen::VectorXd eigenvalues = numerics::symmetric_eigenvalues(P);
-  EXPECT_GT(eigenvalues.minCoeff(), 0.0) << eigenvalues.transpose();
+  const Eigen::VectorXd values = numerics::symmetric_eigenvalues(P);
+  EXPECT_GT(values.minCoeff(), 0.0) << values.transpose();
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 
-#include <Eigen/QR>
 #include <random>
+
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace {
 using namespace veridyn::estimation;
@@ -17,8 +18,7 @@ TEST(AugmentedQr, EqualsTheTriangleOfTheWholeMatrixWhateverTheBlocks) {
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   const RowMatrix D = RowMatrix::NullaryExpr(1003, 7, [&]() { return normal(generator); });
-  const Eigen::HouseholderQR<Eigen::MatrixXd> whole{Eigen::MatrixXd(D)};
-  const Eigen::MatrixXd expected = positive_rows(whole.matrixQR().topRows(7).triangularView<Eigen::Upper>());
+  const Eigen::MatrixXd expected = positive_rows(veridyn::numerics::HouseholderQr(D).R());
   for (const Eigen::Index block : {1, 5, 64, 512, 5000}) {
     AugmentedQr qr(7, block);
     qr.append(D.topRows(400));

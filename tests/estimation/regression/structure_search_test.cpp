@@ -8,6 +8,7 @@
 
 #include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::estimation {
 namespace {
@@ -101,7 +102,7 @@ TEST(StructureSearch, PressIsTheSumOfErrorsOfLeavingEachRowOut) {
     Eigen::VectorXd z(59);
     X << chosen.regressors.topRows(k), chosen.regressors.bottomRows(59 - k);
     z << chosen.regressand.head(k), chosen.regressand.tail(59 - k);
-    const Eigen::VectorXd theta = X.householderQr().solve(z);
+    const Eigen::VectorXd theta = numerics::HouseholderQr(X).solve(z);
     press += std::pow(chosen.regressand(k) - chosen.regressors.row(k).dot(theta), 2);
   }
   EXPECT_NEAR(last.press, press, 1e-9 * press);

@@ -1,14 +1,13 @@
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
 #include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/linear_algebra/products.hpp"
+#include "veridyn/numerics/linear_algebra/singular_values.hpp"
+#include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace {
 using namespace veridyn::estimation;
@@ -72,9 +71,10 @@ TEST(TotalLeastSquares, SolvesTheCorrectedNormalEquations) {
   data.parameter_names = {"a", "b", "c", "d"};
   const RegressionEstimate e = estimate(data, Method::kTls);
   const Eigen::MatrixXd D = augmented(data);
-  const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(D.transpose() * D).eigenvalues()(0);
-  const Eigen::MatrixXd normal = X.transpose() * X - smallest * Eigen::MatrixXd::Identity(4, 4);
-  EXPECT_LT((e.theta - normal.ldlt().solve(X.transpose() * z)).norm(), 1e-12);
+  const double smallest = numerics::symmetric_eigenvalues(numerics::transposed_product(D, D))(0);
+  const Eigen::MatrixXd normal = numerics::transposed_product(X, X) - smallest * Eigen::MatrixXd::Identity(4, 4);
+  const Eigen::VectorXd right = numerics::transposed_product(X, z);
+  EXPECT_LT((e.theta - numerics::solve_symmetric(normal, right)).norm(), 1e-12);
 }
 
 TEST(GeneralisedTotalLeastSquares, EqualsTheDirectSvdOfTheWhitenedMatrix) {
@@ -83,14 +83,14 @@ TEST(GeneralisedTotalLeastSquares, EqualsTheDirectSvdOfTheWhitenedMatrix) {
   Eigen::MatrixXd W = s.data.error_covariance;
   W(0, 0) = 0.3;
   s.data.error_covariance = W;
-  const Eigen::MatrixXd C = Eigen::LLT<Eigen::MatrixXd>(W).matrixU();
-  const Eigen::MatrixXd white = augmented(s.data) * C.inverse();
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(white, Eigen::ComputeThinV);
-  const Eigen::VectorXd h = C.inverse() * svd.matrixV().col(4);
+  const Eigen::MatrixXd C_inverse = numerics::Cholesky(W).solve_upper(Eigen::MatrixXd::Identity(5, 5));
+  const Eigen::MatrixXd white = numerics::product(augmented(s.data), C_inverse);
+  const numerics::SingularValues svd = numerics::singular_values(white, numerics::SingularVectors::kThinUAndFullV);
+  const Eigen::VectorXd h = numerics::product(C_inverse, svd.V.col(4));
   const RegressionEstimate e = estimate(s.data, Method::kGtls);
   EXPECT_LT((e.theta - h.head(4) / -h(4)).norm(), 1e-12);
   for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_NEAR(e.singular_values[i], svd.singularValues()(static_cast<Eigen::Index>(i)), 1e-10);
+    EXPECT_NEAR(e.singular_values[i], svd.values(static_cast<Eigen::Index>(i)), 1e-10);
 }
 
 // An exact constant takes the means away: mixed OLS-TLS on the columns without their means.
@@ -201,10 +201,10 @@ TEST(EquationError, GivesFullersClosedForm) {
   EXPECT_NEAR(e.error_scale, 1.0, 1e-9);
   // With the factor N - n_p that the error scale uses.
   const double N = static_cast<double>(s.data.rows()) - 4.0;
-  const Eigen::MatrixXd M =
-      s.data.regressors.transpose() * s.data.regressors - N * s.data.error_covariance.topLeftCorner(4, 4);
-  const Eigen::VectorXd right = s.data.regressors.transpose() * s.data.regressand;
-  EXPECT_LT((e.theta - M.ldlt().solve(right)).norm(), 1e-9);
+  const Eigen::MatrixXd M = numerics::transposed_product(s.data.regressors, s.data.regressors) -
+                            N * s.data.error_covariance.topLeftCorner(4, 4);
+  const Eigen::VectorXd right = numerics::transposed_product(s.data.regressors, s.data.regressand);
+  EXPECT_LT((e.theta - numerics::solve_symmetric(M, right)).norm(), 1e-9);
 }
 
 struct CoverageCase {
