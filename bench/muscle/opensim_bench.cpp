@@ -50,17 +50,18 @@ void forward(benchmark::State& state, const char* file, PathSource paths, int nu
   const auto system = arm(state, file, paths);
   if (!system) return;
   const StartState start = start_of(system->model(), number);
-  const Drive drive = test::arm26_scenario(number, 0.001);
+  const MuscleControls controls = test::arm26_scenario(number, 0.001);
   Progress progress;
   // A row a step, as OpenSim stores its states.
   const ForwardOptions options{.rate_Hz = 0.0, .accuracy = 1e-5};
   long evaluations = 0;
   MuscleTrajectory t;
   for (auto _ : state) {
-    t = simulate_forward(*system, start, drive, options, progress);
+    t = simulate_forward(*system, start, controls, options, progress);
     evaluations += t.evaluations;
   }
-  const MuscleTrajectory exact = simulate_forward(*system, start, drive, {.rate_Hz = 0.0, .accuracy = 1e-11}, progress);
+  const MuscleTrajectory exact =
+      simulate_forward(*system, start, controls, {.rate_Hz = 0.0, .accuracy = 1e-11}, progress);
   state.counters["end_error_rad"] = (t.q.row(t.q.rows() - 1) - exact.q.row(exact.q.rows() - 1)).cwiseAbs().maxCoeff();
   state.counters["per_evaluation"] =
       benchmark::Counter(static_cast<double>(evaluations), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

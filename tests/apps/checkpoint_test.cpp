@@ -212,6 +212,25 @@ TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
   EXPECT_TRUE(results().empty());
 }
 
+TEST_F(CheckpointProgram, RefusesAFolderOfAnotherVersionAndSaysBoth) {
+  const std::string small =
+      sensitivity("out",
+                  "--threads 1 --set tasks.numbers=[8] --set sensitivity.samples=1 --set sensitivity.choose=1 "
+                  "--set sensitivity.method=none");
+  ASSERT_EQ(run(small).exit_code, 0);
+  const std::string manifest = checkpoint() + "/checkpoint.txt";
+  std::string text = read_file(manifest);
+  const std::size_t place = text.find("veridyn ", text.find("program"));
+  ASSERT_NE(place, std::string::npos) << text;
+  text.replace(place, text.find_first_of("\n", place) - place, "veridyn 0.0.1");
+  write_file(manifest, text);
+  const Outcome refused = run(small);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.text, HasSubstr("is of another study or version: "));
+  EXPECT_THAT(refused.text, HasSubstr("veridyn 0.0.1"));
+  EXPECT_EQ(std::count(refused.text.begin(), refused.text.end(), '\n'), 1) << refused.text;
+}
+
 /// `veridyn identify` of a person: one search after the other.
 class IdentifyCheckpoint : public CheckpointProgram {
  protected:

@@ -172,6 +172,24 @@ TEST_F(MuscleProgram, SaysWhichTaskWouldTellMostAndFollowsProfiles) {
   EXPECT_THAT(read_file(in_out("report.html")), AllOf(HasSubstr("Which task next"), HasSubstr("Profile likelihood")));
 }
 
+TEST_F(MuscleProgram, SaysWhereAndInWhichStateEverySearchDiverges) {
+  static_cast<void>(file("u.csv", "time,brachialis\n0,0.1\n1,0.3\n"));
+  static_cast<void>(file("q.csv", "time,elbow_flexion\n0,0.4\n0.1,0.5\n0.2,0.6\n0.3,0.7\n0.4,0.8\n0.5,0.9\n"));
+  // No skeleton turns with such a weight at such a distance: its inertia is no number.
+  const std::string study = file(
+      "s.toml", std::string(kSubject) +
+                    "[[task]]\nname = \"trial\"\nexcitation_file = \"u.csv\"\nmeasured = \"q.csv\"\n"
+                    "[task.held]\nshoulder_flexion = 0\n[[task.load]]\nbody = \"forearm\"\nmass = 1\n"
+                    "location = [0, -1e200, 0]\n[[output]]\nname = \"elbow_flexion\"\nnoise = 1e-3\n"
+                    "[[parameter]]\nmuscles = [\"brachialis\"]\nfields = [\"max_isometric_force\"]\nbounds = \"20 %\"\n"
+                    "[identify]\nstarts = 1\n");
+  const Outcome failed = run("identify " + study + out());
+  EXPECT_EQ(failed.exit_code, 1) << failed.text;
+  EXPECT_THAT(failed.text, HasSubstr("trial: the simulation diverges at 0 s: "));
+  EXPECT_THAT(failed.text, HasSubstr(" is "));
+  EXPECT_EQ(std::count(failed.text.begin(), failed.text.end(), '\n'), 1) << failed.text;
+}
+
 TEST_F(MuscleProgram, SaysWhatIsMissingForAnEstimate) {
   expect_refusal("identify " + file("s.toml", std::string(kSubject) + "[motion]\n") + out(),
                  "tasks: is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");

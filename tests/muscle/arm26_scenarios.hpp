@@ -12,7 +12,7 @@ namespace veridyn::muscle::test {
 
 /// Excitations of the three scenarios for arm26 whose results by OpenSim stand in the reference (its README): constant;
 /// a step at 0.2 s; sines, sampled every `period` seconds and joined by lines.
-inline Drive arm26_scenario(int number, double period) {
+inline MuscleControls arm26_scenario(int number, double period) {
   constexpr std::size_t kMuscles = 6;
   if (number == 1) return {ControlSignals(std::vector<double>(kMuscles, 0.05)), {}};
   std::vector<double> time{0.0}, value(kMuscles, 0.05);

@@ -94,7 +94,7 @@ TEST(IdentifyMuscles, ThePublishedRouteEndsWhereTheGradientDoes) {
 
 // Two samples of noise that are alike say little more than one: as many seconds of it tell less.
 TEST(IdentifyMuscles, FarFromTheStandardModelWithParametersOpenTheyAreNoPhysicalConstants) {
-  // One task hardly tells two of these apart; the person's forces are far from the model's.
+  // One task hardly distinguishes two of these; the person's forces are far from the model's.
   const std::string unknowns =
       "[[parameter]]\nmuscles = [\"triceps_long\"]\nfields = [\"tendon_slack_length\"]\nbounds = \"20 %\"\n"
       "[[parameter]]\nmuscles = [\"triceps_lateral\"]\nfields = [\"max_isometric_force\"]\nbounds = \"16 %\"\n"

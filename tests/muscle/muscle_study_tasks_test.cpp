@@ -95,7 +95,8 @@ TEST(MuscleStudyTasks, MistakesAreNamedWithFileLineAndKey) {
   EXPECT_THAT(study_tasks_error("[tasks]\nnumbers = [8]\nnumber = 4\n"), HasSubstr("number"));
   EXPECT_THAT(study_tasks_error("[[task]]\nname = \"rest\"\n"), AllOf(HasSubstr("s.toml:4"), HasSubstr("no motion")));
   EXPECT_THAT(study_tasks_error(kCurl + kCurl), HasSubstr("another task"));
-  EXPECT_THAT(study_tasks_error(kCurl + "shoulder = 0.1\n"), HasSubstr("shoulder_flexion"));
+  EXPECT_THAT(study_tasks_error(kCurl + "shoulder = 0.1\n"),
+              AllOf(HasSubstr("s.toml:"), HasSubstr("task.held.shoulder"), HasSubstr("shoulder_flexion")));
   EXPECT_THAT(study_tasks_error(kCurl + "elbow_flexion = 0.1\n"), HasSubstr("holds every coordinate"));
   EXPECT_THAT(study_tasks_error(kCurl + "[[task.load]]\nbody = \"hand\"\nmass = 1\n"), HasSubstr("no body"));
 }
@@ -130,7 +131,7 @@ TEST_F(RecordedTask, StartsWhereTheRecordingStarts) {
       "[task.held]\nshoulder_flexion = 0\n",
       folder_);
   const Task& task = t.tasks.at(0);
-  ASSERT_TRUE(task.measured && task.drive);
+  ASSERT_TRUE(task.measured && task.controls);
   EXPECT_EQ(task.measured->values.rows(), 21);
   EXPECT_NEAR(task.desired.coordinate[1]->evaluate(0.0).value, 0.4, 1e-9);
   EXPECT_NEAR(task.end, 1.0, 1e-12);

@@ -31,8 +31,8 @@ std::string error_of(const std::string& text) {
 }
 
 std::vector<double> excitations_at(const MuscleStudy& study, double time) {
-  std::vector<double> u(study.drive.excitation.size());
-  study.drive.excitation.evaluate(time, u.data());
+  std::vector<double> u(study.controls.excitation.size());
+  study.controls.excitation.evaluate(time, u.data());
   return u;
 }
 

@@ -126,7 +126,7 @@ void write_files(const std::filesystem::path& folder, const TaskStudy& study, co
     const auto times = task.along->emg[0].excitation.times();
     for (std::size_t k = 0; k < times.size(); ++k) {
       emg += fmt::format("{}", times[k]);
-      for (const Drive& drive : task.along->emg) emg += fmt::format(",{}", drive.excitation.row(k)[0]);
+      for (const MuscleControls& controls : task.along->emg) emg += fmt::format(",{}", controls.excitation.row(k)[0]);
       emg += "\n";
     }
     std::ofstream(folder / fmt::format("ik{}.csv", i)) << angles;
@@ -163,7 +163,7 @@ TEST(EmgRecovery, FilesOfARecordingGiveWhatTheRecordingGives) {
     EXPECT_NEAR(f.value, p.value, p.sigma) << p.name;
     EXPECT_NEAR(f.sigma, p.sigma, 0.5 * p.sigma) << p.name;
   }
-  // Without a stated noise of the moments it is found beside the EMG's error.
+  // Without a stated noise of the moments it is found together with the EMG's error.
   const MuscleAnalysis unknown = from_files(folder, all.tasks.size(), false);
   EXPECT_NEAR(unknown.moment_noise(0), 0.3, 0.1);
   EXPECT_EQ(emg_row(unknown, "residual against the noise").outcome, estimation::Outcome::kNotVerified);

@@ -6,8 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -84,8 +88,10 @@ Eigen::VectorXd stated_noise(const TaskStudy& study) {
 }
 
 /// How a part's tasks go with the standard model and at `theta`; `predicted` in place of simulations where given.
-void add_outcomes(const Part& part, const Eigen::VectorXd& standard, const Eigen::VectorXd& theta,
-                  const std::vector<RowMatrix>& predicted, bool hold_out, int threads, std::vector<TaskOutcome>& out) {
+std::vector<TaskOutcome> outcomes_of(const Part& part, const Eigen::VectorXd& standard, const Eigen::VectorXd& theta,
+                                     const std::vector<RowMatrix>& predicted, bool hold_out, int threads) {
+  std::vector<TaskOutcome> outcomes;
+  if (part.tasks.empty()) return outcomes;
   std::vector<RowMatrix> before = simulate_tasks(part.model(), standard, threads);
   std::vector<RowMatrix> after = predicted.empty() ? simulate_tasks(part.model(), theta, threads) : predicted;
   for (std::size_t s = 0; s < part.tasks.size(); ++s) {
@@ -96,17 +102,19 @@ void add_outcomes(const Part& part, const Eigen::VectorXd& standard, const Eigen
     task.standard = std::move(before[s]);
     task.estimated = std::move(after[s]);
     task.reserve_share = part.tasks[s]->reserve_share;
-    out.push_back(std::move(task));
+    outcomes.push_back(std::move(task));
   }
+  return outcomes;
 }
 
 /// Unseen tasks, output by output.
-std::vector<estimation::PredictedQuantity> predictions_of(const MuscleAnalysis& analysis) {
+std::vector<estimation::PredictedQuantity> predictions_of(const std::vector<TaskOutcome>& tasks,
+                                                          std::span<const estimation::ModelOutput> outputs) {
   std::vector<estimation::PredictedQuantity> list;
-  for (std::size_t j = 0; j < analysis.outputs.size(); ++j) {
+  for (std::size_t j = 0; j < outputs.size(); ++j) {
     std::vector<double> measured, predicted;
     double cross = 0.0, squares = 0.0;
-    for (const TaskOutcome& t : analysis.tasks) {
+    for (const TaskOutcome& t : tasks) {
       if (!t.hold_out || t.estimated.size() == 0) continue;
       double before = kNaN;
       for (Eigen::Index k = 0; k < t.measured.rows(); ++k) {
@@ -120,8 +128,8 @@ std::vector<estimation::PredictedQuantity> predictions_of(const MuscleAnalysis& 
       }
     }
     if (measured.empty()) continue;
-    list.push_back({.name = analysis.outputs[j].name,
-                    .unit = analysis.outputs[j].unit,
+    list.push_back({.name = outputs[j].name,
+                    .unit = outputs[j].unit,
                     .fit = numerics::fit_measures(measured, predicted),
                     .lag1 = squares > 0.0 ? cross / squares : 0.0});
   }
@@ -144,184 +152,213 @@ Model with_values(const TaskStudy& study, std::span<const estimation::Parameter>
   return model;
 }
 
-/// What all domains share: the estimate, one group of parameters, predictions.
-void fill_analysis(const TaskStudy& study, std::vector<estimation::Evidence> rows, MuscleAnalysis& a) {
-  estimation::ParameterGroup group{.name = study.subject.title, .meaning = "muscles"};
-  group.evidence = rows;
+/// Mean NRMSE of the tasks, of those trained and those held out, by the names that estimate.json has for them.
+std::map<std::string, double> fit_of(const std::vector<TaskOutcome>& tasks) {
+  std::map<std::string, double> fit;
+  for (const bool hold_out : {false, true}) {
+    double sum = 0.0, count = 0.0;
+    for (const TaskOutcome& t : tasks) {
+      if (t.hold_out != hold_out || !std::isfinite(t.after.nrmse)) continue;
+      sum += t.after.nrmse;
+      count += 1.0;
+    }
+    if (count > 0.0) fit[hold_out ? "nrmse_unseen" : "nrmse_trained"] = sum / count;
+  }
+  return fit;
+}
+
+/// The group of all muscles' parameters as rows judge it, still without parameters.
+estimation::ParameterGroup judged_group(const std::string& title, std::vector<estimation::Evidence> rows) {
+  estimation::ParameterGroup group{.name = title, .meaning = "muscles"};
   group.judgement = estimation::judge(rows);
   group.verdict = estimation::verdict_of(group.judgement);
-  a.estimate.subject = study.subject.title;
-  a.estimate.method = study.published ? "particle swarm, then pattern search over all tasks"
-                      : study.emg     ? "generalised least squares along the recorded angles of all tasks"
-                                      : "output error over all tasks";
-  a.estimate.evidence = std::move(rows);
-  a.estimate.judgement = group.judgement;
-  a.predictions = predictions_of(a);
-  for (const estimation::PredictedQuantity& q : a.predictions)
-    a.estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
-  double nrmse[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
-  for (const TaskOutcome& t : a.tasks) {
-    if (!std::isfinite(t.after.nrmse)) continue;
-    nrmse[t.hold_out ? 1 : 0] += t.after.nrmse;
-    count[t.hold_out ? 1 : 0] += 1.0;
-  }
-  if (count[0] > 0.0) a.estimate.fit["nrmse_trained"] = nrmse[0] / count[0];
-  if (count[1] > 0.0) a.estimate.fit["nrmse_unseen"] = nrmse[1] / count[1];
-  a.groups.push_back(std::move(group));
+  group.evidence = std::move(rows);
+  return group;
 }
 
-void judge_parameters(const TaskStudy& study, MuscleAnalysis& a) {
-  estimation::ParameterGroup& group = a.groups.front();
-  const TaskEstimate& e = a.result;
-  std::vector<std::string> identified;
-  for (std::size_t i = 0; i < e.verdicts.size(); ++i)
-    if (e.verdicts[i] == TaskVerdict::kIdentified) identified.push_back(e.best.parameters[i].name);
+/// The estimate that all domains share, of a group that is complete.
+estimation::Estimate estimate_of(const estimation::ParameterGroup& group, Eigen::MatrixXd covariance,
+                                 const std::vector<TaskOutcome>& tasks,
+                                 const std::vector<estimation::PredictedQuantity>& predictions) {
+  estimation::Estimate estimate;
+  estimate.subject = group.name;
+  estimate.method = group.method;
+  estimate.verdict = group.reason;
+  estimate.parameters = group.parameters;
+  estimate.covariance = std::move(covariance);
+  estimate.evidence = group.evidence;
+  estimate.judgement = group.judgement;
+  for (const estimation::PredictedQuantity& q : predictions)
+    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+  for (const auto& [name, value] : fit_of(tasks)) estimate.fit[name] = value;
+  return estimate;
+}
+
+std::string method_of(const TaskStudy& study) {
+  if (study.published) return "particle swarm, then pattern search over all tasks";
+  return study.emg ? "generalised least squares along the recorded angles of all tasks" : "output error over all tasks";
+}
+
+/// A residual beyond the noise widens what it cannot refuse (Birge 1932): the factor of all variances.
+double widening_of(const TaskEstimate& e) { return e.chi_square > 1.0 ? e.chi_square : 1.0; }
+
+/// The estimate's parameters with their intervals widened, and what the group's verdict makes of their words.
+std::vector<estimation::Parameter> judged_parameters(const TaskEstimate& e, estimation::GroupVerdict verdict) {
   std::vector<estimation::Parameter> parameters = e.best.parameters;
-  // A residual beyond the noise widens what it cannot refuse (Birge 1932).
-  if (e.chi_square > 1.0) {
-    for (estimation::Parameter& p : parameters) {
-      if (p.status == estimation::ParameterStatus::kFixed || !std::isfinite(p.sigma)) continue;
-      p.sigma *= std::sqrt(e.chi_square);
+  for (estimation::Parameter& p : parameters) {
+    if (p.status == estimation::ParameterStatus::kFixed) continue;
+    if (widening_of(e) > 1.0 && std::isfinite(p.sigma)) {
+      p.sigma *= std::sqrt(widening_of(e));
       estimation::set_interval(p, std::max(1.0, e.best.degrees_of_freedom));
     }
-    a.estimate.covariance *= e.chi_square;
-  }
-  // Whether an interval is wide is said against the prior here, not against the value.
-  for (estimation::Parameter& p : parameters) {
-    const bool open =
-        p.status == estimation::ParameterStatus::kFixed || p.status == estimation::ParameterStatus::kNotExcited;
-    if (open) continue;
-    if (group.verdict == estimation::GroupVerdict::kRejected) p.status = estimation::ParameterStatus::kRejected;
-    if (group.verdict == estimation::GroupVerdict::kEffective && p.status != estimation::ParameterStatus::kAtBound)
+    // Whether an interval is wide is said against the prior here, not against the value.
+    if (p.status == estimation::ParameterStatus::kNotExcited) continue;
+    if (verdict == estimation::GroupVerdict::kRejected) p.status = estimation::ParameterStatus::kRejected;
+    if (verdict == estimation::GroupVerdict::kEffective && p.status != estimation::ParameterStatus::kAtBound)
       p.status = estimation::ParameterStatus::kEffective;
   }
-  const auto& why = group.judgement.parameters.decided_by;
-  const std::string first = why.empty() ? "it could not be judged" : why.front();
-  if (group.verdict == estimation::GroupVerdict::kIdentified) {
-    group.reason =
-        fmt::format("{} of {} parameters identified from {} tasks", identified.size(), e.verdicts.size(),
-                    std::count_if(a.tasks.begin(), a.tasks.end(), [](const auto& t) { return !t.hold_out; }));
-  } else {
-    group.reason = group.verdict == estimation::GroupVerdict::kEffective
-                       ? fmt::format("predicts, but its values are no physical constants: {}", first)
-                       : fmt::format("rejected: {}", first);
-  }
-  group.method = a.estimate.method;
-  group.parameters = parameters;
-  group.methods.push_back({a.estimate.method, true, e.best.message, parameters});
-  a.estimate.parameters = std::move(parameters);
-  a.estimate.verdict = group.reason;
-  a.identified = estimation::usable(group.verdict) ? with_values(study, a.estimate.parameters) : study.subject.written;
+  return parameters;
 }
 
-/// What to perform next, unless something other than too few tasks speaks against the parameters; said in the row about
-/// what is determined and in the estimate.
-void advise_next(const TaskStudy& study, const MuscleParametricModel& model, const MuscleModelOptions& options,
-                 std::vector<estimation::Evidence>& rows, MuscleAnalysis& a, Progress& progress) {
+/// The group's verdict in a sentence.
+std::string reason_of(const estimation::ParameterGroup& group, const TaskEstimate& e,
+                      const std::vector<TaskOutcome>& tasks) {
+  const auto& why = group.judgement.parameters.decided_by;
+  const std::string first = why.empty() ? "it could not be judged" : why.front();
+  if (group.verdict == estimation::GroupVerdict::kIdentified)
+    return fmt::format("{} of {} parameters identified from {} tasks",
+                       std::count(e.verdicts.begin(), e.verdicts.end(), TaskVerdict::kIdentified), e.verdicts.size(),
+                       std::count_if(tasks.begin(), tasks.end(), [](const auto& t) { return !t.hold_out; }));
+  return group.verdict == estimation::GroupVerdict::kEffective
+             ? fmt::format("predicts, but its values are no physical constants: {}", first)
+             : fmt::format("rejected: {}", first);
+}
+
+/// What to perform next, unless something other than too few tasks speaks against the parameters.
+TaskAdvice advice_for(const TaskStudy& study, const MuscleParametricModel& model, const TaskEstimate& estimate,
+                      const std::vector<estimation::Evidence>& rows, Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
-  const auto determined = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.name == kDetermined; });
+  TaskAdvice advice;
   for (const estimation::Evidence& row : rows) {
     // More tasks mend these.
     if (row.name == kDetermined || row.name == kDistance || row.outcome != estimation::Outcome::kFailed) continue;
-    if (row.bears_on.contains(estimation::Purpose::kParameters)) a.advice.withheld = row.text;
+    if (row.bears_on.contains(estimation::Purpose::kParameters)) advice.withheld = row.text;
   }
-  if (!a.advice.withheld.empty()) return;
+  if (!advice.withheld.empty()) return advice;
   std::vector<int> used;
   for (const Task& task : study.tasks) used.push_back(task.number);
   std::vector<std::string> left_out;
   progress.stage("which further task would tell most");
   const std::vector<PreparedTask> candidates =
       candidate_tasks(*study.subject.system, *study.elbow, used, left_out, progress);
-  if (progress.interrupted()) return;
-  a.advice = advise_task(*study.subject.system, model, options, a.result, candidates, progress);
-  a.advice.left_out.insert(a.advice.left_out.begin(), left_out.begin(), left_out.end());
-  a.advice.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  constexpr std::size_t kNamed = 3;
-  for (std::size_t i = 0; i < std::min(kNamed, a.advice.tasks.size()); ++i) {
-    const AdvisedTask& task = a.advice.tasks[i];
-    a.estimate.next_measurements.push_back(
-        {task.name, a.advice.now.parameter, a.advice.now.share, task.then.parameter, task.then.share});
-  }
-  if (a.advice.tasks.empty() || determined == rows.end() || determined->passed()) return;
-  const AdvisedTask& best = a.advice.tasks.front();
-  determined->advice =
-      fmt::format("perform {} next: the widest interval, {}'s, would go from +-{:.2g} to {:.2g} %; or {}", best.name,
-                  a.advice.now.parameter, 100.0 * a.advice.now.share, 100.0 * best.then.share, determined->advice);
+  if (progress.interrupted()) return advice;
+  advice = advise_task(*study.subject.system, model, model_options(study), estimate, candidates, progress);
+  advice.left_out.insert(advice.left_out.begin(), left_out.begin(), left_out.end());
+  advice.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return advice;
 }
 
+/// The best tasks of an advice, as the estimate names them.
+std::vector<estimation::NextMeasurement> next_measurements(const TaskAdvice& advice) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<estimation::NextMeasurement> next;
+  for (std::size_t i = 0; i < std::min(kNamed, advice.tasks.size()); ++i) {
+    const AdvisedTask& task = advice.tasks[i];
+    next.push_back({task.name, advice.now.parameter, advice.now.share, task.then.parameter, task.then.share});
+  }
+  return next;
+}
+
+/// The row about what is determined, where it did not pass, says which task is best.
+std::vector<estimation::Evidence> with_advice(std::vector<estimation::Evidence> rows, const TaskAdvice& advice) {
+  for (estimation::Evidence& row : rows) {
+    if (row.name != kDetermined || row.passed() || advice.tasks.empty()) continue;
+    row.advice = fmt::format("perform {} next: {}; or {}", advice.tasks.front().name, advice.text(), row.advice);
+  }
+  return rows;
+}
+
+/// What a route found, and what it asked of the model.
+struct RouteResult {
+  TaskEstimate estimate;
+  EmgEstimate emg;  ///< with EMG: what profiles need
+  std::vector<estimation::ModelEvaluation> evaluations;
+  std::size_t resumed = 0;
+  std::vector<std::string> warnings;
+};
+
 /// By the published search.
-TaskEstimate published_estimate(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
-                                const numerics::ValueLog* log, MuscleAnalysis& a, Progress& progress) {
+RouteResult by_published_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+                               const numerics::ValueLog* log, Progress& progress) {
   PublishedRouteOptions options = *study.published;
   if (log != nullptr && options.evaluation.log.empty())
     options.evaluation.log = log->path().parent_path() / "search.csv";
   PublishedRouteResult found = published_route(*part.forward, part.measured, options, progress);
-  a.evaluations = std::move(found.evaluations);
-  a.resumed = found.resumed * part.tasks.size();
+  RouteResult result;
+  result.evaluations = std::move(found.evaluations);
+  result.resumed = found.resumed * part.tasks.size();
   if (found.theta.size() == 0 || progress.interrupted()) {
-    TaskEstimate none;
-    none.best.message = found.message();
-    return none;
+    result.estimate.best.message = found.message();
+    return result;
   }
   for (std::size_t s = 0; s < found.nrmse.size(); ++s) {
     if (!(found.nrmse[s] <= options.tolerance))
-      a.estimate.warnings.push_back(
+      result.warnings.push_back(
           fmt::format("the published search ended with an NRMSE of {:.2g} in {}, more than the "
                       "tolerance of {:.2g}: {}",
                       found.nrmse[s], part.tasks[s]->name, options.tolerance, found.pattern.message()));
   }
-  TaskSearch search{.steps = static_cast<int>(a.evaluations.size()), .message = found.message()};
-  TaskEstimate estimate =
-      describe_estimate(*part.logged, part.measured, noise, found.theta, std::move(search), progress);
-  estimate.seconds = found.seconds;
-  estimate.simulations = {.values = found.simulations};
-  return estimate;
+  TaskSearch search{.steps = static_cast<int>(result.evaluations.size()), .message = found.message()};
+  result.estimate = describe_estimate(*part.logged, part.measured, noise, found.theta, std::move(search), progress);
+  result.estimate.seconds = found.seconds;
+  result.estimate.simulations = {.values = found.simulations};
+  return result;
 }
 
-/// By the route that the study asks for; with EMG `emg` holds what profiles need.
-TaskEstimate estimated(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
-                       const numerics::ValueLog* log, EmgEstimate& emg, MuscleAnalysis& a, Progress& progress) {
-  if (study.published) return published_estimate(study, part, noise, log, a, progress);
-  TaskEstimate estimate;
+/// By the route that the study asks for.
+RouteResult by_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+                     const numerics::ValueLog* log, Progress& progress) {
+  if (study.published) return by_published_route(study, part, noise, log, progress);
+  RouteResult result;
   if (part.along) {
-    emg = estimate_from_emg(*part.along, *part.logged, part.measured, noise, study.emg->error, study.search, progress);
-    estimate = emg.estimate;
+    result.emg =
+        estimate_from_emg(*part.along, *part.logged, part.measured, noise, study.emg->error, study.search, progress);
+    result.estimate = result.emg.estimate;
   } else {
-    estimate = estimate_from_tasks(*part.logged, part.measured, noise, study.search, progress);
+    result.estimate = estimate_from_tasks(*part.logged, part.measured, noise, study.search, progress);
   }
-  a.evaluations = part.logged->evaluations();
-  a.resumed = part.logged->resumed();
-  return estimate;
+  result.evaluations = part.logged->evaluations();
+  result.resumed = part.logged->resumed();
+  return result;
 }
 
-/// Profiles and posterior, where the study asks for them.
-void look_around(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, const EmgEstimate& emg,
-                 numerics::ValueLog* log, MuscleAnalysis& a, Progress& progress) {
-  if (!study.profiles.empty()) {
-    progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
-    const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
-    a.profiles = study.emg ? profile_tasks(*emg.model, emg.measured, one, a.result, study.profiles, progress)
-                           : profile_tasks(*part.logged, part.measured, noise, a.result, study.profiles, progress);
-  }
-  if (!study.posterior || progress.interrupted()) return;
+/// Profiles, where the study asks for them.
+estimation::ProfileResult profiles_of(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
+                                      const RouteResult& found, Progress& progress) {
+  if (study.profiles.empty()) return {};
+  progress.stage(fmt::format("profile likelihood of {} parameters", study.profiles.size()));
+  if (!study.emg) return profile_tasks(*part.logged, part.measured, noise, found.estimate, study.profiles, progress);
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(signed_index(study.outputs.size()));
+  return profile_tasks(*found.emg.model, found.emg.measured, one, found.estimate, study.profiles, progress);
+}
+
+/// The posterior, where the study asks for it. The densities are kept, a number each, not the responses.
+estimation::PosteriorSample posterior_of(const TaskStudy& study, const Part& part, const RouteResult& found,
+                                         numerics::ValueLog* log, Progress& progress) {
+  if (!study.posterior || progress.interrupted()) return {};
   progress.stage(fmt::format("posterior of {} parameters", study.unknowns.size()));
-  // The densities are kept, a number each, not the responses.
-  a.posterior = study.emg
-                    ? sample_tasks(emg.model->on(part.model()), emg.measured, a.result, *study.posterior, progress, log)
-                    : sample_tasks(part.model(), part.measured, a.result, *study.posterior, progress, log);
+  if (!study.emg) return sample_tasks(part.model(), part.measured, found.estimate, *study.posterior, progress, log);
+  return sample_tasks(found.emg.model->on(part.model()), found.emg.measured, found.estimate, *study.posterior, progress,
+                      log);
 }
 
-/// Why no search came to an end, with the first task's time and state.
+/// Why no search came to an end, with the first task that cannot be simulated where the first search begins.
 std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEstimate& e) {
-  std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
-  Progress silent;
-  for (const TaskRecording* task : part.tasks) {
-    if (!task->forward) continue;
-    const MotionSegment& segment = *task->forward;
-    const MuscleTrajectory t = simulate_forward(
-        *segment.system, segment.start, segment.drive,
-        {.begin = segment.time.front(), .end = segment.time.back(), .accuracy = study.accuracy}, silent);
-    if (!t.usable()) return fmt::format("{}; {}: {}", text, segment.name, t.message());
+  const std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
+  const Eigen::VectorXd start = study.search.first.size() > 0 ? study.search.first : start_values(study.unknowns);
+  for (std::size_t s = 0; s < part.tasks.size(); ++s) {
+    const std::string trouble = part.along ? part.along->trouble(s, start) : part.forward->trouble(s, start);
+    if (!trouble.empty()) return fmt::format("{}; {}: {}", text, part.tasks[s]->name, trouble);
   }
   return text;
 }
@@ -375,31 +412,43 @@ MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::Va
   a.outputs.assign(trained.model().outputs().begin(), trained.model().outputs().end());
   const Eigen::VectorXd noise = stated_noise(study);
   progress.stage(fmt::format("estimating {} parameters from {} tasks", study.unknowns.size(), trained.tasks.size()));
-  EmgEstimate emg;
-  a.result = estimated(study, trained, noise, log, emg, a, progress);
+  RouteResult found = by_route(study, trained, noise, log, progress);
+  a.result = found.estimate;
+  a.evaluations = std::move(found.evaluations);
+  a.resumed = found.resumed;
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
   if (!a.result.usable()) throw std::runtime_error(why_diverged(study, trained, a.result));
-  a.moment_noise = emg.noise;
-  a.emg_share = emg.input_share;
-  a.estimate.covariance = a.result.best.covariance;
+  a.moment_noise = found.emg.noise;
+  a.emg_share = found.emg.input_share;
   const Eigen::VectorXd standard = start_values(study.unknowns), theta = a.result.best.theta;
   // Those of the whitened outputs are in no unit that a reader knows.
   const std::vector<RowMatrix> predicted = study.emg ? std::vector<RowMatrix>() : a.result.best.predicted;
-  add_outcomes(trained, standard, theta, predicted, false, progress.threads(), a.tasks);
-  if (!unseen.tasks.empty()) add_outcomes(unseen, standard, theta, {}, true, progress.threads(), a.tasks);
+  a.tasks = outcomes_of(trained, standard, theta, predicted, false, progress.threads());
+  for (TaskOutcome& task : outcomes_of(unseen, standard, theta, {}, true, progress.threads()))
+    a.tasks.push_back(std::move(task));
   a.unused = std::move(all.unused);
   const std::vector<std::string> wraps = path_warnings(study, trained, theta);
   std::vector<estimation::Evidence> rows = judged(study, trained, a, wraps, noise);
-  look_around(study, trained, noise, emg, log, a, progress);
-  if (study.advice && !progress.interrupted())
-    advise_next(study, *trained.forward, model_options(study), rows, a, progress);
+  a.profiles = profiles_of(study, trained, noise, found, progress);
+  a.posterior = posterior_of(study, trained, found, log, progress);
+  if (study.advice && !progress.interrupted()) a.advice = advice_for(study, *trained.forward, a.result, rows, progress);
   a.interrupted = progress.interrupted();
   if (a.interrupted) return a;
-  fill_analysis(study, std::move(rows), a);
-  judge_parameters(study, a);
-  for (const std::string& wrap : wraps) a.estimate.warnings.push_back(wrap);
-  for (const std::string& warning : study.subject.warnings) a.estimate.warnings.push_back(warning);
+  estimation::ParameterGroup group = judged_group(study.subject.title, with_advice(std::move(rows), a.advice));
+  group.method = method_of(study);
+  group.parameters = judged_parameters(a.result, group.verdict);
+  group.reason = reason_of(group, a.result, a.tasks);
+  group.methods.push_back({group.method, true, a.result.best.message, group.parameters});
+  a.predictions = predictions_of(a.tasks, a.outputs);
+  a.estimate = estimate_of(group, widening_of(a.result) * a.result.best.covariance, a.tasks, a.predictions);
+  a.estimate.next_measurements = next_measurements(a.advice);
+  for (const std::span<const std::string> more :
+       {std::span<const std::string>(found.warnings), std::span<const std::string>(wraps),
+        std::span<const std::string>(study.subject.warnings)})
+    a.estimate.warnings.insert(a.estimate.warnings.end(), more.begin(), more.end());
+  a.identified = estimation::usable(group.verdict) ? with_values(study, group.parameters) : study.subject.written;
+  a.groups.push_back(std::move(group));
   return a;
 }
 
@@ -427,21 +476,20 @@ MuscleAnalysis validate(const TaskStudy& study, const estimation::Estimate& esti
                      fmt::format("no task is left to validate on: {}", fmt::join(all.unused, "; ")));
   a.outputs.assign(unseen.model().outputs().begin(), unseen.model().outputs().end());
   progress.stage("validating");
-  add_outcomes(unseen, start_values(study.unknowns), theta, {}, true, progress.threads(), a.tasks);
+  a.tasks = outcomes_of(unseen, start_values(study.unknowns), theta, {}, true, progress.threads());
   a.unused = std::move(all.unused);
+  a.predictions = predictions_of(a.tasks, a.outputs);
   const Eigen::VectorXd noise = stated_noise(study);
-  fill_analysis(study, {judge_hold_out(a.tasks, noise.size() > 0 ? noise(0) : 0.0, kNaN)}, a);
-  a.estimate.parameters = estimate.parameters;
-  a.estimate.covariance = estimate.covariance;
-  a.estimate.method = estimate.method;
-  estimation::ParameterGroup& group = a.groups.front();
+  estimation::ParameterGroup group =
+      judged_group(study.subject.title, {judge_hold_out(a.tasks, noise.size() > 0 ? noise(0) : 0.0, kNaN)});
   const bool holds = group.judgement.prediction.grade != estimation::Grade::kNo;
   group.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-  group.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", a.estimate.evidence.front().text);
+  group.reason = fmt::format("{}: {}", holds ? "holds" : "does not hold", group.evidence.front().text);
   group.method = estimate.method;
   group.parameters = estimate.parameters;
-  a.estimate.verdict = group.reason;
+  a.estimate = estimate_of(group, estimate.covariance, a.tasks, a.predictions);
   a.identified = with_values(study, estimate.parameters);
+  a.groups.push_back(std::move(group));
   return a;
 }
 

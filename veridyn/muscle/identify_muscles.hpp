@@ -26,7 +26,7 @@ struct MuscleAnalysis : estimation::Analysis {
   estimation::PosteriorSample posterior;  ///< where the study asks for it
   TaskAdvice advice;                      ///< empty where the study asks for none
   // Of recordings with EMG:
-  Eigen::VectorXd moment_noise = {};   ///< of the outputs, as stated or as found beside the EMG's error
+  Eigen::VectorXd moment_noise = {};   ///< of the outputs, as stated or as found together with the EMG's error
   std::vector<double> emg_share = {};  ///< by trained task: share of the residual's variance that is the EMG's error
   double preparing_s = 0.0;            ///< computed muscle control of the tasks
   /// What the search asked of the trained tasks: misfit is the NRMSE of `task_error`.
@@ -37,8 +37,8 @@ struct MuscleAnalysis : estimation::Analysis {
 /// The full pipeline: tasks prepared, measured (or a person simulated), estimate from those that are not held out,
 /// hold-out, verdict.
 /// @param log  keeps what search, profiles and posterior ask of the model, so that a run which was cut off goes on to
-/// the same bits; of this study alone. nullptr: nothing is kept. The published search has its own log beside it,
-/// `search.csv`, where the study names none
+/// the same bits; of this study alone. nullptr: nothing is kept. The published search keeps its own log in the same
+/// folder, `search.csv`, where the study names none
 /// @throws InputError when no task can be estimated from, std::runtime_error when every search diverges, naming task,
 /// time and state.
 [[nodiscard]] MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log = nullptr);

@@ -18,8 +18,8 @@ MuscleResult forward(const MuscleStudy& study, Progress& progress) {
   const ForwardOptions options{
       .begin = study.begin, .end = study.end, .rate_Hz = study.rate_Hz, .accuracy = study.accuracy};
   MuscleResult result;
-  result.trajectory = simulate_forward(*study.system, study.start, study.drive, options, progress);
-  result.drive = study.drive;
+  result.trajectory = simulate_forward(*study.system, study.start, study.controls, options, progress);
+  result.controls = study.controls;
   return result;
 }
 
@@ -82,7 +82,7 @@ MuscleResult follow(const MuscleStudy& study, Progress& progress) {
   MuscleResult result;
   result.trajectory = std::move(found.trajectory);
   result.desired = std::move(found.desired);
-  result.drive = std::move(found.drive);
+  result.controls = std::move(found.controls);
   result.overloaded = std::move(found.overloaded);
   if (!result.overloaded.empty()) {
     result.warnings.push_back(fmt::format(

@@ -21,7 +21,7 @@ struct MuscleResult {
   /// optimization.
   estimation::RowMatrix generalized_force;
   /// Excitations and reserves that, from the first row's state on, repeat the motion.
-  std::optional<Drive> drive;
+  std::optional<MuscleControls> controls;
   std::vector<double> overloaded;  ///< instants at which the muscles could not produce the desired motion [s]
   std::vector<std::string> notes;
   std::vector<std::string> warnings;

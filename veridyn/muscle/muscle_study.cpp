@@ -4,17 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle {
 namespace {
 
-constexpr internal::Words<MuscleMethod, 4> kMethods{
-    {{"forward", MuscleMethod::kForward},
-     {"inverse dynamics", MuscleMethod::kInverseDynamics},
-     {"static optimization", MuscleMethod::kStaticOptimization},
-     {"computed muscle control", MuscleMethod::kComputedMuscleControl}}};
+constexpr EnumArray<MuscleMethod, const char*, 4> kMethodNames{
+    {{"forward", "inverse dynamics", "static optimization", "computed muscle control"}}};
+
+MuscleMethod read_method(const StudyTable& motion) {
+  const std::vector<std::string> names(kMethodNames.begin(), kMethodNames.end());
+  const std::string name = motion.choice_or("method", names, names.front());
+  return static_cast<MuscleMethod>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 /// Beginning, duration, and the motion of a file where there is one.
 void read_times(const StudyTable& motion, MuscleStudy& study) {
@@ -120,7 +126,7 @@ ControlOptions internal::read_control_options(const StudyTable& table) {
   return o;
 }
 
-std::string_view method_name(MuscleMethod method) { return kMethods[static_cast<std::size_t>(method)].first; }
+std::string_view method_name(MuscleMethod method) { return kMethodNames[method]; }
 
 bool is_muscle_study(const StudyTable& root) {
   return root.is_table("subject") && root.table("subject").is_text("model");
@@ -132,7 +138,7 @@ MuscleStudy read_study(const Study& source, Progress& progress) {
   study.title = root.text_or("title", "");
   static_cast<void>(root.integer_or("seed", 1));  // nothing here is random, but `--seed` sets it
   const StudyTable motion = root.table("motion");
-  study.method = internal::word_or_first(motion, "method", kMethods);
+  study.method = read_method(motion);
   refuse_other_methods(motion, study.method);
   internal::read_subject(root.table("subject"), study, progress);
   study.motion.coordinate.resize(study.system->model().coordinates.size());

@@ -53,7 +53,7 @@ struct MuscleStudy {
   double reserve_force = 1.0;  ///< of the actuator that helps each free coordinate [N m or N]; 0: none
 
   StartState start;                               ///< forward
-  Drive drive;                                    ///< forward
+  MuscleControls controls;                        ///< forward
   Motion motion;                                  ///< otherwise: every free and driven coordinate
   std::vector<std::string> desired_coordinates;   ///< coordinates whose motion the study gives; the others rest
   ControlOptions control;                         ///< computed muscle control, begin to rate set from above

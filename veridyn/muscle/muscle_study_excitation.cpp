@@ -54,8 +54,8 @@ Interpolation read_interpolation(const StudyTable& table) {
   return word_or_first(table, "interpolation", kWords);
 }
 
-Drive drive_of(const SignalTable& signals, const MusculoskeletalSystem& system, std::span<const double> otherwise,
-               Interpolation interpolation, double reserve_force) {
+MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
+                           std::span<const double> otherwise, Interpolation interpolation, double reserve_force) {
   return {without_repeats(make_excitations(signals, system.model(), otherwise, interpolation)),
           read_reserves(signals, system, reserve_force, interpolation)};
 }
@@ -73,7 +73,8 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
     if (!steps.empty()) motion.fail("excitation_step", "and motion.excitation_file exclude each other");
     const std::filesystem::path path = motion.file("excitation_file");
     study.inputs.push_back(path);
-    study.drive = drive_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force);
+    study.controls =
+        controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force);
     return;
   }
   std::vector<double> times{study.begin}, values = now;
@@ -90,7 +91,7 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
     times.push_back(time);
     values.insert(values.end(), now.begin(), now.end());
   }
-  study.drive.excitation = {std::move(times), std::move(values), now.size(), Interpolation::kHold};
+  study.controls.excitation = {std::move(times), std::move(values), now.size(), Interpolation::kHold};
 }
 
 }  // namespace veridyn::muscle::internal

@@ -55,8 +55,9 @@ struct RampOrigin {
 /// `interpolation`, "linear" when left out.
 [[nodiscard]] Interpolation read_interpolation(const StudyTable& table);
 /// Excitations and reserves of a file; muscles without a column keep `otherwise`.
-[[nodiscard]] Drive drive_of(const SignalTable& signals, const MusculoskeletalSystem& system,
-                             std::span<const double> otherwise, Interpolation interpolation, double reserve_force);
+[[nodiscard]] MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSystem& system,
+                                         std::span<const double> otherwise, Interpolation interpolation,
+                                         double reserve_force);
 /// Options of computed muscle control as `[motion.control]` has them: window, gains, least and greatest control.
 [[nodiscard]] ControlOptions read_control_options(const StudyTable& table);
 /// `[motion.start]`, `[motion.start_speed]`.

@@ -102,14 +102,14 @@ void match_to_reference(const StudyTable& subject, MuscleStudy& study, Progress&
           fmt::format("{}: normalised fibre lengths still differ from the reference's by {:.2g} (root mean square): "
                       "another path, or other curves",
                       name, fiber.error));
-    MusculotendonParameters<double>& own_values =
+    MusculotendonParameters<double>& start_values =
         study.written.muscles[at(study.written.muscle(name))].parameters.musculotendon;
     const auto set = [&](const char* parameter, double& target, double value) {
       study.changes.push_back({name, parameter, target, value});
       target = value;
     };
-    set("optimal_fiber_length", own_values.optimal_fiber_length, fiber.optimal_fiber_length);
-    set("tendon_slack_length", own_values.tendon_slack_length, fiber.tendon_slack_length);
+    set("optimal_fiber_length", start_values.optimal_fiber_length, fiber.optimal_fiber_length);
+    set("tendon_slack_length", start_values.tendon_slack_length, fiber.tendon_slack_length);
   }
   if (matched == 0) subject.fail(key, fmt::format("has no muscle that matches one of '{}'", study.model_name));
 }

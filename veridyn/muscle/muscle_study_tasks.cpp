@@ -180,8 +180,8 @@ void read_recording(const StudyTable& table, const MuscleStudy& subject, const S
     const std::filesystem::path path = table.file("excitation_file");
     const SignalTable signals = read_signals(path);
     const std::vector<double> least(model.muscles.size(), settings.elbow.control.min_control);
-    task.drive = internal::drive_of(signals, *subject.system, least, internal::read_interpolation(table),
-                                    settings.reserve_force);
+    task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table),
+                                          settings.reserve_force);
     if (!table.has("measured") && !table.has("file") && !table.has("duration")) {
       task.begin = signals.time.front();
       task.end = signals.time.back();
@@ -193,7 +193,7 @@ void read_recording(const StudyTable& table, const MuscleStudy& subject, const S
     out.inputs.push_back(path);
   }
   if (!table.has("measured")) return;
-  if (!task.drive)
+  if (!task.controls)
     table.fail("measured",
                "needs excitation_file, the controls with which it was performed: those computed for the "
                "standard model are not this person's");
@@ -212,7 +212,7 @@ void read_recording(const StudyTable& table, const MuscleStudy& subject, const S
         std::any_of(task.held.begin(), task.held.end(), [&](const auto& h) { return at(h.coordinate) == c; });
     if (!held) task.desired.coordinate[c] = resting_spline(first);
   }
-  const auto covers = task.drive->excitation.times();
+  const auto covers = task.controls->excitation.times();
   const double step = time.size() > 1 ? time[1] - time[0] : 0.0;
   if (!covers.empty() && covers.size() > 1 && (covers.front() > time.front() + step || covers.back() < time.front()))
     table.fail("measured", fmt::format("begins at {:g} s, its controls are from {:g} to {:g} s: they need one clock",
@@ -278,7 +278,7 @@ Task read_task(const StudyTable& table, const MuscleStudy& subject, const Shared
   for (const StudyTable& load : table.tables("load")) task.loads.push_back(internal::read_load(load, model));
   const bool moves = read_task_ramps(table, subject, task);
   read_recording(table, subject, settings, outputs, task, out);
-  if (!moves && !task.drive)
+  if (!moves && !task.controls)
     table.fail("name",
                fmt::format("= '{}' has no motion: it needs [[task.ramp]], a file or an excitation_file", task.name));
   if (table.has("duration") && !task.measured) task.end = task.begin + table.positive("duration", "s");

@@ -29,7 +29,7 @@ Recording motion_table(const MuscleStudy& study, const MuscleResult& result) {
     recording.add(make_channel(k.name, k.unit(), time, column(t.q, c)));
     recording.add(make_channel(k.name + "_speed", k.unit() + "/s", time, column(t.qdot, c)));
     if (study.method == MuscleMethod::kComputedMuscleControl)
-      recording.add(make_channel(k.name + "_wish", k.unit(), time, column(result.desired, c)));
+      recording.add(make_channel(k.name + "_desired", k.unit(), time, column(result.desired, c)));
     if (result.generalized_force.size() > 0)
       recording.add(make_channel(k.name + "_force", force_unit, time, column(result.generalized_force, c)));
     if (!all_zero(t.reserve)) recording.add(make_channel(k.name + "_reserve", force_unit, time, column(t.reserve, c)));
@@ -91,10 +91,10 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
 }
 
 std::optional<io::Storage> control_storage(const MuscleStudy& study, const MuscleResult& result) {
-  if (!result.drive) return std::nullopt;
+  if (!result.controls) return std::nullopt;
   const Model& model = study.system->model();
-  const ControlSignals& excitation = result.drive->excitation;
-  const ControlSignals& reserve = result.drive->reserve;
+  const ControlSignals& excitation = result.controls->excitation;
+  const ControlSignals& reserve = result.controls->reserve;
   std::vector<int> reserved;
   if (reserve.size() > 0) {
     const std::span<const int> free = study.system->reduction().free();

@@ -52,7 +52,7 @@ std::vector<ControlSignals> true_envelopes(const PreparedTask& task, const EmgSe
     for (std::size_t k = 0; k < time.size(); ++k) {
       for (std::size_t m = 0; m < muscles; ++m) {
         if (emg.signal_of[m] != static_cast<int>(s)) continue;
-        task.drive.excitation.evaluate(time[k] + hidden.delay[m], u.data());
+        task.controls.excitation.evaluate(time[k] + hidden.delay[m], u.data());
         e[k] += u[m] / (hidden.gain[m] * sharing);
       }
     }
@@ -133,7 +133,7 @@ std::optional<TaskRecording> recorded_of_person(const TaskStudy& study, const Pr
   const auto system = person_system(study, task.task);
   MotionSegment segment = segment_of(task);
   segment.system = system.get();
-  segment.drive.excitation = by_muscle(truth, *study.emg);
+  segment.controls.excitation = by_muscle(truth, *study.emg);
   std::vector<MuscleOutput> outputs;
   std::vector<int> coordinates(system->reduction().free().begin(), system->reduction().free().end());
   for (const int c : coordinates) outputs.push_back({MuscleOutputKind::kValue, c, 0.0});

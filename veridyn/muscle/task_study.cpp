@@ -207,7 +207,7 @@ void read_search(const StudyTable& table, const std::string& no_elbow, TaskStudy
     table.fail("estimate_start", "has no meaning with [emg]: the angles are those of the recording from the beginning");
   study.profiles = estimation::read_profiles(table, free_unknowns(study.unknowns));
   study.posterior = read_posterior(table, study);
-  const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.drive; });
+  const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.controls; });
   study.advice = table.flag_or("advice", study.elbow && !recorded && !study.emg);
   if (study.advice && study.emg)
     table.fail("advice", "has no meaning with [emg]: the EMG of a task that was not performed is not known");

@@ -41,7 +41,7 @@ std::vector<Fact> task_facts(const TaskStudy& study, const MuscleAnalysis& a) {
       list.push_back(
           {fmt::format("Noise of {}", a.outputs[j].name),
            fmt::format("{:.3g} {}{}", a.moment_noise(signed_index(j)), a.outputs[j].unit,
-                       study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found in addition to the EMG's error)")});
+                       study.outputs[j].noise_sd > 0.0 ? " (stated)" : " (found together with the EMG's error)")});
     if (!a.emg_share.empty())
       list.push_back(
           {"Error of the EMG", fmt::format("{:.0f} % of the residual's variance",
@@ -141,6 +141,16 @@ Section advice_section(const MuscleAnalysis& a) {
       "{} tasks that were not performed, at the estimate and with the controls with which the standard model follows "
       "them: what the widest interval would be with one of them added.",
       a.advice.now.parameter, 100.0 * a.advice.now.share, a.advice.tasks.size())});
+  if (a.advice.of_prior)
+    section.blocks.emplace_back(Paragraph{
+        "No parameter is identified, and no single task would make one so: these widths are nearly the "
+        "priors', sensitivities change within them, and what a task brings may be far from what is foretold."});
+  else if (!a.advice.left_to_prior.empty())
+    section.blocks.emplace_back(
+        Paragraph{fmt::format("Only parameters count that are identified, or would be with one of these tasks. Left to "
+                              "their priors, whichever "
+                              "task is added: {}.",
+                              fmt::join(a.advice.left_to_prior, ", "))});
   Table table{.title = "Which task next",
               .columns = {{.name = "task", .align = Align::kLeft},
                           {.name = "now", .unit = "%", .digits = 3, .group = "widest interval, +-"},

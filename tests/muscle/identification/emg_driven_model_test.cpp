@@ -27,7 +27,7 @@ ControlSignals smooth_excitations(std::size_t muscles) {
   return {time, values, muscles, Interpolation::kLinear};
 }
 
-Drive column_of(const ControlSignals& all, std::size_t column) {
+MuscleControls column_of(const ControlSignals& all, std::size_t column) {
   std::vector<double> values;
   for (std::size_t k = 0; k < all.times().size(); ++k) values.push_back(all.row(k)[column]);
   return {ControlSignals({all.times().begin(), all.times().end()}, values, 1, all.interpolation()), {}};
@@ -53,7 +53,7 @@ struct MovedArm {
     MotionSegment segment;
     segment.start = default_start(system.model());
     segment.start.q(1) = 0.6;
-    segment.drive = {smooth_excitations(6), {}};
+    segment.controls = {smooth_excitations(6), {}};
     for (int k = 0; k <= 700; ++k) segment.time.push_back(0.001 * k);
     std::vector<MuscleOutput> outputs{{MuscleOutputKind::kValue, 0, 0.0}, {MuscleOutputKind::kValue, 1, 0.0}};
     for (const MuscleOutput& output : moments(system.model())) outputs.push_back(output);
@@ -183,6 +183,29 @@ TEST_P(EmgDrivenArm, DerivativesAreThoseOfCentralDifferences) {
 INSTANTIATE_TEST_SUITE_P(PathsAndTendons, EmgDrivenArm,
                          ::testing::Combine(::testing::Values(PathSource::kExact, PathSource::kFitted),
                                             ::testing::Bool()));
+
+TEST(EmgDrivenModel, SaysWhichMuscleCannotBeSimulatedAndWhere) {
+  const MovedArm arm(load_model("arm").model(), PathSource::kFitted, {"brachialis.optimal_fiber_length"});
+  const EmgDrivenModel model = arm.along(10, 1e-6);
+  EXPECT_EQ(model.trouble(0, arm.theta), "");
+  EXPECT_THAT(model.trouble(0, Eigen::VectorXd::Constant(1, -0.1)), HasSubstr("cannot have these parameters"));
+  // A path without a number: the fibre has no equilibrium with it.
+  EmgSegment broken;
+  broken.begin = 0.0;
+  broken.time = {0.0, 0.1};
+  for (std::size_t m = 0; m < 6; ++m) {
+    const double length = m == 2 ? std::nan("") : 0.4;
+    broken.length.push_back(numerics::PiecewisePolynomial::quintic_spline(std::vector<double>{0.0, 0.1, 0.2},
+                                                                          std::vector<double>(3, length)));
+    broken.emg.push_back({ControlSignals({0.1}), {}});
+  }
+  const std::vector<MuscleOutput> outputs{
+      parse_output(arm.system.model(), arm.system.model().muscles[2].name() + ".tendon_force", "test")};
+  broken.arm.setZero(2, 6);
+  const EmgDrivenModel none(arm.system, arm.unknowns, {broken}, outputs, {0, 1, 2, 3, 4, 5}, 1e-6);
+  EXPECT_THAT(none.trouble(0, arm.theta),
+              ::testing::StartsWith(arm.system.model().muscles[2].name() + ": the simulation diverges at 0 s"));
+}
 
 }  // namespace
 }  // namespace veridyn::muscle

@@ -102,7 +102,8 @@ TEST(PublishedRoute, FindsTheHiddenPersonAsTheGradientDoesWithManyMoreSimulation
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   ASSERT_TRUE(gradient.usable()) << gradient.message;
   const double gradient_error = (gradient.theta - person.hidden()).cwiseAbs().maxCoeff();
-  // Without noise both come to the person; the gradient's search ends when a step is small beside sigma, here 1e-3 rad.
+  // Without noise both come to the person; the gradient's search ends when a step is small against sigma, here 1e-3
+  // rad.
   EXPECT_LT(gradient_error, 1e-4);
   RecordProperty("published",
                  fmt::format("error {:.2g}, {} simulations, {:.2f} s", error, found.simulations, found.seconds));

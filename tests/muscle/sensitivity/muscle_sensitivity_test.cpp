@@ -61,7 +61,7 @@ TEST(MuscleSensitivity, HasTheSameBitsOnOneAndTwoThreads) {
   SensitivityProgress one(1), two(2);
   SensitivityStudyOptions options = small_study();
   options.indices.method = IndexMethod::kVariance;
-  options.indices.variance = {.samples = 4, .resamples = 20};
+  options.indices.variance = {.samples = 4};
   const SampledArm& s = four_tasks();
   const MuscleSensitivity a = analyse_sensitivity(s.arm, s.tasks, options, one);
   const MuscleSensitivity b = analyse_sensitivity(s.arm, s.tasks, options, two);
@@ -98,7 +98,7 @@ TEST(MuscleSensitivity, IsTheMeanOfSimulationsOfTheChangedModel) {
   const auto motion = [&](const MusculoskeletalSystem& system) {
     StartState start = task.start;
     start.fiber_length.resize(0);  // in equilibrium, of these muscles
-    const MuscleTrajectory t = simulate_forward(system, start, task.drive, forward, progress);
+    const MuscleTrajectory t = simulate_forward(system, start, task.controls, forward, progress);
     return Eigen::VectorXd(t.q.col(elbow));
   };
   const Eigen::VectorXd target = motion(*task.system);

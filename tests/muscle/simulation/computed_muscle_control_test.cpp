@@ -32,12 +32,12 @@ TEST(ComputedMuscleControl, FollowsAMotionAndItsReplayIsItself) {
   EXPECT_LT(r.tracking_error(0), 3e-3);
   EXPECT_LT(r.tracking_error(1), 3e-3);
   const MuscleTrajectory replay =
-      simulate_forward(system, r.start, r.drive, {.end = 1.0, .accuracy = options.accuracy}, progress);
+      simulate_forward(system, r.start, r.controls, {.end = 1.0, .accuracy = options.accuracy}, progress);
   EXPECT_EQ(replay.q, r.trajectory.q);
   // The motion is the controls', not the step sizes': found at a finer accuracy, a finer replay yet stays with it.
   const ControlResult fine = computed_muscle_control(system, motion, {.end = 0.5, .accuracy = 1e-9}, progress);
   const MuscleTrajectory finer =
-      simulate_forward(system, fine.start, fine.drive, {.end = 0.5, .accuracy = 1e-10}, progress);
+      simulate_forward(system, fine.start, fine.controls, {.end = 0.5, .accuracy = 1e-10}, progress);
   EXPECT_LT((finer.q - fine.trajectory.q).cwiseAbs().maxCoeff(), 1e-6);
 }
 

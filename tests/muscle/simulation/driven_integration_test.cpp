@@ -13,15 +13,15 @@ using ::testing::Contains;
 using ::testing::Each;
 
 /// All excitations 0.05, from 0.033 s on 0.2.
-Drive step_at_33_ms() {
+MuscleControls step_at_33_ms() {
   std::vector<double> value(6, 0.05);
   value.insert(value.end(), 6, 0.2);
   return {ControlSignals({0.0, 0.033}, value, 6, Interpolation::kHold), {}};
 }
 
-TEST(DriveState, HeldSignalsKeepTheirValueUntilThePieceEnds) {
-  const Drive drive = step_at_33_ms();
-  DriveState signals(drive, 6, 2);
+TEST(ControlsAtInstant, HeldSignalsKeepTheirValueUntilThePieceEnds) {
+  const MuscleControls controls = step_at_33_ms();
+  ControlsAtInstant signals(controls, 6, 2);
   signals.begin_piece(0.0);
   EXPECT_EQ(signals.piece_end(0.0), 0.033);
   EXPECT_THAT(signals.at(0.033).excitation, Each(0.05));
@@ -39,8 +39,8 @@ class DrivenIntegration : public ::testing::Test {
     x[1] = 0.8;
     evaluator.set_motion(x.data(), x.data() + 2);
     evaluator.start_muscles(activation.data(), x.data());
-    const Drive drive = step_at_33_ms();
-    DriveState signals(drive, 6, 2);
+    const MuscleControls controls = step_at_33_ms();
+    ControlsAtInstant signals(controls, 6, 2);
     signals.begin_piece(0.0);
     SystemStepper stepper(system, {.tolerance = 1e-6});
     double t = 0.0;

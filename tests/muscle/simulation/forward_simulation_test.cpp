@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Drive constant_drive(std::size_t muscles, double excitation) {
+MuscleControls constant_drive(std::size_t muscles, double excitation) {
   return {ControlSignals(std::vector<double>(muscles, excitation)), {}};
 }
 
@@ -83,24 +83,24 @@ class BuiltInArm : public ::testing::Test {
 };
 
 TEST_F(BuiltInArm, TighterAccuracyConvergesToOneMotion) {
-  const Drive drive = constant_drive(6, 0.1);
-  const MuscleTrajectory exact = simulate_forward(system, start, drive, {.end = 0.5, .accuracy = 1e-10}, progress);
+  const MuscleControls controls = constant_drive(6, 0.1);
+  const MuscleTrajectory exact = simulate_forward(system, start, controls, {.end = 0.5, .accuracy = 1e-10}, progress);
   ASSERT_TRUE(exact.usable());
   for (const double accuracy : {1e-4, 1e-6}) {
-    const MuscleTrajectory t = simulate_forward(system, start, drive, {.end = 0.5, .accuracy = accuracy}, progress);
+    const MuscleTrajectory t = simulate_forward(system, start, controls, {.end = 0.5, .accuracy = accuracy}, progress);
     EXPECT_LT((t.q - exact.q).cwiseAbs().maxCoeff(), 20.0 * accuracy);
     EXPECT_LT(t.steps, exact.steps);
   }
 }
 
 TEST_F(BuiltInArm, RowsAreTheSameWhateverTheirRate) {
-  const Drive drive = constant_drive(6, 0.1);
-  const MuscleTrajectory coarse = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 50.0}, progress);
-  const MuscleTrajectory fine = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 500.0}, progress);
+  const MuscleControls controls = constant_drive(6, 0.1);
+  const MuscleTrajectory coarse = simulate_forward(system, start, controls, {.end = 0.4, .rate_Hz = 50.0}, progress);
+  const MuscleTrajectory fine = simulate_forward(system, start, controls, {.end = 0.4, .rate_Hz = 500.0}, progress);
   ASSERT_EQ(coarse.time.size(), 21u);
   ASSERT_EQ(fine.time.size(), 201u);
   for (Eigen::Index i = 0; i < 21; ++i) EXPECT_EQ(coarse.q.row(i), fine.q.row(10 * i));
-  const MuscleTrajectory steps = simulate_forward(system, start, drive, {.end = 0.4, .rate_Hz = 0.0}, progress);
+  const MuscleTrajectory steps = simulate_forward(system, start, controls, {.end = 0.4, .rate_Hz = 0.0}, progress);
   EXPECT_DOUBLE_EQ(steps.time.back(), 0.4);
   EXPECT_NEAR(steps.q.row(steps.q.rows() - 1)(1), fine.q(200, 1), 1e-12);
 }
@@ -124,7 +124,7 @@ TEST_F(BuiltInArm, AHeldStepOfTheExcitationActsFromItsInstantOn) {
   const std::vector<double> rest(6, 0.05);
   std::vector<double> value = rest;
   value.insert(value.end(), 6, 0.5);
-  const Drive step{ControlSignals({0.0, 0.1}, value, 6, Interpolation::kHold), {}};
+  const MuscleControls step{ControlSignals({0.0, 0.1}, value, 6, Interpolation::kHold), {}};
   const MuscleTrajectory a = simulate_forward(system, start, step, {.end = 0.2}, progress);
   const MuscleTrajectory b = simulate_forward(system, start, constant_drive(6, 0.05), {.end = 0.2}, progress);
   EXPECT_LT((a.activation.topRows(21) - b.activation.topRows(21)).cwiseAbs().maxCoeff(), 1e-6);
@@ -170,8 +170,9 @@ TEST_F(BuiltInArm, RigidTendonsHaveNoFibreStateAndMoveMuchAlike) {
 
 TEST_F(BuiltInArm, ADivergingSimulationEndsAndSaysWhichStateAndWhen) {
   // A reserve that pulls ever harder, far beyond what a body survives.
-  const Drive drive{ControlSignals(std::vector<double>(6, 0.05)), ControlSignals(std::vector<double>{1e9, 1e9})};
-  const MuscleTrajectory t = simulate_forward(system, start, drive, {.end = 10.0, .max_steps = 2000}, progress);
+  const MuscleControls controls{ControlSignals(std::vector<double>(6, 0.05)),
+                                ControlSignals(std::vector<double>{1e9, 1e9})};
+  const MuscleTrajectory t = simulate_forward(system, start, controls, {.end = 10.0, .max_steps = 2000}, progress);
   EXPECT_FALSE(t.usable());
   EXPECT_LT(t.end_time, 10.0);
   EXPECT_THAT(t.message(), HasSubstr("coordinate"));

@@ -55,7 +55,7 @@ TEST(WrapBands, OfATaskAreInItsWarnings) {
     MotionSegment segment;
     segment.start = default_start(system.model());
     segment.start.q << shoulder_deg * kDegree, 0.5;
-    segment.drive = {ControlSignals(std::vector<double>(6, 0.05)), {}};
+    segment.controls = {ControlSignals(std::vector<double>(6, 0.05)), {}};
     segment.time = time;
     segment.name = name;
     return segment;

@@ -27,7 +27,7 @@ std::vector<Task> elbow_tasks(const Model& model, const std::vector<int>& number
   return tasks;
 }
 
-TEST(PreparedTasks, TheStandardModelFollowsTheWishAndRepeatsItsMotion) {
+TEST(PreparedTasks, TheStandardModelFollowsTheDesiredMotionAndRepeatsItsOwn) {
   const MusculoskeletalSystem arm(load_model("arm").model(), {.paths = PathSource::kFitted});
   Progress progress;
   const std::vector<PreparedTask> tasks = prepare_tasks(arm, elbow_tasks(arm.model(), {8, 12, 30}), progress);
@@ -46,9 +46,9 @@ TEST(PreparedTasks, TheStandardModelFollowsTheWishAndRepeatsItsMotion) {
     ASSERT_GT(q[i].size(), 0);
     double largest = 0.0;
     for (Eigen::Index k = 0; k < q[i].rows(); ++k) {
-      const double wish =
+      const double desired =
           tasks[i].task.desired.coordinate[1]->evaluate(tasks[i].time[static_cast<std::size_t>(k)]).value;
-      largest = std::max(largest, std::abs(q[i](k, 0) - wish));
+      largest = std::max(largest, std::abs(q[i](k, 0) - desired));
     }
     EXPECT_NEAR(largest, tasks[i].tracking_error, 1e-4);
   }
@@ -60,10 +60,10 @@ TEST(PreparedTasks, HaveTheSameBitsOnAnyNumberOfThreads) {
   const std::vector<PreparedTask> a = prepare_tasks(arm, elbow_tasks(arm.model(), {8, 12, 30, 33}), one);
   const std::vector<PreparedTask> b = prepare_tasks(arm, elbow_tasks(arm.model(), {8, 12, 30, 33}), two);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const auto times = a[i].drive.excitation.times();
-    ASSERT_EQ(times.size(), b[i].drive.excitation.times().size());
+    const auto times = a[i].controls.excitation.times();
+    ASSERT_EQ(times.size(), b[i].controls.excitation.times().size());
     for (std::size_t k = 0; k < times.size(); ++k) {
-      const auto x = a[i].drive.excitation.row(k), y = b[i].drive.excitation.row(k);
+      const auto x = a[i].controls.excitation.row(k), y = b[i].controls.excitation.row(k);
       EXPECT_TRUE(std::equal(x.begin(), x.end(), y.begin()));
     }
     EXPECT_EQ(a[i].start.activation, b[i].start.activation);

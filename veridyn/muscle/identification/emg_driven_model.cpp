@@ -28,7 +28,7 @@ struct ChainedColumn {
   double weight = 1.0;  ///< d(parameter)/d(unknown)
 };
 
-/// Columns of the response by one muscle's columns: an output's share of force or fibre length.
+/// View of a segment: columns of the response by one muscle's columns, an output's share of force or fibre length.
 class MuscleShare {
  public:
   MuscleShare(const EmgSegment& segment, std::span<const MuscleOutput> outputs, std::size_t muscles)
@@ -136,6 +136,24 @@ bool EmgDrivenModel::acts(std::size_t segment, std::size_t muscle) const {
   return false;
 }
 
+MuscleAlongPath EmgDrivenModel::along(std::size_t segment, std::size_t m, const MuscleValues& values) const {
+  const EmgSegment& s = segments_[segment];
+  const MuscleControls& controls = signal_of_[m] >= 0 ? s.emg[at(signal_of_[m])] : least_[m];
+  return {alone_[m], s.length[m],       controls,       s.begin,        s.time,
+          accuracy_, values.muscles[m], values.gain[m], values.delay[m]};
+}
+
+std::string EmgDrivenModel::trouble(std::size_t segment, const Eigen::VectorXd& theta) const {
+  const MuscleValues values = values_at(system_->muscles(), unknowns_, theta);
+  if (!values.possible()) return "a muscle cannot have these parameters";
+  PathMuscleResponse out;
+  for (std::size_t m = 0; m < alone_.size(); ++m) {
+    if (acts(segment, m) && !simulate_along_path(along(segment, m, values), {}, out))
+      return fmt::format("{}: {}", system_->model().muscles[m].name(), out.trouble);
+  }
+  return {};
+}
+
 bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              estimation::ModelResponse& response) const {
   const EmgSegment& s = segments_[segment];
@@ -168,10 +186,7 @@ bool EmgDrivenModel::respond(std::size_t segment, const Eigen::VectorXd& theta, 
                            .field = name.field});
       }
     }
-    const Drive& drive = signal_of_[m] >= 0 ? s.emg[at(signal_of_[m])] : least_[m];
-    const MuscleAlongPath muscle{alone_[m], s.length[m],       drive,          s.begin,        s.time,
-                                 accuracy_, values.muscles[m], values.gain[m], values.delay[m]};
-    if (!simulate_along_path(muscle, columns, out)) return false;
+    if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       response.output.data()[row] += factor * (of_force ? out.force[k] : out.fiber_length[k]);
       auto to = response.sensitivity.row(signed_index(row));
@@ -211,9 +226,7 @@ bool EmgDrivenModel::error_response(std::size_t segment, const Eigen::VectorXd& 
   PathMuscleResponse out;
   for (std::size_t m = 0; m < alone_.size(); ++m) {
     if (signal_of_[m] < 0 || !acts(segment, m)) continue;
-    const MuscleAlongPath muscle{alone_[m], s.length[m],       s.emg[at(signal_of_[m])], s.begin,        s.time,
-                                 accuracy_, values.muscles[m], values.gain[m],           values.delay[m]};
-    if (!simulate_along_path(muscle, columns, out)) return false;
+    if (!simulate_along_path(along(segment, m, values), columns, out)) return false;
     share.for_each(m, [&](std::size_t k, std::size_t row, double factor, bool of_force) {
       const estimation::RowMatrix& by = of_force ? out.force_by : out.fiber_by;
       response.row(signed_index(row)).segment(knots * signal_of_[m], knots) += factor * by.row(signed_index(k));

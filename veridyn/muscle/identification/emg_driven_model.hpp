@@ -13,6 +13,9 @@
 
 namespace veridyn::muscle {
 
+struct MuscleAlongPath;
+struct MuscleValues;
+
 /// How far recorded EMG envelopes are from the excitations that they stand for: an error of each signal that changes
 /// as fast as the envelope's bandwidth lets it, with standard deviation hypot(relative e, absolute).
 struct EmgError {
@@ -34,7 +37,7 @@ struct EmgSegment {
   std::vector<numerics::PiecewisePolynomial> length;  ///< by muscle: of its path, over time [m]
   /// By sample; column o muscles + m: output o per tension of muscle m, where the output is a moment [m or 1].
   estimation::RowMatrix arm;
-  std::vector<Drive> emg;  ///< by signal: one excitation each
+  std::vector<MuscleControls> emg;  ///< by signal: one excitation each
 };
 
 /// The paths of a motion: lengths tabulated every 2 ms and joined by quintic splines, arms at the samples. Coordinates
@@ -73,17 +76,20 @@ class EmgDrivenModel final : public estimation::ParametricModel {
                              estimation::ModelResponse& response) const override;
 
   /// Derivatives of the outputs with respect to the errors of the signals, in standard deviations: rows as in
-  /// `ModelResponse::sensitivity`, columns signal by signal, `spacing` apart, and
-  /// with half the variance twice as far: activation's dynamics, whose rise is quicker than its fall, turn quick errors
-  /// into slow ones beyond what derivatives say. Muscles of one signal share its
-  /// error. False as `respond`.
+  /// `ModelResponse::sensitivity`, columns signal by signal, `spacing` apart, and with half the variance twice as far:
+  /// activation's dynamics, whose rise is quicker than its fall, turn quick errors into slow ones beyond what
+  /// derivatives say. Muscles of one signal share its error. False as `respond`.
   [[nodiscard]] bool error_response(std::size_t segment, const Eigen::VectorXd& theta, const EmgError& error,
                                     estimation::RowMatrix& response) const;
+  /// Why a segment cannot be simulated at `theta`: which muscle, at what time, its state. Empty where it can.
+  [[nodiscard]] std::string trouble(std::size_t segment, const Eigen::VectorXd& theta) const;
   /// By muscle: share of the segment's samples at which gain times EMG is above 1.
   [[nodiscard]] std::vector<double> saturation(std::size_t segment, const Eigen::VectorXd& theta) const;
 
  private:
   [[nodiscard]] bool acts(std::size_t segment, std::size_t muscle) const;
+  /// The muscle as `values` has it along the segment; views both, and this.
+  [[nodiscard]] MuscleAlongPath along(std::size_t segment, std::size_t muscle, const MuscleValues& values) const;
 
   const MusculoskeletalSystem* system_;
   std::vector<MuscleUnknown> unknowns_;
@@ -92,7 +98,7 @@ class EmgDrivenModel final : public estimation::ParametricModel {
   std::vector<int> signal_of_;
   double accuracy_;
   std::vector<MuscleGroup<double>> alone_;  ///< each muscle in a group by itself
-  std::vector<Drive> least_;                ///< by muscle: its least activation
+  std::vector<MuscleControls> least_;       ///< by muscle: its least activation
   std::vector<estimation::ModelParameter> parameters_;
   std::vector<estimation::ModelOutput> outputs_;
 };

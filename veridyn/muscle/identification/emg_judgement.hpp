@@ -8,7 +8,7 @@
 
 namespace veridyn::muscle {
 
-/// What an estimate from EMG is judged by besides `TaskFindings`.
+/// View of what an estimate from EMG is judged by besides `TaskFindings`.
 struct EmgFindings {
   const EmgDrivenModel& model;  ///< of the trained tasks
   const MusculoskeletalSystem& system;

@@ -1,5 +1,7 @@
 #include "veridyn/muscle/identification/muscle_along_path.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/actuator/fiber_solver.hpp"
-#include "veridyn/muscle/identification/shaped_drive.hpp"
+#include "veridyn/muscle/identification/shaped_controls.hpp"
 #include "veridyn/muscle/simulation/system_linearization.hpp"
 #include "veridyn/numerics/additive_runge_kutta.hpp"
 
@@ -35,7 +37,7 @@ class PathSimulation {
         n_(columns.size()),
         muscle_(m.muscle.with<double>({&m.parameters, 1})),
         elastic_(m.muscle.has_fiber_state(0)),
-        drive_(m.drive, 0, {m.gain}, {m.delay}),
+        controls_(m.controls, 0, {m.gain}, {m.delay}),
         solver_(1),
         stepper_({0, static_cast<char>(elastic_ ? 1 : 0)}, n_),
         x_(2 * (1 + n_), 0.0),
@@ -44,7 +46,7 @@ class PathSimulation {
     for (auto* list : {&now_.activation_field, &now_.velocity_field, &now_.force_field}) list->assign(n_, 0.0);
     for (const PathMuscleColumn& c : columns) unit_.push_back(unit_of(c));
     // Where a forcing begins or turns a corner within a step, no step is short enough for a tangent that was zero.
-    if (n_ > 0) drive_.split_at_samples(0);
+    if (n_ > 0) controls_.split_at_samples(0);
     for (const PathMuscleColumn& c : columns) {
       if (c.kind != Kind::kError) continue;
       breaks_.push_back(c.knot - c.spacing + m.delay);
@@ -60,9 +62,10 @@ class PathSimulation {
     out.force_by.setZero(signed_index(m_.time.size()), signed_index(n_));
     out.fiber_by.setZero(signed_index(m_.time.size()), signed_index(n_));
     response_ = &out;
+    out.trouble.clear();
     double t = m_.begin;
     begin_piece(t);
-    if (!start(t)) return false;
+    if (!start(t)) return diverges(t);
     while (row_ < m_.time.size() && m_.time[row_] <= t) write(m_.time[row_], x_.data());
     const double end = m_.time.empty() ? t : m_.time.back();
     const auto derivative = [&](double time, double step, double* x, double* rate) {
@@ -85,15 +88,21 @@ class PathSimulation {
     while (t < end) {
       if (stepper_.advance(derivative, t, x_.data(), std::min(end, piece_end_), scales, control, on_step) !=
           numerics::IntegrationEnd::kReached)
-        return false;
+        return diverges(t);
       if (!(t < end)) break;
       begin_piece(t);
       stepper_.restart(true);
     }
-    return row_ == m_.time.size();
+    return row_ == m_.time.size() || diverges(t);
   }
 
  private:
+  bool diverges(double time) {
+    response_->trouble = fmt::format("the simulation diverges at {:.6g} s: activation {:.3g}, fibre length {:.4g} m",
+                                     time, x_[0], x_[1]);
+    return false;
+  }
+
   /// Passes of jets, each with the columns whose fields it carries.
   struct Pass {
     MuscleGroup<SimulationJet> muscle;
@@ -122,8 +131,8 @@ class PathSimulation {
   void begin_piece(double time) {
     // Knots of neighbours are the same but for rounding, and a piece of that length is none.
     constexpr double kShortest = 1e-9;
-    drive_.begin_piece(time);
-    piece_end_ = drive_.piece_end(time + kShortest);
+    controls_.begin_piece(time);
+    piece_end_ = controls_.piece_end(time + kShortest);
     const auto next = std::upper_bound(breaks_.begin(), breaks_.end(), time + kShortest);
     if (next != breaks_.end()) piece_end_ = std::min(piece_end_, *next);
   }
@@ -132,17 +141,17 @@ class PathSimulation {
   double excitation(double time) {
     constexpr double kBefore = 1e-10;
     const double t = std::min(time, piece_end_ - kBefore);
-    const double raw = drive_.at(t).excitation[0];
+    const double raw = controls_.at(t).excitation[0];
     const double least = m_.muscle.settings(0).minimum_activation;
     const double u = std::clamp(raw, least, 1.0);
     const bool free = u == raw;
-    const double e = drive_.by_gain(0);
+    const double e = controls_.by_gain(0);
     for (std::size_t j = 0; j < n_; ++j) {
       const PathMuscleColumn& c = columns_[j];
       weight_[j] = 0.0;
       if (!free) continue;
       if (c.kind == Kind::kGain) weight_[j] = unit_[j] * e;
-      if (c.kind == Kind::kDelay) weight_[j] = unit_[j] * drive_.by_delay(0);
+      if (c.kind == Kind::kDelay) weight_[j] = unit_[j] * controls_.by_delay(0);
       if (c.kind != Kind::kError) continue;
       const double away = (t - m_.delay - c.knot) / c.spacing;
       if (std::abs(away) < 1.0)
@@ -280,7 +289,7 @@ class PathSimulation {
   std::size_t n_;
   MuscleGroup<double> muscle_;
   bool elastic_;
-  ShapedDrive drive_;
+  ShapedControls controls_;
   FiberSolver solver_;
   numerics::AdditiveRungeKutta stepper_;
   std::vector<double> x_, between_;

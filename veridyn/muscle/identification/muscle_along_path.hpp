@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "veridyn/estimation/regression/regression_data.hpp"
@@ -14,7 +15,7 @@ namespace veridyn::muscle {
 struct MuscleAlongPath {
   const MuscleGroup<double>& muscle;             ///< of this one muscle
   const numerics::PiecewisePolynomial& length;   ///< of its path over time [m]
-  const Drive& drive;                            ///< excitation of this one muscle, recorded; no reserves
+  const MuscleControls& controls;                ///< excitation of this one muscle, recorded; no reserves
   double begin = 0.0;                            ///< the fibre is in equilibrium with its tendon there [s]
   std::span<const double> time;                  ///< of the samples, increasing, none before `begin` [s]
   double accuracy = 1e-6;                        ///< largest error of a step, in units of 0.1 and a tenth of L0
@@ -43,12 +44,13 @@ struct PathMuscleResponse {
   std::vector<double> force;                 ///< of the tendon [N]
   std::vector<double> fiber_length;          ///< of a rigid tendon what the path leaves [m]
   estimation::RowMatrix force_by, fiber_by;  ///< samples x columns
+  std::string trouble;                       ///< why it cannot be integrated: at what time, and its state
 };
 
 /// Activation and fibre of one muscle by error-controlled steps (`numerics::AdditiveRungeKutta`, the fibre implicitly),
 /// with exact derivatives by variational equations on the same steps. The excitation u is kept between the muscle's
 /// least activation and 1: beyond, an activation that has run into its limit would take time to come back.
-/// @returns false when it cannot be integrated.
+/// @returns false when it cannot be integrated, with `response.trouble`.
 [[nodiscard]] bool simulate_along_path(const MuscleAlongPath& muscle, std::span<const PathMuscleColumn> columns,
                                        PathMuscleResponse& response);
 

@@ -124,4 +124,16 @@ bool MuscleParametricModel::respond(std::size_t segment, const Eigen::VectorXd& 
   return usable && response.output.allFinite() && response.sensitivity.allFinite();
 }
 
+std::string MuscleParametricModel::trouble(std::size_t segment, const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd all(signed_index(parameters_.size() + initial_[segment].size()));
+  all.head(signed_index(parameters_.size())) = theta.head(signed_index(parameters_.size()));
+  for (std::size_t i = 0; i < initial_[segment].size(); ++i)
+    all(signed_index(parameters_.size() + i)) = initial_[segment][i].start;
+  estimation::ModelResponse response;
+  response.output.resize(samples(segment), signed_index(chosen_.size()));
+  const internal::MuscleTask task{&system_of(segment), &segments_[segment], unknowns_, chosen_, accuracy_};
+  std::string why;
+  return internal::simulate_values(task, all, response, &why) ? std::string() : why;
+}
+
 }  // namespace veridyn::muscle

@@ -11,10 +11,11 @@
 
 namespace veridyn::muscle {
 
-/// One motion for estimation or sensitivity (a task): where it starts, what drives it, when it is sampled.
+/// One motion for estimation or sensitivity (a task): where it starts, what drives it, when it is sampled. A view of
+/// its system, where it has one of its own.
 struct MotionSegment {
   StartState start;  ///< the fibres are in equilibrium with their tendons; `fiber_length` is not read
-  Drive drive;
+  MuscleControls controls;
   std::vector<double> time;  ///< increasing; the first is where it starts [s]
   /// Of this task: with its load, its locked coordinates. Must outlive the model. Null: the model's own.
   const MusculoskeletalSystem* system = nullptr;
@@ -60,6 +61,10 @@ class MuscleParametricModel final : public estimation::ParametricModel {
   [[nodiscard]] std::string segment_name(std::size_t segment) const override;
   [[nodiscard]] bool respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                              estimation::ModelResponse& response) const override;
+
+  /// Why a segment cannot be simulated at `theta` (unknowns of the muscles; it starts where it starts): at what time,
+  /// and which state. Empty where it can.
+  [[nodiscard]] std::string trouble(std::size_t segment, const Eigen::VectorXd& theta) const;
 
   [[nodiscard]] std::span<const MuscleUnknown> unknowns() const { return unknowns_; }
   [[nodiscard]] std::span<const MotionSegment> motion() const { return segments_; }

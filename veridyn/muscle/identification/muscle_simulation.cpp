@@ -1,12 +1,14 @@
 #include "veridyn/muscle/identification/muscle_simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/muscle_values.hpp"
-#include "veridyn/muscle/identification/shaped_drive.hpp"
+#include "veridyn/muscle/identification/shaped_controls.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
 #include "veridyn/muscle/simulation/system_linearization.hpp"
 #include "veridyn/muscle/simulation/system_stepper.hpp"
@@ -15,12 +17,13 @@ namespace veridyn::muscle::internal {
 namespace {
 
 numerics::StepControl step_control(double accuracy) {
-  // Where a curve has a corner (Thelen's force-velocity at rest) derivatives jump: no step is fine enough for less.
-  constexpr double kLeast = 1e-6;
+  // Below it rounding is what is left. Where a curve has a corner (Thelen's force-velocity at rest) the rate of a
+  // derivative jumps, and only very short steps pass over it with so little error.
+  constexpr double kLeast = 1e-10;
   return {.tolerance = accuracy,
           .derivative_tolerance = std::max(10.0 * accuracy, kLeast),
-          .smallest_step = 1e-12,
-          .max_steps = 200000};
+          .smallest_step = 1e-14,
+          .max_steps = 500000};
 }
 
 /// Initial motion, and the activations that muscles start with.
@@ -29,27 +32,27 @@ void set_start(const MuscleTask& task, const Eigen::VectorXd& theta, std::vector
   for (std::size_t i = 0; i < 2 * free; ++i) x[i] = theta(signed_index(task.unknowns.size() + i));
 }
 
-const double* start_activation(const MuscleTask& task, ShapedDrive& drive) {
+const double* start_activation(const MuscleTask& task, ShapedControls& controls) {
   const Eigen::VectorXd& given = task.segment->start.activation;
-  return given.size() > 0 ? given.data() : drive.at(task.segment->time.front()).excitation.data();
+  return given.size() > 0 ? given.data() : controls.at(task.segment->time.front()).excitation.data();
 }
 
-/// Integrates from the first sample to the last; `on_jump(t)` is called where held signals have jumped.
+/// Integrates from the first sample to the last, changing `t`; `on_jump(t)` is called where held signals have jumped.
 template <typename OnStep, typename OnJump>
-bool integrate(const MuscleTask& task, ShapedDrive& drive, SystemStepper& stepper,
-               const SystemStepper::Derivative& derivative, double* x, const OnStep& on_step, const OnJump& on_jump) {
-  double t = task.segment->time.front();
+bool integrate(const MuscleTask& task, ShapedControls& controls, SystemStepper& stepper,
+               const SystemStepper::Derivative& derivative, double& t, double* x, const OnStep& on_step,
+               const OnJump& on_jump) {
   const double end = task.segment->time.back();
   const SystemStepper::OnStep step = [&](double, double to) {
     on_step(to);
     return true;
   };
   while (t < end) {
-    if (stepper.advance(derivative, t, x, std::min(end, drive.piece_end(t)), step) !=
+    if (stepper.advance(derivative, t, x, std::min(end, controls.piece_end(t)), step) !=
         numerics::IntegrationEnd::kReached)
       return false;
     if (!(t < end)) break;
-    drive.begin_piece(t);
+    controls.begin_piece(t);
     on_jump(t);
     stepper.restart(true);
   }
@@ -118,7 +121,8 @@ class TangentSimulation {
         size_(system_.layout().size),
         forcings_(forcings_of(task, active)),
         linearization_(system_, parameters.muscles, forcings_.list, columns_),
-        drive_(task.segment->drive, system_.coordinates(), std::move(parameters.gain), std::move(parameters.delay)),
+        controls_(task.segment->controls, system_.coordinates(), std::move(parameters.gain),
+                  std::move(parameters.delay)),
         stepper_(system_, step_control(task.accuracy), columns_),
         x_(size_ * (1 + columns_), 0.0),
         between_(x_.size()),
@@ -127,7 +131,7 @@ class TangentSimulation {
         response_(response) {
     set_start(task, theta, x_);
     for (const MuscleParameterName& name : forcings_.of) {
-      if (name.field == MuscleParameterName::kDelay) drive_.split_at_samples(at(name.muscle));
+      if (name.field == MuscleParameterName::kDelay) controls_.split_at_samples(at(name.muscle));
     }
     for (std::size_t j = 0; j < columns_; ++j) {
       const std::size_t i = at(active[j]);
@@ -138,9 +142,9 @@ class TangentSimulation {
   bool run() {
     const double begin = task_.segment->time.front();
     linearization_.hold(task_.segment->start.q.data());
-    drive_.begin_piece(begin);
+    controls_.begin_piece(begin);
     static_cast<void>(inputs(begin));
-    linearization_.start_muscles(start_activation(task_, drive_), task_.segment->start.activation.size() == 0,
+    linearization_.start_muscles(start_activation(task_, controls_), task_.segment->start.activation.size() == 0,
                                  x_.data(), x_.data() + size_);
     if (!write(begin, x_.data())) return false;
     bool good = true;
@@ -156,20 +160,21 @@ class TangentSimulation {
         good = write(time[row_], between_.data()) && good;
       }
     };
-    const bool reached =
-        integrate(task_, drive_, stepper_, derivative, x_.data(), on_step, [&](double t) { add_jumps(t); });
+    double reached_s = begin;
+    const bool reached = integrate(task_, controls_, stepper_, derivative, reached_s, x_.data(), on_step,
+                                   [&](double t) { add_jumps(t); });
     return reached && good && row_ == task_.segment->time.size();
   }
 
  private:
   SystemInputs inputs(double time) {
-    const SystemInputs in = drive_.at(time);
+    const SystemInputs in = controls_.at(time);
     for (std::size_t i = 0; i < forcings_.of.size(); ++i) {
       const MuscleParameterName& name = forcings_.of[i];
       if (!name.of_excitation()) continue;
       linearization_.set_weight(
-          i, forcings_.factor[i] * (name.field == MuscleParameterName::kGain ? drive_.by_gain(at(name.muscle))
-                                                                             : drive_.by_delay(at(name.muscle))));
+          i, forcings_.factor[i] * (name.field == MuscleParameterName::kGain ? controls_.by_gain(at(name.muscle))
+                                                                             : controls_.by_delay(at(name.muscle))));
     }
     return in;
   }
@@ -180,13 +185,13 @@ class TangentSimulation {
     const SystemInputs after = inputs(time);
     bool any = false;
     for (const MuscleParameterName& name : forcings_.of)
-      any = any || (name.field == MuscleParameterName::kDelay && drive_.jumped(at(name.muscle)));
+      any = any || (name.field == MuscleParameterName::kDelay && controls_.jumped(at(name.muscle)));
     if (any) {
       std::vector<double> u(last_excitation_), rate_before(size_);
       if (!linearization_.derivative(x_.data(), {u, after.coordinate_force}, rate_before.data())) return;
       for (std::size_t i = 0; i < forcings_.of.size(); ++i) {
         const std::size_t m = at(forcings_.of[i].muscle);
-        if (forcings_.of[i].field != MuscleParameterName::kDelay || !drive_.jumped(m)) continue;
+        if (forcings_.of[i].field != MuscleParameterName::kDelay || !controls_.jumped(m)) continue;
         u[m] = after.excitation[m];
         if (!linearization_.derivative(x_.data(), {u, after.coordinate_force}, rate_.data())) return;
         u[m] = last_excitation_[m];
@@ -243,7 +248,7 @@ class TangentSimulation {
   std::size_t columns_, size_;
   Forcings forcings_;
   SystemLinearization linearization_;
-  ShapedDrive drive_;
+  ShapedControls controls_;
   SystemStepper stepper_;
   std::vector<double> x_, between_, rate_, last_excitation_;
   bool simple_outputs_;
@@ -253,27 +258,31 @@ class TangentSimulation {
 
 }  // namespace
 
-bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estimation::ModelResponse& response) {
+bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estimation::ModelResponse& response,
+                     std::string* trouble) {
   MuscleValues parameters = values_at(task.system->muscles(), task.unknowns, theta);
-  if (!parameters.possible()) return false;
+  if (!parameters.possible()) {
+    if (trouble != nullptr) *trouble = "a muscle cannot have these parameters";
+    return false;
+  }
   const MusculoskeletalSystem& system = *task.system;
   const StateLayout& layout = system.layout();
   SystemEvaluator<double> evaluator(system, system.muscles().with<double>(parameters.muscles));
   evaluator.hold(task.segment->start.q.data());
-  ShapedDrive drive(task.segment->drive, system.coordinates(), parameters.gain, parameters.delay);
+  ShapedControls controls(task.segment->controls, system.coordinates(), parameters.gain, parameters.delay);
   const std::vector<double>& time = task.segment->time;
-  drive.begin_piece(time.front());
+  controls.begin_piece(time.front());
   std::vector<double> x(layout.size), between(x.size()), rate(x.size());
   set_start(task, theta, x);
   evaluator.set_motion(x.data(), x.data() + layout.free);
-  evaluator.start_muscles(start_activation(task, drive), x.data());
+  evaluator.start_muscles(start_activation(task, controls), x.data());
   const bool simple = states_suffice(task.outputs);
   std::optional<SystemEvaluator<double>> at_sample;
   if (!simple) at_sample = evaluator;
   std::size_t row = 0;
   bool good = true;
   const auto write = [&](double t, const double* state) {
-    if (!simple && !at_sample->derivative(state, drive.at(t), rate.data())) good = false;
+    if (!simple && !at_sample->derivative(state, controls.at(t), rate.data())) good = false;
     for (std::size_t o = 0; o < task.outputs.size(); ++o) {
       const MuscleOutput& output = task.outputs[o];
       double& value = response.output(signed_index(row), signed_index(o));
@@ -301,7 +310,7 @@ bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estim
   write(time.front(), x.data());
   SystemStepper stepper(system, step_control(task.accuracy));
   const auto derivative = [&](double t, double step, double* state, double* out) {
-    return evaluator.stage(step, state, drive.at(t), out);
+    return evaluator.stage(step, state, controls.at(t), out);
   };
   const auto on_step = [&](double to) {
     while (row < time.size() && time[row] <= to) {
@@ -309,7 +318,12 @@ bool simulate_values(const MuscleTask& task, const Eigen::VectorXd& theta, estim
       write(time[row], between.data());
     }
   };
-  return integrate(task, drive, stepper, derivative, x.data(), on_step, [](double) {}) && good && row == time.size();
+  double t = time.front();
+  const bool reached = integrate(task, controls, stepper, derivative, t, x.data(), on_step, [](double) {});
+  const bool complete = reached && good && row == time.size() && response.output.allFinite();
+  if (!complete && trouble != nullptr)
+    *trouble = fmt::format("the simulation diverges at {:.6g} s: {}", t, largest_state(system, x.data()));
+  return complete;
 }
 
 bool simulate_tangents(const MuscleTask& task, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,

@@ -78,7 +78,7 @@ std::optional<NormalisedState> rest(const Musculotendon<double>& muscle, const M
   return s;
 }
 
-/// Two columns with a smaller sine between them are parallel: L0 and LS cannot be told apart.
+/// Two columns with a smaller sine between them are parallel: L0 and LS cannot be distinguished.
 constexpr double kLeastSine = 1e-4;
 
 /// x of min |A x - b| with two columns; none where they are parallel or a length is not positive.

@@ -1,9 +1,11 @@
 #include "veridyn/muscle/identification/task_advice.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "veridyn/core/index.hpp"
@@ -40,14 +42,43 @@ class Foretelling {
 
   [[nodiscard]] bool possible() const { return !free_.empty() && P_.allFinite(); }
 
-  /// With the candidate's information; none where it cannot be simulated with the estimate.
-  [[nodiscard]] std::optional<WidestInterval> after(const MuscleParametricModel& candidate) const {
+  /// The variances with the candidate's information; none where it cannot be simulated with the estimate.
+  [[nodiscard]] std::optional<Eigen::VectorXd> after(const MuscleParametricModel& candidate) const {
     const std::optional<RowMatrix> root = information_of(candidate);
     if (!root) return std::nullopt;
-    return widest(estimation::covariance_after(P_, *root));
+    return Eigen::VectorXd(estimation::covariance_after(P_, *root).diagonal());
   }
 
-  [[nodiscard]] WidestInterval now() const { return widest(P_); }
+  [[nodiscard]] Eigen::VectorXd now() const { return P_.diagonal(); }
+
+  /// Which parameters are identified with these variances.
+  [[nodiscard]] std::vector<bool> identified(const Eigen::VectorXd& variance) const {
+    std::vector<bool> is;
+    for (Eigen::Index k = 0; k < variance.size(); ++k) {
+      const double prior = model_.parameters()[at(free_[at(k)])].prior_sigma;
+      is.push_back(variance(k) <= (1.0 - kIdentifiedShare) * prior * prior);
+    }
+    return is;
+  }
+
+  [[nodiscard]] const std::string& name(std::size_t k) const { return estimate_.best.parameters[at(free_[k])].name; }
+
+  /// Of the parameters that count. Intervals shrink as the inverse information does.
+  [[nodiscard]] WidestInterval widest(const Eigen::VectorXd& then, const std::vector<bool>& counts) const {
+    WidestInterval widest;
+    for (Eigen::Index k = 0; k < P_.rows(); ++k) {
+      const std::size_t i = at(free_[at(k)]);
+      const estimation::Parameter& p = estimate_.best.parameters[i];
+      if (estimate_.verdicts[i] == TaskVerdict::kAtBound || !counts[at(k)]) continue;
+      const double half = 0.5 * (p.high95 - p.low95) * std::sqrt(std::max(0.0, then(k)) / P_(k, k)) *
+                          std::sqrt(estimate_.chi_square > 1.0 ? estimate_.chi_square : 1.0);
+      const estimation::ModelParameter& own = model_.parameters()[i];
+      const bool may_be_zero = own.low <= 0.0 && own.high >= 0.0;
+      const double share = half / (may_be_zero ? 0.5 * (own.high - own.low) : std::abs(own.start));
+      if (share > widest.share) widest = {p.name, share};
+    }
+    return widest;
+  }
 
  private:
   /// Of a recording with the noise of those that the estimate is from.
@@ -58,23 +89,6 @@ class Foretelling {
       complete.emplace_back(RowMatrix::Zero(candidate.samples(s), signed_index(candidate.outputs().size())));
     return estimation::information_root(
         estimation::CorrelatedNoiseModel(candidate, complete, estimate_.noise_correlation), options_);
-  }
-
-  /// Intervals shrink as the inverse information does.
-  [[nodiscard]] WidestInterval widest(const Eigen::MatrixXd& then) const {
-    WidestInterval widest;
-    for (Eigen::Index k = 0; k < P_.rows(); ++k) {
-      const std::size_t i = at(free_[at(k)]);
-      const estimation::Parameter& p = estimate_.best.parameters[i];
-      if (estimate_.verdicts[i] == TaskVerdict::kAtBound) continue;
-      const double half = 0.5 * (p.high95 - p.low95) * std::sqrt(std::max(0.0, then(k, k)) / P_(k, k)) *
-                          std::sqrt(estimate_.chi_square > 1.0 ? estimate_.chi_square : 1.0);
-      const estimation::ModelParameter& own = model_.parameters()[i];
-      const bool may_be_zero = own.low <= 0.0 && own.high >= 0.0;
-      const double share = half / (may_be_zero ? 0.5 * (own.high - own.low) : std::abs(own.start));
-      if (share > widest.share) widest = {p.name, share};
-    }
-    return widest;
   }
 
   const MuscleParametricModel& model_;
@@ -91,6 +105,17 @@ Eigen::VectorXd standard_values(const MuscleParametricModel& model) {
 }
 
 }  // namespace
+
+std::string TaskAdvice::text() const {
+  if (tasks.empty()) return withheld;
+  std::string text = fmt::format("the widest interval, {}'s, would go from +-{:.2g} to {:.2g} %", now.parameter,
+                                 100.0 * now.share, 100.0 * tasks.front().then.share);
+  if (of_prior)
+    text += " (all are nearly the priors', so that this is a forecast of the prior)";
+  else if (!left_to_prior.empty())
+    text += fmt::format(" (of the parameters that one task more can identify: not {})", fmt::join(left_to_prior, ", "));
+  return text;
+}
 
 std::vector<PreparedTask> candidate_tasks(const MusculoskeletalSystem& subject, const ElbowTaskOptions& options,
                                           std::span<const int> used, std::vector<std::string>& left_out,
@@ -130,10 +155,9 @@ TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParamet
     advice.withheld = "the estimate has parameters without an interval";
     return advice;
   }
-  advice.now = foretelling.now();
   const std::vector<MuscleUnknown> unknowns(model.unknowns().begin(), model.unknowns().end());
   const Eigen::VectorXd standard = standard_values(model);
-  std::vector<std::optional<WidestInterval>> then(candidates.size());
+  std::vector<std::optional<Eigen::VectorXd>> then(candidates.size());
   std::vector<std::string> why(candidates.size());
   const auto one = [&](std::size_t c) {
     const MuscleParametricModel alone(subject, unknowns, {segment_of(candidates[c])}, options);
@@ -148,9 +172,21 @@ TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParamet
     return progress.update(static_cast<double>(done) / static_cast<double>(candidates.size()));
   };
   if (!numerics::parallel_for(candidates.size(), progress.threads(), one, proceed)) return {};
+  std::vector<bool> counts = foretelling.identified(foretelling.now());
+  for (const auto& variance : then) {
+    if (!variance) continue;
+    const std::vector<bool> with_it = foretelling.identified(*variance);
+    std::transform(counts.begin(), counts.end(), with_it.begin(), counts.begin(), std::logical_or<>());
+  }
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    if (!counts[k]) advice.left_to_prior.push_back(foretelling.name(k));
+  advice.of_prior = advice.left_to_prior.size() == counts.size();
+  if (advice.of_prior) counts.assign(counts.size(), true);
+  advice.now = foretelling.widest(foretelling.now(), counts);
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (then[c])
-      advice.tasks.push_back({candidates[c].task.number, candidates[c].task.name, *then[c]});
+      advice.tasks.push_back(
+          {candidates[c].task.number, candidates[c].task.name, foretelling.widest(*then[c], counts)});
     else
       advice.left_out.push_back(why[c]);
   }

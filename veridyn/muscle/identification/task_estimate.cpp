@@ -28,8 +28,8 @@ using estimation::RowMatrix;
 /// The noise is first taken for this share of the residual.
 constexpr double kCoarse = 0.05;
 constexpr int kCoarseSteps = 8, kCoarseRounds = 4;
-/// Shares of the prior's variance that the data have to remove.
-constexpr double kIdentifiedShare = 0.75, kWeakShareOfPrior = 0.25;
+/// Share of the prior's variance that the data have to remove of a weak parameter.
+constexpr double kWeakShareOfPrior = 0.25;
 /// Difference of two negative log posteriors up to which fits are as good: at least this, and that of the region that
 /// holds all parameters together with 95 %.
 constexpr double kAsGood = 6.0;
@@ -63,7 +63,7 @@ class TaskEstimation {
   }
 
   TaskEstimate describe_at(const Eigen::VectorXd& theta, TaskSearch search) {
-    search.rms_start = residual(own_values());
+    search.rms_start = residual(standard_values());
     search.agrees = true;
     OutputErrorOptions o = options_of(theta);
     if (noise_.size() > 0) {
@@ -107,7 +107,7 @@ class TaskEstimation {
     return noise_.size() > 0 ? noise_ : Eigen::VectorXd::Constant(signed_index(model_.outputs().size()), 1.0);
   }
 
-  [[nodiscard]] Eigen::VectorXd own_values() const {
+  [[nodiscard]] Eigen::VectorXd standard_values() const {
     Eigen::VectorXd start(signed_index(model_.parameters().size()));
     for (Eigen::Index i = 0; i < start.size(); ++i) start(i) = model_.parameters()[at(i)].start;
     return start;
@@ -118,7 +118,7 @@ class TaskEstimation {
   /// The best fits, `wanted` of them, of the points `from` to `to` of the screening; all that can be simulated.
   StartingPoints screened_points(int from, int to, int wanted) {
     StartingPoints points;
-    const Eigen::VectorXd start = own_values();
+    const Eigen::VectorXd start = standard_values();
     const Eigen::MatrixXd sobol = numerics::sobol_points(static_cast<std::size_t>(to), at(start.size()), options_.seed);
     for (Eigen::Index k = from; k < sobol.rows() && !progress_.interrupted(); ++k) {
       Eigen::VectorXd theta = start;
@@ -186,7 +186,7 @@ class TaskEstimation {
   }
 
   void search() {
-    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : own_values();
+    const Eigen::VectorXd start = options_.first.size() > 0 ? options_.first : standard_values();
     StartingPoints points{{residual(start), start}};
     if (options_.starts > 1) {
       for (auto& point : screened_points(0, options_.screened, options_.starts - 1)) points.push_back(std::move(point));
@@ -301,7 +301,7 @@ class TaskEstimation {
 
   [[nodiscard]] OutputErrorEstimate why_nothing(std::size_t first) {
     if (first < finished_.size() && finished_[first]) return *finished_[first];
-    OutputErrorOptions o = options_of(own_values());
+    OutputErrorOptions o = options_of(standard_values());
     if (noise_.size() > 0) o.noise_start = noise_;
     o.max_relaxations = 1;
     o.max_steps = 1;

@@ -45,6 +45,8 @@ enum class TaskVerdict {
   kAtBound,
   kFixed,
 };
+/// Share of the prior's variance that the tasks have to remove of an identified parameter.
+inline constexpr double kIdentifiedShare = 0.75;
 /// "identified", "weak", "held by the prior", "not identifiable from these tasks", "at its bound", "fixed".
 [[nodiscard]] std::string_view to_string(TaskVerdict verdict);
 

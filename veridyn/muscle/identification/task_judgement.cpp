@@ -122,7 +122,8 @@ Evidence check_correlation(const TaskFindings& f) {
     row.outcome = Outcome::kCare;
     row.text = fmt::format(
         "the residual is {:.1e} of the motion and alike from sample to sample: that of the integration "
-        "and of the search's end, not of a measurement; intervals made of it are too small",
+        "and of the search's end, not of a measurement; intervals made of it are too small, and a finer tasks.accuracy "
+        "leaves less",
         share);
   }
   return row;
@@ -239,7 +240,7 @@ Evidence check_tasks(const TaskFindings& f) {
   if (trained < 2) {
     row.bears_on = Purpose::kParameters;
     row.outcome = Outcome::kCare;
-    row.text = "one task does not tell muscles apart that pull alike: what it leaves open is held by the priors";
+    row.text = "one task does not distinguish muscles that pull alike: what it leaves open is held by the priors";
     row.advice = "perform more tasks: other shoulder angles, other ranges, flexion and extension";
   }
   if (!still.empty()) {

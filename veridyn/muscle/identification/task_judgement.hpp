@@ -21,7 +21,7 @@ struct TaskOutcome {
   double reserve_share = 0.0;                           ///< as `PreparedTask`
 };
 
-/// What an estimate from tasks is judged by.
+/// View of what an estimate from tasks is judged by.
 struct TaskFindings {
   const TaskEstimate& estimate;
   const std::vector<TaskOutcome>& tasks;          ///< trained ones, then those held out

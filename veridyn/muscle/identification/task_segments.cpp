@@ -9,8 +9,11 @@ namespace veridyn::muscle {
 
 MotionSegment segment_of(const PreparedTask& task) {
   if (!task.usable()) throw std::invalid_argument(task.task.name + ": " + task.trouble);
-  return {
-      .start = task.start, .drive = task.drive, .time = task.time, .system = task.system.get(), .name = task.task.name};
+  return {.start = task.start,
+          .controls = task.controls,
+          .time = task.time,
+          .system = task.system.get(),
+          .name = task.task.name};
 }
 
 std::vector<MotionSegment> segments_of(std::span<const PreparedTask> tasks) {

@@ -265,8 +265,8 @@ ControlResult Controller::run(const StartState& pose, Progress& progress) {
       return result;
     }
   }
-  result.drive.excitation = ControlSignals(times, std::move(excitations), muscles_, Interpolation::kHold);
-  result.drive.reserve =
+  result.controls.excitation = ControlSignals(times, std::move(excitations), muscles_, Interpolation::kHold);
+  result.controls.reserve =
       ControlSignals(std::move(times), std::move(reserves), system_.coordinates(), Interpolation::kHold);
   return result;
 }
@@ -300,13 +300,13 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
   }
   ControlResult result = Controller(system, motion, options).run(pose, progress);
   if (result.trajectory.end == SimulationEnd::kInterrupted) return result;
-  // The result is the replay of what was found: what a forward simulation of the same drive gives.
+  // The result is the replay of what was found: what a forward simulation of the same controls gives.
   Progress quiet;
   const ForwardOptions forward{
       .begin = options.begin, .end = options.end, .rate_Hz = options.rate_Hz, .accuracy = options.accuracy};
   const SimulationEnd end = result.trajectory.end;
   const std::string trouble = result.trajectory.trouble;
-  result.trajectory = simulate_forward(system, result.start, result.drive, forward, quiet);
+  result.trajectory = simulate_forward(system, result.start, result.controls, forward, quiet);
   if (end != SimulationEnd::kCompleted) {
     result.trajectory.end = end;
     result.trajectory.trouble = trouble;

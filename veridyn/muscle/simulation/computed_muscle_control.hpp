@@ -29,9 +29,9 @@ struct ControlResult {
   /// Where it starts: the desired pose and speeds at `begin`, muscles at rest at activations that balance the desired
   /// acceleration there.
   StartState start;
-  /// Excitations and reserves, held over each window: `simulate_forward(system, start, drive, ...)` with the same
+  /// Excitations and reserves, held over each window: `simulate_forward(system, start, controls, ...)` with the same
   /// accuracy repeats the motion to rounding.
-  Drive drive;
+  MuscleControls controls;
   MuscleTrajectory trajectory;
   estimation::RowMatrix desired;  ///< q of the motion to follow, rows as `trajectory`
   /// Windows in which the muscles could not produce the desired acceleration and the reserves had to exceed their

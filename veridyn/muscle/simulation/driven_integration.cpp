@@ -2,7 +2,7 @@
 
 namespace veridyn::muscle {
 
-numerics::IntegrationEnd integrate_driven(SystemEvaluator<double>& evaluator, DriveState& signals,
+numerics::IntegrationEnd integrate_driven(SystemEvaluator<double>& evaluator, ControlsAtInstant& signals,
                                           SystemStepper& stepper, double& t, double* x, double end,
                                           const SystemStepper::OnStep& on_step) {
   const SystemStepper::Derivative derivative = [&](double time, double step, double* state, double* rate) {

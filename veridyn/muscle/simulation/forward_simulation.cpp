@@ -38,22 +38,22 @@ class Recorder {
   }
 
   /// After an accepted step, at whose end `evaluator` was evaluated last.
-  void step(const SystemStepper& stepper, const SystemEvaluator<double>& evaluator, DriveState& drive, double begin,
-            double end) {
+  void step(const SystemStepper& stepper, const SystemEvaluator<double>& evaluator, ControlsAtInstant& controls,
+            double begin, double end) {
     if (rate_Hz_ > 0.0) {
       while (t_.time.size() <= last_row_) {
         const double sample = begin_ + static_cast<double>(t_.time.size()) / rate_Hz_;
         if (sample > end + 1e-12) break;
-        const SystemInputs inputs = drive.at(std::min(sample, end));
+        const SystemInputs inputs = controls.at(std::min(sample, end));
         evaluate_between(stepper, std::min(sample, end), inputs);
         append(sample, between_, inputs);
       }
     } else {
-      append(end, evaluator, drive.at(end));
+      append(end, evaluator, controls.at(end));
     }
     event_functions(evaluator, after_);
     for (std::size_t k = 0; k < after_.size(); ++k) {
-      if ((before_[k] > 0.0) != (after_[k] > 0.0)) locate(stepper, drive, k, begin, end);
+      if ((before_[k] > 0.0) != (after_[k] > 0.0)) locate(stepper, controls, k, begin, end);
     }
     std::swap(before_, after_);
   }
@@ -121,13 +121,13 @@ class Recorder {
   }
 
   /// Bisection on the integrator's interpolant.
-  void locate(const SystemStepper& stepper, DriveState& drive, std::size_t k, double begin, double end) {
+  void locate(const SystemStepper& stepper, ControlsAtInstant& controls, std::size_t k, double begin, double end) {
     constexpr std::size_t kMostEvents = 10000;
     if (t_.events.size() >= kMostEvents) return;
     double a = begin, b = end;
     for (int i = 0; i < 40 && b - a > 1e-12; ++i) {
       const double middle = 0.5 * (a + b);
-      evaluate_between(stepper, middle, drive.at(middle));
+      evaluate_between(stepper, middle, controls.at(middle));
       event_functions(between_, middle_);
       ((middle_[k] > 0.0) == (before_[k] > 0.0) ? a : b) = middle;
     }
@@ -172,20 +172,6 @@ SimulationEnd end_of(numerics::IntegrationEnd end) {
   return SimulationEnd::kDiverged;
 }
 
-/// The state that is largest in units of its scale.
-std::string worst_state(const MusculoskeletalSystem& system, const Eigen::VectorXd& x) {
-  std::size_t worst = 0;
-  double largest = -1.0;
-  for (std::size_t i = 0; i < system.layout().size; ++i) {
-    const double size = std::abs(x(static_cast<Eigen::Index>(i))) / system.scales()[i];
-    if (size > largest) {
-      largest = size;
-      worst = i;
-    }
-  }
-  return fmt::format("{} is {:.4g}", system.state_name(worst), x(static_cast<Eigen::Index>(worst)));
-}
-
 }  // namespace
 
 std::string event_text(MuscleEvent::Kind kind) {
@@ -224,6 +210,20 @@ std::string MuscleTrajectory::message() const {
   return fmt::format("interrupted at {:.6g} s", end_time);
 }
 
+std::string largest_state(const MusculoskeletalSystem& system, const double* x) {
+  std::size_t worst = 0;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < system.layout().size; ++i) {
+    const double size = std::abs(x[i]) / system.scales()[i];
+    if (!(size <= largest)) {
+      largest = size;
+      worst = i;
+    }
+    if (std::isnan(size)) break;
+  }
+  return fmt::format("{} is {:.4g}", system.state_name(worst), x[worst]);
+}
+
 StartState default_start(const Model& model) {
   StartState start;
   start.q = model.default_pose();
@@ -234,11 +234,11 @@ StartState default_start(const Model& model) {
   return start;
 }
 
-MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start, const Drive& drive,
-                                  const ForwardOptions& options, Progress& progress) {
+MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
+                                  const MuscleControls& controls, const ForwardOptions& options, Progress& progress) {
   check_start(system.model(), start);
   const StateLayout& layout = system.layout();
-  DriveState signals(drive, system.muscles().size(), system.coordinates());
+  ControlsAtInstant signals(controls, system.muscles().size(), system.coordinates());
   SystemEvaluator<double> evaluator(system);
   Eigen::VectorXd x(static_cast<Eigen::Index>(layout.size));
   for (std::size_t i = 0; i < layout.free; ++i) {
@@ -282,7 +282,7 @@ MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const Sta
   result.steps = stepper.steps();
   result.evaluations = evaluator.evaluations();
   result.final_state = x;
-  if (!result.usable()) result.trouble = worst_state(system, x);
+  if (!result.usable()) result.trouble = largest_state(system, x.data());
   return result;
 }
 

@@ -65,8 +65,11 @@ struct MuscleTrajectory {
   [[nodiscard]] std::string message() const;
 };
 
+/// "elbow_flexion is 2.1e4": the state that is largest in units of its scale, or the first that is no number.
+[[nodiscard]] std::string largest_state(const MusculoskeletalSystem& system, const double* x);
+
 /// What drives a simulation.
-struct Drive {
+struct MuscleControls {
   ControlSignals excitation;  ///< by muscle
   /// Generalised forces by coordinate, such as the reserves of computed muscle control; none when empty.
   ControlSignals reserve;
@@ -77,6 +80,7 @@ struct Drive {
 /// diverging simulation and always ends: the result says how.
 /// @throws InputError for a start that is not finite or outside a coordinate's range, naming the coordinate.
 [[nodiscard]] MuscleTrajectory simulate_forward(const MusculoskeletalSystem& system, const StartState& start,
-                                                const Drive& drive, const ForwardOptions& options, Progress& progress);
+                                                const MuscleControls& controls, const ForwardOptions& options,
+                                                Progress& progress);
 
 }  // namespace veridyn::muscle

@@ -27,16 +27,16 @@ std::shared_ptr<const MusculoskeletalSystem> system_of_task(const Musculoskeleta
   return system;
 }
 
-/// Pose and speeds of the wish where the task begins.
+/// Pose and speeds of the desired motion where the task begins.
 StartState start_of(const MusculoskeletalSystem& system, const Task& task) {
   StartState start = default_start(system.model());
   start.qdot.setZero();
   for (std::size_t c = 0; c < task.desired.coordinate.size(); ++c) {
     if (!task.desired.coordinate[c]) continue;
     const auto i = signed_index(c);
-    const auto wish = task.desired.coordinate[c]->evaluate(task.begin);
-    start.q(i) = wish.value;
-    if (system.reduction().role(static_cast<int>(c)) == CoordinateRole::kFree) start.qdot(i) = wish.slope;
+    const auto desired = task.desired.coordinate[c]->evaluate(task.begin);
+    start.q(i) = desired.value;
+    if (system.reduction().role(static_cast<int>(c)) == CoordinateRole::kFree) start.qdot(i) = desired.slope;
   }
   for (const HeldCoordinate& held : task.held) start.q(held.coordinate) = held.value;
   return start;
@@ -80,9 +80,9 @@ class Silent : public Progress {
 void add_controls(PreparedTask& prepared, const Progress& progress) {
   const Task& task = prepared.task;
   const MusculoskeletalSystem& system = *prepared.system;
-  if (task.drive) {
+  if (task.controls) {
     prepared.start = start_of(system, task);
-    prepared.drive = *task.drive;
+    prepared.controls = *task.controls;
     return;
   }
   ControlOptions options = task.control;
@@ -100,7 +100,7 @@ void add_controls(PreparedTask& prepared, const Progress& progress) {
   prepared.overloaded = found.overloaded.size();
   prepared.reserve_share = share_of_reserves(system, found.trajectory);
   prepared.start = std::move(found.start);
-  prepared.drive = std::move(found.drive);
+  prepared.controls = std::move(found.controls);
 }
 
 }  // namespace

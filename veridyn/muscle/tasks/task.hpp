@@ -35,11 +35,11 @@ struct Task {
   std::vector<HeldLoad> loads = {};       ///< besides the subject's
   double begin = 0.0, end = 1.03;         ///< [s]
   double rate_Hz = 100.0;                 ///< of the samples, where nothing is measured
-  /// Every coordinate that is not coupled: the wish that computed muscle control follows, and the pose at the start.
+  /// Every coordinate that is not coupled: the motion that computed muscle control follows, and the pose at the start.
   Motion desired = {};
   ControlOptions control = {};  ///< its times are those above
-  /// The controls with which it was performed; none: those with which the standard model follows the wish.
-  std::optional<Drive> drive = {};
+  /// The controls with which it was performed; none: those with which the standard model follows the desired motion.
+  std::optional<MuscleControls> controls = {};
   std::optional<MeasuredMotion> measured = {};
   /// Muscles follow recorded angles instead of moving a skeleton.
   std::optional<EmgRecording> recording = {};
@@ -52,12 +52,13 @@ struct PreparedTask {
   /// The standard model in this task: with its load, its held coordinates. Fitted paths are shared between tasks.
   std::shared_ptr<const MusculoskeletalSystem> system;
   StartState start;
-  Drive drive;
-  std::vector<double> time;     ///< of its samples [s]; the first is where it starts
-  std::string trouble;          ///< why it cannot be used, with the time; empty: it can
-  double tracking_error = 0.0;  ///< of the standard model from the wish, largest of any free coordinate [rad or m]
-  std::size_t overloaded = 0;   ///< windows of computed muscle control in which reserves exceeded their force
-  double reserve_share = 0.0;   ///< largest reserve over largest muscle moment, of the free coordinates
+  MuscleControls controls;
+  std::vector<double> time;  ///< of its samples [s]; the first is where it starts
+  std::string trouble;       ///< why it cannot be used, with the time; empty: it can
+  double tracking_error =
+      0.0;  ///< of the standard model from the desired motion, largest of any free coordinate [rad or m]
+  std::size_t overloaded = 0;  ///< windows of computed muscle control in which reserves exceeded their force
+  double reserve_share = 0.0;  ///< largest reserve over largest muscle moment, of the free coordinates
 
   [[nodiscard]] bool usable() const { return trouble.empty(); }
 };
