@@ -21,7 +21,9 @@ struct LoopTimes {
   LatencyHistogram work;    ///< of that: decoding apart, from the step's beginning to the order handed to the kernel
   LatencyHistogram wake;    ///< how late steps began
   LatencyHistogram jitter;  ///< interval between orders against the period, either way
+  LatencyHistogram pedal_to_command;  ///< an event of wheel or pedals to the first command that could know of it
   std::uint64_t steps = 0, left_out = 0, not_sent = 0;
+  std::uint64_t commands = 0, commands_not_sent = 0;  ///< to the car
 };
 
 /// What somebody beside the loop may look at.
@@ -31,7 +33,8 @@ struct RigStatus {
   LiveRig::Answers answers;
   PerPacketFate<std::uint64_t> packets = {};
   std::uint64_t drives = 0, gaps = 0;
-  double drift = 0.0;  ///< of the sender's clock, NaN where not known
+  double drift = 0.0;              ///< of the sender's clock, NaN where not known
+  std::optional<LinkQuality> car;  ///< of the line to the car, ten times a second
   LoopTimes times;
 };
 
@@ -93,6 +96,7 @@ class LiveLoop {
 
  private:
   void take(const Incoming& incoming, Nanoseconds now, LiveControl& control, LiveRecorder* recorder);
+  void command(LiveLinks& links, Clock& clock, const RigStep& step, LiveRecorder* recorder);
   void take_wishes(LiveControl& control, Nanoseconds now, LiveRecorder* recorder);
 
   LiveRig rig_;
@@ -102,6 +106,8 @@ class LiveLoop {
   std::array<Nanoseconds, kArrivals> arrivals_{};  ///< of packets accepted since the last order
   std::size_t arrived_ = 0;
   Nanoseconds last_sent_ = 0;
+  std::optional<LinkQuality> quality_;
+  Nanoseconds quality_at_ = 0;
 };
 
 }  // namespace veridyn::live

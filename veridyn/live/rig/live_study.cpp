@@ -105,7 +105,14 @@ LiveStudy read_live_study(const Study& study) {
   s.cueing.response.reset();  // `veridyn cue` without --live measures it
   const StudyTable live = root.table("live");
   static_cast<void>(read_virtual_vehicle(live));  // refused here too where it is wrong
-  s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
+  if (live.text("telemetry") == "car") {
+    s.car = read_car(live);
+    s.driver = read_driver(live, s.car->range);
+    if (live.has("stop")) s.telemetry = parse_address(live.text("stop"), live.place("stop"));
+  } else {
+    s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
+    for (const char* key : {"car", "driver"}) live.accept(key);
+  }
   s.platform = parse_address(live.text("platform"), live.place("platform"));
   if (s.telemetry == s.platform) live.fail("platform", "is where telemetry comes in");
   if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
@@ -127,7 +134,7 @@ LiveStudy read_live_study(const Study& study) {
   const std::vector<std::string> checks = {"before", "while", "off"};
   const std::string signs = live.choice_or("signs", checks, "before");
   o.signs = signs == "before" ? SignCheck::kBefore : signs == "while" ? SignCheck::kWhile : SignCheck::kOff;
-  o.sensor = s.cueing.motion.place;
+  o.sensor = s.car ? s.car->sensor : s.cueing.motion.place;
   o.driver = s.cueing.driver;
   if (s.cueing.motion.gravity != recording::GravityIn::kDecide) {
     const bool in = s.cueing.motion.gravity == recording::GravityIn::kYes;
