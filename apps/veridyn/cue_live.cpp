@@ -10,6 +10,7 @@
 #include <random>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/live_drive.hpp"
 #include "apps/veridyn/live_operator.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
@@ -21,7 +22,8 @@
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/live_report.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
-#include "veridyn/live/link/udp_links.hpp"
+#include "veridyn/live/rig/car_links.hpp"
+#include "veridyn/live/rig/udp_links.hpp"
 #endif
 
 namespace veridyn::app {
@@ -78,6 +80,14 @@ Summary summary_of(const OutputFolder& folder, const LiveReplay& r, const std::f
     s[name]["p9999"] = h->quantile(0.9999);
     s[name]["largest"] = h->count() > 0 ? seconds(h->largest()) : std::nan("");
   }
+  if (r.car) {
+    s["car"]["commands"] = r.car->commands;
+    s["car"]["commands_different_when_replayed"] = r.car->commands_different;
+    s["car"]["command_loss"] = r.car->quality.command_loss();
+    s["car"]["reports"] = r.car->quality.reports_received;
+    s["car"]["report_loss"] = r.car->quality.report_loss();
+    s["car"]["pedal_to_command_p99_s"] = r.times.pedal_to_command.quantile(0.99);
+  }
   for (std::size_t i = 0; i < kPacketFates; ++i)
     s["packets"][std::string(name_of(static_cast<PacketFate>(i)))] = r.packets[i];
   s["states"] = Summary::array();
@@ -96,6 +106,16 @@ cueing::CueingResult scored(const LiveReplay& r) {
   return result;
 }
 
+/// How the car was driven, in a line.
+std::string car_line(const LiveReplay& r) {
+  const LinkQuality& q = r.car->quality;
+  return fmt::format(
+      "car: {} commands, {:.1f} % lost, {} different when replayed; {} reports, {:.1f} % lost; pedal to command: 99 % "
+      "within {:.2f} ms",
+      r.car->commands, 100.0 * q.command_loss(), r.car->commands_different, q.reports_received, 100.0 * q.report_loss(),
+      1e3 * r.times.pedal_to_command.quantile(0.99));
+}
+
 /// Replays a recording and writes all that is said of the run.
 /// @param measured by the run itself; null of one that is only replayed
 int report_run(const CommonOptions& options, const RunRecord& record, OutputFolder& folder,
@@ -112,6 +132,10 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
   const cueing::CueingResult score = scored(r);
   folder.write("platform.csv", motion_csv(r));
   folder.write("packets.csv", packets_csv(r));
+  if (r.car) {
+    folder.write("drive.csv", DriveTable::header() + r.car->drive.take_lines());
+    folder.write("delays.toml", delays_toml(r));
+  }
   folder.write("report.html", report::to_html(report::live_report(r, score, notes, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
   folder.publish(record, options, summary_of(folder, r, recording));
@@ -122,7 +146,9 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
                fmt::format("packet's arrival to order: half within {:.2f} ms, 99 % within {:.2f} ms, longest {:.2f} ms",
                            1e3 * r.times.receive_to_send.quantile(0.5), 1e3 * r.times.receive_to_send.quantile(0.99),
                            1e3 * seconds(r.times.receive_to_send.largest())));
+  if (r.car) print_line(options, car_line(r));
   print_line(options, fmt::format("wrote {} in {}", files, folder.path().string()));
+  if (r.car && r.car->commands_different > 0) return kFailed;
   if (r.different > 0 || r.outside > 0 || r.answers.outside_limits > 0) return kFailed;
   return kDone;
 }
@@ -139,8 +165,14 @@ int cue_live(const StudyRun& run) {
   constexpr double kLongestToPark = 10.0;  // [s], on top of the fade
   const auto session = static_cast<std::uint32_t>(std::random_device()());
   LiveLoop loop(study, session);
-  UdpLinks links = study.platform_line.device.empty() ? UdpLinks(study.telemetry, study.platform)
-                                                      : UdpLinks(study.telemetry, study.platform_line);
+  std::unique_ptr<LiveLinks> links;
+  if (study.car) {
+    links = std::make_unique<CarLinks>(study);
+  } else if (study.platform_line.device.empty()) {
+    links = std::make_unique<UdpLinks>(study.telemetry, study.platform);
+  } else {
+    links = std::make_unique<UdpLinks>(study.telemetry, study.platform_line);
+  }
   PageOfRun page(study, run.options());
   RealClock clock;
   const Nanoseconds start = clock.now();
@@ -151,22 +183,23 @@ int cue_live(const StudyRun& run) {
                                   fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   std::vector<std::string> notes = study.cueing.notes;
   {
-    LiveRecorder recorder(recording, {.program = program_name(),
-                                      .study = run.study.to_toml(),
-                                      .study_name = run.study.name(),
-                                      .started = start,
-                                      .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
-                                      .session = session});
+    LiveRecorder recorder(
+        recording, {.program = program_name(),
+                    .study = study.driver ? with_calibration(run.study, *study.driver).to_toml() : run.study.to_toml(),
+                    .study_name = run.study.name(),
+                    .started = start,
+                    .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
+                    .session = session});
     LiveControl control;
     const LiveSignals signals(control);
-    print_line(run.options(),
-               fmt::format("listening at {}, orders to {} at {:g} Hz; recording {}", to_string(study.telemetry),
-                           platform_name(study), study.options.rate, recording.string()));
+    print_line(run.options(), fmt::format("listening at {}, orders to {} at {:g} Hz; recording {}",
+                                          study.car ? study.car->line.string() : to_string(study.telemetry),
+                                          platform_name(study), study.options.rate, recording.string()));
     print_line(run.options(), "keys: s start, p park, e or space emergency stop, r release it, q park and end");
     std::string late;
     RunningLoop running(control, study.options.fade + kLongestToPark, [&] {
       late = make_thread_timely();
-      loop.run(links, clock, control, &recorder, std::nullopt);
+      loop.run(*links, clock, control, &recorder, std::nullopt);
     });
     const OperatorOptions led{.common = run.options(),
                               .length = run.arguments.number("--seconds"),

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/live_drive.hpp"
 #include "apps/veridyn/operator_keys.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/telemetry/sign_checker.hpp"
@@ -58,12 +59,10 @@ class SignWatch {
   explicit SignWatch(const LiveStudy& study) : done_(study.options.signs == SignCheck::kOff) {}
 
   /// @param time of the run [s]
-  void update(LiveControl& control, const RigStatus& status, double time, const Console& console,
-              std::vector<std::string>& notes) {
-    motions_.clear();
-    control.take_motions(motions_);
+  void update(const std::vector<Telemetry>& motions, LiveControl& control, const RigStatus& status, double time,
+              const Console& console, std::vector<std::string>& notes) {
     if (done_) return;
-    for (const Telemetry& t : motions_) {
+    for (const Telemetry& t : motions) {
       if (t.restarted) {
         checker_.reset();
         samples_.clear();
@@ -91,7 +90,6 @@ class SignWatch {
 
  private:
   SignChecker checker_;
-  std::vector<Telemetry> motions_;
   std::vector<recording::MotionSample> samples_;
   bool done_;
   double next_ = 1.0;  ///< [s]
@@ -262,6 +260,8 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
   Console console(options.common);
   SignWatch signs(study);
   TroubleWatch trouble;
+  LiveDrive drive(study, options.common.out);
+  std::vector<Telemetry> motions;
   std::vector<std::string> notes;
   RealClock clock;
   bool ending = false;
@@ -274,7 +274,10 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
     console.show(status, time);
     page.update(status, study, control, time, signs.message().empty() ? trouble.message() : signs.message());
     control.tidy();
-    signs.update(control, status, time, console, notes);
+    motions.clear();
+    control.take_motions(motions);
+    drive.add(motions, time);
+    signs.update(motions, control, status, time, console, notes);
     trouble.update(status, recorder, now, time, console, notes);
     ending = obey(keys.next(), control) || ending || options.common.interruption.requested() ||
              LiveSignals::hung_up() || (options.length > 0.0 && time >= options.length);
@@ -284,9 +287,11 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
     }
     if (give_up != 0 &&
         (status.step.state == RigState::kParked || status.step.state == RigState::kStopped || now > give_up))
-      return notes;
+      break;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  if (!drive.trouble().empty()) notes.push_back(drive.trouble());
+  return notes;
 }
 
 }  // namespace veridyn::app

@@ -3,6 +3,7 @@
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/rig_car.hpp"
 #include "apps/veridyn/rig_test.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/rig/live_study.hpp"
@@ -153,7 +154,9 @@ Command rig_command() {
            .arguments = arguments,
            .example = "veridyn rig platform examples/studies/cueing/live.toml",
            .run = rig_platform},
-          rig_test_command()}};
+          rig_test_command(),
+          rig_car_command(),
+          rig_wheel_command()}};
 }
 
 }  // namespace veridyn::app

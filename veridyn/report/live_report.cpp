@@ -113,6 +113,66 @@ Section states_section(const LiveReplay& run) {
   return section;
 }
 
+/// How long it takes from pedal to motion, stage by stage.
+Table way_table(const LiveReplay& run) {
+  Table t{.title = "From pedal to motion",
+          .caption =
+              "Of one way over the line only bounds can be known: their width is the shortest round trip, which no "
+              "exchange of stamps can share out. Stages follow one another; the car's own actuators and the "
+              "platform's mechanics come on top."};
+  t.columns = {{.name = "stage", .align = Align::kLeft},
+               {.name = "half", .unit = "ms"},
+               {.name = "99 %", .unit = "ms"},
+               {.name = "at least", .unit = "ms"},
+               {.name = "at most", .unit = "ms"}};
+  t.sortable = false;
+  const auto measured = [&](const std::string& name, const LatencyHistogram& h) {
+    if (h.count() == 0) return;
+    t.rows.push_back({.cells = {text_cell(name), milliseconds(h.quantile(0.5)), milliseconds(h.quantile(0.99)),
+                                text_cell(""), milliseconds(seconds(h.largest()))}});
+  };
+  const auto bounded = [&](const std::string& name, const std::optional<DelayBounds>& b) {
+    if (!b) return;
+    t.rows.push_back({.cells = {text_cell(name), text_cell(""), text_cell(""), milliseconds(seconds(b->lowest)),
+                                milliseconds(seconds(b->highest))}});
+  };
+  measured("wheel or pedal moved, to command sent", run.times.pedal_to_command);
+  bounded("command on the line (the last one)", run.car->quality.command_delay);
+  bounded("report on the line (the last one)", run.car->quality.report_delay);
+  measured("report's arrival to order sent", run.times.receive_to_send);
+  t.rows.push_back(
+      {.cells = {text_cell("motion taken late, as the study chose"), milliseconds(run.study.options.even.delay),
+                 text_cell(""), text_cell(""), text_cell("")}});
+  if (run.answers.count > 0)
+    t.rows.push_back(
+        {.cells = {text_cell("order to the platform's answer (the last one)"),
+                   milliseconds(seconds(run.answers.round_trip)), text_cell(""), text_cell(""), text_cell("")}});
+  return t;
+}
+
+/// Of a run with a car: how long it takes from pedal to motion, and how good the line was.
+Section car_section(const LiveReplay& run) {
+  const LiveReplay::Car& car = *run.car;
+  const LinkQuality& q = car.quality;
+  Section section{.title = "The car"};
+  section.blocks.emplace_back(way_table(run));
+  const auto share = [](double lost) { return fmt::format("{:.1f} %", 100.0 * lost); };
+  FactList facts{
+      {{"Commands", fmt::format("{} sent, {} lost, {} different when replayed", q.commands_sent,
+                                share(q.command_loss()), car.commands_different)},
+       {"Reports", fmt::format("{} received, {} lost, {} late, {} twice", q.reports_received, share(q.report_loss()),
+                               q.reports_late, q.reports_duplicate)},
+       {"Damaged frames", fmt::format("{}", q.frames_damaged)},
+       {"Starts of the car while the rig ran", fmt::format("{}", car.restarts + (q.reports_received > 0 ? 1 : 0))}}};
+  section.blocks.emplace_back(std::move(facts));
+  if (q.round_trip_median)
+    section.blocks.emplace_back(Paragraph{fmt::format(
+        "Both ways over the line together, of the last 1024 reports: half within {:.2f} ms, 99 % within {:.2f} ms, the "
+        "quickest {:.2f} ms.",
+        1e3 * seconds(*q.round_trip_median), 1e3 * seconds(*q.round_trip_p99), 1e3 * seconds(*q.round_trip_least))});
+  return section;
+}
+
 Verdict verdict_of(const LiveReplay& run, const std::vector<std::string>& notes) {
   Verdict v{.level = Level::kGood, .word = "Run", .headline = {}, .lines = notes};
   std::vector<std::string> bad;
@@ -122,6 +182,9 @@ Verdict verdict_of(const LiveReplay& run, const std::vector<std::string>& notes)
   if (run.different > 0)
     bad.push_back(fmt::format("{} of {} orders differ when the recording is replayed{}", run.different, run.times.steps,
                               run.missing > 0 ? fmt::format(": {} steps are missing in it", run.missing) : ""));
+  if (run.car && run.car->commands_different > 0)
+    bad.push_back(fmt::format("{} of {} commands to the car differ when the recording is replayed",
+                              run.car->commands_different, run.car->commands));
   if (!bad.empty()) {
     v.level = Level::kBad;
     v.word = "Wrong";
@@ -164,7 +227,7 @@ Document live_report(const LiveReplay& run, const cueing::CueingResult& score, c
              {"Platform", run.study.cueing.platform.name},
              {"Algorithm", run.run.algorithm},
              {"Orders", fmt::format("{:g} Hz, fingerprint {}", run.study.options.rate, run.orders_fingerprint)}};
-  d.sections = {timing_section(run), packets_section(run), states_section(run)};
+  d.sections = {timing_section(run), run.car ? car_section(run) : packets_section(run), states_section(run)};
   if (score.algorithms.empty()) return d;
   Document felt = cueing_report(run.study.cueing, score, program);
   for (Section& section : felt.sections) d.sections.push_back(std::move(section));

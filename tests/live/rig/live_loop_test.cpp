@@ -6,6 +6,7 @@
 #include <deque>
 #include <thread>
 
+#include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/live/weaving_drive.hpp"
 #include "tests/support/counting_new.hpp"
 #include "tests/support/sanitized.hpp"
@@ -265,6 +266,39 @@ TEST_F(LiveLoopTest, TheRecordingOfARunThatWasCutOffIsReplayedAsFarAsItGoes) {
   EXPECT_LT(r.times.steps, 1500U);
   EXPECT_EQ(r.different, 0U);
   EXPECT_GT(r.cut_bytes, 0U);
+}
+
+TEST_F(LiveLoopTest, AllocatesNothingWithACarEither) {
+  {
+    test::CarRun r(0.01);
+    LiveRecorder recorder(path_, {.program = "test",
+                                  .study = test::kCarStudy,
+                                  .study_name = "rig.toml",
+                                  .started = 0,
+                                  .started_utc = 0,
+                                  .session = 5});
+    r.run(6.0, &recorder);
+  }
+  test::PlayedLinks links(read_live_file(path_));
+  const LiveStudy study = test::car_study();
+  SetClock clock;
+  LiveControl control;
+  LiveLoop loop(study, 5);
+  control.request(OperatorRequest::kStart);
+  long first = 0, last = 0;
+  int steps = 0;
+  links.at_step = [&] {
+    ++steps;
+    if (steps == 3) first = allocations;
+    if (steps == 500) control.emergency();
+    if (steps == 590) last = allocations;
+  };
+  loop.run(links, clock, control, nullptr, 6 * kSecond);
+  EXPECT_GT(loop.times().commands, 500U);
+  EXPECT_GT(loop.rig().car()->quality(clock.now()).reports_received, 200U);
+  if (!veridyn::test::kSanitized) {
+    EXPECT_EQ(last - first, 0);
+  }
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/live/serial/flipped_bytes.hpp"
 #include "tests/support/sanitized.hpp"
+#include "veridyn/live/virtual/noisy_line.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {
@@ -225,7 +225,7 @@ struct DamageCount {
 
 /// Sends frames of a command's and a report's length over a line that flips 1 % of the bytes.
 DamageCount send_damaged(std::uint64_t frames, bool single_bits, FrameDecoder& decoder) {
-  testing::FlippedBytes line(0.01, 3, single_bits);
+  FlippedBytes line(0.01, 3, single_bits);
   numerics::RandomStream random(4, "payloads");
   DamageCount count;
   std::array<std::uint8_t, kLongestFrame> buffer;

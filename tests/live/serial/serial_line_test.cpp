@@ -6,14 +6,12 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/live/serial/pseudo_terminal.hpp"
 #include "tests/live/serial/without_rights.hpp"
 #include "tests/support/refusal.hpp"
+#include "veridyn/live/serial/pseudo_terminal.hpp"
 
 namespace veridyn::live {
 namespace {
-
-using testing::PseudoTerminal;
 
 TEST(SerialLine, PassesEveryByteAsItIs) {
   PseudoTerminal terminal;
@@ -48,7 +46,7 @@ TEST(SerialLine, SetsRatesThatAreNoConstants) {
   PseudoTerminal terminal;
   for (const int baud : {9600, 115200, 250000, 1234567}) {
     SerialLine line({.device = terminal.device(), .baud = baud});
-    EXPECT_EQ(testing::baud_of(line.descriptor()), baud);
+    EXPECT_EQ(baud_of(line.descriptor()), baud);
   }
 }
 

@@ -12,7 +12,6 @@
 namespace veridyn::live {
 namespace {
 
-using testing::SimulatedLine;
 using testing::SimulatedLoop;
 
 TEST(OperatorEnd, SeesTheCarsSensors) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <thread>
 
-#include "tests/live/serial/pseudo_terminal.hpp"
 #include "tests/live/teleoperation/simulated_loop.hpp"
+#include "veridyn/live/serial/pseudo_terminal.hpp"
 #include "veridyn/live/serial/serial_line.hpp"
 
 namespace veridyn::live {
@@ -28,10 +28,9 @@ struct PseudoTerminalRun {
 };
 
 /// A line of 250 kbit/s between two pseudo-terminals that flips bytes, until it is stopped.
-void pass_bytes(testing::PseudoTerminal& at_operator, testing::PseudoTerminal& at_car, double flipped,
-                const std::atomic<bool>& stop) {
+void pass_bytes(PseudoTerminal& at_operator, PseudoTerminal& at_car, double flipped, const std::atomic<bool>& stop) {
   RealClock own;
-  testing::SimulatedLine to_car(flipped, 1), to_operator(flipped, 2);
+  NoisyLine to_car(flipped, 1), to_operator(flipped, 2);
   std::array<std::uint8_t, 4096> from_operator, from_car;
   while (!stop) {
     // The time after reading: no byte is older than it says, however long this thread had to wait.
@@ -49,7 +48,7 @@ void pass_bytes(testing::PseudoTerminal& at_operator, testing::PseudoTerminal& a
 /// Both ends in threads of their own, each on a serial line of its own, and between these a line of 250 kbit/s that
 /// flips bytes: 100 commands and 100 reports a second.
 PseudoTerminalRun run_on_pseudo_terminals(double time, double flipped) {
-  testing::PseudoTerminal at_operator, at_car;
+  PseudoTerminal at_operator, at_car;
   const auto commands = static_cast<std::size_t>(time * 100.0) + 100;
   std::vector<std::atomic<Nanoseconds>> sent_at(commands);
   std::atomic<bool> stop = false;

@@ -1,48 +1,13 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <vector>
 
-#include "tests/live/serial/flipped_bytes.hpp"
 #include "veridyn/live/teleoperation/car_end.hpp"
 #include "veridyn/live/teleoperation/operator_end.hpp"
+#include "veridyn/live/virtual/noisy_line.hpp"
 
 namespace veridyn::live::testing {
-
-/// One direction of a serial line of 250 kbit/s: ten bits a byte, one byte after the other.
-class SimulatedLine {
- public:
-  static constexpr Nanoseconds kByte = 40'000;
-
-  SimulatedLine(double flipped, std::uint64_t seed) : flipped_(flipped), damage_(flipped > 0 ? flipped : 0.5, seed) {}
-
-  void send(Bytes bytes, Nanoseconds now) {
-    std::vector<std::uint8_t> sent(bytes.begin(), bytes.end());
-    if (flipped_ > 0.0) damage_.damage(sent);
-    free_at_ = std::max(free_at_, now);
-    for (const std::uint8_t byte : sent) {
-      free_at_ += kByte;
-      if (!cut) on_the_way_.push_back({std::max(free_at_ + delay, last_arrival_), byte});
-      if (!cut) last_arrival_ = on_the_way_.back().first;
-    }
-  }
-  std::vector<std::uint8_t> arrived(Nanoseconds now) {
-    std::vector<std::uint8_t> bytes;
-    for (; !on_the_way_.empty() && on_the_way_.front().first <= now; on_the_way_.pop_front())
-      bytes.push_back(on_the_way_.front().second);
-    return bytes;
-  }
-
-  bool cut = false;
-  Nanoseconds delay = 0;
-
- private:
-  double flipped_;
-  FlippedBytes damage_;
-  Nanoseconds free_at_ = 0, last_arrival_ = 0;
-  std::deque<std::pair<Nanoseconds, std::uint8_t>> on_the_way_;
-};
 
 /// Operator and car with a line between, 100 commands and 100 reports a second, on a clock of its own in steps of 0.1
 /// ms. What each end really sent, and when, is kept.
@@ -90,7 +55,7 @@ class SimulatedLoop {
     run(0.3);
   }
 
-  SimulatedLine to_car, to_operator;
+  NoisyLine to_car, to_operator;
   std::optional<OperatorEnd> operator_end;
   std::optional<CarEnd> car;
   CarActuation actuation;

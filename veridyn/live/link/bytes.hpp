@@ -2,29 +2,55 @@
 
 #include <bit>
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <type_traits>
 
 namespace veridyn::live {
 
-static_assert(std::endian::native == std::endian::little, "packets and recordings are little-endian");
-
-/// The number at an offset. The caller has made sure that it lies within.
+namespace internal {
+/// The unsigned integer that holds the bits of a number, of an enumeration its number's.
 template <typename T>
-requires std::is_trivially_copyable_v<T>
-[[nodiscard]] T number_at(std::string_view bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
+[[nodiscard]] constexpr auto bits_of(T value) {
+  if constexpr (std::is_enum_v<T>) {
+    return bits_of(static_cast<std::underlying_type_t<T>>(value));
+  } else if constexpr (std::is_floating_point_v<T>) {
+    static_assert(sizeof(T) == 4 || sizeof(T) == 8);
+    return std::bit_cast<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>(value);
+  } else {
+    return static_cast<std::make_unsigned_t<T>>(value);
+  }
+}
+}  // namespace internal
+
+/// Writes a number, or an enumeration's, least significant byte first, whatever the machine's own order. The caller
+/// sees to it that it lies within.
+template <typename T, typename Byte, std::size_t kExtent>
+requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) constexpr void put_at(std::span<Byte, kExtent> bytes,
+                                                                             std::size_t offset, T value) {
+  auto rest = static_cast<std::uint64_t>(internal::bits_of(value));
+  for (std::size_t i = 0; i < sizeof(T); ++i, rest >>= 8U) bytes[offset + i] = static_cast<Byte>(rest & 0xFFU);
 }
 
-/// Writes a number at an offset.
+/// The number at an offset, written as above. The caller has made sure that it lies within.
+template <typename T, typename Byte>
+requires std::is_arithmetic_v<T>
+[[nodiscard]] constexpr T number_at(std::span<const Byte> bytes, std::size_t offset) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    value |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(bytes[offset + i])) << (8U * i);
+  using Bits = decltype(internal::bits_of(T{}));
+  if constexpr (std::is_floating_point_v<T>) {
+    return std::bit_cast<T>(static_cast<Bits>(value));
+  } else {
+    return static_cast<T>(static_cast<Bits>(value));
+  }
+}
+/// The same of a text's bytes.
 template <typename T>
-requires std::is_trivially_copyable_v<T>
-void put_at(std::span<char> bytes, std::size_t offset, T value) {
-  std::memcpy(bytes.data() + offset, &value, sizeof value);
+[[nodiscard]] constexpr T number_at(std::string_view bytes, std::size_t offset) {
+  return number_at<T>(std::span<const char>(bytes), offset);
 }
 
 }  // namespace veridyn::live

@@ -21,7 +21,12 @@ struct Sender {
 [[nodiscard]] std::string to_string(const Sender& sender);
 
 /// Where a datagram came in.
-enum class LinkOf : std::uint8_t { kTelemetry = 0, kPlatform = 1 };
+enum class LinkOf : std::uint8_t {
+  kTelemetry = 0,
+  kPlatform = 1,
+  kCar = 2,     ///< bytes of a car's serial line
+  kDriver = 3,  ///< records of wheel events; none: the driver is gone
+};
 
 /// What arrived, and when.
 struct Datagram {

@@ -21,6 +21,8 @@ class LiveLinks {
   virtual std::optional<Incoming> next(Clock& clock, Nanoseconds until) = 0;
   /// An order to the platform. @return whether it was handed over
   virtual bool send(std::string_view order) = 0;
+  /// A command to the car, where there is one. @return whether it was handed over
+  virtual bool send_command(std::string_view /*command*/) { return false; }
 };
 
 }  // namespace veridyn::live

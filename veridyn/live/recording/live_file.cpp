@@ -80,7 +80,7 @@ bool read_record(RecordReader& r, LiveRecord& record) {
   switch (record.kind) {
     case LiveRecord::Kind::kDatagram: {
       const auto link = r.get<std::uint8_t>();
-      if (link > static_cast<std::uint8_t>(LinkOf::kPlatform)) return false;
+      if (link > static_cast<std::uint8_t>(LinkOf::kDriver)) return false;
       record.link = static_cast<LinkOf>(link);
       record.datagram.arrival = r.get<Nanoseconds>();
       record.datagram.sender.address = r.get<std::uint32_t>();
@@ -99,6 +99,7 @@ bool read_record(RecordReader& r, LiveRecord& record) {
       record.value = r.get<double>();
       return r.ok();
     case LiveRecord::Kind::kStep:
+    case LiveRecord::Kind::kCommand:
       record.sent = r.get<Nanoseconds>();
       record.order = r.text<std::uint16_t>();
       return r.ok();
@@ -137,6 +138,7 @@ std::size_t encode(const LiveRecord& record, std::span<char> into) {
       w.add(record.knob).add(record.count).add(record.value);
       break;
     case LiveRecord::Kind::kStep:
+    case LiveRecord::Kind::kCommand:
       w.add(record.sent).text(record.order);
       break;
   }

@@ -25,16 +25,17 @@ struct LiveRecord {
     kRequest = 2,   ///< `request`
     kKnob = 3,      ///< `knob`, `count`, `value`: one of `count`, which take effect together
     kStep = 4,      ///< `order`: what was sent to the platform
+    kCommand = 5,   ///< `order`: what was sent to the car
   };
   Kind kind = Kind::kStep;
-  Nanoseconds time = 0;  ///< when the rig saw it; of a step its own time
+  Nanoseconds time = 0;  ///< when the rig saw it; of a step or command the step's own time
   LinkOf link = LinkOf::kTelemetry;
   Datagram datagram;
   OperatorRequest request = OperatorRequest::kStart;
   std::uint16_t knob = 0, count = 0;  ///< which of the values of the design's knobs, of how many
   double value = 0.0;
   std::string_view order;  ///< bytes
-  Nanoseconds sent = 0;    ///< of a step: when its order had been handed to the kernel
+  Nanoseconds sent = 0;    ///< of a step or command: when it had been handed to the kernel
 };
 
 }  // namespace veridyn::live

@@ -113,6 +113,27 @@ void LiveLoop::take_requests(LiveControl& control, Nanoseconds now, LiveRecorder
   control.queues_->done.push(setting);
 }
 
+void LiveLoop::command(LiveLinks& links, Clock& clock, const RigStep& step, LiveRecorder* recorder) {
+  if (step.command_size == 0) return;
+  const std::string_view bytes(reinterpret_cast<const char*>(step.command.data()), step.command_size);
+  if (!links.send_command(bytes)) ++times_.commands_not_sent;
+  ++times_.commands;
+  const Nanoseconds sent = clock.now();
+  if (const std::optional<Nanoseconds> pedal = rig_.car()->take_pedal()) times_.pedal_to_command.add(sent - *pedal);
+  if (recorder != nullptr) {
+    LiveRecord r;
+    r.kind = LiveRecord::Kind::kCommand;
+    r.time = step.time;
+    r.sent = sent;
+    r.order = bytes;
+    recorder->record(r);
+  }
+  constexpr Nanoseconds kQualityApart = kSecond / 10;
+  if (sent - quality_at_ < kQualityApart) return;
+  quality_at_ = sent;
+  quality_ = rig_.car()->quality(step.time);
+}
+
 void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRecorder* recorder,
                    std::optional<Nanoseconds> end) {
   begun_ = clock.now();
@@ -144,17 +165,19 @@ void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRec
       r.order = order;
       recorder->record(r);
     }
+    command(links, clock, step, recorder);
     rate.advance(clock.now());
     times_.left_out = rate.left_out();
     RigStatus& status = control.status_.to_write();
     status.step = step;
     status.readiness = rig_.readiness();
     status.answers = rig_.answers();
-    status.packets = rig_.intake().counts();
+    status.packets = rig_.packets();
     status.drives = rig_.intake().drives();
     status.gaps = rig_.gaps();
     status.extrapolated = rig_.extrapolated();
-    status.drift = rig_.intake().clock().drift();
+    status.drift = rig_.clock().drift();
+    status.car = quality_;
     status.times = times_;
     control.status_.publish();
   }

@@ -17,12 +17,14 @@ namespace veridyn::live {
 /// How well the loop kept its time.
 struct LoopTimes {
   /// What came in before the loop began waited for it, not for an order: it is not in the first two.
-  LatencyHistogram receive_to_send;  ///< kernel's stamp of an accepted packet to the first order that could know of it
-  LatencyHistogram wait;             ///< of that: until the step began
-  LatencyHistogram work;             ///< of that: from the step's beginning to the order handed to the kernel
-  LatencyHistogram wake;             ///< how late steps began
-  LatencyHistogram jitter;           ///< interval between orders against the period, either way
+  LatencyHistogram receive_to_send;   ///< kernel's stamp of an accepted packet to the first order that could know of it
+  LatencyHistogram wait;              ///< of that: until the step began
+  LatencyHistogram work;              ///< of that: from the step's beginning to the order handed to the kernel
+  LatencyHistogram wake;              ///< how late steps began
+  LatencyHistogram jitter;            ///< interval between orders against the period, either way
+  LatencyHistogram pedal_to_command;  ///< an event of wheel or pedals to the first command that could know of it
   std::uint64_t steps = 0, left_out = 0, not_sent = 0;
+  std::uint64_t commands = 0, commands_not_sent = 0;  ///< to the car
 };
 
 /// What somebody beside the loop may look at.
@@ -33,7 +35,8 @@ struct RigStatus {
   PerPacketFate<std::uint64_t> packets = {};
   std::uint64_t drives = 0, gaps = 0;
   LiveRig::Extrapolated extrapolated;
-  double drift = 0.0;  ///< of the sender's clock, NaN where not known
+  double drift = 0.0;              ///< of the sender's clock, NaN where not known
+  std::optional<LinkQuality> car;  ///< of the line to the car, ten times a second
   LoopTimes times;
 };
 
@@ -95,6 +98,7 @@ class LiveLoop {
 
  private:
   void take(const Incoming& incoming, Nanoseconds now, LiveControl& control, LiveRecorder* recorder);
+  void command(LiveLinks& links, Clock& clock, const RigStep& step, LiveRecorder* recorder);
   void take_requests(LiveControl& control, Nanoseconds now, LiveRecorder* recorder);
 
   LiveRig rig_;
@@ -105,6 +109,8 @@ class LiveLoop {
   std::array<Nanoseconds, kArrivals> arrivals_{};  ///< of packets accepted since the last order
   std::size_t arrived_ = 0;
   Nanoseconds last_sent_ = 0, begun_ = 0;
+  std::optional<LinkQuality> quality_;
+  Nanoseconds quality_at_ = 0;
 };
 
 }  // namespace veridyn::live

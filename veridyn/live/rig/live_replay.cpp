@@ -29,6 +29,7 @@ class Replayer {
         rig_(into.study, session),
         design_(into.study.cueing.algorithms.front().design->clone()),
         start_(start) {
+    if (into.study.car) into.car.emplace();
     apart_ = std::max(nanoseconds(1.0 / into.study.options.rate), kSecond / 100);
     period_ = nanoseconds(1.0 / into.study.options.rate);
   }
@@ -36,7 +37,10 @@ class Replayer {
   void take(const LiveRecord& record) {
     switch (record.kind) {
       case LiveRecord::Kind::kDatagram:
-        if (const auto t = rig_.take(record.link, record.datagram)) arrivals_.push_back(t->arrival);
+        if (const auto t = rig_.take(record.link, record.datagram)) {
+          arrivals_.push_back(t->arrival);
+          if (r_.car) r_.car->drive.add(*t);
+        }
         break;
       case LiveRecord::Kind::kRequest:
         rig_.request(record.request);
@@ -47,19 +51,27 @@ class Replayer {
       case LiveRecord::Kind::kStep:
         step(record);
         break;
+      case LiveRecord::Kind::kCommand:
+        command(record);
+        break;
     }
   }
 
   void end() {
-    r_.packets = rig_.intake().counts();
+    r_.packets = rig_.packets();
     r_.senders = rig_.intake().senders();
     r_.drives = rig_.intake().drives();
     r_.gaps = rig_.gaps();
     r_.extrapolated = rig_.extrapolated();
     r_.answers = rig_.answers();
-    r_.drift = rig_.intake().clock().drift();
+    r_.drift = rig_.clock().drift();
     if (rig_.intake().layout() != nullptr) r_.layout = rig_.intake().layout()->sender;
     r_.derived = rig_.intake().derived();
+    if (const CarLink* car = rig_.car()) {
+      r_.layout = "the car's reports";
+      r_.car->quality = car->quality(last_time_);
+      r_.car->restarts = car->end().car_restarts();
+    }
     r_.orders_fingerprint = fmt::format("{:08x}", fingerprint_);
   }
 
@@ -76,6 +88,8 @@ class Replayer {
   void step(const LiveRecord& record) {
     const RigState before = rig_.state();
     const RigStep& s = rig_.step(record.time);
+    command_ = s.command;
+    command_size_ = s.command_size;
     const std::string_view order(s.order.data(), s.order.size());
     if (order != record.order) {
       ++r_.different;
@@ -111,6 +125,17 @@ class Replayer {
     keep(s);
   }
 
+  /// The rig made it with the step before.
+  void command(const LiveRecord& record) {
+    if (!r_.car) return;
+    ++r_.car->commands;
+    const std::string_view made(reinterpret_cast<const char*>(command_.data()), command_size_);
+    if (made != record.order) ++r_.car->commands_different;
+    command_size_ = 0;
+    if (const std::optional<Nanoseconds> pedal = rig_.car()->take_pedal())
+      r_.times.pedal_to_command.add(record.sent - *pedal);
+  }
+
   /// For score and figures.
   void keep(const RigStep& s) {
     if (!s.motion || s.state == RigState::kParked || s.time - last_kept_ < apart_ - 1000) return;
@@ -131,6 +156,8 @@ class Replayer {
   LiveRig rig_;
   std::unique_ptr<cueing::WashoutDesign> design_;
   std::vector<double> values_;
+  CarLink::CommandBytes command_ = {};
+  std::size_t command_size_ = 0;
   std::vector<Nanoseconds> arrivals_;
   Nanoseconds start_, apart_ = 0, period_ = 0, last_kept_ = 0, last_sent_ = 0, last_time_ = 0, begun_ = 0;
   std::uint32_t last_sequence_ = 0, fingerprint_ = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/live/recording/drive_table.hpp"
 #include "veridyn/live/recording/live_file.hpp"
 #include "veridyn/live/rig/live_loop.hpp"
 
@@ -36,7 +37,15 @@ struct LiveReplay {
   std::string derived;
   double drift = 0.0;  ///< NaN: not known
   LiveRig::Answers answers;
-  double duration = 0.0;                   ///< [s]
+  double duration = 0.0;  ///< [s]
+  /// Of a car that is driven over a line.
+  struct Car {
+    LinkQuality quality;
+    std::uint64_t restarts = 0;
+    std::uint64_t commands = 0, commands_different = 0;  ///< sent, and of these those that differ in any bit
+    DriveTable drive;                                    ///< what its sensors said
+  };
+  std::optional<Car> car;
   std::uint64_t different = 0;             ///< orders that differ from the recorded ones in any bit
   std::uint64_t missing = 0;               ///< steps that were not recorded
   std::uint64_t outside = 0;               ///< orders beyond the platform's limits

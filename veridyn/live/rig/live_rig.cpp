@@ -14,6 +14,8 @@ using cueing::PlatformAxis;
 /// From 0 to 1 without a jump in rate and acceleration.
 double smooth(double phase) { return phase * phase * phase * (10.0 + phase * (-15.0 + 6.0 * phase)); }
 
+Bytes bytes_of(std::string_view bytes) { return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}; }
+
 std::unique_ptr<cueing::Washout> algorithm_of(const LiveStudy& study) {
   return study.cueing.algorithms.front().design->make(study.cueing.platform);
 }
@@ -52,6 +54,9 @@ std::string described(Readiness readiness, const LiveRig::Answers& answers) {
 LiveRig::LiveRig(const LiveStudy& study, std::uint32_t session)
     : options_(study.options),
       intake_(study.layouts, study.options.intake),
+      car_(study.car ? std::optional<CarLink>(std::in_place, *study.car, *study.driver,
+                                              static_cast<std::uint16_t>(session & 0xffffU))
+                     : std::nullopt),
       even_(study.options.even),
       spikes_(study.options.spikes),
       chain_(algorithm_of(study), study.cueing.platform),
@@ -84,19 +89,33 @@ std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
     request(OperatorRequest::kEmergency);
     return std::nullopt;
   }
-  std::optional<Telemetry> t = intake_.take(datagram);
-  if (!t) return t;
-  t->sample.place = options_.sensor;
-  if (last_packet_ && datagram.arrival > *last_packet_) {
+  std::optional<Telemetry> t;
+  if (!car_) {
+    t = intake_.take(datagram);
+  } else if (link == LinkOf::kDriver) {
+    car_->take_driver(bytes_of(datagram.bytes));
+  } else if (link == LinkOf::kCar) {
+    // A link hands over one frame at most; of several the last one counts.
+    for (Bytes bytes = bytes_of(datagram.bytes); !bytes.empty();) {
+      if (t) accept(*t);
+      if (const auto next = car_->take_line(bytes, datagram.arrival)) t = next;
+    }
+  }
+  if (t) accept(*t);
+  return t;
+}
+
+void LiveRig::accept(Telemetry& t) {
+  t.sample.place = options_.sensor;
+  if (last_packet_ && t.arrival > *last_packet_) {
     // Packets of the last half second or so; several that came together count as one moment.
-    const double gap = seconds(datagram.arrival - *last_packet_), weight = std::min(gap / 0.5, 1.0);
+    const double gap = seconds(t.arrival - *last_packet_), weight = std::min(gap / 0.5, 1.0);
     rate_ = rate_ > 0.0 ? rate_ + weight * (1.0 / gap - rate_) : 1.0 / gap;
   }
-  last_packet_ = datagram.arrival;
-  watch_frozen(*t);
-  restarted_ = restarted_ || t->restarted;
-  even_.add(*t);
-  return t;
+  last_packet_ = t.arrival;
+  watch_frozen(t);
+  restarted_ = restarted_ || t.restarted;
+  even_.add(t);
 }
 
 void LiveRig::watch_frozen(const Telemetry& t) {
@@ -145,8 +164,7 @@ Readiness LiveRig::ready_at(Nanoseconds time) const {
   if (rate_ < options_.slowest_packets) return Readiness::kTooSlow;
   if (options_.answers) {
     if (!last_answer_ || time - *last_answer_ > nanoseconds(options_.unanswered_after)) return Readiness::kNoAnswer;
-    if (answers_.verdict == PlatformVerdict::kCommandedByAnother || answers_.verdict == PlatformVerdict::kFault)
-      return Readiness::kRefused;
+    if (!platform_follows(time)) return Readiness::kRefused;
   }
   if (options_.signs != SignCheck::kOff && signs_right_ == false) return Readiness::kSignsWrong;
   if (options_.signs == SignCheck::kBefore && !signs_right_) return Readiness::kSignsUnknown;
@@ -212,7 +230,7 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   begun_ = true;
   last_time_ = time;
   step_.time = time;
-  step_.motion = even_.at(time, intake_.clock());
+  step_.motion = even_.at(time, clock());
   if (step_.motion) {
     if (restarted_) spikes_.reset();
     step_.motion->sample.force = spikes_.step(step_.motion->sample.force, dt);
@@ -254,7 +272,24 @@ const RigStep& LiveRig::step(Nanoseconds time) {
   step_.to_platform = order;
   step_.order = encode(order);
   count_extrapolated();
+  command_car(time);
   return step_;
+}
+
+bool LiveRig::platform_follows(Nanoseconds time) const {
+  if (!options_.answers) return true;
+  return last_answer_ && time - *last_answer_ <= nanoseconds(options_.unanswered_after) &&
+         answers_.verdict != PlatformVerdict::kCommandedByAnother && answers_.verdict != PlatformVerdict::kFault;
+}
+
+void LiveRig::command_car(Nanoseconds time) {
+  // 100 times a second is what the line carries; a step that is early by a hair is taken too.
+  constexpr Nanoseconds kApart = kSecond / 100 - kMillisecond / 10;
+  step_.command_size = 0;
+  if (!car_ || (last_command_ && time - *last_command_ < kApart)) return;
+  last_command_ = time;
+  const bool halt = step_.state == RigState::kStopped || !platform_follows(time);
+  step_.command_size = car_->command(time, halt, step_.command);
 }
 
 }  // namespace veridyn::live

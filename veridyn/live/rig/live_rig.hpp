@@ -10,6 +10,7 @@
 #include "veridyn/cueing/chain/cueing_chain.hpp"
 #include "veridyn/live/platform/platform_packet.hpp"
 #include "veridyn/live/recording/live_record.hpp"
+#include "veridyn/live/rig/car_link.hpp"
 #include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/live/telemetry/spike_filter.hpp"
 
@@ -28,6 +29,8 @@ struct RigStep {
   PlatformOrder to_platform;  ///< position and rate of each axis as the guard lets them through
   OrderBytes order = {};      ///< the same as the project's own packet, which is what is recorded
   std::uint32_t sequence = 0;
+  CarLink::CommandBytes command = {};  ///< to the car
+  std::size_t command_size = 0;        ///< 0: none with this step
 };
 
 /// Why a rig that is to run stays parked.
@@ -66,6 +69,12 @@ class LiveRig {
   [[nodiscard]] RigState state() const { return step_.state; }
   [[nodiscard]] Readiness readiness() const { return readiness_; }
   [[nodiscard]] const PacketIntake& intake() const { return intake_; }
+  /// The car whose reports are the telemetry; null where they are packets.
+  [[nodiscard]] CarLink* car() { return car_ ? &*car_ : nullptr; }
+  [[nodiscard]] const CarLink* car() const { return car_ ? &*car_ : nullptr; }
+  /// Of the telemetry, whichever it is: what became of it, and its clock against ours.
+  [[nodiscard]] PerPacketFate<std::uint64_t> packets() const { return car_ ? car_->counts() : intake_.counts(); }
+  [[nodiscard]] const SenderClock& clock() const { return car_ ? car_->clock() : intake_.clock(); }
   /// Answers of the platform: how many, those that could not be read, the last one's verdict, orders that it counted
   /// outside its limits, and the round trip of the last.
   struct Answers {
@@ -96,15 +105,19 @@ class LiveRig {
   [[nodiscard]] bool at_rest_in_neutral() const;
   void watch_frozen(const Telemetry& telemetry);
   void count_extrapolated();
+  void accept(Telemetry& telemetry);
+  [[nodiscard]] bool platform_follows(Nanoseconds time) const;
+  void command_car(Nanoseconds time);
 
   RigOptions options_;
   PacketIntake intake_;
+  std::optional<CarLink> car_;
   EvenMotion even_;
   SpikeFilter spikes_;
   cueing::CueingChain chain_;
   std::uint32_t session_;
   std::optional<recording::MotionSample> last_sample_;  ///< at the driver's head
-  std::optional<Nanoseconds> last_packet_, last_answer_, last_verdict_bad_;
+  std::optional<Nanoseconds> last_packet_, last_answer_, last_verdict_bad_, last_command_;
   Nanoseconds same_since_ = 0, last_time_ = 0, state_since_ = 0;
   double rate_ = 0.0;  ///< of packets, low-passed [Hz]
   std::optional<recording::MotionSample> last_telemetry_;

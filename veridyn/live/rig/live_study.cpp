@@ -163,8 +163,17 @@ LiveStudy read_live_study(const Study& study) {
   s.cueing.response.reset();  // `veridyn cue` without --live measures it
   const StudyTable live = root.table("live");
   static_cast<void>(read_virtual_vehicle(live));  // refused here too where it is wrong
-  s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
+  if (live.text("telemetry") == "car") {
+    s.car = read_car(live);
+    s.driver = read_driver(live, s.car->range);
+    if (live.has("stop")) s.telemetry = parse_address(live.text("stop"), live.place("stop"));
+  } else {
+    s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
+    for (const char* key : {"car", "driver"}) live.accept(key);
+  }
   read_platform(live, s);
+  if (s.car && !s.platform_line.device.empty())
+    live.fail("platform", "is a serial line; with a car the platform takes orders at an address");
   if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
   if (live.has("page_token")) s.page_token = live.file("page_token");
   s.layouts = read_layouts(live);
@@ -184,7 +193,7 @@ LiveStudy read_live_study(const Study& study) {
   const std::vector<std::string> checks = {"before", "while", "off"};
   const std::string signs = live.choice_or("signs", checks, "before");
   o.signs = signs == "before" ? SignCheck::kBefore : signs == "while" ? SignCheck::kWhile : SignCheck::kOff;
-  o.sensor = s.cueing.motion.place;
+  o.sensor = s.car ? s.car->sensor : s.cueing.motion.place;
   o.driver = s.cueing.driver;
   if (s.cueing.motion.gravity != recording::GravityIn::kDecide) {
     const bool in = s.cueing.motion.gravity == recording::GravityIn::kYes;

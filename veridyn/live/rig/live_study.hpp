@@ -9,6 +9,7 @@
 #include "veridyn/cueing/cueing_study.hpp"
 #include "veridyn/live/link/datagram.hpp"
 #include "veridyn/live/platform/order_format.hpp"
+#include "veridyn/live/rig/car_study.hpp"
 #include "veridyn/live/rig/rig_options.hpp"
 #include "veridyn/live/serial/serial_line.hpp"
 #include "veridyn/live/virtual/virtual_vehicle.hpp"
@@ -20,6 +21,8 @@ namespace veridyn::live {
 ///
 ///     [live]
 ///     telemetry = "127.0.0.1:4123"  # listens here for packets; 0.0.0.0: at all of the machine's addresses
+///                                   # or "car": reports of the car of [live.car], driven by [live.driver]
+///     stop = "127.0.0.1:4123"       # with a car: where datagrams VSTOP1 are listened to; nowhere when left out
 ///     packet = "outsim"             # see io::known_packets; "any" (when left out) recognises them by content
 ///     [live.packet]                 # or a layout of one's own, see io::read_packet_layout
 ///     platform = "127.0.0.1:5123"   # orders go there
@@ -38,9 +41,11 @@ namespace veridyn::live {
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
   std::vector<io::PacketLayout> layouts;
-  Sender telemetry;             ///< where we listen
-  Sender platform;              ///< where orders go
-  SerialOptions platform_line;  ///< or the serial line on which they go; its device is empty where there is none
+  Sender telemetry;                   ///< where we listen; with a car, for emergency stops only; port 0: nowhere
+  std::optional<CarStudy> car;        ///< its reports are the telemetry
+  std::optional<DriverStudy> driver;  ///< of the car
+  Sender platform;                    ///< where orders go
+  SerialOptions platform_line;        ///< or the serial line on which they go; its device is empty where there is none
   OrderFormatOptions format;
   std::optional<Sender> page;        ///< where the run's page is shown
   std::filesystem::path page_token;  ///< file of its token; empty: one is drawn and printed

@@ -5,23 +5,23 @@
 #include <span>
 #include <type_traits>
 
+#include "veridyn/live/link/bytes.hpp"
+
 namespace veridyn::live {
 
 /// Bytes as they go over a line.
 using Bytes = std::span<const std::uint8_t>;
 
-/// Writes integers one after the other, least significant byte first, whatever the machine's own order. The caller sees
-/// to it that they fit.
+/// Writes numbers one after the other, least significant byte first. The caller sees to it that they fit.
 class LittleEndianWriter {
  public:
   explicit LittleEndianWriter(std::span<std::uint8_t> out) : out_(out) {}
 
-  template <class Integer>
-  requires std::is_integral_v<Integer>
-  void put(Integer value) {
-    auto rest = static_cast<std::uint64_t>(static_cast<std::make_unsigned_t<Integer>>(value));
-    for (std::size_t byte = 0; byte < sizeof(Integer); ++byte, rest >>= 8U)
-      out_[size_++] = static_cast<std::uint8_t>(rest & 0xFFU);
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void put(Number value) {
+    put_at(out_, size_, value);
+    size_ += sizeof value;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 
@@ -35,13 +35,12 @@ class LittleEndianReader {
  public:
   explicit LittleEndianReader(Bytes in) : in_(in) {}
 
-  template <class Integer>
-  requires std::is_integral_v<Integer>
-  [[nodiscard]] Integer get() {
-    std::uint64_t value = 0;
-    for (std::size_t byte = 0; byte < sizeof(Integer); ++byte)
-      value |= static_cast<std::uint64_t>(in_[at_++]) << (8U * byte);
-    return static_cast<Integer>(static_cast<std::make_unsigned_t<Integer>>(value));
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  [[nodiscard]] Number get() {
+    const Number value = number_at<Number>(in_, at_);
+    at_ += sizeof value;
+    return value;
   }
 
  private:

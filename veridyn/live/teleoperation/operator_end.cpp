@@ -66,9 +66,12 @@ void OperatorEnd::take(const SerialFrame& frame, Nanoseconds now) {
   }
   if (car_run_ != frame.header.run) adopt(frame.header.run);
   if (reports_.take(frame.header.sequence) != SequenceVerdict::kNewer) return;
-  report_ = ReceivedReport{
-      .payload = *payload, .sequence = frame.header.sequence, .arrived = now, .fault = what_is_wrong(payload->sensors)};
   const Nanoseconds made = car_time(payload->time_us);
+  report_ = ReceivedReport{.payload = *payload,
+                           .sequence = frame.header.sequence,
+                           .arrived = now,
+                           .made = made,
+                           .fault = what_is_wrong(payload->sensors)};
   offset_.backward(made, now, now);
   report_stamps_ = now - made;
   if (payload->echo && payload->echo->run == run_) {

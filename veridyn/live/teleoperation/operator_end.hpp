@@ -53,6 +53,7 @@ struct ReceivedReport {
   ReportPayload payload;
   std::uint32_t sequence = 0;
   Nanoseconds arrived = 0;
+  Nanoseconds made = 0;    ///< by the car's clock, without the wrap of its stamps
   std::string_view fault;  ///< the first quantity that no sensor delivered; empty: all did
 };
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
-#include "veridyn/io/packets/known_packets.hpp"
-#include "veridyn/numerics/rotation.hpp"
+#include "veridyn/live/virtual/motion_packet.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -46,29 +45,15 @@ std::optional<std::string_view> VirtualVehicle::next() {
   const double part = std::clamp((at - a.time) / (b.time - a.time), 0.0, 1.0);
   const auto line = [&](const auto& from, const auto& to) { return (from + part * (to - from)).eval(); };
   const Eigen::Vector2d position = line(a.position, b.position);
-  const Eigen::Vector3d v = line(velocity(drive_, at_), velocity(drive_, at_ + 1)), force = line(a.force, b.force),
-                        rate = line(a.rate, b.rate);
-  const auto angles = numerics::euler_from_quaternion(a.attitude.slerp(part, b.attitude));
   constexpr double kItsZero = 1000.0;  // [s]: its clock is not ours
-  const std::array<double, 17> values = {static_cast<double>(number_ % 0xffffffffU),
-                                         kItsZero + passed * (1.0 + options_.clock_drift),
-                                         position.x(),
-                                         position.y(),
-                                         0.0,
-                                         v.x(),
-                                         v.y(),
-                                         v.z(),
-                                         force.x(),
-                                         force.y(),
-                                         force.z(),
-                                         rate.x(),
-                                         rate.y(),
-                                         rate.z(),
-                                         angles.phi,
-                                         angles.theta,
-                                         angles.psi};
-  static const io::PacketLayout& layout = io::known_packet("veridyn");
-  io::encode(layout, values, packet_);
+  encode_motion({.sequence = static_cast<std::uint32_t>(number_ % 0xffffffffU),
+                 .time = kItsZero + passed * (1.0 + options_.clock_drift),
+                 .position = {position.x(), position.y(), 0.0},
+                 .velocity = line(velocity(drive_, at_), velocity(drive_, at_ + 1)),
+                 .force = line(a.force, b.force),
+                 .rate = line(a.rate, b.rate),
+                 .attitude = a.attitude.slerp(part, b.attitude)},
+                packet_);
   ++number_;
   schedule();
   if (options_.loss > 0.0 && random_.uniform() < options_.loss) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/live/time/clock.hpp"
+#include "veridyn/live/virtual/motion_packet.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/recording/motion_sample.hpp"
 
@@ -25,7 +26,7 @@ struct VirtualVehicleOptions {
 /// the start. Knows nothing of clocks and sockets.
 class VirtualVehicle {
  public:
-  static constexpr std::size_t kPacketBytes = 76;
+  static constexpr std::size_t kPacketBytes = kMotionPacketBytes;
 
   /// @param drive stamps growing, frame flu or frd, two samples at least
   VirtualVehicle(std::vector<recording::MotionSample> drive, const VirtualVehicleOptions& options = {});

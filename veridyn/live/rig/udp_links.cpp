@@ -1,4 +1,4 @@
-#include "veridyn/live/link/udp_links.hpp"
+#include "veridyn/live/rig/udp_links.hpp"
 
 #include <poll.h>
 #include <time.h>

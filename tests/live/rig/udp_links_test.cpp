@@ -2,7 +2,7 @@
 
 #ifdef VERIDYN_HAS_SOCKETS
 #include "tests/live/serial/pseudo_terminal.hpp"
-#include "veridyn/live/link/udp_links.hpp"
+#include "veridyn/live/rig/udp_links.hpp"
 #include "veridyn/live/platform/order_format.hpp"
 
 namespace veridyn::live {

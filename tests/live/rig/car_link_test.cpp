@@ -1,0 +1,143 @@
+#include "veridyn/live/rig/car_link.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/live/rig/car_links_in_memory.hpp"
+#include "veridyn/core/files.hpp"
+#include "veridyn/live/rig/live_replay.hpp"
+
+namespace veridyn::live {
+namespace {
+
+using test::CarRun;
+
+TEST(CarLink, DrivesFromPedalToMotion) {
+  CarRun r;
+  r.run(6.0);
+  EXPECT_EQ(r.links.car.actuation().state, CarState::kDriving);
+  EXPECT_GT(r.links.car.state().vehicle(vehicle::kU), 1.5);
+  const RigStatus& status = r.control.status();
+  EXPECT_EQ(status.step.state, RigState::kRunning);
+  EXPECT_EQ(r.links.platform.counts().outside, 0U);
+  ASSERT_TRUE(status.car);
+  EXPECT_TRUE(status.car->connected);
+  EXPECT_EQ(status.car->commands_lost, 0U);
+  EXPECT_EQ(status.car->reports_lost, 0U);
+  // The motion of the platform's rider is that of the car's sensors.
+  const recording::MotionSample truth = r.links.car.motion();
+  EXPECT_NEAR(status.step.motion->sample.rate.z(), truth.rate.z(), 0.15);
+  EXPECT_NEAR(status.step.motion->sample.force.z(), kGravity, 0.5);
+  // Wheel events and commands both come 100 times a second: one waits for the other for 10 ms at most.
+  EXPECT_GT(r.loop.times().pedal_to_command.count(), 550U);
+  EXPECT_LE(r.loop.times().pedal_to_command.largest(), 10 * kMillisecond);
+}
+
+TEST(CarLink, BrakesTheCarOnAnEmergencyAndUntilTheThrottleIsReleased) {
+  CarRun r;
+  r.run(3.0);
+  ASSERT_GT(r.links.car.state().vehicle(vehicle::kU), 1.0);
+  r.control.emergency();
+  r.run(0.1);
+  EXPECT_EQ(r.links.car.actuation().command.drive_force, 0.0);
+  EXPECT_EQ(r.links.car.actuation().command.brake, 1.0);
+  r.run(2.0);
+  EXPECT_NEAR(r.links.car.state().vehicle(vehicle::kU), 0.0, 1e-2);
+  r.control.request(OperatorRequest::kRelease);
+  r.run(1.0);
+  // The driver's foot is on the throttle still.
+  EXPECT_EQ(r.links.car.actuation().command.brake, 0.0);
+  EXPECT_EQ(r.links.car.actuation().command.drive_force, 0.0);
+}
+
+TEST(CarLink, BrakesTheCarWhereThePlatformIsLost) {
+  CarRun r;
+  r.run(3.0);
+  r.links.platform_there = false;
+  r.run(0.4);
+  EXPECT_EQ(r.links.car.actuation().command.drive_force, 0.0);
+  EXPECT_EQ(r.links.car.actuation().command.brake, 1.0);
+}
+
+TEST(CarLink, BrakesTheCarWhereItsDriverIsGone) {
+  CarRun r(0.0, 3.0);
+  r.run(2.9);
+  EXPECT_GT(r.links.car.actuation().command.drive_force, 0.0);
+  r.run(0.3);
+  EXPECT_EQ(r.links.car.actuation().command.drive_force, 0.0);
+  EXPECT_EQ(r.links.car.actuation().command.brake, 1.0);
+}
+
+TEST(CarLink, HoldsThePlatformWhereTheCarFallsSilent) {
+  CarRun r;
+  r.run(3.0);
+  ASSERT_EQ(r.loop.rig().state(), RigState::kRunning);
+  r.links.to_rig.cut = true;
+  r.run(0.5);
+  EXPECT_EQ(r.loop.rig().state(), RigState::kHold);
+  EXPECT_EQ(r.loop.rig().readiness(), Readiness::kNoTelemetry);
+  r.links.to_rig.cut = false;
+  r.run(2.0);
+  EXPECT_EQ(r.loop.rig().state(), RigState::kRunning);
+}
+
+TEST(CarLink, LosesWhatADamagedLineLosesAndDrivesOn) {
+  CarRun r(0.01);
+  r.run(20.0);
+  const LinkQuality q = r.loop.rig().car()->quality(r.clock.now());
+  // 1 - 0.99^28 and 1 - 0.99^53 are 24.5 and 41.3 %; 2000 frames know them to 1 and 1.1 %, four times of that.
+  EXPECT_NEAR(q.command_loss(), 0.245, 0.04);
+  EXPECT_NEAR(q.report_loss(), 0.413, 0.045);
+  EXPECT_EQ(r.loop.rig().state(), RigState::kRunning);
+  EXPECT_EQ(r.links.platform.counts().outside, 0U);
+  EXPECT_EQ(r.links.car.end().verdicts()[CommandVerdict::kOutOfRange], 0U);
+}
+
+TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_replay.vlr";
+  {
+    CarRun r(0.01);
+    LiveRecorder recorder(path, {.program = "test",
+                                 .study = test::kCarStudy,
+                                 .study_name = "rig.toml",
+                                 .started = 0,
+                                 .started_utc = 0,
+                                 .session = 5});
+    r.run(4.0, &recorder);
+    r.control.emergency();
+    r.run(1.0, &recorder);
+  }
+  Progress progress;
+  const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
+  std::filesystem::remove(path);
+  EXPECT_EQ(replayed.times.steps, 500U);
+  EXPECT_EQ(replayed.different, 0U);
+  ASSERT_TRUE(replayed.car);
+  EXPECT_EQ(replayed.car->commands, 500U);
+  EXPECT_EQ(replayed.car->commands_different, 0U);
+  EXPECT_GT(replayed.car->drive.rows(), 200U);
+  EXPECT_GT(replayed.times.pedal_to_command.count(), 400U);
+}
+
+TEST(CarLink, ReplayFindsACommandThatDiffers) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_differs.vlr";
+  {
+    CarRun r;
+    LiveRecorder recorder(path, {.program = "test",
+                                 .study = test::kCarStudy,
+                                 .study_name = "rig.toml",
+                                 .started = 0,
+                                 .started_utc = 0,
+                                 .session = 6});
+    r.run(1.0, &recorder);  // as session 5
+  }
+  Progress progress;
+  const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
+  std::filesystem::remove(path);
+  EXPECT_EQ(replayed.car->commands_different, replayed.car->commands);
+}
+
+}  // namespace
+}  // namespace veridyn::live
