@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -64,6 +66,40 @@ TEST(AircraftStudy, FindsTheTermsOfTheTrueModelAmongCandidates) {
     // What is exported has the chosen terms.
     EXPECT_EQ(a.identified.model.at(r.coefficient).size(), r.model.size());
   }
+}
+
+/// Rows of a name.
+std::vector<estimation::Evidence> rows_named(const FlightAnalysis& analysis, std::string_view name) {
+  std::vector<estimation::Evidence> rows;
+  for (const estimation::Evidence& row : analysis.estimate.evidence)
+    if (row.name == name) rows.push_back(row);
+  return rows;
+}
+
+TEST(AircraftStudy, ARightModelFliesOverTheHoldOutBetterThanMeanAndLastValue) {
+  Progress silent;
+  const FlightStudy study = calm_study(150.0, "");
+  const FlightAnalysis analysis = identify(study, silent);
+  for (const char* name : {"flown over the hold-out", "flown against the last value"}) {
+    ASSERT_FALSE(rows_named(analysis, name).empty());
+    for (const estimation::Evidence& row : rows_named(analysis, name)) EXPECT_TRUE(row.passed()) << row.text;
+  }
+}
+
+TEST(AircraftStudy, AnEstimateThatWasRejectedNeverHolds) {
+  Progress silent;
+  const FlightStudy study = calm_study(150.0, "[identify]\ncoefficients = [\"CL\", \"Cm\"]\n");
+  estimation::Estimate estimate = identify(study, silent).estimate;
+  for (estimation::Parameter& p : estimate.parameters)
+    if (p.name.starts_with("Cm")) p.status = estimation::ParameterStatus::kRejected;
+  const FlightAnalysis validated = validate(study, estimate, silent);
+  const auto of = [&](const char* name) {
+    return *std::ranges::find(validated.coefficients, name, &CoefficientResult::name);
+  };
+  EXPECT_THAT(of("CL").reason, ::testing::HasSubstr("holds"));
+  EXPECT_THAT(of("Cm").reason, ::testing::Not(::testing::HasSubstr("holds")));
+  EXPECT_THAT(of("Cm").reason, ::testing::HasSubstr("rejected where it was identified"));
+  EXPECT_FALSE(estimation::usable(of("Cm").verdict));
 }
 
 // Calm air, perfect sensors, servos without lag that are sampled at 100 Hz: what is left is how well the moment of a

@@ -13,8 +13,17 @@ namespace {
 using estimation::Evidence;
 using estimation::Outcome;
 
-constexpr std::array kFindings{Finding::kNamed, Finding::kMisnamed, Finding::kHarmless, Finding::kNotVerified,
-                               Finding::kMissed};
+constexpr std::array kFindings{Finding::kNamed,   Finding::kMisnamed,    Finding::kHarmless,
+                               Finding::kInDoubt, Finding::kNotVerified, Finding::kMissed};
+
+/// What is in the first, but not in the second: what was wrong without the fault is the noise of this recording.
+std::vector<std::string> new_in(const std::map<std::string, std::string>& faulty,
+                                const std::map<std::string, std::string>& clean) {
+  std::vector<std::string> texts;
+  for (const auto& [name, text] : faulty)
+    if (!clean.contains(name)) texts.push_back(text);
+  return texts;
+}
 
 /// Rows of the worst outcome that the clean recording does not have; those of the recording before others.
 std::vector<Evidence> deciding_rows(std::span<const Evidence> faulty, std::span<const Evidence> clean) {
@@ -51,6 +60,8 @@ std::string_view to_string(Finding finding) {
   switch (finding) {
     case Finding::kHarmless:
       return "harmless";
+    case Finding::kInDoubt:
+      return "in doubt";
     case Finding::kNamed:
       return "named";
     case Finding::kMisnamed:
@@ -64,15 +75,24 @@ std::string_view to_string(Finding finding) {
 }
 
 void Confidence::add(std::span<const estimation::Parameter> parameters,
-                     const std::map<std::string, double, std::less<>>& truth) {
-  for (const estimation::Parameter& p : parameters) {
+                     const std::map<std::string, double, std::less<>>& truth, std::span<const double> doubt) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const estimation::Parameter& p = parameters[i];
+    const double beside = doubt.empty() ? 0.0 : doubt[i];
     const auto known = truth.find(p.name);
-    if (p.status != estimation::ParameterStatus::kIdentified || known == truth.end()) continue;
-    ++confident;
+    const bool identified = p.status == estimation::ParameterStatus::kIdentified;
+    const bool weak = p.status == estimation::ParameterStatus::kWeak && beside > 0.0;
+    if (!(identified || weak) || known == truth.end()) continue;
     const double error = std::abs(p.value - known->second);
-    if (known->second >= p.low95 && known->second <= p.high95) ++covered;
-    if (error > 3.0 * p.sigma && error > kWrongBy * std::abs(known->second))
-      wrong[p.name] = fmt::format("{} {:.3g} +- {:.2g} ({:.3g})", p.name, p.value, p.sigma, known->second);
+    if (identified) {
+      ++confident;
+      if (known->second >= p.low95 && known->second <= p.high95) ++covered;
+    }
+    if (!(error > 3.0 * p.sigma && error > kWrongBy * std::abs(known->second))) continue;
+    const bool stated = weak || error <= 3.0 * std::hypot(p.sigma, beside);
+    (stated ? in_doubt : wrong)[p.name] =
+        fmt::format("{} {:.3g} +- {:.2g}{} ({:.3g})", p.name, p.value, p.sigma,
+                    beside > 0.0 ? fmt::format(" +- {:.2g}", beside) : std::string(), known->second);
   }
 }
 
@@ -84,10 +104,7 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
     trial.reason = faulty.message;
     return trial;
   }
-  std::vector<std::string> wrong;
-  // What was wrong without the fault is the noise of this recording.
-  for (const auto& [name, text] : faulty.confidence.wrong)
-    if (!clean.confidence.wrong.contains(name)) wrong.push_back(text);
+  const std::vector<std::string> wrong = new_in(faulty.confidence.wrong, clean.confidence.wrong);
   if (!wrong.empty()) {
     const bool said = std::ranges::any_of(faulty.evidence, [&](const Evidence& row) {
       return row.outcome == Outcome::kNotVerified && names_one(words, row.about);
@@ -97,7 +114,9 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
     return trial;
   }
   if (!found) {
-    trial.finding = Finding::kHarmless;
+    const std::vector<std::string> stated = new_in(faulty.confidence.in_doubt, clean.confidence.in_doubt);
+    trial.finding = stated.empty() ? Finding::kHarmless : Finding::kInDoubt;
+    trial.reason = fmt::format("{}", fmt::join(stated, ", "));
     return trial;
   }
   const std::vector<Evidence> rows = deciding_rows(faulty.evidence, clean.evidence);
@@ -109,7 +128,8 @@ Trial tried(const Outcomes& faulty, const Outcomes& clean, bool found, std::span
 }
 
 std::string confusion_table(std::span<const Trial> trials, std::span<const std::string> faults) {
-  std::string table = "| fault | named | misnamed | harmless | not verified | missed |\n|---|---|---|---|---|---|\n";
+  std::string table =
+      "| fault | named | misnamed | harmless | in doubt | not verified | missed |\n|---|---|---|---|---|---|---|\n";
   for (const std::string& fault : faults) {
     std::array<std::size_t, kFindings.size()> count{};
     for (const Trial& trial : trials) {

@@ -15,13 +15,14 @@ namespace veridyn::test {
 
 /// What became of a fault.
 enum class Finding {
-  kHarmless,     ///< nothing was found, and every parameter that is graded yes is right
-  kNamed,        ///< found, and a row that decides is about what is wrong
-  kMisnamed,     ///< found, but the rows that decide are about something else
+  kHarmless,  ///< nothing was found, and every parameter that is graded yes is right
+  kInDoubt,   ///< no grade falls; what is wrong is marked weak or wrong by no more than a doubt that is stated with it
+  kNamed,     ///< found, and a row that decides is about what is wrong
+  kMisnamed,  ///< found, but the rows that decide are about something else
   kNotVerified,  ///< wrong, while a row about what is wrong says that this recording does not verify it
   kMissed        ///< confident and wrong
 };
-/// "harmless", "named", "misnamed", "not verified", "missed".
+/// "harmless", "in doubt", "named", "misnamed", "not verified", "missed".
 [[nodiscard]] std::string_view to_string(Finding finding);
 
 /// A parameter counts as wrong beyond three of its standard errors and this share of the truth.
@@ -40,9 +41,14 @@ struct Confidence {
   std::size_t confident = 0;
   std::size_t covered = 0;                   ///< the truth is inside the interval of 95 %
   std::map<std::string, std::string> wrong;  ///< "Cm_alpha -0.9 +- 0.01 (-0.7)", by name
+  /// Wrong by its interval alone, but weak for a doubt that is stated with it, or right within three standard
+  /// deviations of interval and doubt together.
+  std::map<std::string, std::string> in_doubt;
 
-  /// Counts the identified ones of a group.
-  void add(std::span<const estimation::Parameter> parameters, const std::map<std::string, double, std::less<>>& truth);
+  /// Counts the identified ones of a group; `doubt` are standard deviations that are stated beside the intervals, in
+  /// the order of the parameters, or nothing.
+  void add(std::span<const estimation::Parameter> parameters, const std::map<std::string, double, std::less<>>& truth,
+           std::span<const double> doubt = {});
 };
 
 /// What a result is judged by here.

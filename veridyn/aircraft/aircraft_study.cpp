@@ -181,6 +181,18 @@ std::vector<estimation::Evidence> flown_evidence(const Validation& validation) {
                         "flown for {:.0f} s at a time over the hold-out, the model misses {} by {:.2g} {}{}",
                         validation.period_s, q.name, q.fit.mae, q.unit, better ? "" : ", which is worse than its mean"),
                     .bears_on = Purpose::kPrediction});
+    const bool beats_last = q.fit.rmse <= q.last_value_rmse;
+    rows.push_back({.name = "flown against the last value",
+                    .about = q.name,
+                    .outcome = passed_or(beats_last, Outcome::kCare),
+                    .value = q.fit.rmse / q.last_value_rmse,
+                    .limit = 1.0,
+                    .scale = "error over that of the last value",
+                    .text = fmt::format("the model's error in {} is {:.2f} times that of who holds the value at the "
+                                        "start of each window{}",
+                                        q.name, q.fit.rmse / q.last_value_rmse,
+                                        beats_last ? "" : ": it predicts no better than that"),
+                    .bears_on = Purpose::kPrediction});
   }
   return rows;
 }

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <map>
 #include <mutex>
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
@@ -21,9 +25,19 @@ using aircraft::testing::Finding;
 using aircraft::testing::Identified;
 using aircraft::testing::Trial;
 
+/// All faults, or those whose name holds the text of VERIDYN_FAULTS.
+std::vector<Fault> chosen_faults() {
+  const char* text = std::getenv("VERIDYN_FAULTS");
+  std::vector<Fault> chosen;
+  for (const Fault& fault : faults())
+    if (text == nullptr || fault.name.find(text) != std::string::npos) chosen.push_back(fault);
+  return chosen;
+}
+
 // All faults in all built-in aircraft. Writes campaign.md (what became of each fault) and campaign.csv (every trial).
 TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
   const std::vector<std::string> aircraft = builtin_subject_names();
+  const std::vector<Fault> chosen = chosen_faults();
   std::vector<FlightStudy> studies(aircraft.size());
   std::vector<Identified> clean(aircraft.size());
   numerics::parallel_for(aircraft.size(), 0, [&](std::size_t i) {
@@ -39,11 +53,11 @@ TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
                        to_string(clean[i].analysis.estimate.judgement.data.grade),
                        to_string(clean[i].analysis.estimate.judgement.parameters.grade), wrong);
   }
-  std::vector<Trial> trials(aircraft.size() * faults().size());
+  std::vector<Trial> trials(aircraft.size() * chosen.size());
   std::mutex writing;
   numerics::parallel_for(trials.size(), 0, [&](std::size_t k) {
     const std::size_t i = k % aircraft.size();
-    Trial trial = testing::try_fault(studies[i], clean[i], faults()[k / aircraft.size()]);
+    Trial trial = testing::try_fault(studies[i], clean[i], chosen[k / aircraft.size()]);
     trial.subject = aircraft[i];
     std::string reason = trial.reason;
     std::ranges::replace(reason, '"', '\'');
@@ -65,6 +79,7 @@ TEST(CampaignSoak, CatchesFaultsInAllBuiltInAircraft) {
 /// Of all flights of an aircraft.
 struct Coverage {
   std::size_t flights = 0, data_yes = 0, both_yes = 0, confident = 0, covered = 0;
+  std::vector<std::array<double, 2>> of_flights;  ///< confident and covered of each
 
   void add(const Identified& flight) {
     if (flight.refused) return;
@@ -75,53 +90,146 @@ struct Coverage {
     both_yes += data && judgement.parameters.grade == estimation::Grade::kYes ? 1 : 0;
     confident += flight.confidence.confident;
     covered += flight.confidence.covered;
+    of_flights.push_back(
+        {static_cast<double>(flight.confidence.confident), static_cast<double>(flight.confidence.covered)});
   }
   [[nodiscard]] double share() const { return static_cast<double>(covered) / static_cast<double>(confident); }
+  /// Standard error of the share: flights are independent, the parameters of one are not.
+  [[nodiscard]] double sigma() const {
+    double sum = 0.0;
+    for (const auto& [of_flight, held] : of_flights) sum += std::pow(held - share() * of_flight, 2.0);
+    return std::sqrt(sum) / static_cast<double>(confident);
+  }
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{:.1f} +- {:.1f} % of {}", 100.0 * share(), 100.0 * sigma(), confident);
+  }
+  /// 93 to 97 % cannot be excluded with a probability of 95 %.
+  void expect_nominal(const std::string& name) const {
+    EXPECT_GE(share() + 1.96 * sigma(), 0.93) << name << ": " << text();
+    EXPECT_LE(share() - 1.96 * sigma(), 0.97) << name << ": " << text();
+  }
 };
 
-// Clean flights of all built-in aircraft, from calm to moderate turbulence. Writes coverage.md.
+/// What is counted; a hundred flights' signals take gigabytes. Texts of rows are left out.
+Identified counted(const std::string& aircraft, std::uint64_t seed, testing::Assumed assumed) {
+  static const std::vector<std::string> turbulence{"none", "low_light", "low_moderate"};
+  Identified kept;
+  try {
+    const Identified flight = testing::identified(
+        campaign_flight(aircraft, seed, 300.0, turbulence[(seed - 1) % turbulence.size()], assumed));
+    kept.refused = flight.refused;
+    kept.confidence = flight.confidence;
+    kept.analysis.estimate.judgement = flight.analysis.estimate.judgement;
+    for (const estimation::Evidence& row : flight.analysis.estimate.evidence)
+      kept.analysis.estimate.evidence.push_back({.name = row.name, .about = row.about, .outcome = row.outcome});
+  } catch (const InputError&) {
+    // The pilot lost the aircraft: no flight to identify from.
+    kept.refused = true;
+  }
+  return kept;
+}
+
+/// In how many flights a row raised an alarm.
+struct Alarms {
+  std::size_t care = 0, failed = 0;
+};
+
+/// Of every row that is in some flight; several rows of a name in one flight count once.
+std::map<std::string, Alarms> alarms_of(const std::vector<Identified>& flights) {
+  using estimation::Outcome;
+  std::map<std::string, Alarms> all;
+  for (const Identified& flight : flights) {
+    std::map<std::string, Outcome> worst;
+    for (const estimation::Evidence& row : flight.analysis.estimate.evidence) {
+      const Outcome outcome = row.outcome == Outcome::kMissing ? Outcome::kPassed : row.outcome;
+      Outcome& so_far = worst[row.name];
+      so_far = std::max(so_far, outcome);
+    }
+    for (const auto& [name, outcome] : worst) {
+      Alarms& alarms = all[name];
+      alarms.care += outcome == Outcome::kCare ? 1 : 0;
+      alarms.failed += outcome == Outcome::kFailed ? 1 : 0;
+    }
+  }
+  return all;
+}
+
+/// The largest share of clean flights in which a row may raise an alarm. Rows that judge prediction are no false alarms
+/// where gusts, which a model is not given, cost it its lead; those of the recording are tested at the level of a few
+/// in a thousand, those of a coefficient six times a flight.
+double stated_rate(const std::string& row) {
+  static const std::map<std::string, double> others{{"flown over the hold-out", 1.0},
+                                                    {"flown against the last value", 1.0},
+                                                    {"hold-out", 1.0},
+                                                    {"bands on the hold-out", 1.0},
+                                                    {"agreement of the flight's parts", 0.06}};
+  const auto found = others.find(row);
+  return found == others.end() ? 0.02 : found->second;
+}
+
+std::string alarm_table(const std::map<std::string, Alarms>& alarms, std::size_t flights) {
+  std::string table = fmt::format("\n| row | with care | failed | of |\n|---|---|---|---|\n");
+  for (const auto& [name, count] : alarms)
+    table += fmt::format("| {} | {} | {} | {} |\n", name, count.care, count.failed, flights);
+  return table;
+}
+
+// Clean flights of all built-in aircraft, from calm to moderate turbulence. Writes coverage.md: what is graded yes,
+// what intervals hold, and how often each row raises an alarm.
 TEST(CampaignSoak, CleanFlightsAreGradedYesAndIntervalsHoldTheTruth) {
   const std::vector<std::string> aircraft = builtin_subject_names();
-  const std::vector<std::string> turbulence{"none", "low_light", "low_moderate"};
   constexpr std::size_t kSeeds = 25;
   std::vector<std::array<Identified, 2>> flights(aircraft.size() * kSeeds);
   numerics::parallel_for(flights.size(), 0, [&](std::size_t k) {
     const std::size_t seed = k / aircraft.size();
-    for (const auto assumed : {testing::Assumed::kTruth, testing::Assumed::kNothing}) {
-      Identified flight;
-      try {
-        flight = testing::identified(campaign_flight(aircraft[k % aircraft.size()], seed + 1, 300.0,
-                                                     turbulence[seed % turbulence.size()], assumed));
-      } catch (const InputError&) {
-        // The pilot lost the aircraft: no flight to identify from.
-        flight.refused = true;
-      }
-      // What is counted; a hundred flights' signals take gigabytes.
-      Identified kept;
-      kept.refused = flight.refused;
-      kept.confidence = flight.confidence;
-      kept.analysis.estimate.judgement = flight.analysis.estimate.judgement;
-      flights[k][assumed == testing::Assumed::kTruth ? 0 : 1] = std::move(kept);
-    }
+    flights[k] = {counted(aircraft[k % aircraft.size()], seed + 1, testing::Assumed::kTruth),
+                  counted(aircraft[k % aircraft.size()], seed + 1, testing::Assumed::kNothing)};
   });
   std::ofstream table("coverage.md");
   table
       << "| aircraft | flights | data yes | data and parameters yes | coverage, noise given | coverage, noise measured "
          "|\n|---|---|---|---|---|---|\n";
   Coverage all;
+  std::vector<Identified> flown;
   for (std::size_t i = 0; i < aircraft.size(); ++i) {
     Coverage given, measured;
     for (std::size_t k = i; k < flights.size(); k += aircraft.size()) {
       given.add(flights[k][0]);
       measured.add(flights[k][1]);
       all.add(flights[k][0]);
+      if (!flights[k][0].refused) flown.push_back(flights[k][0]);
     }
-    table << fmt::format("| {} | {} | {} | {} | {:.1f} % of {} | {:.1f} % of {} |\n", aircraft[i], given.flights,
-                         given.data_yes, given.both_yes, 100.0 * given.share(), given.confident,
-                         100.0 * measured.share(), measured.confident);
-    EXPECT_GE(given.share(), 0.9) << aircraft[i];
+    table << fmt::format("| {} | {} | {} | {} | {} | {} |\n", aircraft[i], given.flights, given.data_yes,
+                         given.both_yes, given.text(), measured.text());
+    given.expect_nominal(aircraft[i] + ", noise given");
+    measured.expect_nominal(aircraft[i] + ", noise measured");
   }
-  EXPECT_GE(static_cast<double>(all.data_yes), 0.95 * static_cast<double>(all.flights));
+  const auto count = static_cast<double>(all.flights);
+  table << fmt::format("\n{} data yes, {} data and parameters yes, of {}\n", all.data_yes, all.both_yes, all.flights);
+  EXPECT_GE(static_cast<double>(all.data_yes), 0.95 * count);
+  EXPECT_GE(static_cast<double>(all.both_yes) + std::sqrt(0.95 * 0.05 * count), 0.95 * count);
+  const std::map<std::string, Alarms> alarms = alarms_of(flown);
+  table << alarm_table(alarms, flown.size());
+  for (const auto& [name, n] : alarms)
+    EXPECT_LE(static_cast<double>(n.care + n.failed), stated_rate(name) * count) << name;
+}
+
+// The two aircraft whose coverage is furthest from 95 % over 25 flights, over 100 others. Writes coverage_of_two.md.
+TEST(CampaignSoak, IntervalsOfUnatrapAndHcuavHoldTheTruthInAHundredFlights) {
+  const std::vector<std::string> aircraft{"unatrap", "hcuav"};
+  constexpr std::size_t kFlights = 100;
+  std::vector<Identified> flights(aircraft.size() * kFlights);
+  numerics::parallel_for(flights.size(), 0, [&](std::size_t k) {
+    flights[k] = counted(aircraft[k % aircraft.size()], 26 + k / aircraft.size(), testing::Assumed::kTruth);
+  });
+  std::ofstream table("coverage_of_two.md");
+  for (std::size_t i = 0; i < aircraft.size(); ++i) {
+    Coverage given;
+    for (std::size_t k = i; k < flights.size(); k += aircraft.size()) given.add(flights[k]);
+    table << fmt::format("| {} | {} | {} | {} | {} |\n", aircraft[i], given.flights, given.data_yes, given.both_yes,
+                         given.text());
+    given.expect_nominal(aircraft[i]);
+  }
 }
 
 /// One manoeuvre of 20 s of each axis (multisines; 3-2-1-1 and doublets; multisine and 3-2-1-1), nothing held out.

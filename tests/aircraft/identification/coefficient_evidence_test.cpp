@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
+#include "veridyn/estimation/regression/regression_evidence.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -96,8 +97,72 @@ TEST(CoefficientEvidence, CollinearityMattersWhereTheResidualIsMoreThanNoise) {
   EXPECT_EQ(judged(checks, comparison).parameters.grade, Grade::kWithCare);
 }
 
+Evidence row_of(const CoefficientChecks& checks, std::string_view name,
+                const estimation::RegressionComparison& comparison = recommended()) {
+  const std::vector<Evidence> rows = coefficient_evidence("CL", checks, comparison, {});
+  const auto found = std::ranges::find(rows, name, &Evidence::name);
+  return found == rows.end() ? Evidence{.outcome = Outcome::kMissing, .text = "no such row"} : *found;
+}
+
+TEST(CoefficientEvidence, PartsOfTheFlightThatContradictEachOtherRefuseTheParameters) {
+  CoefficientChecks checks = sound();
+  checks.scatter = 2.25;
+  EXPECT_EQ(row_of(checks, "agreement of the flight's parts").outcome, Outcome::kPassed);
+  EXPECT_THAT(row_of(checks, "agreement of the flight's parts").text, HasSubstr("widened by 1.50"));
+  checks.contradiction_p = 1e-4;
+  EXPECT_EQ(row_of(checks, "agreement of the flight's parts").outcome, Outcome::kFailed);
+  EXPECT_EQ(judged(checks).parameters.grade, Grade::kNo);
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kYes);
+}
+
+TEST(CoefficientEvidence, BandsThatDoNotHoldOnTheHoldOutAreCareOfPrediction) {
+  CoefficientChecks checks = sound();
+  checks.outside_bands = 0.08;
+  EXPECT_EQ(row_of(checks, "bands on the hold-out").outcome, Outcome::kPassed);
+  checks.outside_bands = 0.25;
+  EXPECT_EQ(row_of(checks, "bands on the hold-out").outcome, Outcome::kCare);
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kWithCare);
+  EXPECT_EQ(judged(checks).parameters.grade, Grade::kYes);
+}
+
+TEST(CoefficientEvidence, StartValuesThatPredictBetterAreCareOfPrediction) {
+  CoefficientChecks checks = sound();
+  EXPECT_EQ(row_of(checks, "hold-out against the start values").outcome, Outcome::kMissing) << "none were given";
+  checks.error_over_start = 1.01;
+  EXPECT_EQ(row_of(checks, "hold-out against the start values").outcome, Outcome::kPassed);
+  checks.error_over_start = 1.3;
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kWithCare);
+  EXPECT_THAT(row_of(checks, "hold-out against the start values").text, HasSubstr("predict better"));
+}
+
 estimation::Parameter parameter(std::string name, double value, double sigma) {
   return {.name = std::move(name), .value = value, .sigma = sigma};
+}
+
+// Two controls that an autopilot mixes: a variance inflation of 40, with 98 % of the hold-out explained.
+TEST(CoefficientEvidence, CollinearParametersAreNotIdentified) {
+  std::vector<estimation::Parameter> parameters{parameter("CY_da", 0.1, 0.01), parameter("CY_dr", 0.2, 0.01),
+                                                parameter("CY_beta", -0.7, 0.01)};
+  for (estimation::Parameter& p : parameters) p.status = estimation::ParameterStatus::kIdentified;
+  parameters[0].variance_inflation = parameters[1].variance_inflation = 40.0;
+  estimation::RegressionEstimate estimate;
+  estimate.condition_number = 80.0;
+  estimate.parameters = parameters;
+  estimation::RegressionComparison comparison = recommended();
+  comparison.checks = {estimation::collinearity(estimate)};
+  CoefficientChecks checks = sound();
+  checks.holdout_fit.r2 = 0.98;
+  checks.error_ratio = 9.0;
+  const std::vector<Evidence> rows = coefficient_evidence("CY", checks, comparison, {});
+  EXPECT_EQ(estimation::judge(rows).parameters.grade, Grade::kWithCare);
+  const std::vector<estimation::Parameter> marked = weak_by_collinearity(parameters, rows);
+  EXPECT_EQ(marked[0].status, estimation::ParameterStatus::kWeak);
+  EXPECT_EQ(marked[1].status, estimation::ParameterStatus::kWeak);
+  EXPECT_EQ(marked[2].status, estimation::ParameterStatus::kIdentified);
+  // Where the residual is noise alone their intervals hold: they are as wide as the inflation makes them.
+  checks.error_ratio = 1.0;
+  const std::vector<Evidence> quiet = coefficient_evidence("CY", checks, comparison, {});
+  EXPECT_EQ(weak_by_collinearity(parameters, quiet)[0].status, estimation::ParameterStatus::kIdentified);
 }
 
 TEST(Plausibility, PassesTheValuesOfEveryBuiltInAircraft) {

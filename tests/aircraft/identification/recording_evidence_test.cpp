@@ -156,6 +156,52 @@ TEST(RecordingEvidence, TakesAPitotTubeThatReadsTwiceWithCare) {
   EXPECT_NE(find(rows, "gust_x", Outcome::kCare), nullptr) << texts(rows);
 }
 
+const FlightEvidence* named(const std::vector<FlightEvidence>& rows, std::string_view name, std::string_view about) {
+  const auto found =
+      std::ranges::find_if(rows, [&](const FlightEvidence& e) { return e.row.name == name && e.row.about == about; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+TEST(RecordingEvidence, NamesTheSensorWhoseSamplesTheReconstructionRefuses) {
+  const auto clean = evidence_of(flown().measured);
+  const FlightEvidence* right = named(clean, "agreement with the reconstruction", "beta");
+  ASSERT_NE(right, nullptr);
+  EXPECT_EQ(right->row.outcome, Outcome::kPassed) << right->row.text;
+  Recording recording = flown().measured;
+  Channel beta = recording.at("beta");
+  for (std::size_t i = 0; i < beta.size(); i += 20) beta.value[i] += 0.6;
+  recording.set(std::move(beta));
+  const auto rows = evidence_of(recording);
+  const FlightEvidence* wrong = named(rows, "agreement with the reconstruction", "beta");
+  ASSERT_NE(wrong, nullptr);
+  EXPECT_FALSE(wrong->row.passed()) << wrong->row.text;
+  EXPECT_FALSE(wrong->bears_on(Coefficient::kCL));
+}
+
+TEST(RecordingEvidence, MeanGustsAreThoseThatTurbulenceLeaves) {
+  const auto clean = evidence_of(flown().measured);
+  const auto gust = std::ranges::find_if(clean, [](const FlightEvidence& e) { return e.row.name == "mean gust"; });
+  ASSERT_NE(gust, clean.end());
+  EXPECT_EQ(gust->row.outcome, Outcome::kPassed) << gust->row.text;
+}
+
+TEST(RecordingEvidence, SaysThatAFlightIsShorterThanItsSlowestOscillation) {
+  Flown flight = flown();
+  const ReconstructOptions options = reference_options();
+  const Reconstruction reconstruction = reconstructed(flight, options);
+  const auto row_for = [&](double end) {
+    Segments segments;
+    segments.airborne = {{5.0, end}};
+    const auto rows = recording_evidence(flight.measured, reconstruction, options, segments);
+    const FlightEvidence* row = named(rows, "length of the flight", "");
+    return row == nullptr ? estimation::Evidence{.outcome = Outcome::kMissing} : row->row;
+  };
+  // At 20 m/s: pi sqrt(2) 20 / 9.81 = 9.06 s.
+  EXPECT_NEAR(row_for(115.0).limit, 9.06, 0.5);
+  EXPECT_EQ(row_for(115.0).outcome, Outcome::kPassed);
+  EXPECT_EQ(row_for(12.0).outcome, Outcome::kCare);
+}
+
 TEST(FlightEvidence, BearsOnAllCoefficientsUnlessItSaysWhich) {
   const FlightEvidence all, some{.row = {}, .affects = {Coefficient::kCY}};
   EXPECT_TRUE(all.bears_on(Coefficient::kCm));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -29,6 +30,13 @@ struct DriveFault {
 
 /// A drive of 90 s with reference sensors and positions.
 [[nodiscard]] VehicleStudy campaign_drive(const std::string& vehicle, std::uint64_t seed);
+
+/// How much is known of the roll of a body.
+enum class RollKnown { kNot, kGiven };
+
+/// A gentle drive of 90 s of a car whose body rolls and whose wheels are loaded unequally, with reference sensors: each
+/// number another speed (14 to 25 m/s), steering (1 to 3 m/s^2 of lateral acceleration) and roll stiffness.
+[[nodiscard]] VehicleStudy gentle_drive(std::size_t number, RollKnown roll);
 
 /// A drive with its result.
 struct IdentifiedDrive {

@@ -11,10 +11,10 @@ namespace veridyn::aircraft {
 
 using estimation::ParameterStatus;
 
-std::array<double, kBodyConstants> body_sigma(const Subject& subject) {
+EnumArray<BodyConstant, double, kBodyConstants> body_sigma(const Subject& subject) {
   const BodySigma& s = subject.sigma;
   const bool J = subject.inertia.has_value();
-  return {s.mass, s.wing_area, s.span, s.chord, J ? s.Jx : 0.0, J ? s.Jy : 0.0, J ? s.Jz : 0.0, J ? s.Jxz : 0.0};
+  return {{s.mass, s.wing_area, s.span, s.chord, J ? s.Jx : 0.0, J ? s.Jy : 0.0, J ? s.Jz : 0.0, J ? s.Jxz : 0.0}};
 }
 
 Subject with_changed(const Subject& subject, BodyConstant constant, double change) {
@@ -53,7 +53,7 @@ Subject with_changed(const Subject& subject, BodyConstant constant, double chang
 Eigen::MatrixXd body_sensitivity(const Subject& subject, Eigen::Index parameters,
                                  const std::function<Eigen::VectorXd(const Subject&)>& estimate) {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(parameters, static_cast<Eigen::Index>(kBodyConstants));
-  const std::array<double, kBodyConstants> sigma = body_sigma(subject);
+  const EnumArray<BodyConstant, double, kBodyConstants> sigma = body_sigma(subject);
   for (std::size_t k = 0; k < kBodyConstants; ++k) {
     if (!(sigma[k] > 0.0)) continue;
     // A tenth of sigma: the tangent, also where sigma is as large as the constant itself.
@@ -90,7 +90,7 @@ void widen(estimation::RegressionEstimate& estimate, const Eigen::MatrixXd& sens
 
 std::string dominant_constant(const estimation::RegressionEstimate& widened, const Eigen::MatrixXd& sensitivity,
                               const Subject& subject) {
-  const std::array<double, kBodyConstants> sigma = body_sigma(subject);
+  const EnumArray<BodyConstant, double, kBodyConstants> sigma = body_sigma(subject);
   const BodyConstants<double> body = body_constants<double>(subject);
   for (std::size_t k = 0; k < kBodyConstants; ++k) {
     for (std::size_t i = 0; i < widened.parameters.size(); ++i) {

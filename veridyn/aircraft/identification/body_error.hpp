@@ -12,7 +12,7 @@
 namespace veridyn::aircraft {
 
 /// Standard deviation of each constant, in the order of `kBodyConstantNames`; inertia counts where the subject has it.
-[[nodiscard]] std::array<double, kBodyConstants> body_sigma(const Subject& subject);
+[[nodiscard]] EnumArray<BodyConstant, double, kBodyConstants> body_sigma(const Subject& subject);
 
 /// The subject with one constant changed; nothing is checked, since the change is for differences.
 [[nodiscard]] Subject with_changed(const Subject& subject, BodyConstant constant, double change);

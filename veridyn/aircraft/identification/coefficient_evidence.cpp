@@ -88,6 +88,36 @@ Evidence holdout(const CoefficientChecks& checks, double least_r2) {
           .bears_on = Purpose::kParameters | Purpose::kPrediction};
 }
 
+/// Bands that do not hold on data that were held out promise too much.
+Evidence bands_on_holdout(const CoefficientChecks& checks) {
+  constexpr double kCare = 0.15;  // three times what is meant
+  const bool passed = checks.outside_bands <= kCare;
+  return {.name = "bands on the hold-out",
+          .outcome = passed_or(passed, Outcome::kCare),
+          .value = checks.outside_bands,
+          .limit = kCare,
+          .scale = "share outside 95 %",
+          .text = fmt::format("{:.1f} % of the hold-out lies outside the bands of 95 %{}", 100.0 * checks.outside_bands,
+                              passed ? "" : ": held-out motion is not like that of the identification"),
+          .bears_on = Purpose::kPrediction,
+          .advice = passed ? std::string() : std::string("identify from manoeuvres like those that are predicted")};
+}
+
+/// An estimate should predict better than what was there before, or no worse than noise makes it.
+Evidence against_start(const CoefficientChecks& checks) {
+  constexpr double kCare = 1.05;
+  const bool passed = checks.error_over_start <= kCare;
+  return {.name = "hold-out against the start values",
+          .outcome = passed_or(passed, Outcome::kCare),
+          .value = checks.error_over_start,
+          .limit = kCare,
+          .scale = "error over that of the start",
+          .text = fmt::format("on the hold-out its error is {:.2f} times that of the values that the study gives{}",
+                              checks.error_over_start, passed ? "" : ": these predict better"),
+          .bears_on = Purpose::kPrediction,
+          .advice = passed ? std::string() : std::string("keep the values of the study for simulation")};
+}
+
 Evidence parts_of_the_flight(const CoefficientChecks& checks, double level) {
   const bool passed = checks.contradiction_p >= level;
   return {.name = "agreement of the flight's parts",
@@ -115,7 +145,11 @@ std::vector<Evidence> coefficient_evidence(const std::string& name, const Coeffi
   std::vector<Evidence> rows{choice_of_method(comparison, options),
                              residual_beyond_sensors(checks, options.max_unmodelled),
                              holdout(checks, options.min_holdout_r2)};
-  if (checks.has_holdout) rows.push_back(parts_of_the_flight(checks, options.contradiction_level));
+  if (checks.has_holdout) {
+    rows.push_back(bands_on_holdout(checks));
+    if (std::isfinite(checks.error_over_start)) rows.push_back(against_start(checks));
+    rows.push_back(parts_of_the_flight(checks, options.contradiction_level));
+  }
   rows.insert(rows.end(), comparison.checks.begin(), comparison.checks.end());
   for (Evidence& row : rows) {
     row.about = name;
@@ -126,6 +160,17 @@ std::vector<Evidence> coefficient_evidence(const std::string& name, const Coeffi
     }
   }
   return rows;
+}
+
+std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
+                                                        std::span<const Evidence> rows) {
+  constexpr double kInflation = 10.0;  // as the row's
+  const auto row = std::ranges::find(rows, "collinearity", &Evidence::name);
+  if (row == rows.end() || row->passed()) return parameters;
+  for (estimation::Parameter& p : parameters)
+    if (p.status == estimation::ParameterStatus::kIdentified && p.variance_inflation > kInflation)
+      p.status = estimation::ParameterStatus::kWeak;
+  return parameters;
 }
 
 std::vector<Evidence> plausibility(Coefficient coefficient, std::span<const estimation::Parameter> parameters,

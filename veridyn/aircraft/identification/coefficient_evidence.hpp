@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,17 +16,26 @@ struct CoefficientChecks {
   double holdout_ratio = 0.0;  ///< residual variance on the hold-out over what the sensors' errors leave there
   double unmodelled_share = 0.0;
   double contradiction_p = 1.0;
+  /// Share of the hold-out outside the band of 95 % that the residual of the identification part gives.
+  double outside_bands = 0.0;
+  /// Root mean square error on the hold-out over that of the values that the study started from; NaN without these.
+  double error_over_start = std::numeric_limits<double>::quiet_NaN();
   double scatter = 1.0;  ///< chi-square of the flight's parts over its degrees of freedom
   bool has_holdout = false;
   numerics::Autocorrelation residual_autocorrelation;
 };
 
-/// The rows of one estimated coefficient: choice of the method, residual beyond the sensors, hold-out, agreement of the
-/// flight's parts, and the checks of the comparison of methods.
+/// The rows of one estimated coefficient: choice of the method, residual beyond the sensors, hold-out, its bands there,
+/// start values there, agreement of the flight's parts, and the checks of the comparison of methods.
 [[nodiscard]] std::vector<estimation::Evidence> coefficient_evidence(const std::string& name,
                                                                      const CoefficientChecks& checks,
                                                                      const estimation::RegressionComparison& comparison,
                                                                      const IdentifyOptions& options);
+
+/// The parameters with status weak for what is identified but collinear (a variance inflation above 10) where the row
+/// "collinearity" did not pass: what the residual holds beyond noise may be in any of them.
+[[nodiscard]] std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
+                                                                      std::span<const estimation::Evidence> rows);
 
 /// Are the values those of an aircraft? Lift slope against lifting-line theory of the subject's wing (Helmbold's
 /// formula, within a factor of 2), signs of damping, side force and drag: with care where a value contradicts them by

@@ -65,9 +65,9 @@ UncertaintyOptions UncertaintyOptions::read(const StudyTable& table) {
     table.fail("draws", fmt::format("= {} must be from 100 to 100000000", draws));
   options.draws = static_cast<std::size_t>(draws);
   const StudyTable sigma = table.table_or_empty("sigma");
-  static constexpr std::array<std::string_view, kFlightSignals> kUnits = {
-      "rad",   "rad",     "m/s",     "m/s^2",   "m/s^2", "m/s^2", "rad/s", "rad/s",
-      "rad/s", "rad/s^2", "rad/s^2", "rad/s^2", "rad",   "rad",   "rad",   "N"};
+  static constexpr EnumArray<FlightSignal, std::string_view, kFlightSignals> kUnits{
+      {"rad", "rad", "m/s", "m/s^2", "m/s^2", "m/s^2", "rad/s", "rad/s", "rad/s", "rad/s^2", "rad/s^2", "rad/s^2",
+       "rad", "rad", "rad", "N"}};
   const auto read = [&](std::string_view key, std::string_view unit) {
     const double value = sigma.number(key, unit);
     if (!(value >= 0.0)) sigma.fail(key, fmt::format("= {:g} must be >= 0", value));
@@ -120,7 +120,7 @@ estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, con
     return inputs;
   }
   const BodyConstants<double> body = body_constants<double>(subject);
-  const std::array<double, kBodyConstants> known = body_sigma(subject);
+  const EnumArray<BodyConstant, double, kBodyConstants> known = body_sigma(subject);
   for (std::size_t j = 0; j < kBodyConstants; ++j) {
     const Eigen::Index at = measured + static_cast<Eigen::Index>(j);
     inputs.names.emplace_back(kBodyConstantNames[j]);

@@ -23,7 +23,7 @@ namespace veridyn::aircraft {
 struct UncertaintyOptions {
   bool enabled = true;
   std::size_t draws = 100000;
-  std::array<std::optional<double>, kFlightSignals> sigma;
+  EnumArray<FlightSignal, std::optional<double>, kFlightSignals> sigma;
   double sigma_air_density = 0.0;
 
   /// @throws InputError for values that make no sense.

@@ -10,6 +10,7 @@
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
 #include "veridyn/aircraft/identification/coefficient_rows.hpp"
 #include "veridyn/aircraft/identification/error_variance.hpp"
+#include "veridyn/aircraft/identification/sensor_doubt.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -100,7 +101,7 @@ struct ChosenTerms {
 /// By least squares on the identification rows.
 ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, const FlightView& flight) {
   const Coefficient c = given.coefficient;
-  CoefficientModel all{c, flight.options.candidates[static_cast<std::size_t>(c)], {}};
+  CoefficientModel all{c, flight.options.candidates[c], {}};
   if (all.terms.empty()) all.terms = default_candidates(given);
   // What the log does not have cannot be chosen.
   std::erase_if(all.terms, [&](const Term& term) {
@@ -167,6 +168,16 @@ CoefficientModel significant_terms(const CoefficientModel& model, const Regressi
   return kept;
 }
 
+/// What the study gave for the terms of a model, where it gave all of them.
+std::optional<Eigen::VectorXd> start_values(const CoefficientModel& model, const Subject& subject) {
+  const CoefficientModel* given = subject.model.find(model.coefficient);
+  if (given == nullptr) return std::nullopt;
+  Eigen::VectorXd values(static_cast<Eigen::Index>(model.size()));
+  for (std::size_t i = 0; i < model.size(); ++i)
+    values(static_cast<Eigen::Index>(i)) = given->value_of(model.terms[i].expression).value_or(kNaN);
+  return values.allFinite() ? std::optional(values) : std::nullopt;
+}
+
 CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_s, const FlightView& flight) {
   const RegressionEstimate& chosen = *fit.chosen;
   CoefficientChecks checks;
@@ -184,6 +195,12 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
   checks.has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
   if (!checks.has_holdout) return checks;
   checks.holdout_fit = fit_on(unseen, chosen.theta);
+  constexpr double kBand95 = 1.96;
+  const double band = kBand95 * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
+  const Eigen::ArrayXd missed = (unseen.regressand - unseen.regressors * chosen.theta).array().abs();
+  checks.outside_bands = static_cast<double>((missed > band).count()) / static_cast<double>(missed.size());
+  if (const std::optional<Eigen::VectorXd> start = start_values(fit.model, flight.subject))
+    checks.error_over_start = checks.holdout_fit.rmse / fit_on(unseen, *start).rmse;
   const auto n = unseen.parameters();
   checks.holdout_ratio = residual_ratio(unseen, chosen.theta);
   unseen.error_covariance(n, n) = fit.data.error_covariance(n, n);
@@ -201,6 +218,21 @@ Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView&
   return body_sensitivity(flight.subject, fit.chosen->theta.size(), [&](const Subject& changed) {
     RegressionData data =
         coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).identification, changed);
+    const auto n = data.parameters();
+    data.error_covariance(n, n) = equation_error(data).variance;
+    const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, flight.regression_options());
+    return estimate.usable() ? estimate.theta : Eigen::VectorXd();
+  });
+}
+
+/// See parameter_doubt.
+Eigen::VectorXd doubt_of_air_data(const CoefficientFit& fit, const FlightView& flight) {
+  std::vector<SignalDoubt> doubts;
+  for (const FlightEvidence& row : flight.recording)
+    if (row.doubt && row.bears_on(fit.model.coefficient)) doubts.push_back(*row.doubt);
+  return parameter_doubt(flight.signals, doubts, fit.chosen->theta, [&](const FlightSignals& changed) {
+    RegressionData data =
+        coefficient_data(fit.model, changed, flight.axis_of_model(fit.model).identification, flight.subject);
     const auto n = data.parameters();
     data.error_covariance(n, n) = equation_error(data).variance;
     const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, flight.regression_options());
@@ -334,8 +366,14 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     } else {
       verdict = {reached, objection(result, checks)};
     }
+    fit.chosen->parameters = weak_by_collinearity(std::move(fit.chosen->parameters), result.evidence);
     fit.chosen->parameters = estimation::marked(
         estimation::marked(std::move(fit.chosen->parameters), plausible, ParameterStatus::kImplausible), reached);
+    if (reached == estimation::GroupVerdict::kIdentified) {
+      result.air_data_doubt = doubt_of_air_data(fit, flight);
+      fit.chosen->parameters = weak_by_doubt(std::move(fit.chosen->parameters), result.air_data_doubt);
+      result.evidence.push_back(doubt_row(result.name, fit.chosen->parameters, result.air_data_doubt));
+    }
     result.identification_fit = checks.identification_fit;
     result.holdout_fit = checks.holdout_fit;
     result.unmodelled_share = checks.unmodelled_share;

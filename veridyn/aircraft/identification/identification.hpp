@@ -41,7 +41,7 @@ struct IdentifyOptions {
   std::optional<estimation::StructureMethod> structure = {};
   /// `candidates`: terms to choose among, `[identify.candidates] CL = ["1", "alpha", ...]`; coefficients that are not
   /// named choose among `default_candidates`.
-  std::array<std::vector<Term>, kCoefficients> candidates;
+  EnumArray<Coefficient, std::vector<Term>, kCoefficients> candidates;
   bool output_error = false;  ///< `output_error`: output-error maximum likelihood in addition to regression
   /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
   bool output_error_gusts = true;
@@ -74,6 +74,9 @@ struct CoefficientResult {
   double unmodelled_share = 0.0;
   /// Change of the parameters per standard deviation of mass, geometry and inertia; see body_sensitivity.
   Eigen::MatrixXd body_sensitivity;
+  /// Standard deviation of each parameter for what the recording leaves in doubt of airspeed and vanes, beside its
+  /// interval; empty unless identified.
+  Eigen::VectorXd air_data_doubt;
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
   double contradiction_p = 1.0;  ///< of identification against hold-out estimates

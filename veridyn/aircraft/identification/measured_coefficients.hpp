@@ -9,6 +9,7 @@
 
 #include "veridyn/aircraft/model/aero_model.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
+#include "veridyn/core/enum_array.hpp"
 
 namespace veridyn::aircraft {
 
@@ -40,9 +41,9 @@ inline constexpr std::array<std::string_view, kFlightSignals> kFlightSignalNames
 /// One sample of the flight signals: rad, m/s, m/s^2 (specific force), rad/s, rad/s^2, N.
 template <typename Scalar>
 struct FlightSample {
-  std::array<Scalar, kFlightSignals> value{};
-  [[nodiscard]] const Scalar& operator[](FlightSignal s) const { return value[static_cast<std::size_t>(s)]; }
-  [[nodiscard]] Scalar& operator[](FlightSignal s) { return value[static_cast<std::size_t>(s)]; }
+  EnumArray<FlightSignal, Scalar, kFlightSignals> value{};
+  [[nodiscard]] const Scalar& operator[](FlightSignal s) const { return value[s]; }
+  [[nodiscard]] Scalar& operator[](FlightSignal s) { return value[s]; }
 };
 
 /// Variables of the aerodynamic model at a sample; `rho` is the air density [kg/m^3].
@@ -74,17 +75,17 @@ inline constexpr std::array<std::string_view, kBodyConstants> kBodyConstantNames
 /// kg, m^2, m, m, kg m^2; inertia is zero when the subject has none.
 template <typename Scalar>
 struct BodyConstants {
-  std::array<Scalar, kBodyConstants> value{};
-  [[nodiscard]] const Scalar& operator[](BodyConstant c) const { return value[static_cast<std::size_t>(c)]; }
-  [[nodiscard]] Scalar& operator[](BodyConstant c) { return value[static_cast<std::size_t>(c)]; }
+  EnumArray<BodyConstant, Scalar, kBodyConstants> value{};
+  [[nodiscard]] const Scalar& operator[](BodyConstant c) const { return value[c]; }
+  [[nodiscard]] Scalar& operator[](BodyConstant c) { return value[c]; }
 };
 
 /// The subject's constants.
 template <typename Scalar>
 [[nodiscard]] BodyConstants<Scalar> body_constants(const Subject& subject) {
   const Inertia J = subject.inertia.value_or(Inertia{});
-  return {{Scalar(subject.mass), Scalar(subject.wing_area), Scalar(subject.span), Scalar(subject.chord), Scalar(J.Jx),
-           Scalar(J.Jy), Scalar(J.Jz), Scalar(J.Jxz)}};
+  return {{{Scalar(subject.mass), Scalar(subject.wing_area), Scalar(subject.span), Scalar(subject.chord), Scalar(J.Jx),
+            Scalar(J.Jy), Scalar(J.Jz), Scalar(J.Jxz)}}};
 }
 
 /// Coefficients from specific force, thrust, rates and rate derivatives: the rigid-body equations solved for the
@@ -176,8 +177,8 @@ template <typename Scalar>
 /// One of the six by its name.
 template <typename Scalar>
 [[nodiscard]] const Scalar& select(const AeroCoefficients<Scalar>& c, Coefficient which) {
-  const std::array<const Scalar*, kCoefficients> all = {&c.CL, &c.CD, &c.CY, &c.Cl, &c.Cm, &c.Cn};
-  return *all[static_cast<std::size_t>(which)];
+  const EnumArray<Coefficient, const Scalar*, kCoefficients> all{{&c.CL, &c.CD, &c.CY, &c.Cl, &c.Cm, &c.Cn}};
+  return *all[which];
 }
 
 /// A regression row [x, z] of one coefficient and how it reacts to errors of the flight signals.

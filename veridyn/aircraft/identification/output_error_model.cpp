@@ -59,7 +59,7 @@ OutputErrorModel::OutputErrorModel(const FlightSignals& signals, std::span<const
   which_.fill(-1);
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
     const CoefficientModel& model = coefficients_[i];
-    const auto c = static_cast<std::size_t>(model.coefficient);
+    const Coefficient c = model.coefficient;
     which_[c] = static_cast<int>(i);
     offset_[c] = parameters_.size();
     for (std::size_t j = 0; j < model.size(); ++j) {

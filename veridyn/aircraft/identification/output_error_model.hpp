@@ -10,6 +10,8 @@
 #include "veridyn/aircraft/identification/flight_signals.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 
 namespace veridyn::aircraft {
@@ -93,15 +95,13 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
       if (!simulated_[i]) x[i] = Scalar(inputs.state[i]);
   }
   [[nodiscard]] const CoefficientModel* modelled(Coefficient c) const {
-    return which_[static_cast<std::size_t>(c)] < 0
-               ? nullptr
-               : &coefficients_[static_cast<std::size_t>(which_[static_cast<std::size_t>(c)])];
+    return which_[c] < 0 ? nullptr : &coefficients_[at(which_[c])];
   }
 
   Subject subject_;
   std::vector<CoefficientModel> coefficients_;
-  std::array<int, kCoefficients> which_{};           // index into coefficients_, or -1
-  std::array<std::size_t, kCoefficients> offset_{};  // of its first parameter
+  EnumArray<Coefficient, int, kCoefficients> which_{};           // index into coefficients_, or -1
+  EnumArray<Coefficient, std::size_t, kCoefficients> offset_{};  // of its first parameter
   std::array<bool, kStates> simulated_{};
   std::array<bool, 3> forces_{};  // specific forces among the outputs
   std::vector<estimation::ModelParameter> parameters_;
@@ -138,7 +138,7 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   const auto value = [&](Coefficient c) -> Scalar {
     const CoefficientModel* model = modelled(c);
     if (model == nullptr) return Scalar(select(inputs.measured, c));
-    return model->linear(v, parameters.subspan(offset_[static_cast<std::size_t>(c)], model->size()));
+    return model->linear(v, parameters.subspan(offset_[c], model->size()));
   };
   const Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD), CY = value(Coefficient::kCY);
   const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);

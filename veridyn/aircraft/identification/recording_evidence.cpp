@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/air_data_evidence.hpp"
 #include "veridyn/aircraft/identification/contradicted_flight.hpp"
-#include "veridyn/aircraft/sensors/air_data_consistency.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
@@ -23,122 +23,9 @@ using estimation::kAllPurposes;
 using estimation::Outcome;
 using estimation::Purpose;
 
-const std::vector<Coefficient> kByAlpha{Coefficient::kCL, Coefficient::kCD, Coefficient::kCm};
-const std::vector<Coefficient> kByBeta{Coefficient::kCY, Coefficient::kCl, Coefficient::kCn};
-
-using estimation::kBeyondChance;
 using estimation::outcome_of;
+using estimation::passed_or;
 using estimation::Tolerance;
-
-FlightEvidence airspeed_row(const Determined& scale) {
-  constexpr double kCare = 0.02;
-  /// A scale that is off by so much changes coefficients by twice as much.
-  constexpr double kWellDetermined = 0.01;
-  constexpr double kUndetermined = 0.1;
-  Evidence row{.name = "airspeed against ground velocity",
-               .about = "airspeed",
-               .value = scale.value,
-               .limit = kCare,
-               .scale = "reading over truth",
-               .bears_on = kAllPurposes};
-  row.outcome = outcome_of(scale.value, scale.sigma, Tolerance::about(1.0, kCare, 0.15));
-  if (row.outcome == Outcome::kPassed && scale.sigma > kWellDetermined) {
-    row.outcome = Outcome::kNotVerified;
-    row.text =
-        scale.sigma > kUndetermined
-            ? std::string(
-                  "the scale of the airspeed is not verified: the headings flown do not separate it from the wind")
-            : fmt::format(
-                  "the scale of the airspeed is verified to no better than {:.0f} % by the headings flown "
-                  "({:.3f} +- {:.3f}); an error of 1 % changes coefficients by 2 %",
-                  100.0 * kBeyondChance * scale.sigma, scale.value, scale.sigma);
-    row.advice = "fly several full circles, or calibrate the pitot tube";
-    return {std::move(row)};
-  }
-  const std::string unit =
-      row.outcome == Outcome::kPassed ? std::string() : recording::mistaken_unit(std::abs(scale.value));
-  row.text = fmt::format(
-      "over the headings flown the airspeed reads {:.3f} +- {:.3f} times what ground velocity and a "
-      "steady wind say{}{}",
-      scale.value, scale.sigma, unit.empty() ? "" : ": ", unit);
-  if (row.outcome != Outcome::kPassed)
-    row.advice = "check unit and calibration of the pitot tube, or let the reconstruction estimate pitot_scale";
-  return {std::move(row)};
-}
-
-FlightEvidence vane_row(const VaneFit& fit, const std::string& name) {
-  constexpr double kCare = 0.5 * kDegree, kFailed = 5.0 * kDegree;
-  constexpr double kLargestFlowAngle = 0.5 * kPi;
-  const bool impossible = fit.largest_reading > kLargestFlowAngle;
-  Evidence row{.name = fmt::format("{} vane against inertial angle", name),
-               .about = name,
-               .outcome = impossible
-                              ? Outcome::kFailed
-                              : outcome_of(fit.bias.value, fit.bias.sigma, Tolerance::about(0.0, kCare, kFailed)),
-               .value = fit.bias.value / kDegree,
-               .limit = kCare / kDegree,
-               .scale = "deg",
-               .bears_on = kAllPurposes};
-  if (row.outcome == Outcome::kPassed) row.outcome = Outcome::kNotVerified;
-  row.text = impossible ? fmt::format("the {} vane reads up to {:.0f} deg: over 90 deg is no flow angle in flight",
-                                      name, fit.largest_reading / kDegree)
-                        : fmt::format(
-                              "in the mean the {} vane reads {:.2f} +- {:.2f} deg more than attitude, ground velocity "
-                              "and the mean wind imply",
-                              name, fit.bias.value / kDegree, fit.bias.sigma / kDegree);
-  if (!row.passed())
-    row.advice = fmt::format("check unit and zero of the vane, or leave it out: reconstruct.without = [\"{}\"]", name);
-  return {std::move(row), name == "alpha" ? kByAlpha : kByBeta};
-}
-
-FlightEvidence slope_row(const std::optional<VaneSlope>& fit, const std::string& name) {
-  constexpr double kCare = 0.1, kFailed = 0.4;
-  /// An error of the scale is one of the derivatives by the angle.
-  constexpr double kVerified = 0.15;
-  Evidence row{.name = fmt::format("scale of the {} vane", name),
-               .about = name,
-               .outcome = Outcome::kNotVerified,
-               .value = fit ? fit->slope.value : kNaN,
-               .limit = kCare,
-               .scale = "reading over angle",
-               .text = fmt::format("the scale of the {} vane is not verified by this recording: the controls do not "
-                                   "move the angle enough",
-                                   name),
-               .bears_on = kAllPurposes,
-               .advice = fmt::format("fly sharp {} doublets, or calibrate the vane in a wind tunnel",
-                                     name == "alpha" ? "elevator" : "rudder")};
-  if (fit) {
-    const double doubt = std::abs(fit->slope.value - 1.0) + kBeyondChance * fit->slope.sigma;
-    row.outcome = outcome_of(fit->slope.value, fit->slope.sigma, Tolerance::about(1.0, kCare, kFailed));
-    const bool passed = row.outcome == Outcome::kPassed;
-    row.text = fmt::format("in manoeuvres the {} vane reads {:.2f} +- {:.2f} times what gyro and accelerometer say{}",
-                           name, fit->slope.value, fit->slope.sigma,
-                           !passed && fit->slope.value < 0.0 ? ": its sign is reversed" : "");
-    if (passed && doubt > kVerified) {
-      row.outcome = Outcome::kNotVerified;
-      row.text += fmt::format(", which verifies its scale to no better than {:.0f} %", 100.0 * doubt);
-    } else if (passed) {
-      row.advice.clear();
-    } else {
-      row.advice = fmt::format(
-          "check sign, unit, scale (upwash) and delay of the vane, or leave it out: reconstruct.without = [\"{}\"]",
-          name);
-    }
-  }
-  return {std::move(row), name == "alpha" ? kByAlpha : kByBeta};
-}
-
-/// The air data as the reconstruction took them: without the errors that it estimated and took off.
-AirDataConsistency corrected(AirDataConsistency air, const Reconstruction& reconstruction) {
-  const auto taken_off = [&](const char* error) {
-    const Channel* channel = reconstruction.smoothed.find(error);
-    return channel == nullptr || channel->empty() ? 0.0 : channel->value.front();
-  };
-  if (air.airspeed_scale) air.airspeed_scale->value /= std::sqrt(std::max(1.0 + taken_off("pitot_scale"), 0.01));
-  if (air.alpha) air.alpha->bias.value -= taken_off("alpha_bias");
-  if (air.beta) air.beta->bias.value -= taken_off("beta_bias");
-  return air;
-}
 
 /// What the alignment of the clocks found that no sensor can be: early, or of opposite sign.
 std::vector<FlightEvidence> delay_rows(std::span<const DelayReport> delays) {
@@ -233,7 +120,7 @@ std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segmen
   std::vector<FlightEvidence> rows;
   for (Evidence& row : recording::sample_evidence(recording, kChannels, segments.airborne)) {
     const bool alpha = row.about == "alpha", beta = row.about == "beta";
-    rows.push_back({std::move(row), alpha ? kByAlpha : beta ? kByBeta : std::vector<Coefficient>{}});
+    rows.push_back({std::move(row), alpha ? by_alpha() : beta ? by_beta() : std::vector<Coefficient>{}});
   }
   return rows;
 }
@@ -272,8 +159,8 @@ FlightEvidence innovation_row(const SensorReport& sensor) {
       row.outcome == Outcome::kFailed ? ": either the sensor is wrong or what it is compared with" : "");
   if (row.outcome != Outcome::kPassed)
     row.advice = fmt::format("look at {} in the report: unit, sign, delay, or a stretch to leave out", sensor.channel);
-  if (sensor.channel == "alpha") return {std::move(row), kByAlpha};
-  if (sensor.channel == "beta") return {std::move(row), kByBeta};
+  if (sensor.channel == "alpha") return {std::move(row), by_alpha()};
+  if (sensor.channel == "beta") return {std::move(row), by_beta()};
   return {std::move(row)};
 }
 
@@ -333,6 +220,37 @@ std::optional<FlightEvidence> gust_row(const Reconstruction& reconstruction, con
        .advice = passed ? std::string() : std::string("look for the sensor that is wrong among the rows above")}};
 }
 
+/// The slowest oscillation of an aircraft, the phugoid, has a period of about pi sqrt(2) V/g (Lanchester 1908): what is
+/// shorter shows neither it nor trends that are as slow.
+std::optional<FlightEvidence> length_row(const Reconstruction& reconstruction, const Segments& segments) {
+  const Channel* airspeed = reconstruction.smoothed.find("airspeed");
+  if (airspeed == nullptr || segments.airborne.empty()) return std::nullopt;
+  double sum = 0.0, longest = 0.0;
+  std::size_t count = 0;
+  for (const TimeSpan& span : segments.airborne) {
+    longest = std::max(longest, span.duration());
+    for (std::size_t k = 0; k < airspeed->size(); ++k) {
+      if (!span.contains(airspeed->times()[k]) || !std::isfinite(airspeed->value[k])) continue;
+      sum += airspeed->value[k];
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  const double period = kPi * std::sqrt(2.0) * sum / static_cast<double>(count) / kGravity;
+  const bool passed = longest >= period;
+  return FlightEvidence{
+      {.name = "length of the flight",
+       .outcome = passed_or(passed, Outcome::kCare),
+       .value = longest,
+       .limit = period,
+       .scale = "s",
+       .text = fmt::format(
+           "the longest stretch in the air lasts {:.0f} s, the slowest oscillation (phugoid) about {:.0f} s{}", longest,
+           period, passed ? "" : ": slow motion is not in this recording"),
+       .bears_on = Purpose::kPrediction,
+       .advice = passed ? std::string() : fmt::format("record at least {:.0f} s in the air", 2.0 * period)}};
+}
+
 /// What no channel of a flight can tell: the aircraft answers a deflection the same whatever it is called.
 FlightEvidence deflection_row(const Recording& recording) {
   std::vector<std::string> surfaces;
@@ -380,22 +298,9 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
     rows.push_back({std::move(row)});
   add(delay_rows(delays));
   add(together_rows(delays));
-  if (const Channel* density = reconstruction.smoothed.find("air_density")) {
-    const AirDataConsistency air = corrected(
-        air_data_consistency(recording, *density, options.airspeed_is_true, segments.airborne), reconstruction);
-    if (air.airspeed_scale) rows.push_back(airspeed_row(*air.airspeed_scale));
-    if (air.alpha) {
-      rows.push_back(vane_row(*air.alpha, "alpha"));
-      rows.push_back(slope_row(
-          alpha_slope(recording, *density, options.airspeed_is_true, segments.longitudinal.excited), "alpha"));
-    }
-    if (air.beta) {
-      rows.push_back(vane_row(*air.beta, "beta"));
-      rows.push_back(
-          slope_row(beta_slope(recording, *density, options.airspeed_is_true, segments.lateral.excited), "beta"));
-    }
-  }
+  add(air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments));
   add(range_rows(recording, segments));
+  if (std::optional<FlightEvidence> length = length_row(reconstruction, segments)) rows.push_back(std::move(*length));
   rows.push_back(deflection_row(recording));
   rows.push_back(body_row());
   std::vector<FlightEvidence> symptoms;

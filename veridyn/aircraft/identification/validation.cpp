@@ -49,10 +49,10 @@ class Predictor {
  public:
   Predictor(const FlightSignals& signals, const Subject& subject, std::span<const Coefficient> known)
       : signals_(signals), subject_(subject) {
-    for (const Coefficient c : known) known_[static_cast<std::size_t>(c)] = true;
+    for (const Coefficient c : known) known_[c] = true;
   }
 
-  [[nodiscard]] bool knows(Coefficient c) const { return known_[static_cast<std::size_t>(c)]; }
+  [[nodiscard]] bool knows(Coefficient c) const { return known_[c]; }
 
   [[nodiscard]] GridInputs inputs(std::size_t k) const {
     return {signals_.sample(k), signals_.roll[k], signals_.pitch[k], signals_.air_density[k]};
@@ -107,7 +107,7 @@ class Predictor {
 
   const FlightSignals& signals_;
   const Subject& subject_;
-  std::array<bool, kCoefficients> known_{};
+  EnumArray<Coefficient, bool, kCoefficients> known_{};
 };
 
 }  // namespace
@@ -130,7 +130,7 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
     static constexpr std::array<const char*, 3> kNames{"airspeed", "alpha", "beta"};
     std::vector<PredictedQuantity> quantities;
     for (const std::size_t i : which) quantities.push_back({.name = kNames[i], .unit = i == 0 ? "m/s" : "deg"});
-    std::vector<double> time;
+    std::vector<double> time, held(which.size(), 0.0);
     const auto per_window = static_cast<std::size_t>(std::max(1.0, std::round(options.period_s / signals.grid.step)));
     for (const TimeSpan& span : spans) {
       const auto [first, last] = signals.indices(span);
@@ -140,7 +140,8 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
         if (end - begin < per_window / 2) continue;
         GridInputs now = predictor.inputs(begin);
         if (!now.complete()) continue;
-        State x = predictor.measured(begin);
+        const State start = predictor.measured(begin);
+        State x = start;
         ++result.windows;
         for (std::size_t k = begin; k < end; ++k) {
           const State truth = predictor.measured(k);
@@ -148,6 +149,7 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
           for (std::size_t j = 0; j < which.size(); ++j) {
             quantities[j].measured.push_back(truth[which[j]]);
             quantities[j].predicted.push_back(x[which[j]]);
+            held[j] += std::pow(truth[which[j]] - start[which[j]], 2.0);
           }
           if (k + 1 == end) break;
           const GridInputs next = predictor.inputs(k + 1);
@@ -170,13 +172,15 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
         }
       }
     }
-    for (PredictedQuantity& q : quantities) {
+    for (std::size_t j = 0; j < quantities.size(); ++j) {
+      PredictedQuantity& q = quantities[j];
       const double scale = q.unit == "deg" ? 1.0 / kDegree : 1.0;
       std::vector<double> measured = q.measured;
       std::vector<double> predicted = q.predicted;
       for (double& v : measured) v *= scale;
       for (double& v : predicted) v *= scale;
       q.fit = numerics::fit_measures(measured, predicted);
+      q.last_value_rmse = scale * std::sqrt(held[j] / std::max(1.0, static_cast<double>(q.fit.count)));
       q.time = time;
       if (q.fit.count > 0) result.quantities.push_back(std::move(q));
     }

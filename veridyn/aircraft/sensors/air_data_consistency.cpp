@@ -115,9 +115,10 @@ double level_airspeed(double airspeed, double down) {
   return std::isfinite(airspeed) ? std::sqrt(std::max(0.0, airspeed * airspeed - down * down)) : kNaN;
 }
 
-/// Scale of the airspeed and mean wind together. The ground velocity drifts with slow gusts, the heading does not: it
-/// is the instrument.
-void find_scale(const FlightRows& rows, AirDataConsistency& out) {
+/// Scale of the airspeed and mean wind together; nothing else is set. The ground velocity drifts with slow gusts, the
+/// heading does not: it is the instrument.
+AirDataConsistency scale_and_wind(const FlightRows& rows) {
+  AirDataConsistency out;
   const auto n = signed_index(rows.size());
   RegressionData data;
   data.regressors = estimation::RowMatrix::Zero(2 * n, 6);
@@ -139,7 +140,7 @@ void find_scale(const FlightRows& rows, AirDataConsistency& out) {
     }
   }
   const estimation::InstrumentalEstimate estimate = solve(std::move(data), 3, 2);
-  if (!estimate.usable) return;
+  if (!estimate.usable) return out;
   out.airspeed_scale = of(estimate, 0);
   // Where the headings do not tell scale from wind, the scale is taken as right.
   const double scale = out.airspeed_scale->sigma < kDeterminedScale ? out.airspeed_scale->value : 1.0;
@@ -147,6 +148,7 @@ void find_scale(const FlightRows& rows, AirDataConsistency& out) {
     out.wind(i) = -estimate.theta(1 + i) / scale;
     out.wind_sigma(i) = of(estimate, 1 + i).sigma / scale;
   }
+  return out;
 }
 
 /// Ground velocity less airspeed along the heading, averaged over half a minute: a steady wind and slow gusts. Sideslip
@@ -273,13 +275,16 @@ std::optional<VaneSlope> slope_of(const Recording& recording, const char* vane,
   }
   const auto n = static_cast<std::size_t>(std::max(2.0, std::round(kChange_s / grid.step)));
   const auto hop = static_cast<std::size_t>(std::max(1.0, std::round(kChangeHop_s / grid.step)));
-  constexpr std::size_t kLags = 3;
+  // The angle answers a control for three quarters of a second: with less of it x8's slope was known to 0.21, not 0.15.
+  constexpr std::size_t kLags = 6;
+  const std::size_t lag_step = std::max<std::size_t>(1, n / 2);
+  const std::size_t reach = (kLags - 1) * lag_step + n;
   std::vector<std::size_t> rows;
   RegressionData data;
   int segment = 0;
   for (const TimeSpan& span : manoeuvres) {
     const auto [begin, end] = recording::grid_indices(grid, span);
-    for (std::size_t k = std::max(begin, 2 * n); k < end; k += hop) {
+    for (std::size_t k = std::max(begin, reach); k < end; k += hop) {
       rows.push_back(k);
       data.segment.push_back(segment);
     }
@@ -297,7 +302,7 @@ std::optional<VaneSlope> slope_of(const Recording& recording, const char* vane,
     Eigen::Index column = 2;
     for (const std::vector<double>& control : moved)
       for (std::size_t lag = 0; lag < kLags; ++lag) {
-        const std::size_t then = k - lag * n / (kLags - 1);
+        const std::size_t then = k - lag * lag_step;
         data.regressors(i, column++) = control[then] - control[then - n];
       }
   }
@@ -330,12 +335,11 @@ std::optional<VaneSlope> beta_slope(const Recording& recording, const Channel& a
 
 AirDataConsistency air_data_consistency(const Recording& recording, const Channel& air_density, bool airspeed_is_true,
                                         std::span<const TimeSpan> airborne) {
-  AirDataConsistency out;
   for (const char* name : {"roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down"})
-    if (!recording.has(name) || recording.at(name).size() < 2) return out;
+    if (!recording.has(name) || recording.at(name).size() < 2) return {};
   const FlightRows rows = rows_of(recording, air_density, airspeed_is_true, airborne);
-  if (rows.size() < kFewestRows) return out;
-  find_scale(rows, out);
+  if (rows.size() < kFewestRows) return {};
+  AirDataConsistency out = scale_and_wind(rows);
   if (!out.airspeed_scale) return out;
   const double scale = out.airspeed_scale->sigma < kDeterminedScale ? out.airspeed_scale->value : 1.0;
   const std::vector<Vector3> wind = local_wind(rows, scale);

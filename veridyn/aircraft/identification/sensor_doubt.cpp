@@ -1,0 +1,82 @@
+#include "veridyn/aircraft/identification/sensor_doubt.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace veridyn::aircraft {
+namespace {
+
+using estimation::Parameter;
+using estimation::ParameterStatus;
+
+constexpr double kDoubt95 = 1.96;
+
+bool has_interval(const Parameter& p) {
+  return p.status == ParameterStatus::kIdentified || p.status == ParameterStatus::kWeak;
+}
+
+}  // namespace
+
+FlightSignals with_changed(FlightSignals signals, const SignalDoubt& doubt, double deviations) {
+  for (double& v : signals[doubt.signal].value) v = v * (1.0 + deviations * doubt.scale) + deviations * doubt.zero;
+  return signals;
+}
+
+Eigen::VectorXd parameter_doubt(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
+                                const Eigen::VectorXd& theta,
+                                const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate) {
+  // A tenth of a deviation: the tangent, also where the deviation is large.
+  constexpr double kStep = 0.1;
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(theta.size());
+  for (const SignalDoubt& doubt : doubts) {
+    if (!signals[doubt.signal].available()) continue;
+    const Eigen::VectorXd changed = estimate(with_changed(signals, doubt, kStep));
+    if (changed.size() == theta.size()) variance += ((changed - theta) / kStep).cwiseAbs2();
+  }
+  return variance.cwiseSqrt();
+}
+
+estimation::Evidence doubt_row(const std::string& coefficient, std::span<const Parameter> parameters,
+                               const Eigen::VectorXd& doubt) {
+  constexpr double kLimit = 1.0;
+  std::vector<std::string> named;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    const double d = doubt(static_cast<Eigen::Index>(i));
+    if (!has_interval(p) || !(p.sigma > 0.0)) continue;
+    largest = std::max(largest, d / p.sigma);
+    if (d > kLimit * p.sigma) named.push_back(fmt::format("{} by {:.2g}", p.name, d));
+  }
+  const bool passed = named.empty();
+  return {.name = "doubt of the air data",
+          .about = coefficient,
+          .outcome = estimation::passed_or(passed, estimation::Outcome::kNotVerified),
+          .value = largest,
+          .limit = kLimit,
+          .scale = "doubt over standard error",
+          .text = passed ? std::string("what this recording leaves in doubt of airspeed and vanes is within the "
+                                       "standard errors")
+                         : fmt::format("intervals take airspeed and vanes as right; as far as this recording verifies "
+                                       "these, there is a doubt (one standard deviation) of {}",
+                                       fmt::join(named, ", ")),
+          .bears_on = estimation::Purpose::kParameters,
+          .advice = passed ? std::string()
+                           : std::string("calibrate pitot tube and vanes, or fly full circles and sharp doublets in "
+                                         "calm air")};
+}
+
+std::vector<Parameter> weak_by_doubt(std::vector<Parameter> parameters, const Eigen::VectorXd& doubt) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    Parameter& p = parameters[i];
+    const double half = kDoubt95 * std::hypot(p.sigma, doubt(static_cast<Eigen::Index>(i)));
+    if (p.status == ParameterStatus::kIdentified && half > estimation::kWeakShare * std::abs(p.value))
+      p.status = ParameterStatus::kWeak;
+  }
+  return parameters;
+}
+
+}  // namespace veridyn::aircraft
