@@ -35,7 +35,7 @@ TEST(StudyNumbers, SharesAreAboveZeroAndAtMostTheirLimit) {
   EXPECT_EQ(read(Study::parse("", "s.toml").root()), 0.1);
   EXPECT_EQ(read(Study::parse("range = 0.5\n", "s.toml").root()), 0.5);
   EXPECT_THAT(refusal("range = 0\n", read), testing::HasSubstr("= 0 must be above 0 and at most 0.5"));
-  EXPECT_THAT(refusal("range = nan\n", read), testing::HasSubstr("must be above 0"));
+  EXPECT_THAT(refusal("range = nan\n", read), testing::HasSubstr("expected a finite number"));
   EXPECT_THAT(refusal("range = 0.6\n", read), testing::HasSubstr("= 0.6 must be above 0"));
 }
 
