@@ -57,14 +57,7 @@ ScaleStudy read_scale_study(const StudyTable& root, const Progress& progress) {
     return study;
   }
   const StudyTable table = scale.table("model");
-  if (table.has("file")) {
-    const std::filesystem::path file = table.file("file");
-    const Study measured = Study::load(file);
-    study.given = read_vehicle(measured.root().table("subject"), VehicleNeeds::kFourWheel);
-    study.simulation.inputs.push_back(file);
-  } else {
-    study.given = read_vehicle(table, VehicleNeeds::kFourWheel);
-  }
+  study.given = read_vehicle(table, VehicleNeeds::kFourWheel);
   double speed = study.given->speed.value_or(study.request.speed.value_or(0.0));
   if (table.has("speed") || speed == 0.0) speed = table.positive("speed", "m/s");
   study.given_subject = subject_of(*study.given, speed, gravity);

@@ -28,7 +28,7 @@ struct ScaleStudy {
 ///     speed = "4 m/s"
 ///     froude = false                 # true: speed by the square root of the length ratio
 ///     repeating = ["m", "L", "u"]    # repeating variables of the groups
-///     [scale.model]                  # a model to be checked: keys of [subject], or its `file = "subject.toml"`; and
+///     [scale.model]                  # a model to be checked: keys of [subject], and
 ///     speed = "4 m/s"                # its speed; a built-in vehicle has one; else that of [scale]
 ///     [[scale.parameter]]            # further quantities: see read_similarity_parameters
 ///     name = "relaxation_length"
