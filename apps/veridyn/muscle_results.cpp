@@ -10,6 +10,7 @@
 #include "apps/veridyn/posterior_results.hpp"
 #include "apps/veridyn/profile_results.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv_text.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -39,7 +40,7 @@ std::string evaluations_csv(const MuscleAnalysis& analysis) {
   text += "\n";
   for (std::size_t i = 0; i < analysis.evaluations.size(); ++i) {
     const estimation::ModelEvaluation& e = analysis.evaluations[i];
-    const bool failed = std::ranges::count(e.failed, 0) < static_cast<std::ptrdiff_t>(e.failed.size());
+    const bool failed = std::ranges::count(e.failed, 0) < signed_index(e.failed.size());
     text += fmt::format("{},{},{:.3g},{}", i + 1, e.derivatives ? "derivatives" : "values", e.seconds,
                         failed ? "failed" : "done");
     for (const double nrmse : e.misfit) text += "," + io::csv_number(nrmse);

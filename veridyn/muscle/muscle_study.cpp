@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle {
@@ -35,9 +36,9 @@ void read_times(const StudyTable& motion, MuscleStudy& study) {
     for (const std::string& name : study.motion.beyond_range)
       study.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
     for (const int c : study.system->reduction().driven()) {
-      if (study.method == MuscleMethod::kComputedMuscleControl && study.motion.coordinate[static_cast<std::size_t>(c)])
+      if (study.method == MuscleMethod::kComputedMuscleControl && study.motion.coordinate[at(c)])
         study.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
-                                             study.system->model().coordinates[static_cast<std::size_t>(c)].name));
+                                             study.system->model().coordinates[at(c)].name));
     }
   }
   study.begin = motion.number_or("begin", "s", file ? study.motion.begin : 0.0);

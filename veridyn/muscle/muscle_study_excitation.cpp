@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle::internal {
@@ -40,8 +41,7 @@ ControlSignals read_reserves(const SignalTable& table, const MusculoskeletalSyst
     const int column = table.find(model.coordinates[i].name + "_reserve", "control");
     if (column < 0) continue;
     any = true;
-    for (std::size_t k = 0; k < table.time.size(); ++k)
-      values[k * n + i] = reserve_force * table.values[static_cast<std::size_t>(column)][k];
+    for (std::size_t k = 0; k < table.time.size(); ++k) values[k * n + i] = reserve_force * table.values[at(column)][k];
   }
   if (!any) return {};
   return without_repeats({table.time, std::move(values), n, interpolation});

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_study_parts.hpp"
 
 namespace veridyn::muscle::internal {
@@ -13,7 +14,7 @@ namespace {
 /// The value of a column at a time, linear between samples.
 double value_at(const SignalTable& table, int column, double time) {
   const std::vector<double>& t = table.time;
-  const std::vector<double>& v = table.values[static_cast<std::size_t>(column)];
+  const std::vector<double>& v = table.values[at(column)];
   const auto after = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), time) - t.begin());
   if (after == 0) return v.front();
   if (after == t.size() || t[after - 1] == time) return v[after - 1];
@@ -70,7 +71,7 @@ void read_start_file(const StudyTable& motion, MuscleStudy& study) {
     const int column = state_column(table, name, suffix);
     return column < 0 ? otherwise : value_at(table, column, study.begin);
   };
-  const auto muscles = static_cast<Eigen::Index>(model.muscles.size());
+  const auto muscles = signed_index(model.muscles.size());
   bool any = false;
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& coordinate = model.coordinates[c];
@@ -85,7 +86,7 @@ void read_start_file(const StudyTable& motion, MuscleStudy& study) {
   Eigen::VectorXd activation(muscles), fiber(muscles);
   bool all = true;
   for (Eigen::Index m = 0; m < muscles; ++m) {
-    const MuscleParameters& p = model.muscles[static_cast<std::size_t>(m)].parameters;
+    const MuscleParameters& p = model.muscles[at(m)].parameters;
     activation(m) = value(p.name, "activation", std::nan(""));
     fiber(m) = value(p.name, "fiber_length", std::nan(""));
     const bool needs_activation = !p.ignore_activation_dynamics, needs_fiber = !p.rigid_tendon;

@@ -1,6 +1,7 @@
 // The tables and storage files of a muscle study's result.
 #include <fmt/format.h>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
 
 namespace veridyn::muscle {
@@ -8,8 +9,7 @@ namespace {
 
 std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t index) {
   std::vector<double> values(static_cast<std::size_t>(matrix.rows()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    values[static_cast<std::size_t>(i)] = matrix(i, static_cast<Eigen::Index>(index));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[at(i)] = matrix(i, static_cast<Eigen::Index>(index));
   return values;
 }
 
@@ -72,8 +72,7 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
   };
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
     const Coordinate& k = model.coordinates[c];
-    const std::string place =
-        fmt::format("/jointset/{}/{}", model.joints[static_cast<std::size_t>(k.joint)].name, k.name);
+    const std::string place = fmt::format("/jointset/{}/{}", model.joints[at(k.joint)].name, k.name);
     add(place + "/value", t.q, c);
     add(place + "/speed", t.qdot, c);
   }
@@ -84,7 +83,7 @@ io::Storage state_storage(const MuscleStudy& study, const MuscleResult& result) 
     if (layout.fiber_length[m] >= 0 && t.fiber_length.size() > 0 && study.method != MuscleMethod::kStaticOptimization)
       add(place + "/fiber_length", t.fiber_length, m);
   }
-  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(t.time.size()); ++i) {
+  for (Eigen::Index i = 0; i < signed_index(t.time.size()); ++i) {
     for (const auto& [matrix, index] : columns) storage.values.push_back((*matrix)(i, index));
   }
   return storage;
@@ -106,8 +105,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
   storage.source = "controls.sto";
   storage.name = "controls";
   for (const Muscle& m : model.muscles) storage.labels.push_back(m.name());
-  for (const int c : reserved)
-    storage.labels.push_back(model.coordinates[static_cast<std::size_t>(c)].name + "_reserve");
+  for (const int c : reserved) storage.labels.push_back(model.coordinates[at(c)].name + "_reserve");
   // All instants at which either of them has a sample.
   std::vector<double> times(excitation.times().begin(), excitation.times().end());
   if (!reserved.empty()) times.insert(times.end(), reserve.times().begin(), reserve.times().end());
@@ -121,7 +119,7 @@ std::optional<io::Storage> control_storage(const MuscleStudy& study, const Muscl
     if (!reserved.empty()) reserve.evaluate(value_at, r.data());
     storage.time.push_back(time);
     storage.values.insert(storage.values.end(), u.begin(), u.end());
-    for (const int c : reserved) storage.values.push_back(r[static_cast<std::size_t>(c)] / reserve_unit);
+    for (const int c : reserved) storage.values.push_back(r[at(c)] / reserve_unit);
   };
   constexpr double kJust = 1e-9;  // before a jump [s]
   for (std::size_t i = 0; i < times.size(); ++i) {

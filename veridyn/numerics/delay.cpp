@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::numerics {
@@ -38,7 +39,7 @@ Centred centre(std::span<const double> x) {
 
 // sum a_k b_{k+lag} over the known pairs, normalised by their powers.
 double correlation_at(const Centred& a, const Centred& b, std::ptrdiff_t lag) {
-  const auto n = static_cast<std::ptrdiff_t>(a.value.size());
+  const auto n = signed_index(a.value.size());
   const std::ptrdiff_t begin = std::max<std::ptrdiff_t>(0, -lag);
   const std::ptrdiff_t end = std::min(n, n - lag);
   double ab = 0.0, aa = 0.0, bb = 0.0;
@@ -59,7 +60,7 @@ double interpolated(const std::vector<double>& c, double position) {
     const double u = position - static_cast<double>(j);
     const double taper = std::cos(0.5 * kPi * u / static_cast<double>(kSincHalfWidth));
     const double sinc = std::abs(u) < 1e-12 ? 1.0 : std::sin(kPi * u) / (kPi * u);
-    sum += c[static_cast<std::size_t>(j)] * sinc * taper * taper;
+    sum += c[at(j)] * sinc * taper * taper;
   }
   return sum;
 }
@@ -90,7 +91,7 @@ double delay_sigma(const Centred& a, const Centred& b, const DelayEstimate& foun
   }
   const double c2 = std::max(found.correlation * found.correlation, 1e-12);
   const double bandwidth2 = slope2 * rate_Hz * rate_Hz / a.power;
-  const auto n = static_cast<std::ptrdiff_t>(a.value.size());
+  const auto n = signed_index(a.value.size());
   const auto lag = static_cast<std::ptrdiff_t>(std::llround(found.delay_s * rate_Hz));
   std::vector<double> mismatch;
   for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag); k < std::min(n, n - lag); ++k) {
@@ -113,7 +114,7 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
   }
   if (!(rate_Hz > 0.0)) throw InputError("estimate_delay.rate_Hz", fmt::format("is {}; must be > 0", rate_Hz));
   DelayEstimate result;
-  const auto n = static_cast<std::ptrdiff_t>(reference.size());
+  const auto n = signed_index(reference.size());
   const auto max_lag = static_cast<std::ptrdiff_t>(std::ceil(options.max_delay_s * rate_Hz));
   const std::ptrdiff_t span = max_lag + kSincHalfWidth;  // lags beyond the search serve the interpolation
   if (n < 4 * span) {
@@ -131,18 +132,16 @@ DelayEstimate estimate_delay(std::span<const double> reference, std::span<const 
   for (std::ptrdiff_t lag = -span; lag <= span; ++lag) c.push_back(correlation_at(a, b, lag));
   std::ptrdiff_t peak = 0;
   for (std::ptrdiff_t lag = -max_lag; lag <= max_lag; ++lag) {
-    if (std::abs(c[static_cast<std::size_t>(lag + span)]) > std::abs(c[static_cast<std::size_t>(peak + span)]))
-      peak = lag;
+    if (std::abs(c[at(lag + span)]) > std::abs(c[at(peak + span)])) peak = lag;
   }
-  const double sign = c[static_cast<std::size_t>(peak + span)] < 0.0 ? -1.0 : 1.0;
+  const double sign = c[at(peak + span)] < 0.0 ? -1.0 : 1.0;
   const double position = refined_peak(c, static_cast<double>(peak + span), sign);
   result.delay_s = (position - static_cast<double>(span)) / rate_Hz;
   result.correlation = std::clamp(interpolated(c, position), -1.0, 1.0);
-  result.at_zero = c[static_cast<std::size_t>(span)];
+  result.at_zero = c[at(span)];
   for (std::ptrdiff_t i = span - max_lag; i <= span + max_lag; ++i) {
-    const double here = std::abs(c[static_cast<std::size_t>(i)]);
-    const bool maximum =
-        here >= std::abs(c[static_cast<std::size_t>(i - 1)]) && here >= std::abs(c[static_cast<std::size_t>(i + 1)]);
+    const double here = std::abs(c[at(i)]);
+    const bool maximum = here >= std::abs(c[at(i - 1)]) && here >= std::abs(c[at(i + 1)]);
     if (maximum && std::abs(static_cast<double>(i) - position) > 1.5) {
       result.side_peak = std::max(result.side_peak, here / std::abs(result.correlation));
     }

@@ -8,6 +8,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::numerics {
@@ -111,7 +112,7 @@ FirKernel low_pass(const LowPassDesign& design) {
     const double sinc = j == 0 ? cutoff / kPi : std::sin(cutoff * n) / (kPi * n);
     const double u = n / static_cast<double>(m);
     const double tap = sinc * bessel_i0(beta * std::sqrt(std::max(0.0, 1.0 - u * u))) / bessel_i0(beta);
-    kernel.taps[static_cast<std::size_t>(j + m)] = tap;
+    kernel.taps[at(j + m)] = tap;
     sum += tap;
   }
   for (double& tap : kernel.taps) tap /= sum;
@@ -133,8 +134,7 @@ FirKernel low_pass_differentiator(const LowPassDesign& design) {
       const std::ptrdiff_t n = k - j;
       if (n == 0) continue;
       // y_k = sum taps x_{k+j}: the ideal differentiator weights x_{k+n} by -(-1)^n/n.
-      tap[index] -=
-          smoother.taps[static_cast<std::size_t>(j + m)] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
+      tap[index] -= smoother.taps[at(j + m)] * ((n % 2 == 0) ? 1.0 : -1.0) / static_cast<double>(n);
     }
     const double u = static_cast<double>(k) / static_cast<double>(wide);
     correction[index] = static_cast<double>(k) * (1.0 - u * u) * (1.0 - u * u);
@@ -146,8 +146,8 @@ FirKernel low_pass_differentiator(const LowPassDesign& design) {
   for (std::ptrdiff_t k = 1; k <= wide; ++k) {
     const auto index = static_cast<std::size_t>(k);
     const double value = design.rate_Hz * (tap[index] + missing * correction[index]);
-    kernel.taps[static_cast<std::size_t>(wide + k)] = value;
-    kernel.taps[static_cast<std::size_t>(wide - k)] = -value;
+    kernel.taps[at(wide + k)] = value;
+    kernel.taps[at(wide - k)] = -value;
   }
   return kernel;
 }

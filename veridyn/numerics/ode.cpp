@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::numerics {
 
 namespace odeint = boost::numeric::odeint;
@@ -39,9 +41,9 @@ IntegrationResult integrate_adaptive(const OdeFunction& function, const Eigen::V
   Eigen::VectorXd x_eigen(start.size());
   Eigen::VectorXd rate_eigen(start.size());
   const auto system = [&](const State& x, State& rate, double t) {
-    x_eigen = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    x_eigen = Eigen::Map<const Eigen::VectorXd>(x.data(), signed_index(x.size()));
     function(t, x_eigen, rate_eigen);
-    Eigen::Map<Eigen::VectorXd>(rate.data(), static_cast<Eigen::Index>(rate.size())) = rate_eigen;
+    Eigen::Map<Eigen::VectorXd>(rate.data(), signed_index(rate.size())) = rate_eigen;
   };
   auto stepper = odeint::make_controlled(options.absolute_tolerance, options.relative_tolerance,
                                          odeint::runge_kutta_dopri5<State>());

@@ -7,6 +7,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -168,8 +169,7 @@ std::vector<double> resample(std::span<const double> time, std::span<const doubl
   const auto stride = static_cast<std::ptrdiff_t>(fine_per_step);
   for (std::size_t k = 0; k < grid.count; ++k) {
     const std::ptrdiff_t index = offset + static_cast<std::ptrdiff_t>(k) * stride;
-    if (index >= 0 && index < static_cast<std::ptrdiff_t>(smooth.size()))
-      out[k] = smooth[static_cast<std::size_t>(index)];
+    if (index >= 0 && index < signed_index(smooth.size())) out[k] = smooth[at(index)];
   }
   return out;
 }

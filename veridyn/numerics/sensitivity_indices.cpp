@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -98,12 +99,12 @@ Eigen::MatrixXd shifted_sobol_points(std::size_t points, const std::vector<std::
   if (shift.empty() || shift.size() > kMostDimensions)
     throw InputError("sobol sequence", fmt::format("{} dimensions; must be 1 to {}", shift.size(), kMostDimensions));
   boost::random::sobol sequence(shift.size());
-  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(shift.size()));
+  Eigen::MatrixXd x(static_cast<Eigen::Index>(points), signed_index(shift.size()));
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     for (Eigen::Index j = 0; j < x.cols(); ++j) {
       // The sequence's first point, the origin, which Boost leaves out: without it 2^m points are not balanced.
       const std::uint64_t point = i == 0 ? 0 : sequence();
-      const std::uint64_t bits = point ^ shift[static_cast<std::size_t>(j)];
+      const std::uint64_t bits = point ^ shift[at(j)];
       x(i, j) = static_cast<double>(bits >> 11) * 0x1.0p-53;
     }
   }
@@ -227,7 +228,7 @@ std::vector<MorrisEffect> morris_effects(const Eigen::MatrixXd& design, const Ei
       Eigen::Index moved = 0;
       (design.row(row + 1) - design.row(row)).cwiseAbs().maxCoeff(&moved);
       const double step = design(row + 1, moved) - design(row, moved);
-      effects[static_cast<std::size_t>(moved)].push_back((results(row + 1) - results(row)) / step);
+      effects[at(moved)].push_back((results(row + 1) - results(row)) / step);
     }
   }
   std::vector<MorrisEffect> result(effects.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::recording {
 namespace {
@@ -40,7 +41,7 @@ Element worst_element(const SensorMatrix& m) {
   return worst;
 }
 
-const std::string& axis(const SensorNames& names, Eigen::Index i) { return names.axes[static_cast<std::size_t>(i)]; }
+const std::string& axis(const SensorNames& names, Eigen::Index i) { return names.axes[at(i)]; }
 
 /// The axis whose truth this reading follows.
 Eigen::Index followed(const SensorMatrix& m, Eigen::Index i) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/estimate_tables.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -190,7 +191,7 @@ Document swing_test_report(const SwingTest& test, const SwingTestResult& result,
                                        "Bifilar suspension and compound pendulum", program);
   const auto good = std::count_if(result.axes.begin(), result.axes.end(),
                                   [](const AxisInertia& i) { return i.verdict == InertiaVerdict::kDetermined; });
-  const auto all = static_cast<std::ptrdiff_t>(result.axes.size());
+  const auto all = signed_index(result.axes.size());
   document.verdict.level = good == all ? Level::kGood : good == 0 ? Level::kBad : Level::kCaution;
   document.verdict.word = good == all ? "Determined" : good == 0 ? "Not determined" : "Partly determined";
   document.verdict.headline = result.estimate.verdict + ".";

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/skeleton_figure.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -35,8 +36,7 @@ std::string force_unit(const Coordinate& c) { return c.unit() == "m" ? "N" : "N 
 
 std::vector<double> column(const estimation::RowMatrix& matrix, std::size_t index, double scale = 1.0) {
   std::vector<double> values(static_cast<std::size_t>(matrix.rows()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-    values[static_cast<std::size_t>(i)] = scale * matrix(i, static_cast<Eigen::Index>(index));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) values[at(i)] = scale * matrix(i, static_cast<Eigen::Index>(index));
   return values;
 }
 
@@ -339,9 +339,9 @@ Table event_table(const Shown& shown) {
               .columns = {{.name = "Time", .unit = "s", .digits = 5}, {.name = "Muscle"}, {.name = "What"}}};
   if (events.size() > kMostEvents) table.caption = fmt::format("The first {} of {}.", kMostEvents, events.size());
   for (std::size_t i = 0; i < std::min(events.size(), kMostEvents); ++i) {
-    table.rows.push_back({.cells = {number_cell(events[i].time),
-                                    text_cell(shown.model.muscles[static_cast<std::size_t>(events[i].muscle)].name()),
-                                    text_cell(event_text(events[i].kind))}});
+    table.rows.push_back(
+        {.cells = {number_cell(events[i].time), text_cell(shown.model.muscles[at(events[i].muscle)].name()),
+                   text_cell(event_text(events[i].kind))}});
   }
   return table;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/report/parts/remarks.hpp"
 
 namespace veridyn::report {
@@ -36,7 +37,7 @@ Document reproduction_report(const std::string& domain, std::span<const Reproduc
                              const std::string& program) {
   Document document = started_document("Published results, reproduced", domain, program);
   const auto passed = std::count_if(rows.begin(), rows.end(), [](const ReproducedRow& r) { return r.passed(); });
-  const auto all = static_cast<std::ptrdiff_t>(rows.size());
+  const auto all = signed_index(rows.size());
   document.verdict.level = passed == all ? Level::kGood : Level::kBad;
   document.verdict.word = passed == all ? "Reproduced" : "Not all reproduced";
   document.verdict.headline = fmt::format("{} of {} published results show what they must.", passed, all);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #ifdef VERIDYN_HAS_SOCKETS
-#include "tests/live/serial/pseudo_terminal.hpp"
+#include "veridyn/live/serial/pseudo_terminal.hpp"
 #include "veridyn/live/rig/udp_links.hpp"
 #include "veridyn/live/platform/order_format.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/identification/measured_coefficients.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 
 namespace veridyn::aircraft {
@@ -59,12 +60,12 @@ void internal::take_out_jumps(const CoefficientModel& model, const FlightSignals
       impulse(row - rows.begin()) = signals.jump_response[*row + half - jump.after];
     if (impulse.squaredNorm() > 0.0) impulses.push_back(std::move(impulse));
   }
-  const auto count = static_cast<Eigen::Index>(impulses.size());
+  const auto count = signed_index(impulses.size());
   // As many unknowns as that would take the parameters' information with them.
   constexpr Eigen::Index kRowsAJump = 10;
   if (count == 0 || kRowsAJump * count > data.rows()) return;
   Eigen::MatrixXd nuisance(data.rows(), count);
-  for (Eigen::Index j = 0; j < count; ++j) nuisance.col(j) = impulses[static_cast<std::size_t>(j)];
+  for (Eigen::Index j = 0; j < count; ++j) nuisance.col(j) = impulses[at(j)];
   Eigen::MatrixXd columns(data.rows(), data.parameters() + 1);
   columns << data.regressors, data.regressand;
   columns -= nuisance * numerics::shortest_least_squares(nuisance, columns);
@@ -79,8 +80,7 @@ std::string identification_obstacle(const CoefficientModel& model, const FlightS
   }
   for (const FlightSignal signal : needed_signals(model)) {
     if (!signals[signal].available()) {
-      return fmt::format("{} needs {}, which the log does not have", name,
-                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
+      return fmt::format("{} needs {}, which the log does not have", name, kFlightSignalNames[at(signal)]);
     }
   }
   return {};
@@ -94,7 +94,7 @@ Axis axis_of(Coefficient coefficient) {
 
 Eigen::MatrixXd row_error_covariance(const CoefficientModel& model, const FlightSignals& signals, std::size_t k,
                                      const Subject& subject) {
-  const auto n = static_cast<Eigen::Index>(model.size());
+  const auto n = signed_index(model.size());
   Eigen::VectorXd classical = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kFlightSignals));
   Eigen::VectorXd berkson = classical;
   for (std::size_t i = 0; i < kFlightSignals; ++i) {
@@ -130,7 +130,7 @@ std::vector<Term> default_candidates(const CoefficientModel& model) {
 RegressionData coefficient_data(const CoefficientModel& model, const FlightSignals& signals,
                                 std::span<const TimeSpan> spans, const Subject& subject) {
   const std::vector<FlightSignal> needed = needed_signals(model);
-  const auto n = static_cast<Eigen::Index>(model.size());
+  const auto n = signed_index(model.size());
   std::vector<std::size_t> rows;
   std::vector<int> segment;
   int id = 0;
@@ -152,11 +152,11 @@ RegressionData coefficient_data(const CoefficientModel& model, const FlightSigna
     data.parameter_units.push_back(regressed_parameter_unit(model.coefficient, term, subject));
   }
   data.segment = std::move(segment);
-  const auto count = static_cast<Eigen::Index>(rows.size());
+  const auto count = signed_index(rows.size());
   data.regressors.resize(count, n);
   data.regressand.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = rows[static_cast<std::size_t>(i)];
+    const std::size_t k = rows[at(i)];
     const FlightSample<double> sample = signals.sample(k);
     const double rho = signals.air_density[k];
     const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];

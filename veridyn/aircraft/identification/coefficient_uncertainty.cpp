@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/body_error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 
 namespace veridyn::aircraft {
@@ -92,7 +93,7 @@ estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, con
   Eigen::VectorXd sigma = Eigen::VectorXd::Zero(n);
 
   const std::vector<std::size_t> rows = airborne_samples(signals, segments);
-  Eigen::MatrixXd samples(static_cast<Eigen::Index>(rows.size()), measured);
+  Eigen::MatrixXd samples(signed_index(rows.size()), measured);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const FlightSample<double> s = signals.sample(rows[i]);
     for (std::size_t j = 0; j < kFlightSignals; ++j)

@@ -14,6 +14,7 @@
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -118,7 +119,7 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
   estimation::StructureSearch search = estimation::search_structure(data, options);
   if (search.selected.empty()) return {given, std::move(search)};
   CoefficientModel chosen{c, {}, {}};
-  for (const Eigen::Index j : search.selected) chosen.terms.push_back(all.terms[static_cast<std::size_t>(j)]);
+  for (const Eigen::Index j : search.selected) chosen.terms.push_back(all.terms[at(j)]);
   chosen.values.assign(chosen.terms.size(), kNaN);
   return {std::move(chosen), std::move(search)};
 }
@@ -172,7 +173,7 @@ CoefficientModel significant_terms(const CoefficientModel& model, const Regressi
 std::optional<Eigen::VectorXd> start_values(const CoefficientModel& model, const Subject& subject) {
   const CoefficientModel* given = subject.model.find(model.coefficient);
   if (given == nullptr) return std::nullopt;
-  Eigen::VectorXd values(static_cast<Eigen::Index>(model.size()));
+  Eigen::VectorXd values(signed_index(model.size()));
   for (std::size_t i = 0; i < model.size(); ++i)
     values(static_cast<Eigen::Index>(i)) = given->value_of(model.terms[i].expression).value_or(kNaN);
   return values.allFinite() ? std::optional(values) : std::nullopt;
@@ -403,8 +404,7 @@ CoefficientResult evaluate_coefficient(const CoefficientModel& model, const Flig
     result.reason = fmt::format("{} cannot be judged: {}", name, axis.text);
     return result;
   }
-  result.holdout_fit =
-      fit_on(data, Eigen::Map<const Eigen::VectorXd>(model.values.data(), static_cast<Eigen::Index>(model.size())));
+  result.holdout_fit = fit_on(data, Eigen::Map<const Eigen::VectorXd>(model.values.data(), signed_index(model.size())));
   const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
   const double least = flight.options.min_holdout_r2;
   const bool holds = result.holdout_fit.r2 >= least;

@@ -2,6 +2,8 @@
 
 #include <ceres/jet.h>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::aircraft {
 
 bool per_unit_inertia(Coefficient c, const Subject& subject) {
@@ -28,7 +30,7 @@ CoefficientRow coefficient_row(const CoefficientModel& model, const FlightSample
   using Jet = ceres::Jet<double, static_cast<int>(kFlightSignals)>;
   FlightSample<Jet> s;
   for (std::size_t i = 0; i < kFlightSignals; ++i) s.value[i] = Jet(sample.value[i], static_cast<int>(i));
-  const auto n = static_cast<Eigen::Index>(model.size());
+  const auto n = signed_index(model.size());
   const Eigen::Matrix<Jet, Eigen::Dynamic, 1> x = model.regressors(aero_variables(s, subject, rho));
   const Jet z = select(regressed_coefficients(s, subject, rho), model.coefficient);
   CoefficientRow result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/rotation.hpp"
 
@@ -180,7 +181,7 @@ std::string OutputErrorModel::segment_name(std::size_t segment) const {
 std::vector<estimation::RowMatrix> OutputErrorModel::measured() const {
   std::vector<estimation::RowMatrix> tables;
   for (const Segment& s : segments_) {
-    estimation::RowMatrix z(s.samples, static_cast<Eigen::Index>(outputs_.size()));
+    estimation::RowMatrix z(s.samples, signed_index(outputs_.size()));
     for (Eigen::Index k = 0; k < s.samples; ++k) {
       const GridInputs& d = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
       Eigen::Index column = 0;

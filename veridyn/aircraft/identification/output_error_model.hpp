@@ -190,7 +190,7 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
   const Segment& s = segments_[segment];
   const std::span<const Scalar> parameters(theta.data(), parameters_.size());
   State<Scalar> x;
-  auto initial = static_cast<Eigen::Index>(parameters_.size());
+  auto initial = signed_index(parameters_.size());
   for (std::size_t i = 0; i < kStates; ++i) x[i] = simulated_[i] ? theta(initial++) : Scalar(0.0);
   const Scalar h(step_), half(0.5 * step_), sixth(step_ / 6.0);
   const auto moved = [](const State<Scalar>& from, const State<Scalar>& rate, const Scalar& by) {

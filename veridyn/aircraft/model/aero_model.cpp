@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/core/units.hpp"
@@ -19,7 +20,7 @@ namespace {
 constexpr int kHighestPower = 9;
 constexpr int kHighestDegree = 5;
 
-std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[static_cast<std::size_t>(v)]; }
+std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[at(v)]; }
 
 bool is_angle(AeroVariable v) {
   return v == AeroVariable::kAlpha || v == AeroVariable::kBeta || v == AeroVariable::kDe || v == AeroVariable::kDa ||

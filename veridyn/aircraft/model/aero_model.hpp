@@ -13,6 +13,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -24,12 +25,12 @@ inline constexpr std::size_t kCoefficients = 6;  ///< values of Coefficient
 /// In the order of the enum.
 inline constexpr std::array<std::string_view, kCoefficients> kCoefficientNames = {"CL", "CD", "CY", "Cl", "Cm", "Cn"};
 /// "CL".
-[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[static_cast<std::size_t>(c)]; }
+[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[at(c)]; }
 /// "lift".
 [[nodiscard]] inline std::string_view meaning_of(Coefficient c) {
   constexpr std::array<std::string_view, kCoefficients> kMeanings = {
       "lift", "drag", "side force", "rolling moment", "pitching moment", "yawing moment"};
-  return kMeanings[static_cast<std::size_t>(c)];
+  return kMeanings[at(c)];
 }
 /// The coefficient called `name`, or none.
 [[nodiscard]] std::optional<Coefficient> find_coefficient(std::string_view name);
@@ -224,7 +225,7 @@ Scalar Factor::evaluate(const AeroVariables<Scalar>& v) const {
 
 template <typename Scalar>
 Eigen::Matrix<Scalar, Eigen::Dynamic, 1> CoefficientModel::regressors(const AeroVariables<Scalar>& v) const {
-  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> row(static_cast<Eigen::Index>(terms.size()));
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> row(signed_index(terms.size()));
   for (std::size_t i = 0; i < terms.size(); ++i) row(static_cast<Eigen::Index>(i)) = terms[i].evaluate(v);
   return row;
 }

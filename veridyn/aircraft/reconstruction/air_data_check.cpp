@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/sensors/air_data_consistency.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -104,11 +105,11 @@ AirDataErrors check_air_data_errors(const RunSetting& base, const SolveTask& tas
   AirDataErrors result;
   result.index = estimated_air_data_errors(o);
   result.spectrum = base.motion.spectrum;
-  const auto m = static_cast<Eigen::Index>(result.index.size());
+  const auto m = signed_index(result.index.size());
   result.covariance = Eigen::MatrixXd::Zero(m, m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const int error = result.index[static_cast<std::size_t>(i)];
-    const double prior = air_data_error_priors()[static_cast<std::size_t>(error)];
+    const int error = result.index[at(i)];
+    const double prior = air_data_error_priors()[at(error)];
     const std::optional<Found> found = found_of(error, air, slope, task);
     const double precision = 1.0 / (prior * prior) + (found ? 1.0 / (found->error.sigma * found->error.sigma) : 0.0);
     result.covariance(i, i) = 1.0 / precision;

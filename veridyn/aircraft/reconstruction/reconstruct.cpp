@@ -15,6 +15,7 @@
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -280,12 +281,10 @@ std::vector<SensorErrorReport> sensor_error_reports(const Solution& solution, co
          .sigma = numerics::median(part(solution.smoothed->sigma(c)))});
     kept.push_back(static_cast<Eigen::Index>(i));
   }
-  const auto n = static_cast<Eigen::Index>(kept.size());
+  const auto n = signed_index(kept.size());
   Eigen::MatrixXd covariance(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < n; ++b)
-      covariance(a, b) =
-          solution.error_covariance(kept[static_cast<std::size_t>(a)], kept[static_cast<std::size_t>(b)]);
+    for (Eigen::Index b = 0; b < n; ++b) covariance(a, b) = solution.error_covariance(kept[at(a)], kept[at(b)]);
   }
   return judge_sensor_errors(errors, covariance);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::aircraft::internal {
 
 int CovarianceView::state_of_column(std::size_t column) const {
@@ -14,12 +16,12 @@ int CovarianceView::state_of_column(std::size_t column) const {
 }
 
 Eigen::MatrixXd CovarianceView::of_columns(std::span<const std::size_t> columns) const {
-  const auto n = static_cast<Eigen::Index>(columns.size());
+  const auto n = signed_index(columns.size());
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) {
-      const int row = state_of_column(columns[static_cast<std::size_t>(a)]);
-      const int column = state_of_column(columns[static_cast<std::size_t>(b)]);
+      const int row = state_of_column(columns[at(a)]);
+      const int column = state_of_column(columns[at(b)]);
       if (row >= 0 && column >= 0) out(a, b) = matrix(row, column);
     }
   }
@@ -100,7 +102,7 @@ void ResultColumns::fill(std::size_t column, double value, double sigma) {
 
 void ResultColumns::widen(std::size_t count, const std::vector<ResultColumns>& shifted,
                           const Eigen::MatrixXd& correlation) {
-  Eigen::VectorXd d(static_cast<Eigen::Index>(shifted.size()));
+  Eigen::VectorXd d(signed_index(shifted.size()));
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
     if (value_[c].empty() || (c >= kFirstAirDataError && c < kFirstCoefficientError)) continue;
     const bool angle = std::string_view(kColumns[c].unit) == "rad";

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -36,7 +37,7 @@ BatchExperiment run_batch_experiment(const ExperimentOptions& o, const std::vect
       one.theta = e.theta;
       one.sigma.resize(n), one.low.resize(n), one.high.resize(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const estimation::Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+        const estimation::Parameter& p = e.parameters[at(i)];
         one.sigma(i) = p.sigma, one.low(i) = p.low95, one.high(i) = p.high95;
       }
     }

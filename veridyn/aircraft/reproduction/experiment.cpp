@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/identification/measured_coefficients.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/random.hpp"
 
@@ -54,8 +55,8 @@ ExactRows exact_rows(const ExperimentOptions& o, Progress& progress) {
                         });
     if (inside) used.push_back(k);
   }
-  const auto n = static_cast<Eigen::Index>(structure.size());
-  const auto count = static_cast<Eigen::Index>(used.size());
+  const auto n = signed_index(structure.size());
+  const auto count = signed_index(used.size());
   if (count < 2 * n) throw InputError("experiment.spans", "leave no rows of the flight");
 
   ExactRows rows;
@@ -74,7 +75,7 @@ ExactRows exact_rows(const ExperimentOptions& o, Progress& progress) {
   const std::vector<double>& density = truth.at("air_density").value;
   std::size_t changed = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t k = used[static_cast<std::size_t>(i)];
+    const std::size_t k = used[at(i)];
     while (changed < o.flight.changes.size() && time[k] >= o.flight.changes[changed].time - 1e-9)
       subject.model = o.flight.changes[changed++].model;
     FlightSample<double> sample;
@@ -90,11 +91,10 @@ ExactRows exact_rows(const ExperimentOptions& o, Progress& progress) {
   const auto deviation = [](const Eigen::VectorXd& x) { return std::sqrt((x.array() - x.mean()).square().mean()); };
   rows.noise_sd = Eigen::VectorXd::Zero(n + 1);
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (!o.regressor_snr_dB || structure.terms[static_cast<std::size_t>(j)].constant()) continue;
+    if (!o.regressor_snr_dB || structure.terms[at(j)].constant()) continue;
     rows.noise_sd(j) = deviation(rows.regressors.col(j)) * std::pow(10.0, -*o.regressor_snr_dB / 20.0);
     if (!(rows.noise_sd(j) > 0.0))
-      throw InputError("experiment", fmt::format("the flight never moves the regressor of {}",
-                                                 rows.names[static_cast<std::size_t>(j)]));
+      throw InputError("experiment", fmt::format("the flight never moves the regressor of {}", rows.names[at(j)]));
   }
   rows.noise_sd(n) = deviation(rows.regressand) * std::pow(10.0, -o.snr_dB / 20.0);
   return rows;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
@@ -128,8 +129,7 @@ class Expectations {
       }
       add(s.bias(worst, truth) > kBiasedSigmas,
           fmt::format("{}: the mean of {} is {:.4f}, the truth {:.4f}: {:.0f} times the scatter of an estimate away",
-                      method, names[static_cast<std::size_t>(worst)], s.mean(worst), truth(worst),
-                      s.bias(worst, truth)));
+                      method, names[at(worst)], s.mean(worst), truth(worst), s.bias(worst, truth)));
     }
     for (const auto& [key, below] : {std::pair{"output_error_below", true}, std::pair{"output_error_above", false}}) {
       const StudyTable limits = expect_.table_or_empty(key);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::aircraft {
@@ -39,7 +40,7 @@ class Settling {
       at_start_(j) = kSettled * deviation / std::sqrt(rows.regressors.col(j).array().square().mean());
     Eigen::Index row = 0;
     for (const double begin : e_.phase_s) {
-      while (row + 1 < rows.truth_at.rows() && rows.time[static_cast<std::size_t>(row)] < begin - 1e-9) ++row;
+      while (row + 1 < rows.truth_at.rows() && rows.time[at(row)] < begin - 1e-9) ++row;
       truth_.push_back(rows.truth_at.row(row).transpose());
     }
   }
@@ -166,8 +167,7 @@ TrackingExperiment run_tracking_experiment(const ExperimentOptions& o, const std
     for (std::size_t m = 0; m < trackers.size(); ++m) {
       CoefficientTracker tracker(model, W, trackers[m].options, o.rate_Hz);
       for (Eigen::Index i = 0; i < data.regressors.rows(); ++i) {
-        tracker.update(out.rows.time[static_cast<std::size_t>(i)], {data.regressors.row(i).data(), n},
-                       data.regressand(i));
+        tracker.update(out.rows.time[at(i)], {data.regressors.row(i).data(), n}, data.regressand(i));
       }
       TrackingRun& run = out.runs[m][seed];
       run.settling_s = settling.times(tracker.history());

@@ -366,7 +366,7 @@ SwingAngle swing_angle(const Recording& recording, const std::string& channel) {
   for (const Eigen::Vector4d& v : q) A += v * v.transpose();
   const Eigen::Vector4d m = numerics::symmetric_eigen(A).vectors.col(3);
   const Eigen::Quaterniond mean(m(3), m(0), m(1), m(2));
-  Eigen::MatrixXd turn(static_cast<Eigen::Index>(q.size()), 3);
+  Eigen::MatrixXd turn(signed_index(q.size()), 3);
   for (std::size_t i = 0; i < q.size(); ++i) {
     const Eigen::Quaterniond d = mean.conjugate() * Eigen::Quaterniond(q[i](3), q[i](0), q[i](1), q[i](2));
     const double s = d.w() < 0.0 ? -1.0 : 1.0;

@@ -6,6 +6,7 @@
 
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
 
 namespace veridyn::aircraft {
@@ -52,7 +53,7 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
   for (const TrackedCoefficient& c : tracker.coefficients()) {
     if (!c.tracker) continue;
     const auto first = estimate.parameters.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto last = first + static_cast<std::ptrdiff_t>(c.model.size());
+    const auto last = first + signed_index(c.model.size());
     at += c.model.size();
     const std::vector<Evidence> own = tracked_evidence(c, tracker.subject());
     std::vector<Evidence> all = own;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/cueing/platform/platform_limits.hpp"
 #include "veridyn/cueing/platform/platform_state.hpp"
 
@@ -39,7 +40,7 @@ class Legs {
   /// needs a leg that is longer or shorter than it can be: "platform.roll".
   Legs(const LegGeometry& geometry, const PlatformLimits& limits);
 
-  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(geometry_.feet.size()); }
+  [[nodiscard]] Eigen::Index count() const { return signed_index(geometry_.feet.size()); }
   [[nodiscard]] const LegGeometry& geometry() const { return geometry_; }
   [[nodiscard]] Lengths lengths(const PlatformState& state) const;
   /// The pose with these lengths that is nearest to another one, and its motion; nothing where there is none.

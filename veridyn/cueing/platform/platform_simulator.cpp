@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::cueing {
 
 void DelayLine::reset(double value) {
@@ -82,7 +84,7 @@ PlatformState PlatformSimulator::act(const PlatformState& told, std::optional<do
   } else {
     for (const PlatformAxis which : kAllPlatformAxes) {
       const AxisState to = axis(told, which);
-      Actuator& a = actuators_[static_cast<std::size_t>(which)];
+      Actuator& a = actuators_[at(which)];
       set_axis(before_reach_, which, step ? a.step(to, *step) : a.reset(to.position));
     }
   }
@@ -94,7 +96,7 @@ PlatformState PlatformSimulator::act_on_legs(const PlatformState& told, std::opt
   const Legs::Lengths wanted = legs_->lengths(told);
   Legs::Lengths reached = wanted;
   for (Eigen::Index i = 0; i < legs_->count(); ++i) {
-    Actuator& a = actuators_[static_cast<std::size_t>(i)];
+    Actuator& a = actuators_[at(i)];
     const AxisState to = step ? a.step({wanted.position(i), wanted.rate(i), wanted.acceleration(i)}, *step)
                               : a.reset(wanted.position(i));
     reached.position(i) = to.position;

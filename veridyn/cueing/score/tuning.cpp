@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/core/quiet_progress.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
 
@@ -118,13 +119,13 @@ Tuning tuned(const WashoutDesign& design, const Platform& platform, const std::v
   for (const bool together : {true, false}) {
     const std::vector<Knob> knobs = result.design->knobs();
     const std::vector<Coordinate> to = coordinates(knobs, together);
-    const auto n = static_cast<Eigen::Index>(to.size());
+    const auto n = signed_index(to.size());
     const std::size_t left = options.evaluations - result.evaluations, allowed = together ? left / 2 : left;
     if (n == 0 || allowed == 0 || result.interrupted) break;
     estimation::BlackBoxProblem problem{.name = "washout", .low = Eigen::VectorXd(n), .high = Eigen::VectorXd(n)};
     Eigen::VectorXd start(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Coordinate& c = to[static_cast<std::size_t>(i)];
+      const Coordinate& c = to[at(i)];
       problem.names.push_back(fmt::format("{}[{}]", knobs[c.knob].name, c.first));
       problem.low(i) = c.low;
       problem.high(i) = c.high;

@@ -10,6 +10,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 
 namespace veridyn::estimation {
@@ -84,8 +85,8 @@ class AutodiffModel : public ParametricModel {
     using Jet = ceres::Jet<double, kStride>;
     const auto& model = static_cast<const Derived&>(*this);
     const Eigen::Index N = samples(segment);
-    const auto p = static_cast<Eigen::Index>(outputs().size());
-    const auto n = static_cast<Eigen::Index>(active.size());
+    const auto p = signed_index(outputs().size());
+    const auto n = signed_index(active.size());
     response.output.resize(N, p);
     response.sensitivity.resize(N * p, n);
     if (n == 0) return model.simulate(segment, theta, response.output) && response.output.allFinite();
@@ -95,7 +96,7 @@ class AutodiffModel : public ParametricModel {
       const Eigen::Index count = std::min<Eigen::Index>(kStride, n - first);
       for (Eigen::Index i = 0; i < theta.size(); ++i) jets(i) = Jet(theta(i));
       for (Eigen::Index j = 0; j < count; ++j) {
-        jets(active[static_cast<std::size_t>(first + j)]).v(j) = 1.0;
+        jets(active[at(first + j)]).v(j) = 1.0;
       }
       if (!model.simulate(segment, jets, output)) return false;
       for (Eigen::Index k = 0; k < N; ++k) {

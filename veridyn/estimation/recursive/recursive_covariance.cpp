@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/recursive_state.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
@@ -28,9 +29,9 @@ SmallMatrix sandwich(const SmallMatrix& A, const SmallMatrix& S) {
     for (Eigen::Index k = 0; k < n; ++k) {
       const double a = A(k, j);
       const double* s = S.data() + k * n;
-      for (Eigen::Index i = 0; i < n; ++i) column[static_cast<std::size_t>(i)] += a * s[i];
+      for (Eigen::Index i = 0; i < n; ++i) column[at(i)] += a * s[i];
     }
-    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[static_cast<std::size_t>(i)];
+    for (Eigen::Index i = 0; i < n; ++i) half(i, j) = column[at(i)];
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) {
@@ -141,7 +142,7 @@ void RecursiveRegression::State::add_unexcited_bound(const SmallMatrix& jacobian
   const Eigen::Index n = count();
   double largest = 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    largest = std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[static_cast<std::size_t>(i)]))));
+    largest = std::max(largest, std::abs(free_weight(i) * (free_theta(i) - prior(free[at(i)]))));
   }
   const double least = options.unexcited_bound > 0.0 ? options.unexcited_bound : kAutomaticBound * largest;
   // GTLS over all directions, where there is one: its error bar is a lower limit of the bound.
@@ -193,7 +194,7 @@ double RecursiveRegression::State::long_correlation(const SmallMatrix& inverse) 
 }
 
 void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, internal::RecursiveErrorBars& result) const {
-  const auto all = static_cast<Eigen::Index>(names.size());
+  const auto all = signed_index(names.size());
   const Eigen::Index n = count();
   result.covariance.setZero(all, all);
   result.sigma.setZero(all);
@@ -228,7 +229,7 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
         S = (1.0 - trust) * S + (trust * whole * long_correlation(inverse)) * scores.sum();
         leading *= 1.0 - trust;
         for (Eigen::Index j = 0; j < n; ++j) {
-          double& of_one = result.freedom(free[static_cast<std::size_t>(j)]);
+          double& of_one = result.freedom(free[at(j)]);
           of_one = std::min(freedom, std::max(1.0, scores.blocks_behind(inverse.col(j).data())));
           result.degrees_of_freedom = std::min(result.degrees_of_freedom, of_one);
         }
@@ -241,9 +242,9 @@ void RecursiveRegression::State::compute_error_bars(CovarianceKind kind, interna
   }
   if (good) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      const Eigen::Index to = free[static_cast<std::size_t>(j)];
+      const Eigen::Index to = free[at(j)];
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index from = free[static_cast<std::size_t>(i)];
+        const Eigen::Index from = free[at(i)];
         result.covariance(from, to) = excited(i, j) + bound(i, j);
       }
       good = good && std::isfinite(result.covariance(to, to));
@@ -311,14 +312,13 @@ void RecursiveRegression::State::add_collinearity(RegressionEstimate& result) co
     const Eigen::VectorXd column = scaled.col(j);
     const double left = (column - others * numerics::shortest_least_squares(others, column)).squaredNorm();
     const double all = has_constant ? spread(j) : 1.0;
-    result.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(j)])].variance_inflation =
-        left > 0.0 ? std::max(1.0, all / left) : kInfinity;
+    result.parameters[at(free[at(j)])].variance_inflation = left > 0.0 ? std::max(1.0, all / left) : kInfinity;
   }
 }
 
 RegressionEstimate RecursiveRegression::State::estimate(double significance) const {
   const internal::RecursiveErrorBars& known = error_bars(options.covariance);
-  const auto all = static_cast<Eigen::Index>(names.size());
+  const auto all = signed_index(names.size());
   RegressionEstimate result;
   result.method = options.method;
   result.termination = termination;
@@ -336,7 +336,7 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
   result.excited_directions = excited_directions;
   for (Eigen::Index i = 0; i < all; ++i) {
     Parameter p;
-    p.name = names[static_cast<std::size_t>(i)];
+    p.name = names[at(i)];
     p.value = theta(i);
     p.sigma = known.sigma(i);
     p.sigma_white = white.sigma(i);
@@ -354,10 +354,9 @@ RegressionEstimate RecursiveRegression::State::estimate(double significance) con
   add_collinearity(result);
   switch (termination) {
     case EstimateTermination::kEstimated:
-      result.message = result.unexcited.empty()
-                           ? fmt::format("estimated from {} rows, {:.0f} in effect", rows, samples)
-                           : fmt::format("{} of {} directions are excited; the others are held", excited_directions,
-                                         all - static_cast<Eigen::Index>(pinned.size()));
+      result.message = result.unexcited.empty() ? fmt::format("estimated from {} rows, {:.0f} in effect", rows, samples)
+                                                : fmt::format("{} of {} directions are excited; the others are held",
+                                                              excited_directions, all - signed_index(pinned.size()));
       break;
     case EstimateTermination::kTooFewRows:
       result.message = fmt::format("{} rows for {} parameters", rows, all);

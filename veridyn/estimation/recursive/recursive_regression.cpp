@@ -10,6 +10,7 @@
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/recursive_state.hpp"
 
 namespace veridyn::estimation {
@@ -39,7 +40,7 @@ void RecursiveOptions::validate(Eigen::Index parameters) const {
 }
 
 RecursiveRegression::RecursiveRegression(std::vector<std::string> names, RecursiveOptions options) {
-  options.validate(static_cast<Eigen::Index>(names.size()));
+  options.validate(signed_index(names.size()));
   std::set<std::string> seen;
   for (const std::string& name : names) {
     if (!seen.insert(name).second) throw InputError("recursive", fmt::format("two parameters are named '{}'", name));
@@ -87,7 +88,7 @@ double RecursiveRegression::equation_error() const { return state_->equation_err
 
 RecursiveUpdate RecursiveRegression::update(std::span<const double> x, double z) { return state_->update(x, z); }
 
-Eigen::Index RecursiveRegression::parameters() const { return static_cast<Eigen::Index>(state_->names.size()); }
+Eigen::Index RecursiveRegression::parameters() const { return signed_index(state_->names.size()); }
 const std::vector<std::string>& RecursiveRegression::names() const { return state_->names; }
 const RecursiveOptions& RecursiveRegression::options() const { return state_->options; }
 const SmallVector& RecursiveRegression::theta() const { return state_->theta; }

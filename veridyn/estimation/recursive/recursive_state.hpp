@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/recursive/forgetting.hpp"
 #include "veridyn/estimation/recursive/recursive_regression.hpp"
 #include "veridyn/estimation/recursive/recursive_total_least_squares.hpp"
@@ -55,7 +56,7 @@ struct RecursiveRegression::State {
   void corrected_jacobian(SmallMatrix& M) const;
   ParameterStatus status(Eigen::Index parameter, double significance) const;
   RegressionEstimate estimate(double significance) const;
-  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(free.size()); }
+  [[nodiscard]] Eigen::Index count() const { return signed_index(free.size()); }
 
   std::vector<std::string> names;
   RecursiveOptions options;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -214,7 +215,7 @@ void RegressionTracker::fit_equation_error() {
 
 bool RegressionTracker::moves_held_direction(std::span<const double> x) const {
   const SmallMatrix& held = regression_.unexcited();
-  const auto n = static_cast<Eigen::Index>(x.size());
+  const auto n = signed_index(x.size());
   const Eigen::Map<const Eigen::VectorXd> row(x.data(), n);
   for (Eigen::Index j = 0; j < held.cols(); ++j) {
     const double along = row.dot(held.col(j));

@@ -31,7 +31,7 @@ class TrackedSvd {
 
   [[nodiscard]] int columns() const { return columns_; }
   /// Descending.
-  [[nodiscard]] double singular_value(int j) const { return values_[static_cast<std::size_t>(j)]; }
+  [[nodiscard]] double singular_value(int j) const { return values_[at(j)]; }
   /// Element i of right singular vector j.
   [[nodiscard]] double vector(int i, int j) const { return vectors_[at(i * padded_ + j)]; }
   [[nodiscard]] SmallMatrix vectors() const;

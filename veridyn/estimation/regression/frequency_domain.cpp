@@ -79,7 +79,7 @@ void remove_line(Eigen::Ref<Eigen::VectorXd> x) {
 /// Columns [x, z] of each segment, transformed at the frequencies of the band that the segment resolves.
 std::vector<Eigen::MatrixXcd> transformed_segments(const RegressionData& data, const std::vector<Index>& columns,
                                                    double step, const FrequencyOptions& options) {
-  const auto n = static_cast<Index>(columns.size());
+  const auto n = signed_index(columns.size());
   std::vector<Eigen::MatrixXcd> segments;
   for (const auto& [begin, end] : segment_ranges(data.rows(), data.segment)) {
     const Index N = end - begin;
@@ -90,10 +90,10 @@ std::vector<Eigen::MatrixXcd> transformed_segments(const RegressionData& data, c
     for (double m = std::ceil(options.low_Hz / spacing - 1e-9); m * spacing <= options.high_Hz * (1.0 + 1e-9); m += 1.0)
       if (m >= 1.0) frequencies.push_back(m * spacing);
     if (frequencies.empty()) continue;
-    Eigen::MatrixXcd segment(static_cast<Index>(frequencies.size()), n + 1);
+    Eigen::MatrixXcd segment(signed_index(frequencies.size()), n + 1);
     for (Index j = 0; j <= n; ++j) {
       Eigen::VectorXd column = data.regressand.segment(begin, N);
-      if (j < n) column = data.regressors.col(columns[static_cast<std::size_t>(j)]).segment(begin, N);
+      if (j < n) column = data.regressors.col(columns[at(j)]).segment(begin, N);
       if (data.row_scale.size() > 0) column = column.cwiseQuotient(data.row_scale.segment(begin, N)).eval();
       if (options.remove_trend) remove_line(column);
       segment.col(j) = finite_fourier_transform({column.data(), static_cast<std::size_t>(N)}, step, frequencies) /
@@ -122,8 +122,8 @@ std::vector<Parameter> unknown_parameters(const RegressionData& data, const std:
   std::vector<Parameter> parameters;
   for (const Index j : columns) {
     Parameter p;
-    p.name = data.parameter_names[static_cast<std::size_t>(j)];
-    if (!data.parameter_units.empty()) p.unit = data.parameter_units[static_cast<std::size_t>(j)];
+    p.name = data.parameter_names[at(j)];
+    if (!data.parameter_units.empty()) p.unit = data.parameter_units[at(j)];
     p.value = kNaN;
     p.sigma = p.sigma_white = p.high95 = kInfinity;
     p.low95 = -p.sigma;
@@ -150,8 +150,8 @@ Eigen::MatrixXd covariance_by_frequency(const RowMatrix& D, const OrdinaryLeastS
 
 Eigen::VectorXcd finite_fourier_transform(std::span<const double> x, double step,
                                           std::span<const double> frequencies_Hz) {
-  VERIDYN_ASSERT(static_cast<Index>(x.size()) >= kLeastSamples && step > 0.0);
-  Eigen::VectorXcd result(static_cast<Index>(frequencies_Hz.size()));
+  VERIDYN_ASSERT(signed_index(x.size()) >= kLeastSamples && step > 0.0);
+  Eigen::VectorXcd result(signed_index(frequencies_Hz.size()));
   const std::size_t last = x.size() - 1;
   for (std::size_t i = 0; i < frequencies_Hz.size(); ++i) {
     const double theta = 2.0 * kPi * frequencies_Hz[i] * step;
@@ -200,11 +200,11 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
   std::vector<Index> columns;
   for (Index j = 0; j < data.parameters(); ++j) {
     if ((data.regressors.col(j).array() == data.regressors(0, j)).all())
-      result.left_out.push_back(data.parameter_names[static_cast<std::size_t>(j)]);
+      result.left_out.push_back(data.parameter_names[at(j)]);
     else
       columns.push_back(j);
   }
-  const auto n = static_cast<Index>(columns.size());
+  const auto n = signed_index(columns.size());
   const std::vector<Eigen::MatrixXcd> segments = transformed_segments(data, columns, step, options);
   result.segments = signed_index(segments.size());
   for (const Eigen::MatrixXcd& segment : segments) result.frequencies += segment.rows();
@@ -244,7 +244,7 @@ FrequencyEstimate frequency_equation_error(const RegressionData& data, double st
     e.degrees_of_freedom = std::max(1.0, static_cast<double>(result.frequencies - n));
   }
   for (Index i = 0; i < n; ++i) {
-    Parameter& p = e.parameters[static_cast<std::size_t>(i)];
+    Parameter& p = e.parameters[at(i)];
     p.value = e.theta(i);
     p.sigma = std::sqrt(e.covariance(i, i));
     p.sigma_white = std::sqrt(e.covariance_white(i, i));

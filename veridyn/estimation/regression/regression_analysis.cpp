@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/pca_total_least_squares.hpp"
@@ -30,9 +31,9 @@ Pinning pin_parameters(const Eigen::VectorXd& prior, const Eigen::VectorXd& weig
   for (Eigen::Index i = 0; i < n; ++i) {
     if (std::isfinite(weight(i))) pinning.free.push_back(i);
   }
-  const auto count = static_cast<Eigen::Index>(pinning.free.size());
+  const auto count = signed_index(pinning.free.size());
   pinning.P = Eigen::MatrixXd::Zero(n + 1, count + 1);
-  for (Eigen::Index j = 0; j < count; ++j) pinning.P(pinning.free[static_cast<std::size_t>(j)], j) = 1.0;
+  for (Eigen::Index j = 0; j < count; ++j) pinning.P(pinning.free[at(j)], j) = 1.0;
   pinning.P(n, count) = 1.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     if (!std::isfinite(weight(i))) pinning.P(i, count) = -prior(i);
@@ -67,12 +68,12 @@ FreeParameters free_parameters(const RegressionOptions& options, const Eigen::Ma
   out.all_prior = options.prior.size() > 0 ? options.prior : Eigen::VectorXd::Zero(n).eval();
   out.all_weight = options.prior_weight.size() > 0 ? options.prior_weight : Eigen::VectorXd::Ones(n).eval();
   out.pinning = pin_parameters(out.all_prior, out.all_weight);
-  const auto count = static_cast<Eigen::Index>(out.pinning.free.size());
+  const auto count = signed_index(out.pinning.free.size());
   out.prior.resize(count);
   out.weight.resize(count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    out.prior(j) = out.all_prior(out.pinning.free[static_cast<std::size_t>(j)]);
-    out.weight(j) = out.all_weight(out.pinning.free[static_cast<std::size_t>(j)]);
+    out.prior(j) = out.all_prior(out.pinning.free[at(j)]);
+    out.weight(j) = out.all_weight(out.pinning.free[at(j)]);
   }
   const bool pinned = count < n;
   const Eigen::MatrixXd& P = out.pinning.P;
@@ -164,7 +165,7 @@ RegressionAnalysis::RegressionAnalysis(const RegressionData& data, const Regress
   if (has_constant && data.row_scale.size() == 0) spread_ -= rows() * mean.cwiseAbs2().transpose();
   variance_inflation_ = Eigen::VectorXd::Ones(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (constant_[static_cast<std::size_t>(j)]) continue;
+    if (constant_[at(j)]) continue;
     variance_inflation_(j) =
         least_squares_.full_rank ? std::max(1.0, spread_(j) * least_squares_.inverse_normal(j, j)) : kInfinity;
   }
@@ -175,8 +176,7 @@ Eigen::MatrixXd RegressionAnalysis::error_covariance(Method method) const {
   if (method != Method::kTls && data_.has_error_covariance()) return error_covariance_;
   Eigen::VectorXd noisy = Eigen::VectorXd::Zero(size);
   for (Eigen::Index j = 0; j + 1 < size; ++j) {
-    const bool has_error =
-        data_.has_error_covariance() ? data_.error_covariance(j, j) > 0.0 : !constant_[static_cast<std::size_t>(j)];
+    const bool has_error = data_.has_error_covariance() ? data_.error_covariance(j, j) > 0.0 : !constant_[at(j)];
     if (method == Method::kTls && has_error) noisy(j) = 1.0;
   }
   noisy(size - 1) = 1.0;
@@ -353,11 +353,10 @@ RegressionEstimate RegressionAnalysis::by_pca(RegressionEstimate result) const {
   result.parameters.resize(static_cast<std::size_t>(n));
   const Eigen::VectorXd inflation = inflation_on_excited(pca, free, free.lift.transpose() * spread_);
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!std::isfinite(free.all_weight(i)))
-      result.parameters[static_cast<std::size_t>(i)].status = ParameterStatus::kFixed;
+    if (!std::isfinite(free.all_weight(i))) result.parameters[at(i)].status = ParameterStatus::kFixed;
   }
   for (Eigen::Index j = 0; j < free.count(); ++j) {
-    Parameter& p = result.parameters[static_cast<std::size_t>(free.pinning.free[static_cast<std::size_t>(j)])];
+    Parameter& p = result.parameters[at(free.pinning.free[at(j)])];
     p.variance_inflation = inflation(j);
     p.unexcited_share = std::min(1.0, bound.share(j));
     const double by_bound = bound.covariance(j, j);
@@ -382,9 +381,9 @@ RegressionEstimate RegressionAnalysis::with_intervals(RegressionEstimate result)
   const bool usable = result.usable();
   const double freedom = std::max(1.0, result.degrees_of_freedom);
   for (Eigen::Index i = 0; i < n; ++i) {
-    Parameter& p = result.parameters[static_cast<std::size_t>(i)];
-    p.name = data_.parameter_names[static_cast<std::size_t>(i)];
-    if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[static_cast<std::size_t>(i)];
+    Parameter& p = result.parameters[at(i)];
+    p.name = data_.parameter_names[at(i)];
+    if (!data_.parameter_units.empty()) p.unit = data_.parameter_units[at(i)];
     p.value = result.theta(i);
     if (result.unexcited.empty()) p.variance_inflation = variance_inflation_(i);
     if (!usable) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 
 namespace veridyn::estimation {
@@ -61,14 +62,14 @@ void RegressionData::validate() const {
     throw InputError("regression",
                      fmt::format("regressand has {} rows, regressors have {}; must be equal", regressand.size(), N));
   }
-  if (static_cast<Eigen::Index>(parameter_names.size()) != n) {
+  if (signed_index(parameter_names.size()) != n) {
     throw InputError("regression", fmt::format("{} parameter names for {} regressors", parameter_names.size(), n));
   }
   std::set<std::string> seen;
   for (const std::string& name : parameter_names) {
     if (!seen.insert(name).second) throw InputError("regression", fmt::format("two parameters are named '{}'", name));
   }
-  if (!parameter_units.empty() && static_cast<Eigen::Index>(parameter_units.size()) != n) {
+  if (!parameter_units.empty() && signed_index(parameter_units.size()) != n) {
     throw InputError("regression", fmt::format("{} parameter units for {} regressors", parameter_units.size(), n));
   }
   if (N < n + 1) {
@@ -82,9 +83,9 @@ void RegressionData::validate() const {
     }
     for (Eigen::Index j = 0; j < n; ++j) {
       if (!std::isfinite(regressors(k, j))) {
-        throw InputError(fmt::format("regression of {}: row {}", regressand_name, k),
-                         fmt::format("regressor of {} is {}; must be finite",
-                                     parameter_names[static_cast<std::size_t>(j)], regressors(k, j)));
+        throw InputError(
+            fmt::format("regression of {}: row {}", regressand_name, k),
+            fmt::format("regressor of {} is {}; must be finite", parameter_names[at(j)], regressors(k, j)));
       }
     }
   }
@@ -95,11 +96,11 @@ void RegressionData::validate() const {
       throw InputError("regression.row_scale", "must be > 0 and finite everywhere");
   }
   if (!segment.empty()) {
-    if (static_cast<Eigen::Index>(segment.size()) != N)
+    if (signed_index(segment.size()) != N)
       throw InputError("regression.segment", fmt::format("has {} ids for {} rows", segment.size(), N));
     std::set<int> done;
     for (const auto& [begin, end] : segment_ranges(N, segment)) {
-      const int id = segment[static_cast<std::size_t>(begin)];
+      const int id = segment[at(begin)];
       if (!done.insert(id).second)
         throw InputError("regression.segment",
                          fmt::format("id {} comes back at row {}; rows of a segment must be contiguous", id, begin));
@@ -116,8 +117,7 @@ std::vector<std::pair<Eigen::Index, Eigen::Index>> segment_ranges(Eigen::Index r
   std::vector<std::pair<Eigen::Index, Eigen::Index>> ranges;
   Eigen::Index begin = 0;
   for (Eigen::Index k = 1; k <= rows; ++k) {
-    if (k == rows ||
-        (!segment.empty() && segment[static_cast<std::size_t>(k)] != segment[static_cast<std::size_t>(k - 1)])) {
+    if (k == rows || (!segment.empty() && segment[at(k)] != segment[at(k - 1)])) {
       ranges.emplace_back(begin, k);
       begin = k;
     }
@@ -147,10 +147,10 @@ Eigen::Index drop_rows_that_are_not_finite(RegressionData& data) {
     kept.push_back(k);
     ids.push_back(id);
   }
-  const auto count = static_cast<Eigen::Index>(kept.size());
+  const auto count = signed_index(kept.size());
   if (count == N) return 0;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index from = kept[static_cast<std::size_t>(k)];
+    const Eigen::Index from = kept[at(k)];
     data.regressors.row(k) = data.regressors.row(from).eval();
     data.regressand(k) = data.regressand(from);
     if (data.row_scale.size() > 0) data.row_scale(k) = data.row_scale(from);

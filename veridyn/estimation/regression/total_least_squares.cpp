@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
@@ -27,14 +28,13 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
   const Eigen::Index size = W.rows();
   std::vector<Eigen::Index> exact, noisy;
   for (Eigen::Index i = 0; i < size; ++i) (W(i, i) > 0.0 ? noisy : exact).push_back(i);
-  const auto noisy_count = static_cast<Eigen::Index>(noisy.size());
+  const auto noisy_count = signed_index(noisy.size());
   Eigen::VectorXd sd(noisy_count);
-  for (Eigen::Index i = 0; i < noisy_count; ++i)
-    sd(i) = std::sqrt(W(noisy[static_cast<std::size_t>(i)], noisy[static_cast<std::size_t>(i)]));
+  for (Eigen::Index i = 0; i < noisy_count; ++i) sd(i) = std::sqrt(W(noisy[at(i)], noisy[at(i)]));
   Eigen::MatrixXd correlation(noisy_count, noisy_count);
   for (Eigen::Index i = 0; i < noisy_count; ++i) {
     for (Eigen::Index j = 0; j < noisy_count; ++j) {
-      correlation(i, j) = W(noisy[static_cast<std::size_t>(i)], noisy[static_cast<std::size_t>(j)]) / (sd(i) * sd(j));
+      correlation(i, j) = W(noisy[at(i)], noisy[at(j)]) / (sd(i) * sd(j));
     }
   }
   const numerics::SymmetricEigen eigen = numerics::symmetric_eigen(correlation);
@@ -43,15 +43,15 @@ ErrorBasis error_basis(const Eigen::MatrixXd& W) {
     ++null_count;
 
   // Columns of T: exact columns and null directions of W, then the whitened ones.
-  const Eigen::Index exact_count = static_cast<Eigen::Index>(exact.size()) + null_count;
+  const Eigen::Index exact_count = signed_index(exact.size()) + null_count;
   const Eigen::Index white_count = noisy_count - null_count;
   Eigen::MatrixXd T_exact = Eigen::MatrixXd::Zero(size, exact_count);
   Eigen::MatrixXd T_white = Eigen::MatrixXd::Zero(size, white_count);
   for (std::size_t i = 0; i < exact.size(); ++i) T_exact(exact[i], static_cast<Eigen::Index>(i)) = 1.0;
   for (Eigen::Index i = 0; i < noisy_count; ++i) {
-    const Eigen::Index row = noisy[static_cast<std::size_t>(i)];
+    const Eigen::Index row = noisy[at(i)];
     for (Eigen::Index j = 0; j < null_count; ++j) {
-      T_exact(row, static_cast<Eigen::Index>(exact.size()) + j) = eigen.vectors(i, j) / sd(i);
+      T_exact(row, signed_index(exact.size()) + j) = eigen.vectors(i, j) / sd(i);
     }
     for (Eigen::Index j = 0; j < white_count; ++j) {
       T_white(row, j) = eigen.vectors(i, null_count + j) / (sd(i) * std::sqrt(eigen.values(null_count + j)));

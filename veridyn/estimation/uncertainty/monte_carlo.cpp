@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/gaussian_copula.hpp"
 #include "veridyn/numerics/linear_algebra/symmetric_eigen.hpp"
 #include "veridyn/numerics/parallel.hpp"
@@ -90,13 +91,13 @@ ErrorDistribution describe(std::vector<double>& error, double coverage) {
 }  // namespace
 
 void UncertainInputs::validate() const {
-  const auto n = static_cast<Eigen::Index>(names.size());
+  const auto n = signed_index(names.size());
   if (low.size() != n || high.size() != n || correlation.rows() != n || correlation.cols() != n ||
       error_covariance.rows() != n || error_covariance.cols() != n) {
     throw InputError("uncertain inputs", fmt::format("sizes differ: {} names", n));
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& name = names[static_cast<std::size_t>(i)];
+    const std::string& name = names[at(i)];
     if (!(std::isfinite(low(i)) && std::isfinite(high(i)) && low(i) <= high(i))) {
       throw InputError("uncertain inputs", fmt::format("range [{}, {}] of {} is not one", low(i), high(i), name));
     }
@@ -123,7 +124,7 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
   options.validate();
   const auto start = std::chrono::steady_clock::now();
   const InputSampler sampler(inputs);
-  const auto n = static_cast<Eigen::Index>(inputs.names.size());
+  const auto n = signed_index(inputs.names.size());
   std::vector<std::vector<double>> error(outputs, std::vector<double>(options.draws));
   const std::size_t blocks = (options.draws + kBlock - 1) / kBlock;
   const auto draw = [&](std::size_t block) {
@@ -157,7 +158,7 @@ MonteCarloResult propagate_errors(const UncertainInputs& inputs, std::size_t out
 Eigen::VectorXd linear_error_propagation(const UncertainInputs& inputs, std::size_t outputs,
                                          const InputsToJacobian& jacobian, std::size_t points, std::uint64_t seed) {
   inputs.validate();
-  const auto n = static_cast<Eigen::Index>(inputs.names.size());
+  const auto n = signed_index(inputs.names.size());
   Eigen::MatrixXd x(n, static_cast<Eigen::Index>(std::max<std::size_t>(1, points)));
   if (points == 0) {
     x.col(0) = 0.5 * (inputs.low + inputs.high);

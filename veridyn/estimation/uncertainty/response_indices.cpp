@@ -42,7 +42,7 @@ IndexInput read_input(const StudyTable& table, std::span<const IndexInput> known
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     table.fail("parameter", fmt::format("'{}' is not one that can vary here{}", name, suggestion(name, names, 40)));
-  IndexInput input = known[static_cast<std::size_t>(found - names.begin())];
+  IndexInput input = known[at(found - names.begin())];
   input.place = table.place("parameter");
   const bool low = table.has("low"), high = table.has("high");
   if (!low && !high) return within(std::move(input), range_of(table, share), table, "parameter");

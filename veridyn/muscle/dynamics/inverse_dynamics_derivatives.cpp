@@ -1,6 +1,7 @@
 #include "veridyn/muscle/dynamics/inverse_dynamics_derivatives.hpp"
 
 #include "veridyn/core/assert.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -33,7 +34,7 @@ InverseDynamicsDerivatives::InverseDynamicsDerivatives(const Mechanism& mechanis
       force_value_(row_.size()),
       force_speed_(row_.size()) {
   VERIDYN_ASSERT(available(mechanism));
-  const auto n = static_cast<Eigen::Index>(coordinates_.size());
+  const auto n = signed_index(coordinates_.size());
   by_value_.setZero(n, n);
   by_speed_.setZero(n, n);
   for (int i = 0; i < mechanism.links(); ++i) parent_.push_back(mechanism.link(i).parent);

@@ -1,5 +1,7 @@
 #include "veridyn/muscle/dynamics/skeleton.hpp"
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::muscle {
 
 std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, const Kinematics<double>& kinematics) {
@@ -13,7 +15,7 @@ std::vector<Polyline> bones(const Model& model, const Mechanism& mechanism, cons
     }
     for (const Joint& j : model.joints) {
       if (j.parent != static_cast<int>(b)) continue;
-      const Body& child = model.bodies[static_cast<std::size_t>(j.child)];
+      const Body& child = model.bodies[at(j.child)];
       // What is welded on, such as a load, makes no stick.
       if (j.coordinates.empty() && child.mass_center.isZero(0.0)) continue;
       carries = true;

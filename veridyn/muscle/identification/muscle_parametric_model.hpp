@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/muscle/identification/muscle_outputs.hpp"
 #include "veridyn/muscle/identification/muscle_unknowns.hpp"
@@ -53,7 +54,7 @@ class MuscleParametricModel final : public estimation::ParametricModel {
   [[nodiscard]] std::span<const estimation::ModelOutput> outputs() const override { return outputs_; }
   [[nodiscard]] std::size_t segments() const override { return segments_.size(); }
   [[nodiscard]] Eigen::Index samples(std::size_t segment) const override {
-    return static_cast<Eigen::Index>(segments_[segment].time.size());
+    return signed_index(segments_[segment].time.size());
   }
   [[nodiscard]] std::span<const estimation::ModelParameter> initial_conditions(std::size_t segment) const override {
     return initial_[segment];

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/path/path_solver.hpp"
 
 namespace veridyn::muscle {
@@ -30,7 +31,7 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
   PathWorkspace<double> workspace(*this);
   PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[static_cast<std::size_t>(muscle)];
+  const Path& path = muscles_[at(muscle)];
   std::vector<Eigen::Vector3d> line;
   for (std::size_t k = 0; k < n; ++k) {
     const auto& node = workspace.nodes[k];
@@ -38,9 +39,9 @@ std::vector<Eigen::Vector3d> MusclePaths::polyline(const Kinematics<double>& kin
     if (node.wrap < 0 || k + 1 == n || workspace.nodes[k + 1].wrap != node.wrap) continue;
     // Between the tangent points: a Bezier arc with the right ends and directions, laid onto the surface.
     const WrapResult<double>& r = solver.result(static_cast<std::size_t>(node.wrap));
-    const int index = path.wraps[static_cast<std::size_t>(node.wrap)].object;
-    const auto& frame = workspace.object[static_cast<std::size_t>(index)];
-    const Object& object = objects_[static_cast<std::size_t>(index)];
+    const int index = path.wraps[at(node.wrap)].object;
+    const auto& frame = workspace.object[at(index)];
+    const Object& object = objects_[at(index)];
     const Eigen::Vector3d d1 = (r.r1 - workspace.nodes[k - 1].x).normalized() * r.surface_length / 3.0;
     const Eigen::Vector3d d2 = (workspace.nodes[k + 2].x - r.r2).normalized() * r.surface_length / 3.0;
     for (int i = 1; i <= arc_points; ++i) {
@@ -61,12 +62,12 @@ std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinemati
   PathWorkspace<double> workspace(*this);
   PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
   const std::size_t n = solver.nodes_of(muscle);
-  const Path& path = muscles_[static_cast<std::size_t>(muscle)];
+  const Path& path = muscles_[at(muscle)];
   std::vector<std::string> names;
   for (std::size_t k = 0; k + 1 < n; ++k) {
     const int wrap = workspace.nodes[k].wrap;
     if (wrap >= 0 && workspace.nodes[k + 1].wrap == wrap)
-      names.push_back(objects_[static_cast<std::size_t>(path.wraps[static_cast<std::size_t>(wrap)].object)].name);
+      names.push_back(objects_[at(path.wraps[at(wrap)].object)].name);
   }
   return names;
 }
@@ -77,12 +78,12 @@ std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& ki
   std::vector<std::string> lines;
   for (const Path& path : muscles_) {
     for (const Wrap& wrap : path.wraps) {
-      const Object& object = objects_[static_cast<std::size_t>(wrap.object)];
-      const auto& frame = workspace.object[static_cast<std::size_t>(wrap.object)];
+      const Object& object = objects_[at(wrap.object)];
+      const auto& frame = workspace.object[at(wrap.object)];
       for (int i = wrap.first; i <= wrap.last; ++i) {
-        const PathStation& station = path.stations[static_cast<std::size_t>(i)];
+        const PathStation& station = path.stations[at(i)];
         const Eigen::Vector3d local =
-            frame.rotation.transpose() * (workspace.position[static_cast<std::size_t>(station.point)] - frame.position);
+            frame.rotation.transpose() * (workspace.position[at(station.point)] - frame.position);
         if (inside(local, object.description))
           lines.push_back(
               fmt::format("muscle {}: point {} lies inside its wrap object {}; the path goes straight there", path.name,

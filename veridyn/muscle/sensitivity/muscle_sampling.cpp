@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kSampledFields = {"max_isometric_force", "optimal_fiber_length",
                                                        "tendon_slack_length"};
-constexpr auto kFieldCount = static_cast<Eigen::Index>(kSampledFields.size());
+constexpr auto kFieldCount = signed_index(kSampledFields.size());
 
 /// A row for each muscle and sample: factors of all muscles, 1 but for this one's.
 Eigen::MatrixXd sampled_points(Eigen::Index muscles, const MuscleSamplingOptions& options) {

@@ -82,7 +82,7 @@ class Controller {
     for (std::size_t c = 0; c < qddot_.size(); ++c) {
       const int root = reduction.free_root(static_cast<int>(c));
       qddot_[c] = s.bias(static_cast<Eigen::Index>(c)) +
-                  (root >= 0 ? s.slope(static_cast<Eigen::Index>(c)) * zddot_[static_cast<std::size_t>(root)] : 0.0);
+                  (root >= 0 ? s.slope(static_cast<Eigen::Index>(c)) * zddot_[at(root)] : 0.0);
     }
     ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
@@ -122,8 +122,7 @@ class Controller {
     for (std::size_t m = 0; m < muscles_; ++m) force_[m] = qp_.x()(static_cast<Eigen::Index>(m));
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
     for (std::size_t f = 0; f < desired_.size(); ++f) {
-      reserve_[static_cast<std::size_t>(system_.reduction().free()[f])] =
-          qp_.x()(static_cast<Eigen::Index>(muscles_ + f));
+      reserve_[at(system_.reduction().free()[f])] = qp_.x()(static_cast<Eigen::Index>(muscles_ + f));
     }
   }
 
@@ -295,7 +294,7 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
   check(system, options);
   StartState pose = default_start(system.model());
   for (const int c : system.reduction().driven()) {
-    const auto& spline = motion.coordinate[static_cast<std::size_t>(c)];
+    const auto& spline = motion.coordinate[at(c)];
     if (spline) pose.q(c) = spline->evaluate(options.begin).value;
   }
   ControlResult result = Controller(system, motion, options).run(pose, progress);
@@ -315,7 +314,7 @@ ControlResult computed_muscle_control(const MusculoskeletalSystem& system, const
   for (const int c : system.reduction().free()) {
     for (std::size_t i = 0; i < result.trajectory.time.size(); ++i) {
       result.desired(static_cast<Eigen::Index>(i), c) =
-          motion.coordinate[static_cast<std::size_t>(c)]->evaluate(result.trajectory.time[i]).value;
+          motion.coordinate[at(c)]->evaluate(result.trajectory.time[i]).value;
     }
   }
   return result;

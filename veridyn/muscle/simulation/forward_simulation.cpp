@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/simulation/driven_integration.hpp"
 
 namespace veridyn::muscle {
@@ -61,9 +62,8 @@ class Recorder {
   /// The trajectory's rows and events.
   [[nodiscard]] MuscleTrajectory finish() {
     // Rows were collected one after the other; here they become matrices.
-    const auto n = static_cast<Eigen::Index>(system_.coordinates()),
-               m = static_cast<Eigen::Index>(system_.muscles().size());
-    const auto rows = static_cast<Eigen::Index>(t_.time.size());
+    const auto n = static_cast<Eigen::Index>(system_.coordinates()), m = signed_index(system_.muscles().size());
+    const auto rows = signed_index(t_.time.size());
     const auto fill = [&](estimation::RowMatrix& matrix, const std::vector<double>& values, Eigen::Index columns) {
       matrix = Eigen::Map<const estimation::RowMatrix>(values.data(), rows, columns);
     };

@@ -39,10 +39,10 @@ Instant instant_of(const Motion& motion, const Eigen::VectorXd& rest, const Coor
 MotionAnalysis empty_analysis(const MusculoskeletalSystem& system, const std::vector<double>& time) {
   MotionAnalysis a;
   a.time = time;
-  const auto rows = static_cast<Eigen::Index>(time.size());
+  const auto rows = signed_index(time.size());
   for (auto* m : {&a.q, &a.qdot, &a.qddot, &a.moment})
     m->setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
-  for (auto* m : {&a.path_length, &a.path_speed}) m->setZero(rows, static_cast<Eigen::Index>(system.muscles().size()));
+  for (auto* m : {&a.path_length, &a.path_speed}) m->setZero(rows, signed_index(system.muscles().size()));
   return a;
 }
 
@@ -89,10 +89,10 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
                                const std::vector<double>& time, const StaticOptimizationOptions& options,
                                Progress& progress) {
   MotionAnalysis analysis = empty_analysis(system, time);
-  const auto rows = static_cast<Eigen::Index>(time.size());
-  const auto muscles = static_cast<Eigen::Index>(system.muscles().size());
+  const auto rows = signed_index(time.size());
+  const auto muscles = signed_index(system.muscles().size());
   const std::span<const int> free = system.reduction().free();
-  const auto n = static_cast<Eigen::Index>(free.size());
+  const auto n = signed_index(free.size());
   analysis.activation.setZero(rows, muscles);
   analysis.force.setZero(rows, muscles);
   analysis.reserve.setZero(rows, static_cast<Eigen::Index>(system.coordinates()));
@@ -100,7 +100,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
   StaticOptimizationOptions reduced = options;
   reduced.reserve.clear();
   for (const int c : free) {
-    if (!options.reserve.empty()) reduced.reserve.push_back(options.reserve[static_cast<std::size_t>(c)]);
+    if (!options.reserve.empty()) reduced.reserve.push_back(options.reserve[at(c)]);
   }
   StaticOptimizer optimizer(muscle_parameters(system.model()), reduced);
   StaticOptimizationFrame frame;
@@ -130,8 +130,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
     analysis.activation.row(row) = frame.activation;
     analysis.force.row(row) = frame.force;
     for (Eigen::Index f = 0; f < n && !reduced.reserve.empty(); ++f) {
-      analysis.reserve(row, free[static_cast<std::size_t>(f)]) =
-          frame.reserve(f) * reduced.reserve[static_cast<std::size_t>(f)];
+      analysis.reserve(row, free[at(f)]) = frame.reserve(f) * reduced.reserve[at(f)];
     }
     if (!frame.usable()) analysis.infeasible.push_back(i);
     if (i % 100 == 99 && !progress.update(static_cast<double>(i + 1) / static_cast<double>(time.size()))) {

@@ -16,10 +16,8 @@ int find_coordinate(const Model& model, const std::string& name) {
 
 /// The model as it moves: coordinates locked and unlocked by the options, disabled muscles left out.
 Model prepare(Model model, const SystemOptions& options, std::vector<std::string>& notes) {
-  for (const std::string& name : options.locked)
-    model.coordinates[static_cast<std::size_t>(find_coordinate(model, name))].locked = true;
-  for (const std::string& name : options.unlocked)
-    model.coordinates[static_cast<std::size_t>(find_coordinate(model, name))].locked = false;
+  for (const std::string& name : options.locked) model.coordinates[at(find_coordinate(model, name))].locked = true;
+  for (const std::string& name : options.unlocked) model.coordinates[at(find_coordinate(model, name))].locked = false;
   std::vector<std::string> left_out;
   for (const UnsupportedElement& u : model.unsupported) {
     if (u.changes_motion) left_out.push_back(fmt::format("{} '{}'", u.element, u.name));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/coordinate_forces.hpp"
 #include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/simulation/system_evaluator.hpp"
@@ -66,7 +67,7 @@ void SystemEvaluator<Scalar>::update_paths() {
   std::fill(speed_.begin(), speed_.end(), Scalar(0.0));
   const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    speed_[static_cast<std::size_t>(pairs[i].muscle)] += gradient_[i] * qdot_[pairs[i].coordinate];
+    speed_[at(pairs[i].muscle)] += gradient_[i] * qdot_[pairs[i].coordinate];
   }
 }
 
@@ -106,8 +107,7 @@ bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& i
   }
   const auto pairs = system_->pairs();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    tau_[static_cast<std::size_t>(pairs[i].coordinate)] -=
-        force_[static_cast<std::size_t>(pairs[i].muscle)] * gradient_[i];
+    tau_[at(pairs[i].coordinate)] -= force_[at(pairs[i].muscle)] * gradient_[i];
   }
   add_limit_forces<Scalar>(system_->model().limit_forces, q_, qdot_, tau_.data());
   for (std::size_t i = 0; i < layout.free; ++i) rate[i] = x[layout.free + i];

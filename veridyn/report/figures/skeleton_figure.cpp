@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/muscle/dynamics/skeleton.hpp"
 
 namespace veridyn::report {
@@ -126,9 +127,9 @@ std::vector<XYPlot> skeleton_figure(const MuscleStudy& study, const MuscleResult
   for (const Eigen::Index row : {Eigen::Index{0}, rows - 1}) {
     if (row == rows - 1 && rows == 1) break;
     poses.set(row);
-    XYPlot plot{.title = fmt::format("Pose at {:.4g} s", result.trajectory.time[static_cast<std::size_t>(row)]),
-                .x = {.label = kAxisNames[static_cast<std::size_t>(view.across)], .unit = "m"},
-                .y = {.label = kAxisNames[static_cast<std::size_t>(view.up)], .unit = "m"},
+    XYPlot plot{.title = fmt::format("Pose at {:.4g} s", result.trajectory.time[at(row)]),
+                .x = {.label = kAxisNames[at(view.across)], .unit = "m"},
+                .y = {.label = kAxisNames[at(view.up)], .unit = "m"},
                 .equal_scale = true,
                 .height = 460};
     plot.series.push_back(ghosts);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
 
 namespace veridyn::vehicle {
@@ -145,7 +146,7 @@ Eigen::MatrixXd output_sigmas(const DriveParametricModel& model, std::size_t seg
   std::iota(active.begin(), active.end(), Eigen::Index{0});
   estimation::ModelResponse response;
   if (!model.respond(segment, full, active, response)) return {};
-  Eigen::MatrixXd sigma(model.samples(segment), static_cast<Eigen::Index>(model.outputs().size()));
+  Eigen::MatrixXd sigma(model.samples(segment), signed_index(model.outputs().size()));
   for (Eigen::Index k = 0; k < sigma.rows(); ++k) {
     for (Eigen::Index j = 0; j < sigma.cols(); ++j) {
       const Eigen::VectorXd g = response.sensitivity.row(k * sigma.cols() + j).transpose();

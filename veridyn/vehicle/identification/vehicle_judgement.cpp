@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/vehicle/identification/drive_regression.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
@@ -76,7 +77,7 @@ std::vector<Evidence> check_residuals(const VehicleProblem& problem, const Vehic
   for (const estimation::PredictedQuantity& q : findings.fit.quantities) {
     const auto signal = std::find(kDriveSignalNames.begin(), kDriveSignalNames.end(), q.name);
     if (signal == kDriveSignalNames.end() || q.name == "yaw") continue;
-    const double sigma = problem.signals.signals[static_cast<std::size_t>(signal - kDriveSignalNames.begin())].sigma;
+    const double sigma = problem.signals.signals[at(signal - kDriveSignalNames.begin())].sigma;
     ResidualFinding found = check_residual(q, sigma, findings.by_noise.find(q.name));
     if (found.unmodelled > unmodelled) {
       unmodelled = found.unmodelled;

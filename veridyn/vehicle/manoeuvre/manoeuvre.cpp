@@ -8,6 +8,7 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
 
@@ -218,7 +219,7 @@ Manoeuvre random_steer(double amplitude, double low, double high, double duratio
     if (progress.interrupted()) continue;
     double sum = 0.0;
     for (int k = first; k <= last; ++k) {
-      sum += std::cos(2.0 * kPi * k * t / duration + phase[static_cast<std::size_t>(k - first)]);
+      sum += std::cos(2.0 * kPi * k * t / duration + phase[at(k - first)]);
     }
     value[i] = sum * smooth(t / kFade) * smooth((duration - t) / kFade);
     peak = std::max(peak, std::abs(value[i]));

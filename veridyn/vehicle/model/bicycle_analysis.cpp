@@ -7,6 +7,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 
 namespace veridyn::vehicle {
@@ -50,12 +51,12 @@ Eigen::Matrix<double, kBicycleCharacteristics, Eigen::Dynamic> characteristic_se
 std::array<double, kBicycleCharacteristics> characteristic_sigmas(const VehicleParameters<double>& parameters,
                                                                   double speed, std::span<const std::size_t> fields,
                                                                   const Eigen::MatrixXd& covariance) {
-  const auto count = static_cast<Eigen::Index>(fields.size());
+  const auto count = signed_index(fields.size());
   VERIDYN_ASSERT(covariance.rows() == count && covariance.cols() == count);
   const auto all = characteristic_sensitivities(parameters, speed);
   Eigen::MatrixXd J(kBicycleCharacteristics, count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    J.col(j) = all.col(static_cast<Eigen::Index>(fields[static_cast<std::size_t>(j)]));
+    J.col(j) = all.col(static_cast<Eigen::Index>(fields[at(j)]));
   }
   const Eigen::VectorXd variance = (J * covariance * J.transpose()).diagonal();
   std::array<double, kBicycleCharacteristics> sigma{};

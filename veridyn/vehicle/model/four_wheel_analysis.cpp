@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/general_eigen.hpp"
 #include "veridyn/numerics/linear_algebra/real_form.hpp"
 
@@ -67,7 +68,7 @@ LinearFourWheel linear_four_wheel_frame(const VehicleParameters<double>& p, doub
   if (lagged_slip) {
     for (Eigen::Index i = 0; i < 4; ++i) out.states.push_back(kLaggedSlip + i);
   }
-  out.inertia = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(out.states.size()));
+  out.inertia = Eigen::VectorXd::Zero(signed_index(out.states.size()));
   out.inertia(0) = p.mass;
   out.inertia(1) = p.I_z;
   out.inertia(5) = p.mass - 4.0 * p.unsprung_mass;
