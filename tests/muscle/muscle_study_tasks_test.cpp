@@ -96,7 +96,7 @@ TEST(MuscleStudyTasks, MistakesAreNamedWithFileLineAndKey) {
   EXPECT_THAT(study_tasks_error("[[task]]\nname = \"rest\"\n"), AllOf(HasSubstr("s.toml:4"), HasSubstr("no motion")));
   EXPECT_THAT(study_tasks_error(kCurl + kCurl), HasSubstr("another task"));
   EXPECT_THAT(study_tasks_error(kCurl + "shoulder = 0.1\n"),
-              AllOf(HasSubstr("s.toml:"), HasSubstr("task.held.shoulder"), HasSubstr("shoulder_flexion")));
+              AllOf(HasSubstr("s.toml:"), HasSubstr("task[0].held.shoulder"), HasSubstr("shoulder_flexion")));
   EXPECT_THAT(study_tasks_error(kCurl + "elbow_flexion = 0.1\n"), HasSubstr("holds every coordinate"));
   EXPECT_THAT(study_tasks_error(kCurl + "[[task.load]]\nbody = \"hand\"\nmass = 1\n"), HasSubstr("no body"));
 }

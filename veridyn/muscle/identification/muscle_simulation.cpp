@@ -17,13 +17,13 @@ namespace veridyn::muscle::internal {
 namespace {
 
 numerics::StepControl step_control(double accuracy) {
-  // Below it rounding is what is left. Where a curve has a corner (Thelen's force-velocity at rest) the rate of a
-  // derivative jumps, and only very short steps pass over it with so little error.
-  constexpr double kLeast = 1e-10;
+  // A derivative that is zero until an input or a branch begins to act is wrong by all of itself in the step in which
+  // that happens, however short it is: with less, such a step is never found.
+  constexpr double kLeast = 1e-6;
   return {.tolerance = accuracy,
           .derivative_tolerance = std::max(10.0 * accuracy, kLeast),
-          .smallest_step = 1e-14,
-          .max_steps = 500000};
+          .smallest_step = 1e-12,
+          .max_steps = 200000};
 }
 
 /// Initial motion, and the activations that muscles start with.
