@@ -115,7 +115,7 @@ void say_state(const CommonOptions& options, const VirtualCar& car, CarState& sa
   constexpr std::array<const char*, kCarStates> kNames = {"holding", "driving", "braking: the link is lost"};
   if (car.actuation().state == said) return;
   said = car.actuation().state;
-  print_line(options, fmt::format("{:8.2f} s  {}", time, kNames[at(said)]));
+  print_line(options, fmt::format("{:8.2f} s  {}", time, kNames[static_cast<std::size_t>(said)]));
 }
 
 int rig_car(const Arguments& arguments) {

@@ -77,7 +77,7 @@ struct Stretch {
 
 std::string stretch_name(const Manoeuvre& m) {
   std::vector<std::string_view> surfaces;
-  for (const Surface s : m.surfaces) surfaces.push_back(kSurfaceNames[at(s)]);
+  for (const Surface s : m.surfaces) surfaces.push_back(kSurfaceNames[static_cast<std::size_t>(s)]);
   std::string text = fmt::format("{:g} s: {}", m.start, name_of(m.kind));
   if (!surfaces.empty()) text += fmt::format(" {}", fmt::join(surfaces, ", "));
   return text;

@@ -363,7 +363,7 @@ DriveFault described(const Suspect& suspect, const DriveMotion& m, const std::ve
   }
   for (const InertialChannel s : suspect.signals) {
     if (m.signals[s].empty()) continue;
-    const InertialChannel from = s <= kAccelZ ? exchange.from[at(s)] : s;
+    const InertialChannel from = s <= kAccelZ ? exchange.from[static_cast<std::size_t>(s)] : s;
     f.lines.push_back(line(s, source_of(from, origins), 1.0 / suspect.factor, origins));
   }
   return f;

@@ -80,7 +80,8 @@ std::string identification_obstacle(const CoefficientModel& model, const FlightS
   }
   for (const FlightSignal signal : needed_signals(model)) {
     if (!signals[signal].available()) {
-      return fmt::format("{} needs {}, which the log does not have", name, kFlightSignalNames[at(signal)]);
+      return fmt::format("{} needs {}, which the log does not have", name,
+                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
     }
   }
   return {};

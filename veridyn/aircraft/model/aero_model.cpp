@@ -20,7 +20,7 @@ namespace {
 constexpr int kHighestPower = 9;
 constexpr int kHighestDegree = 5;
 
-std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[at(v)]; }
+std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[static_cast<std::size_t>(v)]; }
 
 bool is_angle(AeroVariable v) {
   return v == AeroVariable::kAlpha || v == AeroVariable::kBeta || v == AeroVariable::kDe || v == AeroVariable::kDa ||

@@ -25,12 +25,12 @@ inline constexpr std::size_t kCoefficients = 6;  ///< values of Coefficient
 /// In the order of the enum.
 inline constexpr std::array<std::string_view, kCoefficients> kCoefficientNames = {"CL", "CD", "CY", "Cl", "Cm", "Cn"};
 /// "CL".
-[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[at(c)]; }
+[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[static_cast<std::size_t>(c)]; }
 /// "lift".
 [[nodiscard]] inline std::string_view meaning_of(Coefficient c) {
   constexpr std::array<std::string_view, kCoefficients> kMeanings = {
       "lift", "drag", "side force", "rolling moment", "pitching moment", "yawing moment"};
-  return kMeanings[at(c)];
+  return kMeanings[static_cast<std::size_t>(c)];
 }
 /// The coefficient called `name`, or none.
 [[nodiscard]] std::optional<Coefficient> find_coefficient(std::string_view name);

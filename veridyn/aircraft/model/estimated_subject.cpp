@@ -8,7 +8,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
@@ -80,7 +79,7 @@ std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
     constexpr const char* forms[] = {"full", "source", "separation"};
     json["stall"] = {{"M", s.model.stall->M},
                      {"alpha0_rad", s.model.stall->alpha0},
-                     {"form", forms[at(s.model.stall->form)]},
+                     {"form", forms[static_cast<std::size_t>(s.model.stall->form)]},
                      {"drag", s.model.stall->drag}};
   }
   if (estimate != nullptr && !estimate->evidence.empty()) {

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <string_view>
 
-#include "veridyn/core/index.hpp"
-
 namespace veridyn::aircraft {
 
 // clang-format off
@@ -69,8 +67,8 @@ inline constexpr std::array<TruthChannel, kTruthCount> kTruthChannels = {{
 /// All true quantities at one moment, SI, in the order of kTruthChannels.
 struct TruthSample {
   std::array<double, kTruthCount> value{};
-  [[nodiscard]] double& operator[](Truth t) { return value[at(t)]; }
-  [[nodiscard]] double operator[](Truth t) const { return value[at(t)]; }
+  [[nodiscard]] double& operator[](Truth t) { return value[static_cast<std::size_t>(t)]; }
+  [[nodiscard]] double operator[](Truth t) const { return value[static_cast<std::size_t>(t)]; }
 };
 
 }  // namespace veridyn::aircraft

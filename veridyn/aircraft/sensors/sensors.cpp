@@ -7,7 +7,6 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
 
 namespace veridyn::aircraft {
@@ -165,7 +164,7 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
   for (std::size_t i = 0; i < kind_.channels; ++i) {
     const Truth source = kind_.source[i];
     double truth = now[source];
-    const bool angle = kTruthChannels[at(source)].angle;
+    const bool angle = kTruthChannels[static_cast<std::size_t>(source)].angle;
     if (share < 1.0) {
       double change = now[source] - last_[source];
       if (angle) change = std::remainder(change, 2.0 * kPi);
@@ -195,7 +194,7 @@ void Sensor::move_into(Recording& recording) {
   if (!settings_.enabled) return;
   const TimeBase base = make_time_base(std::move(time_));
   for (std::size_t i = 0; i < kind_.channels; ++i) {
-    const std::string_view unit = kTruthChannels[at(kind_.source[i])].unit;
+    const std::string_view unit = kTruthChannels[static_cast<std::size_t>(kind_.source[i])].unit;
     recording.add(make_channel(std::string(kind_.channel[i]), unit, base, std::move(value_[i])));
   }
 }

@@ -8,7 +8,6 @@
 
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/sensors/flight_truth.hpp"
-#include "veridyn/core/index.hpp"
 #include "veridyn/core/recording.hpp"
 
 namespace veridyn::aircraft {
@@ -44,7 +43,7 @@ class FlightReplay {
   [[nodiscard]] RigidBodyState<double> state(std::size_t sample) const;
   [[nodiscard]] Controls<double> controls(std::size_t sample) const;
   [[nodiscard]] Eigen::Vector3d vector(Truth first, std::size_t sample) const;
-  [[nodiscard]] double value(Truth t, std::size_t sample) const { return value_[at(t)][sample]; }
+  [[nodiscard]] double value(Truth t, std::size_t sample) const { return value_[static_cast<std::size_t>(t)][sample]; }
 
   std::vector<double> time_;
   std::array<std::vector<double>, kTruthCount> value_;

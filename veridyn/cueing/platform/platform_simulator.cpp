@@ -84,7 +84,7 @@ PlatformState PlatformSimulator::act(const PlatformState& told, std::optional<do
   } else {
     for (const PlatformAxis which : kAllPlatformAxes) {
       const AxisState to = axis(told, which);
-      Actuator& a = actuators_[at(which)];
+      Actuator& a = actuators_[static_cast<std::size_t>(which)];
       set_axis(before_reach_, which, step ? a.step(to, *step) : a.reset(to.position));
     }
   }

@@ -33,7 +33,7 @@ int MusclePaths::segment(int a, int b) {
   for (const auto& [at, sign] : {std::pair{&pa, -1}, std::pair{&pb, 1}}) {
     if (at->moving < 0) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      const int c = moving_[at(at->moving)].coordinate[at(axis)];
+      const int c = moving_[static_cast<std::size_t>(at->moving)].coordinate[static_cast<std::size_t>(axis)];
       if (c >= 0) terms_.push_back({c, sign, 3 * at->moving + axis});
     }
   }

@@ -215,7 +215,7 @@ Table false_cue_counts(const CueingResult& result) {
     std::array<double, 3> count{};
     double time = 0.0;
     for (const FalseCue& f : a.score.false_cues) {
-      count[at(f.kind)] += 1.0;
+      count[static_cast<std::size_t>(f.kind)] += 1.0;
       time += f.end - f.begin;
     }
     t.rows.push_back(
