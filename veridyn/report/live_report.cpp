@@ -152,7 +152,7 @@ Table way_table(const LiveReplay& run) {
 
 /// Of a run with a car: how long it takes from pedal to motion, and how good the line was.
 Section car_section(const LiveReplay& run) {
-  const LiveReplay::Car& car = *run.car;
+  const CarReplay& car = *run.car;
   const LinkQuality& q = car.quality;
   Section section{.title = "The car"};
   section.blocks.emplace_back(way_table(run));

@@ -7,16 +7,16 @@
 namespace veridyn::live {
 namespace {
 
-constexpr std::size_t kRecord = WheelEventDecoder::kRecord;
+constexpr std::size_t kEventRecord = WheelEventDecoder::kRecord;
 
 /// Writes events one after the other, as far as there is room for them.
 class RecordsOut {
  public:
   explicit RecordsOut(std::span<std::uint8_t> out) : out_(out) {}
-  [[nodiscard]] bool has_room() const { return size_ + kRecord <= out_.size(); }
+  [[nodiscard]] bool has_room() const { return size_ + kEventRecord <= out_.size(); }
   void put(const WheelEvent& event) {
-    encode_wheel_event(event, out_.subspan(size_).first<kRecord>());
-    size_ += kRecord;
+    encode_wheel_event(event, out_.subspan(size_).first<kEventRecord>());
+    size_ += kEventRecord;
   }
   [[nodiscard]] std::size_t size() const { return size_; }
 

@@ -11,6 +11,14 @@
 
 namespace veridyn::live {
 
+/// What a replay says of a car that was driven over a line.
+struct CarReplay {
+  LinkQuality quality;
+  std::uint64_t restarts = 0;
+  std::uint64_t commands = 0, commands_different = 0;  ///< sent, and of these those that differ in any bit
+  DriveTable drive;                                    ///< what its sensors said
+};
+
 /// What a recorded run was, fed to a rig again.
 struct LiveReplay {
   LiveStudy study;
@@ -37,15 +45,8 @@ struct LiveReplay {
   std::string derived;
   double drift = 0.0;  ///< NaN: not known
   LiveRig::Answers answers;
-  double duration = 0.0;  ///< [s]
-  /// Of a car that is driven over a line.
-  struct Car {
-    LinkQuality quality;
-    std::uint64_t restarts = 0;
-    std::uint64_t commands = 0, commands_different = 0;  ///< sent, and of these those that differ in any bit
-    DriveTable drive;                                    ///< what its sensors said
-  };
-  std::optional<Car> car;
+  double duration = 0.0;                   ///< [s]
+  std::optional<CarReplay> car;            ///< driven over a line
   std::uint64_t different = 0;             ///< orders that differ from the recorded ones in any bit
   std::uint64_t missing = 0;               ///< steps that were not recorded
   std::uint64_t outside = 0;               ///< orders beyond the platform's limits
