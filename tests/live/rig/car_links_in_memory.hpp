@@ -154,7 +154,7 @@ struct CarRun {
 class PlayedLinks final : public LiveLinks {
  public:
   explicit PlayedLinks(const LiveFile& file) {
-    for (const std::string& block : file.blocks) {
+    for (const std::string_view block : file.blocks) {
       for_each_record(block, [&](const LiveRecord& r) {
         if (r.kind == LiveRecord::Kind::kDatagram) played_.push_back({r, std::string(r.datagram.bytes)});
       });

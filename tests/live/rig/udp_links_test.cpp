@@ -41,7 +41,7 @@ TEST(UdpLinks, ReturnAtTheDeadlineWhateverIsThere) {
 }
 
 TEST(UdpLinks, SendOrdersOnASerialLineAndTakeTelemetryMeanwhile) {
-  testing::PseudoTerminal platform;
+  PseudoTerminal platform;
   const Sender telemetry = free_port();
   UdpLinks links(telemetry, SerialOptions{.device = platform.device()});
   OrderFormat format({.kind = OrderFormatKind::kAmcAasd15a}, cueing::built_in_platform("hexapod"));
