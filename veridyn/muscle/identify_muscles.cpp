@@ -354,7 +354,7 @@ estimation::PosteriorSample posterior_of(const TaskStudy& study, const Part& par
 
 /// Why no search came to an end, with the first task that cannot be simulated where the first search begins.
 std::string why_diverged(const TaskStudy& study, const Part& part, const TaskEstimate& e) {
-  const std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
+  std::string text = e.best.message.empty() ? "no search came to an end" : e.best.message;
   const Eigen::VectorXd start = study.search.first.size() > 0 ? study.search.first : start_values(study.unknowns);
   for (std::size_t s = 0; s < part.tasks.size(); ++s) {
     const std::string trouble = part.along ? part.along->trouble(s, start) : part.forward->trouble(s, start);
