@@ -308,7 +308,8 @@ TEST(LiveRig, SaysWhoCommandsThePlatformWhereThatSaysSo) {
 }
 
 TEST(LiveRig, CountsTheOrdersWhoseMotionWasContinued) {
-  test::DrivenRig r(test::rig_study("signs = 'off'\ndelay = '0 ms'\n"));
+  // Four orders to a packet: three of them fall between packets.
+  test::DrivenRig r(test::rig_study("signs = 'off'\ndelay = '0 ms'\nrate = 400\n"));
   r.rig.request(OperatorRequest::kStart);
   r.run(5.0);
   const LiveRig::Extrapolated& e = r.rig.extrapolated();
@@ -316,7 +317,7 @@ TEST(LiveRig, CountsTheOrdersWhoseMotionWasContinued) {
   EXPECT_GT(e.steps, e.of / 2);
   EXPECT_GT(e.longest, 0.0);
   EXPECT_LE(e.longest, 0.03);
-  test::DrivenRig late(test::rig_study("signs = 'off'\ndelay = '50 ms'\n"));
+  test::DrivenRig late(test::rig_study("signs = 'off'\ndelay = '50 ms'\nrate = 400\n"));
   late.rig.request(OperatorRequest::kStart);
   late.run(5.0);
   EXPECT_EQ(late.rig.extrapolated().steps, 0U);
