@@ -75,28 +75,5 @@ TEST_F(VideoFramesTest, OneLineForAFileThatIsCutOrNone) {
   EXPECT_EQ(read_all(file), "nothing was refused");
 }
 
-/// The pictures of a file that `write_video` wrote, one after the other: a stream of JPEG pictures is a video too.
-std::string pictures_of(const std::string& avi) {
-  std::string all;
-  for (std::size_t at = avi.find("00dc", avi.find("movi")); at != std::string::npos; at = avi.find("00dc", at)) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, avi.data() + at + 4, sizeof length);
-    if (avi.compare(at + 8, 2, "\xff\xd8") != 0) break;  // the index at the end
-    all += avi.substr(at + 8, length);
-    at += 8 + length;
-  }
-  return all;
-}
-
-TEST_F(VideoFramesTest, OneLineForAVideoThatChangesItsSize) {
-  write_video(folder_ / "large.avi", images_, 30.0);
-  std::vector<GreyImage> small = images_;
-  for (GreyImage& image : small) image = {.width = 32, .height = 16, .pixels = std::vector<std::uint8_t>(32 * 16, 90)};
-  write_video(folder_ / "small.avi", small, 30.0);
-  const auto file = folder_ / "both.mjpeg";
-  write_file(file, pictures_of(read_file(folder_ / "large.avi")) + pictures_of(read_file(folder_ / "small.avi")));
-  EXPECT_EQ(read_all(file), file.string() + ": frame 20 is 32 x 16 px, those before 64 x 48");
-}
-
 }  // namespace
 }  // namespace veridyn::camera
