@@ -118,7 +118,7 @@ TEST(DriveCampaignSoak, GentleDrivesOfRollingCarsAreNotConfidentAndWrong) {
 
 // Its short form.
 TEST(DriveCampaign, GentleDrivesOfRollingCarsAreNotConfidentAndWrong) {
-  for (const std::size_t number : {3, 10})
+  for (const std::size_t number : {std::size_t{3}, std::size_t{10}})
     for (const auto roll : {testing::RollKnown::kNot, testing::RollKnown::kGiven})
       EXPECT_THAT(gentle_result(number, roll).wrong, ::testing::IsEmpty());
 }
