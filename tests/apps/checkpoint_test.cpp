@@ -215,7 +215,7 @@ TEST_F(CheckpointProgram, RefusesWhatItCannotShareOrContinue) {
 TEST_F(CheckpointProgram, RefusesAFolderOfAnotherVersionAndSaysBoth) {
   const std::string small =
       sensitivity("out",
-                  "--threads 1 --set tasks.numbers=[8] --set sensitivity.samples=1 --set sensitivity.choose=1 "
+                  "--quiet --threads 1 --set tasks.numbers=[8] --set sensitivity.samples=1 --set sensitivity.choose=1 "
                   "--set sensitivity.method=none");
   ASSERT_EQ(run(small).exit_code, 0);
   const std::string manifest = checkpoint() + "/checkpoint.txt";
