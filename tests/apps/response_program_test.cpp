@@ -73,10 +73,10 @@ TEST_F(ResponseProgram, RefusesWhatItCannotUse) {
   refused("drive.manoeuver=sine", "did you mean 'manoeuvre'?");
   expect_refusal("sensitivity " +
                      file("input.toml", std::string(kDrive) + "[[sensitivity.input]]\nparameter = \"C_ff\"\n") + out(),
-                 "input.toml:13: sensitivity.input");
+                 "input.toml:12: sensitivity.input");
   const std::string recorded = std::string(kDrive) + "[data]\nfile = \"drive.csv\"\n";
   expect_refusal("sensitivity " + file("recorded.toml", recorded) + out(),
-                 "recorded.toml:12: data: names a recording, whose parameters cannot be varied: sensitivity is of what "
+                 "recorded.toml:11: data: names a recording, whose parameters cannot be varied: sensitivity is of what "
                  "[drive] simulates");
   expect_refusal(
       "sensitivity " + file("flight.toml", "[subject]\nbuiltin = \"unatrap\"\n[data]\nfile = \"x.bin\"\n") + out(),
