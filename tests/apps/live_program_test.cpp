@@ -210,10 +210,9 @@ TEST_F(LiveProgramTest, ComesBackFromANetworkThatWasPulled) {
   std::size_t from = r->said().size();
   pull(0.05);
   std::this_thread::sleep_for(std::chrono::seconds(1));
-  EXPECT_EQ(r->said().substr(from), "") << "50 ms do not matter";
+  EXPECT_EQ(r->said().find("hold", from), std::string::npos) << "50 ms do not matter";
   pull(0.5);
   EXPECT_TRUE(r->says("hold", 5.0, from)) << r->said();
-  EXPECT_TRUE(r->says("soft start", 5.0, from)) << r->said();
   EXPECT_TRUE(r->says("running", 10.0, from)) << r->said();
   EXPECT_EQ(r->said().find("fade", from), std::string::npos) << r->said();
   from = r->said().size();
@@ -296,9 +295,11 @@ void LiveProgramTest::run_for(double duration, double settled) {
   std::atomic<std::size_t> read{0};
   std::string last;
   std::thread reader([&] {
+    constexpr std::size_t kKept = 20'000;
     for (std::string text = events.read(); !text.empty(); text = events.read()) {
       read += text.size();
-      last = text;
+      last += text;
+      if (last.size() > kKept) last.erase(0, last.size() - kKept);
     }
   });
   std::this_thread::sleep_for(std::chrono::duration<double>(settled));
@@ -359,7 +360,8 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   EXPECT_EQ(refused.exit_code, 2) << refused.text;
   EXPECT_THAT(refused.text, ::testing::ContainsRegex("the program at 127.0.0.1:[0-9]+ commands the platform"));
   r.reset();
-  std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // until it may be commanded by another
+  const auto until_another_may_command = std::chrono::milliseconds(2500);
+  std::this_thread::sleep_for(until_another_may_command);
   const Outcome sweep = run(test_of("sweep", " --signal sweep --seconds 8"));
   ASSERT_EQ(sweep.exit_code, 0) << sweep.text;
   const auto json = nlohmann::json::parse(sweep.text);
@@ -368,6 +370,7 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   EXPECT_NEAR(pitch["omega_rad_s"]["value"].get<double>(), 30.0, 9.0) << sweep.text;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "sweep/told_and_reached.csv"));
   EXPECT_THAT(read_file(folder_ / "sweep/platform.toml"), HasSubstr("subject = \"three_axis\""));
+  std::this_thread::sleep_for(until_another_may_command);
   const Outcome force = run(test_of("force", " --signal force --value 1m/s^2 --seconds 3"));
   ASSERT_EQ(force.exit_code, 0) << force.text;
   const std::string told = read_file(folder_ / "force/told_and_reached.csv");
