@@ -128,6 +128,11 @@ class TroubleWatch {
   std::string drift_;
 };
 
+/// Both, where both say something.
+std::string joined(const std::string& first, const std::string& second) {
+  return first.empty() || second.empty() ? first + second : first + "; " + second;
+}
+
 /// Does what a key asks for. @return whether the run is to end
 bool obey(char key, LiveControl& control) {
   switch (key) {
@@ -272,7 +277,7 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
     const double time = seconds(now - options.at);
     const RigStatus& status = control.status();
     console.show(status, time);
-    page.update(status, study, control, time, signs.message().empty() ? trouble.message() : signs.message());
+    page.update(status, study, control, time, joined(signs.message(), trouble.message()));
     control.tidy();
     motions.clear();
     control.take_motions(motions);
