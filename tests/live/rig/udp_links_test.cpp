@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #ifdef VERIDYN_HAS_SOCKETS
-#include "veridyn/live/serial/pseudo_terminal.hpp"
-#include "veridyn/live/rig/udp_links.hpp"
 #include "veridyn/live/platform/order_format.hpp"
+#include "veridyn/live/rig/udp_links.hpp"
+#include "veridyn/live/serial/pseudo_terminal.hpp"
 
 namespace veridyn::live {
 namespace {
