@@ -97,6 +97,7 @@ int rig_vehicle(const Arguments& arguments) {
   const CommonOptions& options = arguments.common;
   const Study file = Study::load(arguments.text("STUDY"), options.overrides);
   const LiveStudy study = read_live_study(file);
+  file.root().finish();  // before the drive is read, which takes [live] as it is
   TerminalProgress progress = progress_of(options);
   cueing::CueingStudy drive = cueing::read_study(file, progress);
   if (progress.interrupted()) throw Interrupted();
