@@ -22,9 +22,9 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(Threads REQUIRED)
 
-# What the address sanitizer sees as well: a null pointer that is used, an object that is too small. Checking it twice costs a
-# tenth of the time to compile.
-set(sanitized_twice -fno-sanitize=null,object-size)
+# What the address sanitizer sees as well (a null pointer that is used, an object that is too small), and addresses that are no
+# multiple of what is read there: nothing here casts bytes to anything wider. Together a quarter of the time to compile.
+set(not_sanitized -fno-sanitize=null,object-size,alignment)
 
 add_library(veridyn_build INTERFACE)
 target_compile_features(veridyn_build INTERFACE cxx_std_20)
@@ -36,7 +36,7 @@ target_compile_options(
             -Wconversion
             -Wshadow
             $<$<BOOL:${VERIDYN_WERROR}>:-Werror>
-            $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;${sanitized_twice};-fno-sanitize-recover=all;-fno-omit-frame-pointer>
+            $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined;${not_sanitized};-fno-sanitize-recover=all;-fno-omit-frame-pointer>
             $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread;-fno-omit-frame-pointer>)
 target_link_options(veridyn_build INTERFACE $<$<BOOL:${VERIDYN_SANITIZE}>:-fsanitize=address,undefined>
                     $<$<BOOL:${VERIDYN_SANITIZE_THREAD}>:-fsanitize=thread>)
