@@ -23,7 +23,7 @@ std::optional<std::size_t> whole(std::string_view text) {
 }
 
 /// "2/8": the second of eight.
-numerics::BlockShare parse_shard(const std::string& text) {
+numerics::ProcessShare parse_shard(const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash != std::string::npos) {
     const std::optional<std::size_t> index = whole(std::string_view(text).substr(0, slash));
@@ -69,10 +69,16 @@ std::vector<Argument> checkpoint_arguments() {
        .value = false}};
 }
 
-Argument checkpoint_argument() {
-  return {.name = "--checkpoint",
-          .help = "of a person's tasks: keep finished simulations in this folder, go on from what is there",
-          .type = "FOLDER"};
+std::vector<Argument> search_checkpoint_arguments() {
+  return {
+      {.name = "--checkpoint",
+       .help = "of a person's tasks: keep finished simulations in this folder, go on from what is there, share them "
+               "between processes",
+       .type = "FOLDER"},
+      {.name = "--shard",
+       .help = "of a person's tasks: this is the I-th of N processes, started together without mpirun, that share "
+               "the simulations",
+       .type = "I/N"}};
 }
 
 Checkpoint checkpoint_of(const Arguments& arguments) {
@@ -80,7 +86,7 @@ Checkpoint checkpoint_of(const Arguments& arguments) {
   Checkpoint checkpoint{
       .folder = arguments.text("--checkpoint"), .first = process.rank == 0, .options = arguments.common};
   const std::string& shard = arguments.text("--shard");
-  const bool merge = arguments.flag("--merge");
+  const bool merge = arguments.values.contains("--merge") && arguments.flag("--merge");
   if (merge && !shard.empty()) throw InputError("--merge", "computes nothing, --shard a part; choose one of them");
   const std::string part = merge ? "--merge" : "--shard";
   if (merge || !shard.empty()) {
@@ -88,11 +94,18 @@ Checkpoint checkpoint_of(const Arguments& arguments) {
       throw InputError(part, fmt::format("is for single processes; {} under {} share the work by themselves",
                                          process.size, process.launcher));
     if (checkpoint.folder.empty()) throw InputError(part, "needs --checkpoint with the folder that all parts share");
-    checkpoint.share = merge ? numerics::BlockShare{.count = 0} : parse_shard(shard);
+    checkpoint.share = merge ? numerics::ProcessShare{.count = 0} : parse_shard(shard);
   } else if (process.size > 1) {
     share_among(process, checkpoint);
   }
   choose_threads(process, checkpoint.first, checkpoint.options);
+  return checkpoint;
+}
+
+Checkpoint search_checkpoint_of(const Arguments& arguments) {
+  Checkpoint checkpoint = checkpoint_of(arguments);
+  checkpoint.share.wait = checkpoint.share.count > 1;
+  checkpoint.first = checkpoint.share.index == 0;
   return checkpoint;
 }
 
@@ -124,20 +137,24 @@ numerics::BlockStore open_store(const Checkpoint& checkpoint, const StudyRun& ru
   return {checkpoint.folder, identity, checkpoint.share};
 }
 
-std::unique_ptr<numerics::ValueLog> open_value_log(const StudyRun& run,
-                                                   const std::vector<std::filesystem::path>& inputs) {
-  const std::filesystem::path folder = run.arguments.text("--checkpoint");
-  if (folder.empty()) return nullptr;
-  const numerics::BlockStore identity = open_store({.folder = folder, .options = run.options()}, run, inputs);
-  return std::make_unique<numerics::ValueLog>(folder / "evaluations.log");
+std::unique_ptr<numerics::ValueLog> open_value_log(const Checkpoint& checkpoint, const StudyRun& run,
+                                                   const std::vector<std::filesystem::path>& inputs,
+                                                   const Progress& progress) {
+  if (checkpoint.folder.empty()) return nullptr;
+  // Only who is of the same study and version may come in; this process shows by the log that it lives.
+  Checkpoint entrance = checkpoint;
+  entrance.share.wait = false;
+  const numerics::BlockStore identity = open_store(entrance, run, inputs);
+  return std::make_unique<numerics::ValueLog>(checkpoint.folder, checkpoint.share,
+                                              [&progress] { return progress.interrupted(); });
 }
 
 bool runs_alone(std::string_view command) {
   const LaunchedProcess process = launched_process();
   if (process.size > 1 && process.rank == 0)
     throw InputError(std::string(command),
-                     fmt::format("runs in one process, {} were started under {}; --threads takes the processors of one "
-                                 "machine",
+                     fmt::format("runs in one process for this study, {} were started under {}; --threads takes the "
+                                 "processors of one machine",
                                  process.size, process.launcher));
   return process.size == 1;
 }

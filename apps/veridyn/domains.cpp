@@ -8,6 +8,7 @@
 
 #include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
+#include "apps/veridyn/launcher.hpp"
 #include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -18,11 +19,18 @@
 namespace veridyn::app {
 namespace {
 
+/// A command that several processes of a launcher run together.
+struct Shared {
+  int (*run)(const StudyRun&);
+};
+
 /// What a command does for a domain: `run`, or nothing, and what is possible instead.
 struct Cell {
-  constexpr Cell(int (*action)(const StudyRun&)) : run(action) {}  // NOLINT(google-explicit-constructor)
-  constexpr Cell(const char* possible) : instead(possible) {}      // NOLINT(google-explicit-constructor)
+  constexpr Cell(int (*action)(const StudyRun&)) : run(action) {}        // NOLINT(google-explicit-constructor)
+  constexpr Cell(Shared action) : run(action.run), shares_work(true) {}  // NOLINT(google-explicit-constructor)
+  constexpr Cell(const char* possible) : instead(possible) {}            // NOLINT(google-explicit-constructor)
   int (*run)(const StudyRun&) = nullptr;
+  bool shares_work = false;
   const char* instead = "";
 };
 
@@ -43,14 +51,16 @@ constexpr std::array kTable = {
     Row{"simulate", {simulate_aircraft, simulate_vehicle, simulate_muscle, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"reconstruct", {reconstruct_aircraft, kIdentifiesDrive, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"identify",
-        {identify_aircraft, identify_vehicle, identify_muscles, identify_swing_test, identify_calibration, kCuesIt}},
+        {identify_aircraft, identify_vehicle, Shared{identify_muscles}, identify_swing_test, identify_calibration,
+         kCuesIt}},
     Row{"validate",
         {validate_aircraft, validate_vehicle, validate_muscles,
          "`veridyn identify` says in its report how well each swing is described",
          "`veridyn identify` writes the residuals of each point", kCuesIt}},
     Row{"track", {track_aircraft, track_vehicle, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"sensitivity",
-        {sensitivity_aircraft, sensitivity_vehicle, sensitivity_muscle, kIdentifiesIt, kIdentifiesIt, kCuesIt}},
+        {Shared{sensitivity_aircraft}, Shared{sensitivity_vehicle}, Shared{sensitivity_muscle}, kIdentifiesIt,
+         kIdentifiesIt, kCuesIt}},
     Row{"export",
         {export_aircraft, "`veridyn simulate` and `veridyn identify` write the vehicle to subject.toml",
          "`veridyn simulate` writes the model to model.osim", "`veridyn identify` writes the inertia to subject.toml",
@@ -60,9 +70,6 @@ constexpr std::array kTable = {
          kIdentifiesIt, kIdentifiesIt, kCuesIt}},
     Row{"cue", {kNamesPlatform, kNamesPlatform, kMovesMuscles, kIdentifiesIt, kIdentifiesIt, cue_platform}},
 };
-
-/// The command that several processes of a launcher run together.
-constexpr std::string_view kSharesWork = "sensitivity";
 
 constexpr auto kCommands = [] {
   std::array<std::string_view, kTable.size()> names;
@@ -130,15 +137,17 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
 }
 
 int run_on_study(std::string_view command, const Arguments& arguments) {
-  if (command != kSharesWork && !runs_alone(command)) return kDone;
   const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
   const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
   const Domain domain = domain_of(run.study);
   const Cell& cell = row.cells[domain];
+  if (!cell.shares_work && !runs_alone(command)) return kDone;
   if (cell.run != nullptr) {
     const int exit_code = cell.run(run);
-    for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
+    // Of several processes the first talks.
+    if (launched_process().rank == 0)
+      for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
     return exit_code;
   }
   throw InputError(run.study.name(), fmt::format("{} is for {}; this study is of {}; {}", command, domains_with(row),

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "apps/veridyn/aircraft_results.hpp"
 #include "apps/veridyn/checkpoint.hpp"
@@ -9,6 +11,7 @@
 #include "apps/veridyn/domains.hpp"
 #include "apps/veridyn/drive_results.hpp"
 #include "apps/veridyn/muscle_results.hpp"
+#include "apps/veridyn/output_folder.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {
@@ -16,9 +19,11 @@ namespace veridyn::app {
 namespace {
 
 void refuse_checkpoint(const StudyRun& run) {
-  // `demo`, which identifies too, has no such option.
-  if (run.arguments.values.contains("--checkpoint") && !run.arguments.text("--checkpoint").empty())
-    throw InputError("--checkpoint", "is for a person's tasks; identify of other studies starts from the beginning");
+  // `demo`, which identifies too, has no such options.
+  for (const Argument& argument : search_checkpoint_arguments()) {
+    if (run.arguments.values.contains(argument.name) && !run.arguments.text(argument.name).empty())
+      throw InputError(argument.name, "is for a person's tasks; identify of other studies starts from the beginning");
+  }
 }
 
 }  // namespace
@@ -46,26 +51,38 @@ int identify_vehicle(const StudyRun& run) {
   return kDone;
 }
 
-int identify_muscles(const StudyRun& run) {
-  OutputFolder folder(run.options().out);
-  TerminalProgress progress = progress_of(run.options());
+int identify_muscles(const StudyRun& asked) {
+  const Checkpoint checkpoint = search_checkpoint_of(asked.arguments);
+  // Of several processes without a folder the first says what is missing, in one line.
+  if (!checkpoint.first && checkpoint.folder.empty()) return kDone;
+  StudyRun run = asked;
+  run.arguments.common = checkpoint.options;
+  const CommonOptions& options = run.options();
+  std::optional<OutputFolder> folder;
+  if (checkpoint.first) folder.emplace(options.out);
+  TerminalProgress progress = progress_of(options);
   const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
-  const std::unique_ptr<numerics::ValueLog> log = open_value_log(run, study.inputs);
+  const std::unique_ptr<numerics::ValueLog> log = open_value_log(checkpoint, run, study.inputs, progress);
   const muscle::MuscleAnalysis analysis = muscle::identify(study, progress, log.get());
   if (analysis.interrupted) {
-    if (log) print_line(run.options(), fmt::format("finished simulations are kept in {}", log->path().string()));
+    if (log) print_line(options, fmt::format("finished simulations are kept in {}", log->folder().string()));
     throw Interrupted();
   }
+  if (!checkpoint.first) {
+    print_line(options, fmt::format("process {} of {} is done; the first writes the results",
+                                    checkpoint.share.index + 1, checkpoint.share.count));
+    return kDone;
+  }
   if (log && log->loaded() > 0)
-    print_line(run.options(), fmt::format("{} simulations of the search were in {}", analysis.resumed,
-                                          log->path().parent_path().string()));
+    print_line(options,
+               fmt::format("{} simulations of the search were in {}", analysis.resumed, log->folder().string()));
   progress.stage("writing the results");
-  publish_muscles(run, folder, study, analysis);
+  publish_muscles(run, *folder, study, analysis);
   return kDone;
 }
 
 Command identify_command() {
-  return {
+  Command command = {
       .name = "identify",
       .summary = "from recording to parameters, validation and report",
       .arguments = {{.name = "STUDY",
@@ -73,11 +90,12 @@ Command identify_command() {
                          "study file (TOML) of an aircraft's flight, a vehicle's drive, a person's tasks ([tasks] in "
                          "a study of muscles), a swing test or a calibration; `veridyn init` writes one to "
                          "start from",
-                     .required = true},
-                    checkpoint_argument()},
+                     .required = true}},
       .default_out = "out/identify",
       .example = "veridyn identify study.toml --out out/flight7 --set data.from=120",
       .run = [](const Arguments& arguments) { return run_on_study("identify", arguments); }};
+  for (Argument& argument : search_checkpoint_arguments()) command.arguments.push_back(std::move(argument));
+  return command;
 }
 
 }  // namespace veridyn::app

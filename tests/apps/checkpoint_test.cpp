@@ -6,10 +6,12 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "tests/apps/program.hpp"
 #include "tests/support/folders.hpp"
@@ -69,6 +71,23 @@ class CheckpointProgram : public ProgramTest {
     return all;
   }
   void forget() const { std::filesystem::remove_all(checkpoint()); }
+  /// Kills the second of several processes once it has begun and `under_way` holds; false if that does not come.
+  [[nodiscard]] bool kill_second(const std::function<bool()>& under_way) const {
+    // "node7, process 4711" and a count, each with the end of its line: else the file is being written.
+    const auto process_of_second = [&] {
+      std::ifstream alive(std::filesystem::path(checkpoint()) / "process-2.alive");
+      const std::string text{std::istreambuf_iterator<char>(alive), std::istreambuf_iterator<char>()};
+      const std::size_t at = text.find("process ");
+      return std::count(text.begin(), text.end(), '\n') == 2 && at < text.size() ? std::stoi(text.substr(at + 8)) : 0;
+    };
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    int process = 0;
+    while ((!under_way() || process == 0) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      process = process_of_second();
+    }
+    return process > 1 && ::kill(process, SIGKILL) == 0;
+  }
 };
 
 TEST_F(CheckpointProgram, ResumesBitForBitWhenItIsKilled) {
@@ -140,21 +159,7 @@ TEST_F(CheckpointProgram, MpirunEndsWithAProcessAndIsResumed) {
   if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
   Outcome ended;
   std::jthread running([&] { ended = run_under(mpirun("2"), sensitivity()); });
-  // "node7, process 4711" and a count, each with the end of its line: else the file is being written.
-  const auto process_of_second = [&] {
-    std::ifstream alive(std::filesystem::path(checkpoint()) / "process-2.alive");
-    const std::string text{std::istreambuf_iterator<char>(alive), std::istreambuf_iterator<char>()};
-    const std::size_t at = text.find("process ");
-    return std::count(text.begin(), text.end(), '\n') == 2 && at < text.size() ? std::stoi(text.substr(at + 8)) : 0;
-  };
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  int process = 0;
-  while ((blocks() == 0 || process == 0) && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    process = process_of_second();
-  }
-  ASSERT_GT(process, 1);
-  ASSERT_EQ(::kill(process, SIGKILL), 0);
+  ASSERT_TRUE(kill_second([&] { return blocks() > 0; }));
   running.join();
   EXPECT_NE(ended.exit_code, 0) << ended.text;
   EXPECT_TRUE(results().empty());
@@ -293,15 +298,75 @@ TEST_F(IdentifyCheckpoint, SaysWhatItTookFromTheFolderAndWhatWasAskedOfTheModel)
   EXPECT_THAT(log, Not(HasSubstr("failed")));
 }
 
-TEST_F(IdentifyCheckpoint, RefusesOtherStudiesAndSeveralProcesses) {
+TEST_F(IdentifyCheckpoint, MpirunGivesTheSameBytes) {
+  if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
+  const std::string gradient =
+      "--set 'identify.profiles=[\"triceps_long.optimal_fiber_length\"]' "
+      "--set 'identify.posterior={walkers=10,steps=20,effective=10}'";
+  const std::string published =
+      "--set 'identify.profiles=[]' --set identify.route=published --set identify.evaluations=200";
+  for (const auto& [more, size] : {std::pair(gradient, "3"), std::pair(published, "2")}) {
+    forget();
+    ASSERT_EQ(run(identify(more, "alone")).exit_code, 0);
+    const Outcome done = run_under(mpirun(size), identify(more + kept()));
+    ASSERT_EQ(done.exit_code, 0) << done.text;
+    for (const char* name : {"estimate.json", "parameters.csv", "tasks.csv", "model.osim"})
+      EXPECT_EQ(read_file(in_out(name)), read_file(folder_ / "alone" / name)) << name << ", " << size;
+  }
+}
+
+TEST_F(IdentifyCheckpoint, ShardsStartedTogetherShareASearchAndAnyOneGoesOnAlone) {
+  const std::string more = "--set 'identify.profiles=[]'" + kept();
+  ASSERT_EQ(run(identify("--set 'identify.profiles=[]'", "alone")).exit_code, 0);
+  Outcome second;
+  std::jthread process([&] { second = run(identify(more + "--shard 2/2", "second")); });
+  const Outcome first = run(identify(more + "--shard 1/2"));
+  process.join();
+  EXPECT_EQ(first.exit_code, 0) << first.text;
+  EXPECT_EQ(second.exit_code, 0) << second.text;
+  EXPECT_THAT(second.text, HasSubstr("process 2 of 2 is done; the first writes the results"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "second"));
+  EXPECT_EQ(read_file(in_out("estimate.json")), read_file(folder_ / "alone" / "estimate.json"));
+  // Nothing is left to simulate.
+  const Outcome again = run(identify(more, "again"));
+  EXPECT_THAT(again.text, HasSubstr(" simulations of the search were in "));
+  EXPECT_EQ(read_file(folder_ / "again" / "estimate.json"), read_file(folder_ / "alone" / "estimate.json"));
+}
+
+TEST_F(IdentifyCheckpoint, MpirunEndsWithAProcessAndIsResumed) {
+  if (!has_mpirun()) GTEST_SKIP() << kNoMpirun;
+  const std::string more =
+      "--set 'identify.profiles=[]' --set 'identify.posterior={walkers=10,steps=60,effective=100000}'";
+  ASSERT_EQ(run(identify(more, "alone")).exit_code, 0);
+  Outcome ended;
+  std::jthread running([&] { ended = run_under(mpirun("2"), identify(more + kept())); });
+  ASSERT_TRUE(kill_second([&] { return std::filesystem::exists(checkpoint() + "/evaluations-2.log"); }));
+  running.join();
+  EXPECT_NE(ended.exit_code, 0) << ended.text;
+  EXPECT_TRUE(results().empty());
+  const Outcome done = run_under(mpirun("2"), identify(more + kept()));
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  for (const char* name : {"estimate.json", "posterior.csv"})
+    EXPECT_EQ(read_file(in_out(name)), read_file(folder_ / "alone" / name)) << name;
+}
+
+TEST_F(IdentifyCheckpoint, RefusesOtherStudiesAndProcessesWithoutAFolder) {
   const std::string flight = (test::source_folder() / "examples/studies/simulated_flight.toml").string();
   expect_refusal("identify " + flight + kept() + out(), "--checkpoint: is for a person's tasks");
-  const Outcome first = run_under("OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2", identify(""));
-  EXPECT_EQ(first.exit_code, 2);
-  EXPECT_THAT(first.text, HasSubstr("identify: runs in one process, 2 were started under mpirun"));
-  const Outcome second = run_under("OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=2", identify(""));
-  EXPECT_EQ(second.exit_code, 0);
-  EXPECT_EQ(second.text, "");
+  expect_refusal("identify " + flight + " --shard 1/2 " + out(), "--shard: is for a person's tasks");
+  expect_refusal(identify("--shard 1/2"), "--shard: needs --checkpoint with the folder that all parts share");
+  const std::string first = "OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2";
+  const Outcome drive = run_under(first, "identify " + flight + out());
+  EXPECT_EQ(drive.exit_code, 2);
+  EXPECT_THAT(drive.text, HasSubstr("identify: runs in one process for this study, 2 were started under mpirun"));
+  const Outcome without = run_under(first, identify(""));
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.text, HasSubstr("--checkpoint: is missing: 2 processes under mpirun"));
+  for (const std::string& command : {"identify " + flight + out(), identify("")}) {
+    const Outcome second = run_under("OMPI_COMM_WORLD_RANK=1 OMPI_COMM_WORLD_SIZE=2", command);
+    EXPECT_EQ(second.exit_code, 0);
+    EXPECT_EQ(second.text, "");
+  }
   EXPECT_TRUE(results().empty());
 }
 

@@ -289,10 +289,14 @@ struct RouteResult {
 
 /// By the published search.
 RouteResult by_published_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
-                               const numerics::ValueLog* log, Progress& progress) {
+                               numerics::ValueLog* log, Progress& progress) {
   PublishedRouteOptions options = *study.published;
-  if (log != nullptr && options.evaluation.log.empty())
-    options.evaluation.log = log->path().parent_path() / "search.csv";
+  if (log != nullptr) {
+    if (options.evaluation.log.empty()) options.evaluation.log = log->folder() / "search.csv";
+    if (log->share().count > 1) options.evaluation.shared = log;
+    // Written by the first of several processes.
+    if (log->share().index > 0) options.evaluation.log.clear();
+  }
   PublishedRouteResult found = published_route(*part.forward, part.measured, options, progress);
   RouteResult result;
   result.evaluations = std::move(found.evaluations);
@@ -316,8 +320,8 @@ RouteResult by_published_route(const TaskStudy& study, const Part& part, const E
 }
 
 /// By the route that the study asks for.
-RouteResult by_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise,
-                     const numerics::ValueLog* log, Progress& progress) {
+RouteResult by_route(const TaskStudy& study, const Part& part, const Eigen::VectorXd& noise, numerics::ValueLog* log,
+                     Progress& progress) {
   if (study.published) return by_published_route(study, part, noise, log, progress);
   RouteResult result;
   if (part.along) {

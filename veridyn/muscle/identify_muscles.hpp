@@ -37,8 +37,9 @@ struct MuscleAnalysis : estimation::Analysis {
 /// The full pipeline: tasks prepared, measured (or a person simulated), estimate from those that are not held out,
 /// hold-out, verdict.
 /// @param log  keeps what search, profiles and posterior ask of the model, so that a run which was cut off goes on to
-/// the same bits; of this study alone. nullptr: nothing is kept. The published search keeps its own log in the same
-/// folder, `search.csv`, where the study names none
+/// the same bits; of this study alone. Where it is shared, all processes call this function and come to the same
+/// result. nullptr: nothing is kept. The published search keeps its own log in the same folder, `search.csv`, where the
+/// study names none
 /// @throws InputError when no task can be estimated from, std::runtime_error when every search diverges, naming task,
 /// time and state.
 [[nodiscard]] MuscleAnalysis identify(const TaskStudy& study, Progress& progress, numerics::ValueLog* log = nullptr);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <bit>
+#include <thread>
 
 #include "tests/estimation/output_error/example_models.hpp"
 #include "veridyn/estimation/output_error/output_error.hpp"
@@ -40,8 +42,8 @@ class CountingModel final : public ParametricModel {
 class LoggedModelTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    file_ = std::filesystem::temp_directory_path() / ("veridyn_logged_" + std::to_string(::getpid()));
-    std::filesystem::remove(file_);
+    folder_ = std::filesystem::temp_directory_path() / ("veridyn_logged_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(folder_);
     for (std::size_t s = 0; s < 2; ++s) {
       ModelResponse truth;
       ASSERT_TRUE(model_.respond(s, Eigen::Vector3d(1.4, 0.7, 0.2), {}, truth));
@@ -51,7 +53,7 @@ class LoggedModelTest : public ::testing::Test {
     }
     options_.threads = 1;
   }
-  void TearDown() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] LoggedModel logged(const ParametricModel& model, numerics::ValueLog* log) const {
     return {model, "trained", [this](std::size_t s, const RowMatrix& y) { return (measured_[s] - y).norm(); }, log};
@@ -70,13 +72,13 @@ class LoggedModelTest : public ::testing::Test {
   FirstOrder model_{{input(1.0), input(2.5)}, 0.1};
   std::vector<RowMatrix> measured_;
   OutputErrorOptions options_;
-  std::filesystem::path file_;
+  std::filesystem::path folder_;
 };
 
 TEST_F(LoggedModelTest, AnswersAsTheModelDoes) {
   const auto plain = bits(output_error(model_, measured_, options_));
   EXPECT_EQ(bits(output_error(logged(model_, nullptr), measured_, options_)), plain);
-  numerics::ValueLog log(file_);
+  numerics::ValueLog log(folder_);
   EXPECT_EQ(bits(output_error(logged(model_, &log), measured_, options_)), plain);
 }
 
@@ -84,18 +86,18 @@ TEST_F(LoggedModelTest, ASearchCutOffAnywhereGoesOnToTheSameBits) {
   const CountingModel whole(model_);
   std::vector<std::uint64_t> expected;
   {
-    numerics::ValueLog log(file_);
+    numerics::ValueLog log(folder_);
     expected = bits(output_error(logged(whole, &log), measured_, options_));
   }
   ASSERT_GT(whole.count, 8);
   for (long cut = 0; cut < whole.count; ++cut) {
-    std::filesystem::remove(file_);
+    std::filesystem::remove_all(folder_);
     {
-      numerics::ValueLog log(file_);
+      numerics::ValueLog log(folder_);
       const CountingModel dies(model_, cut);
       EXPECT_THROW((void)output_error(logged(dies, &log), measured_, options_), std::runtime_error);
     }
-    numerics::ValueLog log(file_);
+    numerics::ValueLog log(folder_);
     const CountingModel rest(model_);
     const LoggedModel again = logged(rest, &log);
     ASSERT_EQ(bits(output_error(again, measured_, options_)), expected) << cut;
@@ -103,9 +105,32 @@ TEST_F(LoggedModelTest, ASearchCutOffAnywhereGoesOnToTheSameBits) {
   }
 }
 
+TEST_F(LoggedModelTest, TwoProcessesSimulateHalfEachAndComeToTheSameBits) {
+  const CountingModel whole(model_), first(model_), second(model_);
+  std::vector<std::uint64_t> expected;
+  {
+    numerics::ValueLog log(folder_);
+    expected = bits(output_error(logged(whole, &log), measured_, options_));
+  }
+  std::filesystem::remove_all(folder_);
+  std::array<std::vector<std::uint64_t>, 2> found;
+  std::vector<std::thread> processes;
+  for (std::size_t p = 0; p < 2; ++p)
+    processes.emplace_back([&, p] {
+      numerics::ValueLog log(folder_, {.index = p, .count = 2, .wait = true});
+      found[p] = bits(output_error(logged(p == 0 ? first : second, &log), measured_, options_));
+    });
+  for (std::thread& p : processes) p.join();
+  EXPECT_EQ(found[0], expected);
+  EXPECT_EQ(found[1], expected);
+  // One of the two segments each.
+  EXPECT_EQ(first.count + second.count, whole.count);
+  EXPECT_EQ(first.count, second.count);
+}
+
 TEST_F(LoggedModelTest, KeepsModelsOfOneLogApartAndRunsThatDidNotFinish) {
   model_.refuses_growth = true;
-  numerics::ValueLog log(file_);
+  numerics::ValueLog log(folder_);
   const LoggedModel trained = logged(model_, &log);
   const LoggedModel unseen(
       model_, "unseen", [](std::size_t, const RowMatrix&) { return 0.0; }, &log);

@@ -33,8 +33,8 @@ MatrixXd covariance_of(const EnsembleSample& s) {
 EnsembleSample sampled(const LogDensity& density, const NormalApproximation& start, bool near,
                        const EnsembleOptions& options, int threads = 2) {
   SamplerThreads progress(threads);
-  return sample_ensemble(density, ensemble_start(density, start, options), near ? std::optional(start) : std::nullopt,
-                         options, progress);
+  return sample_ensemble(point_by_point(density, threads), ensemble_start(density, start, options),
+                         near ? std::optional(start) : std::nullopt, options, progress);
 }
 
 /// Five coordinates, neighbours correlated, scales from 1 to 10^4.

@@ -51,7 +51,7 @@ class BlockStoreTest : public ::testing::Test {
     };
     return {.name = "waves", .fingerprint = 77, .items = 47, .items_per_block = 5, .value = value};
   }
-  [[nodiscard]] BlockStore store(const BlockShare& share = {}) const { return {folder_, kIdentity, share}; }
+  [[nodiscard]] BlockStore store(const ProcessShare& share = {}) const { return {folder_, kIdentity, share}; }
   static std::vector<std::uint64_t> bits(const BatchValues& values) {
     std::vector<std::uint64_t> all;
     for (const double v : values.values) all.push_back(std::bit_cast<std::uint64_t>(v));

@@ -4,42 +4,53 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <bit>
+#include <cmath>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <thread>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
+#include "veridyn/numerics/batches/heartbeat.hpp"
 
 namespace veridyn::numerics {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 class ValueLogTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    file_ = std::filesystem::temp_directory_path() / ("veridyn_values_" + std::to_string(::getpid()));
-    std::filesystem::remove(file_);
+    folder_ = std::filesystem::temp_directory_path() / ("veridyn_values_" + std::to_string(::getpid()));
+    std::filesystem::remove_all(folder_);
+    file_ = folder_ / "evaluations.log";
   }
-  void TearDown() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Three records.
   void fill() const {
-    ValueLog log(file_);
+    ValueLog log(folder_);
     log.append(1, std::vector{1.0, 2.0});
     log.append(2, std::vector<double>{});
     log.append(3, std::vector{-0.0, std::numeric_limits<double>::quiet_NaN(), 1e-310});
   }
 
-  std::filesystem::path file_;
+  /// The share of process `index` of `count`.
+  static ProcessShare share(std::size_t index, std::size_t count, double patience_s = 60.0) {
+    return {.index = index, .count = count, .wait = true, .patience_s = patience_s};
+  }
+
+  std::filesystem::path folder_, file_;
   std::vector<double> values_;
 };
 
 TEST_F(ValueLogTest, GivesTheSameBitsInThisRunAndTheNext) {
   fill();
-  const ValueLog log(file_);
+  const ValueLog log(folder_);
   EXPECT_EQ(log.loaded(), 3U);
   ASSERT_TRUE(log.find(1, values_));
   EXPECT_THAT(values_, ElementsAre(1.0, 2.0));
@@ -54,7 +65,7 @@ TEST_F(ValueLogTest, GivesTheSameBitsInThisRunAndTheNext) {
 }
 
 TEST_F(ValueLogTest, FindsWhatWasAppendedAMomentAgo) {
-  ValueLog log(file_);
+  ValueLog log(folder_);
   log.append(9, std::vector{4.5});
   ASSERT_TRUE(log.find(9, values_));
   EXPECT_THAT(values_, ElementsAre(4.5));
@@ -70,11 +81,11 @@ TEST_F(ValueLogTest, CutAnywhereItHoldsWholeRecordsAndGoesOn) {
   const std::size_t head = 17, second = head + 40, third = second + 24;
   for (std::size_t size = head; size <= whole.size(); ++size) {
     write_file(file_, whole.substr(0, size));
-    ValueLog log(file_);
+    ValueLog log(folder_);
     const std::size_t kept = size == whole.size() ? 3U : size >= third ? 2U : size >= second ? 1U : 0U;
     ASSERT_EQ(log.loaded(), kept) << size;
     log.append(100, std::vector{8.0});
-    const ValueLog again(file_);
+    const ValueLog again(folder_);
     ASSERT_EQ(again.loaded(), kept + 1) << size;
     ASSERT_TRUE(again.find(100, values_));
     ASSERT_THAT(values_, ElementsAre(8.0));
@@ -86,14 +97,14 @@ TEST_F(ValueLogTest, RefusesChangedValuesAndOtherFiles) {
   std::string text = read_file(file_);
   text[17 + 16] ^= 1;
   write_file(file_, text);
-  EXPECT_THROW(ValueLog log(file_), InputError);
+  EXPECT_THROW(ValueLog log(folder_), InputError);
   write_file(file_, "time,angle\n0,1\n");
-  EXPECT_THROW(ValueLog log(file_), InputError);
+  EXPECT_THROW(ValueLog log(folder_), InputError);
 }
 
 TEST_F(ValueLogTest, ThreadsWriteSideBySide) {
   {
-    ValueLog log(file_);
+    ValueLog log(folder_);
     std::vector<std::thread> threads;
     for (std::uint64_t t = 0; t < 4; ++t) {
       threads.emplace_back([&log, t] {
@@ -102,10 +113,83 @@ TEST_F(ValueLogTest, ThreadsWriteSideBySide) {
     }
     for (std::thread& t : threads) t.join();
   }
-  const ValueLog log(file_);
+  const ValueLog log(folder_);
   EXPECT_EQ(log.loaded(), 800U);
   ASSERT_TRUE(log.find(3020, values_));
   EXPECT_THAT(values_, ElementsAre(20.0, 20.0, 20.0, 20.0, 20.0, 20.0));
+}
+
+TEST_F(ValueLogTest, ProcessesComputeTheirShareAndSeeTheSameBits) {
+  constexpr std::size_t kProcesses = 3, kRounds = 40, kItems = 7;
+  // Each step depends on all values of the one before.
+  std::array<std::vector<double>, kProcesses> paths;
+  std::array<int, kProcesses> computed{};
+  std::vector<std::thread> processes;
+  for (std::size_t p = 0; p < kProcesses; ++p)
+    processes.emplace_back([&, p] {
+      ValueLog log(folder_, share(p, kProcesses));
+      double x = 0.5;
+      for (std::size_t round = 0; round < kRounds; ++round) {
+        std::vector<double> values(kItems), kept;
+        for (const std::size_t item : log.share().own_first(kItems)) {
+          const std::uint64_t key = std::bit_cast<std::uint64_t>(x) + item;
+          if (log.find(key, kept, item)) {
+            values[item] = kept.front();
+            continue;
+          }
+          values[item] = std::sin(x + static_cast<double>(item));
+          log.append(key, std::span(&values[item], 1));
+          ++computed[p];
+        }
+        for (const double v : values) x = std::fmod(x + v, 1.0);
+        paths[p].push_back(x);
+      }
+    });
+  for (std::thread& p : processes) p.join();
+  EXPECT_THAT(computed, ElementsAre(3 * kRounds, 2 * kRounds, 2 * kRounds));
+  EXPECT_EQ(paths[1], paths[0]);
+  EXPECT_EQ(paths[2], paths[0]);
+  // What three computed serves one, or four.
+  EXPECT_EQ(ValueLog(folder_).loaded(), kItems * kRounds);
+  EXPECT_EQ(ValueLog(folder_, share(3, 4)).loaded(), kItems * kRounds);
+}
+
+TEST_F(ValueLogTest, TakesOnlyWholeRecordsOfAnotherProcess) {
+  { ValueLog(folder_, share(1, 2)).append(5, std::vector{1.0, 2.0}); }
+  const std::filesystem::path other = folder_ / "evaluations-2.log";
+  const std::string whole = read_file(other);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    write_file(other, whole.substr(0, size));
+    const ValueLog log(folder_, share(0, 2));
+    ASSERT_EQ(log.loaded(), 0U) << size;
+    std::thread writer([&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      std::ofstream(other, std::ios::app | std::ios::binary) << whole.substr(size);
+    });
+    const bool there = log.find(5, values_, 1);
+    writer.join();
+    ASSERT_TRUE(there) << size;
+    ASSERT_THAT(values_, ElementsAre(1.0, 2.0)) << size;
+  }
+}
+
+TEST_F(ValueLogTest, NamesTheProcessThatShowsNoLifeAndTheOneThatGoesAnotherWay) {
+  const auto failure = [&] {
+    try {
+      (void)ValueLog(folder_, share(0, 2, 0.05)).find(7, values_, 1);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 has shown no life for 0.05 s, and what it computes is missing"));
+  const Heartbeat other(folder_ / "process-2.alive", std::chrono::milliseconds(5));
+  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 lives, but has not come to what is waited for here"));
+}
+
+TEST_F(ValueLogTest, WaitsNoLongerWhenInterrupted) {
+  const ValueLog log(folder_, share(0, 2), [] { return true; });
+  EXPECT_FALSE(log.find(7, values_, 1));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ std::optional<Linearised> linearised(const ParametricModel& model, const std::ve
   const std::vector<SegmentUnknowns> unknowns = free_unknowns(model, estimate, out.unknowns);
   out.columns.resize(measured.size());
   std::vector<char> good(measured.size(), 0);
-  numerics::parallel_for(measured.size(), threads, [&](std::size_t s) {
+  for_each_segment(model, threads, [&](std::size_t s) {
     const SegmentUnknowns& of_segment = unknowns[s];
     const Eigen::VectorXd theta = values_of(model, estimate, s);
     ModelResponse response;

@@ -9,6 +9,10 @@ namespace veridyn::estimation {
 LoggedModel::LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log)
     : model_(&model), name_(std::move(name)), misfit_(std::move(misfit)), log_(log) {}
 
+std::vector<std::size_t> LoggedModel::segment_order() const {
+  return log_ == nullptr ? model_->segment_order() : log_->share().own_first(segments());
+}
+
 std::uint64_t LoggedModel::key_of(std::size_t segment, const Eigen::VectorXd& theta,
                                   std::span<const Eigen::Index> active) const {
   numerics::Fingerprint key;
@@ -37,7 +41,7 @@ bool LoggedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std
 bool LoggedModel::from_log(std::uint64_t key, std::size_t segment, std::size_t active, ModelResponse& response,
                            bool& finished) const {
   std::vector<double> values;
-  if (!log_->find(key, values)) return false;
+  if (!log_->find(key, values, segment)) return false;
   const Eigen::Index rows = samples(segment), columns = signed_index(outputs().size());
   const Eigen::Index output = rows * columns, sensitivity = output * signed_index(active);
   // One that did not finish is kept without values.

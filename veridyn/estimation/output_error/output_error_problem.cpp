@@ -242,7 +242,7 @@ void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) cons
 
 void OutputErrorProblem::evaluate(bool derivatives) {
   (derivatives ? simulations_.with_derivatives : simulations_.values) += segments_.size();
-  numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
+  for_each_segment(model_, options_.threads, [&](std::size_t s) {
     Segment& segment = segments_[s];
     RowMatrix rows;
     SegmentTriangle& t = segment.triangle;
@@ -386,7 +386,7 @@ std::vector<RowMatrix> OutputErrorProblem::whitened_residuals() const {
 Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spectrum) const {
   const Index n = shared_.size();
   std::vector<Eigen::MatrixXd> parts(segments_.size(), Eigen::MatrixXd::Zero(n, n));
-  numerics::parallel_for(segments_.size(), options_.threads, [&](std::size_t s) {
+  for_each_segment(model_, options_.threads, [&](std::size_t s) {
     RowMatrix residual, predicted, rows;
     if (!linearise(s, true, residual, predicted, rows)) return;
     const Index locals = segments_[s].local.size();

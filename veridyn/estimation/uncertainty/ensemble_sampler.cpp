@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
@@ -30,7 +31,7 @@ struct Move {
   double log_ratio = 0.0;
 };
 
-/// Proposals, shared by all threads.
+/// Proposals.
 class Moves {
  public:
   Moves(const std::optional<NormalApproximation>& near, Index dimensions) : dimensions_(dimensions) {
@@ -118,9 +119,9 @@ double autocorrelation_time(const Eigen::MatrixXd& draws, Index walkers, Index c
 /// View of one sampling.
 class Ensemble {
  public:
-  Ensemble(const LogDensity& density, const Eigen::MatrixXd& start, const std::optional<NormalApproximation>& near,
+  Ensemble(const LogDensities& densities, const Eigen::MatrixXd& start, const std::optional<NormalApproximation>& near,
            const EnsembleOptions& options, Progress& progress)
-      : density_(density),
+      : densities_(densities),
         options_(options),
         progress_(progress),
         moves_(near, start.cols()),
@@ -128,9 +129,9 @@ class Ensemble {
         log_density_(start.rows()) {}
 
   EnsembleSample run() {
-    numerics::parallel_for(at(walkers_.rows()), progress_.threads(), [&](std::size_t w) {
-      log_density_(signed_index(w)) = density_(walkers_.row(signed_index(w)).transpose());
-    });
+    std::vector<Eigen::VectorXd> points;
+    for (Index w = 0; w < walkers_.rows(); ++w) points.emplace_back(walkers_.row(w).transpose());
+    densities_(points, std::span(log_density_.data(), points.size()));
     for (Index w = 0; w < walkers_.rows(); ++w)
       if (!std::isfinite(log_density_(w)))
         throw InputError("start", fmt::format("walker {} starts where the density is zero", w + 1));
@@ -165,27 +166,24 @@ class Ensemble {
   /// Moves the half that begins with walker `first`.
   void advance(std::size_t step, Index first) {
     const Index half = walkers_.rows() / 2, other = first == 0 ? half : 0;
-    std::vector<char> moved(at(half), 0);
-    Eigen::MatrixXd to(half, walkers_.cols());
-    Eigen::VectorXd value(half);
-    numerics::parallel_for(at(half), progress_.threads(), [&](std::size_t i) {
+    std::vector<numerics::RandomStream> random;
+    std::vector<Eigen::VectorXd> to;
+    std::vector<double> log_ratio, reached(at(half));
+    for (Index w = first; w < first + half; ++w) {
+      random.emplace_back(options_.seed, static_cast<std::uint64_t>(step) * 1000003u + static_cast<std::uint64_t>(w));
+      Move move = moves_.propose(walkers_, w, other, half, random.back());
+      to.push_back(std::move(move.to));
+      log_ratio.push_back(move.log_ratio);
+    }
+    densities_(to, reached);
+    for (std::size_t i = 0; i < at(half); ++i) {
       const Index w = first + signed_index(i);
-      numerics::RandomStream random(options_.seed,
-                                    static_cast<std::uint64_t>(step) * 1000003u + static_cast<std::uint64_t>(w));
-      const Move move = moves_.propose(walkers_, w, other, half, random);
-      const double reached = density_(move.to);
-      const double log_ratio = reached - log_density_(w) + move.log_ratio;
-      if (!(std::log(1.0 - random.uniform()) < log_ratio) || !std::isfinite(reached)) return;
-      moved[i] = 1;
-      to.row(signed_index(i)) = move.to.transpose();
-      value(signed_index(i)) = reached;
-    });
-    for (Index i = 0; i < half; ++i) {
       ++tried_;
-      if (moved[at(i)] == 0) continue;
+      const double gain = reached[i] - log_density_(w) + log_ratio[i];
+      if (!(std::log(1.0 - random[i].uniform()) < gain) || !std::isfinite(reached[i])) continue;
       ++accepted_;
-      walkers_.row(first + i) = to.row(i);
-      log_density_(first + i) = value(i);
+      walkers_.row(w) = to[i].transpose();
+      log_density_(w) = reached[i];
     }
   }
 
@@ -225,7 +223,7 @@ class Ensemble {
     return std::min(1.0, std::max(by_steps, sample_.effective / static_cast<double>(options_.effective)));
   }
 
-  const LogDensity& density_;
+  const LogDensities& densities_;
   const EnsembleOptions& options_;
   Progress& progress_;
   Moves moves_;
@@ -253,14 +251,20 @@ void EnsembleOptions::validate(std::size_t dimensions) const {
   if (effective < 1) throw InputError("effective", "= 0 must be at least 1");
 }
 
-EnsembleSample sample_ensemble(const LogDensity& density, const Eigen::MatrixXd& start,
+LogDensities point_by_point(LogDensity density, int threads) {
+  return [density = std::move(density), threads](std::span<const Eigen::VectorXd> points, std::span<double> values) {
+    numerics::parallel_for(points.size(), threads, [&](std::size_t i) { values[i] = density(points[i]); });
+  };
+}
+
+EnsembleSample sample_ensemble(const LogDensities& densities, const Eigen::MatrixXd& start,
                                const std::optional<NormalApproximation>& near, const EnsembleOptions& options,
                                Progress& progress) {
   options.validate(at(start.cols()));
   if (at(start.rows()) != walkers_of(options, at(start.cols())))
     throw InputError("start", fmt::format("has {} walkers; the options say {}", start.rows(),
                                           walkers_of(options, at(start.cols()))));
-  return Ensemble(density, start, near, options, progress).run();
+  return Ensemble(densities, start, near, options, progress).run();
 }
 
 Eigen::MatrixXd ensemble_start(const LogDensity& density, const NormalApproximation& near,

@@ -4,14 +4,20 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "veridyn/core/progress.hpp"
 
 namespace veridyn::estimation {
 
-/// Logarithm of a probability density up to a constant; -infinity (or NaN) where it is zero. Called on several threads.
+/// Logarithm of a probability density up to a constant; -infinity (or NaN) where it is zero.
 using LogDensity = std::function<double(const Eigen::VectorXd&)>;
+/// That of several points at once.
+using LogDensities = std::function<void(std::span<const Eigen::VectorXd> points, std::span<double> values)>;
+
+/// Point by point on `threads` threads (0: as many as the machine has).
+[[nodiscard]] LogDensities point_by_point(LogDensity density, int threads);
 
 /// A normal distribution near the density sampled, from a linearisation.
 struct NormalApproximation {
@@ -44,8 +50,8 @@ struct EnsembleSample {
 };
 
 /// Samples a density by an ensemble of walkers that move in two halves, each by positions of the other half
-/// (Foreman-Mackey et al. 2013, PASP 125:306), so that a half's moves are independent of each other and run on the
-/// progress' threads, with the same bits on any number. Moves, at random: differences of two walkers (ter Braak 2006,
+/// (Foreman-Mackey et al. 2013, PASP 125:306), so that a half's moves are independent of each other and their densities
+/// are asked for at once. Moves, at random: differences of two walkers (ter Braak 2006,
 /// Stat Comput 16:239), stretches (Goodman & Weare 2010, Comm Appl Math Comp Sci 5:65), and, with `near`, independent
 /// draws of a t distribution of ten degrees of freedom around it, which mix quickly where the density is nearly normal.
 ///
@@ -53,7 +59,7 @@ struct EnsembleSample {
 /// autocorrelation of the walkers' mean over walkers (Sokal's window), or after `steps`.
 /// @param start  walkers x dimensions, of positive density; see `ensemble_start`
 /// @throws InputError when an option is out of order or a walker starts where the density is zero.
-[[nodiscard]] EnsembleSample sample_ensemble(const LogDensity& density, const Eigen::MatrixXd& start,
+[[nodiscard]] EnsembleSample sample_ensemble(const LogDensities& densities, const Eigen::MatrixXd& start,
                                              const std::optional<NormalApproximation>& near,
                                              const EnsembleOptions& options, Progress& progress);
 

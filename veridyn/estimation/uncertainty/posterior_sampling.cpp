@@ -11,6 +11,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
+#include "veridyn/numerics/parallel.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::estimation {
@@ -143,16 +144,26 @@ class Posterior {
 };
 
 /// Answered from the log where it is there; a density takes a simulation of every segment.
-double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, numerics::ValueLog* log) {
+double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, std::size_t item, numerics::ValueLog* log) {
   if (log == nullptr) return posterior.log_density(x);
   numerics::Fingerprint key;
   key.add("posterior");
   for (const double value : x) key.add(value);
   std::vector<double> values;
-  if (log->find(key.value(), values) && values.size() == 1) return values.front();
+  if (log->find(key.value(), values, item) && values.size() == 1) return values.front();
   const double density = posterior.log_density(x);
   log->append(key.value(), std::span(&density, 1));
   return density;
+}
+
+/// Of all points, of which a shared log leaves some to other processes.
+void kept_densities(const Posterior& posterior, std::span<const Eigen::VectorXd> points, std::span<double> densities,
+                    numerics::ValueLog* log, int threads) {
+  const std::vector<std::size_t> order =
+      (log == nullptr ? numerics::ProcessShare() : log->share()).own_first(points.size());
+  numerics::parallel_for(points.size(), threads, [&](std::size_t k) {
+    densities[order[k]] = kept_density(posterior, points[order[k]], order[k], log);
+  });
 }
 
 }  // namespace
@@ -163,11 +174,15 @@ PosteriorSample sample_posterior(const ParametricModel& model, const std::vector
   if (!(options.dispersion >= 1.0))
     throw InputError("dispersion", fmt::format("= {:g} must be at least 1", options.dispersion));
   const Posterior posterior(model, measured, estimate, options.dispersion);
-  const LogDensity density = [&](const Eigen::VectorXd& x) { return kept_density(posterior, x, log); };
+  // Where the walkers start is found one after the other: by the first of several processes.
+  const LogDensity density = [&](const Eigen::VectorXd& x) { return kept_density(posterior, x, 0, log); };
+  const LogDensities densities = [&](std::span<const Eigen::VectorXd> points, std::span<double> values) {
+    kept_densities(posterior, points, values, log, progress.threads());
+  };
   const NormalApproximation near = posterior.linearised();
   PosteriorSample sample;
   sample.ensemble =
-      sample_ensemble(density, ensemble_start(density, near, options.ensemble), near, options.ensemble, progress);
+      sample_ensemble(densities, ensemble_start(density, near, options.ensemble), near, options.ensemble, progress);
   for (std::size_t i = 0; i < posterior.shared_count() && sample.ensemble.draws.rows() > 0; ++i) {
     const auto column = sample.ensemble.draws.col(signed_index(i));
     std::vector<double> sorted(column.begin(), column.end());

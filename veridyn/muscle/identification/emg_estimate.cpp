@@ -6,7 +6,6 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/muscle/identification/task_segments.hpp"
-#include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -70,7 +69,7 @@ class EmgEstimation {
   bool set_units(const Eigen::VectorXd& theta) {
     std::vector<RowMatrix> response(measured_.size()), residual(measured_.size());
     std::vector<char> good(measured_.size(), 0);
-    numerics::parallel_for(measured_.size(), progress_.threads(), [&](std::size_t s) {
+    estimation::for_each_segment(responses_, progress_.threads(), [&](std::size_t s) {
       estimation::ModelResponse now;
       good[s] = model_.error_response(s, theta, error_, response[s]) && responses_.respond(s, theta, {}, now) ? 1 : 0;
       if (good[s] != 0) residual[s] = measured_[s] - now.output;

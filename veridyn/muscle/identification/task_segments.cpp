@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "veridyn/core/index.hpp"
-#include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::muscle {
 
@@ -25,7 +24,7 @@ std::vector<MotionSegment> segments_of(std::span<const PreparedTask> tasks) {
 std::vector<estimation::RowMatrix> simulate_tasks(const estimation::ParametricModel& model,
                                                   const Eigen::VectorXd& theta, int threads) {
   std::vector<estimation::RowMatrix> outputs(model.segments());
-  numerics::parallel_for(model.segments(), threads, [&](std::size_t s) {
+  estimation::for_each_segment(model, threads, [&](std::size_t s) {
     const auto initial = model.initial_conditions(s);
     Eigen::VectorXd all(theta.size() + signed_index(initial.size()));
     all.head(theta.size()) = theta;

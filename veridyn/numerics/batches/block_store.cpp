@@ -6,14 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
-#include <map>
 #include <stdexcept>
 #include <thread>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/numerics/batches/block_file.hpp"
-#include "veridyn/numerics/batches/heartbeat.hpp"
 #include "veridyn/numerics/parallel.hpp"
 
 namespace veridyn::numerics {
@@ -61,8 +59,6 @@ std::string quoted(const std::vector<std::string>& lines, std::size_t i) {
                                      : fmt::format("'{}...'", lines[i].substr(0, kLongest));
 }
 
-std::string alive_name(std::size_t index) { return fmt::format("process-{}.alive", index + 1); }
-
 }  // namespace
 
 /// A batch at work.
@@ -100,10 +96,10 @@ BlockStore::~BlockStore() = default;
 BlockStore::BlockStore(BlockStore&&) noexcept = default;
 BlockStore& BlockStore::operator=(BlockStore&&) noexcept = default;
 
-BlockStore::BlockStore(fs::path folder, const Identity& identity, const BlockShare& share)
+BlockStore::BlockStore(fs::path folder, const Identity& identity, const ProcessShare& share)
     : folder_(std::move(folder)), share_(share) {
   open(identity);
-  if (share_.wait) heartbeat_ = std::make_unique<Heartbeat>(folder_ / alive_name(share_.index));
+  companions_ = std::make_unique<Companions>(folder_, share_);
 }
 
 void BlockStore::open(const Identity& identity) const {
@@ -173,7 +169,7 @@ bool BlockStore::compute_share(Round& round, Progress& progress) const {
   for (std::size_t b = 0; b < round.blocks; ++b) {
     if (round.there[b] != 0) {
       done_before += round.size(b);
-    } else if (share_.count > 0 && b % share_.count == share_.index) {
+    } else if (share_.computes(b)) {
       mine.push_back(b);
       items += round.size(b);
     }
@@ -215,23 +211,19 @@ bool BlockStore::compute_share(Round& round, Progress& progress) const {
 
 bool BlockStore::wait_for_others(Round& round, Progress& progress) {
   using namespace std::chrono_literals;
-  std::map<std::size_t, HeartbeatWatch> watches;
   progress.stage(fmt::format("waiting for {} blocks of other processes", round.absent()));
   for (auto pause = 10ms; round.absent() > 0; pause = std::min(pause * 2, std::chrono::milliseconds(500))) {
     std::this_thread::sleep_for(pause);
     std::size_t done = 0;
     for (std::size_t b = 0; b < round.blocks; ++b) {
-      if (round.there[b] != 0 || read(round, b, false)) {
-        done += round.size(b);
-        continue;
+      const std::size_t owner = share_.owner(b);
+      if (round.there[b] == 0) {
+        if (read(round, b, false))
+          companions_->arrived(owner);
+        else
+          static_cast<void>(companions_->wait_for(owner, fmt::format("{} blocks are missing", round.absent())));
       }
-      const std::size_t owner = b % share_.count;
-      HeartbeatWatch& watch = watches.try_emplace(owner, folder_ / alive_name(owner)).first->second;
-      if (watch.silence().count() <= share_.patience_s) continue;
-      const std::string who = watch.who().empty() ? "" : fmt::format(" ({})", watch.who());
-      throw std::runtime_error(fmt::format(
-          "{}: process {} of {}{} has shown no life for {:g} s, and {} blocks are missing; run again to go on",
-          folder_.string(), owner + 1, share_.count, who, share_.patience_s, round.absent()));
+      if (round.there[b] != 0) done += round.size(b);
     }
     if (!progress.update(round.fraction(done))) return false;
   }

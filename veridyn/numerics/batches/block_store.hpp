@@ -10,19 +10,10 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/numerics/batches/companions.hpp"
+#include "veridyn/numerics/batches/process_share.hpp"
 
 namespace veridyn::numerics {
-
-class Heartbeat;
-
-/// Which blocks of every batch a process computes: `index`, `index + count`, ...
-struct BlockShare {
-  std::size_t index = 0;  ///< below `count`
-  std::size_t count = 1;  ///< 0: computes none, only reads what is there
-  /// The other processes run at the same time: their blocks are waited for.
-  bool wait = false;
-  double patience_s = 60.0;  ///< so long may a process that is waited for show no life
-};
 
 /// Independent items with a number each, or several, whatever they are.
 struct Batch {
@@ -50,7 +41,7 @@ struct BatchValues {
 ///
 ///     FOLDER/checkpoint.txt            what all batches follow from
 ///     FOLDER/sampling-000000.block     `write_block`
-///     FOLDER/process-1.alive           `Heartbeat` of one of several processes
+///     FOLDER/process-1.alive           `Companions`: one of several processes
 ///
 /// Files appear whole or not at all. Damaged ones are computed again.
 class BlockStore {
@@ -63,7 +54,8 @@ class BlockStore {
   /// Opens or begins a folder.
   /// @throws InputError where it holds something else, or results of another identity: with the first line that
   /// differs; where it cannot be written.
-  BlockStore(std::filesystem::path folder, const Identity& identity, const BlockShare& share = {});
+  /// @param share  of the blocks of every batch
+  BlockStore(std::filesystem::path folder, const Identity& identity, const ProcessShare& share = {});
   ~BlockStore();
   BlockStore(BlockStore&&) noexcept;
   BlockStore& operator=(BlockStore&&) noexcept;
@@ -94,8 +86,8 @@ class BlockStore {
   [[nodiscard]] bool wait_for_others(Round& round, Progress& progress);
 
   std::filesystem::path folder_;  ///< empty: keeps nothing
-  BlockShare share_;
-  std::unique_ptr<Heartbeat> heartbeat_;
+  ProcessShare share_;
+  std::unique_ptr<Companions> companions_;
   std::vector<std::string> warnings_;
   std::size_t blocks_ = 0, found_ = 0, last_blocks_ = 0, missing_ = 0;
 };

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
-#include <string_view>
+#include <thread>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
@@ -20,6 +21,13 @@ constexpr std::string_view kLogFormat = "veridyn values 1\n";
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 /// Key, number of values and checksum.
 constexpr std::size_t kFrameWords = 3;
+/// A process that lives and for so many times the patience has not computed what it should never will.
+constexpr double kNeverComes = 10.0;
+
+/// Of the process with that index.
+std::filesystem::path file_in(const std::filesystem::path& folder, std::size_t index) {
+  return folder / (index == 0 ? std::string("evaluations.log") : fmt::format("evaluations-{}.log", index + 1));
+}
 
 void put(std::string& text, std::uint64_t word) {
   for (std::size_t byte = 0; byte < kWord; ++byte) text += static_cast<char>(word >> (8 * byte));
@@ -39,51 +47,132 @@ std::uint64_t check_of(std::uint64_t key, std::string_view values) {
   return sum.value();
 }
 
+const std::filesystem::path& made(const std::filesystem::path& folder) {
+  make_folder(folder);
+  return folder;
+}
+
 }  // namespace
 
-ValueLog::ValueLog(std::filesystem::path file) : path_(std::move(file)) {
-  if (std::filesystem::exists(path_)) {
-    load();
-  } else {
-    write_file(path_, kLogFormat);
-    size_ = kLogFormat.size();
-  }
+ValueLog::ValueLog(std::filesystem::path folder, const ProcessShare& share, std::function<bool()> interrupted)
+    : folder_(std::move(folder)),
+      share_(share),
+      interrupted_(std::move(interrupted)),
+      companions_(made(folder_), share_) {
+  open_own();
+  open_others();
   loaded_ = places_.size();
-  reader_.open(path_, std::ios::binary);
 }
 
-void ValueLog::load() {
-  const std::string content = read_file(path_);
-  if (!std::string_view(content).starts_with(kLogFormat))
-    throw InputError(path_.string(), "is no log of values of this version; remove it");
-  size_ = kLogFormat.size();
-  while (content.size() - size_ >= kFrameWords * kWord) {
-    const std::uint64_t key = word_at(content, size_), count = word_at(content, size_ + kWord);
-    if (count > (content.size() - size_) / kWord - kFrameWords) break;
-    const Place place{.offset = size_ + 2 * kWord, .count = count};
-    const std::size_t end = place.offset + count * kWord;
-    const std::string_view values = std::string_view(content).substr(place.offset, count * kWord);
-    if (word_at(content, end) != check_of(key, values))
-      throw InputError(path_.string(), fmt::format("record {} is damaged; remove the file", places_.size() + 1));
-    places_.emplace(key, place);
-    size_ = end + kWord;
+void ValueLog::open_own() {
+  files_.resize(std::max<std::size_t>(1, share_.count));
+  for (std::size_t i = 0; i < files_.size(); ++i) files_[i].path = file_in(folder_, i);
+  File& own = files_[share_.index];
+  if (!std::filesystem::exists(own.path)) {
+    write_file(own.path, kLogFormat);
+    own.size = kLogFormat.size();
+    return;
   }
-  if (size_ < content.size()) write_file(path_, std::string_view(content).substr(0, size_));
+  const std::string content = read_file(own.path);
+  take_records(share_.index, content, true);
+  // In place: others may be reading it.
+  if (own.size < content.size()) std::filesystem::resize_file(own.path, own.size);
 }
 
-bool ValueLog::find(std::uint64_t key, std::vector<double>& values) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = places_.find(key);
-  if (found == places_.end()) return false;
-  std::string text(found->second.count * kWord, '\0');
-  reader_.clear();
-  reader_.seekg(static_cast<std::streamoff>(found->second.offset));
-  if (!reader_.read(text.data(), static_cast<std::streamsize>(text.size())))
-    throw std::runtime_error(fmt::format("{}: cannot be read any more", path_.string()));
-  values.resize(found->second.count);
+void ValueLog::open_others() {
+  for (std::size_t i = files_.size(); std::filesystem::exists(file_in(folder_, i)); ++i) {
+    files_.push_back({.path = file_in(folder_, i)});
+  }
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    if (i != share_.index) look_at(i);
+}
+
+void ValueLog::take_records(std::size_t file, std::string_view content, bool strict) const {
+  File& f = files_[file];
+  const std::size_t from = f.size;
+  if (from == 0) {
+    if (!content.starts_with(kLogFormat)) {
+      // Another process may be about to begin it.
+      if (!strict && kLogFormat.starts_with(content)) return;
+      throw InputError(f.path.string(), "is no log of values of this version; remove it");
+    }
+    f.size = kLogFormat.size();
+  }
+  while (from + content.size() - f.size >= kFrameWords * kWord) {
+    const std::size_t at = f.size - from, rest = content.size() - at;
+    const std::uint64_t key = word_at(content, at), count = word_at(content, at + kWord);
+    if (count > rest / kWord - kFrameWords) return;
+    const std::string_view values = content.substr(at + 2 * kWord, count * kWord);
+    if (word_at(content, at + 2 * kWord + count * kWord) != check_of(key, values)) {
+      // Of another process: half of it may still be on its way.
+      if (!strict) return;
+      throw InputError(f.path.string(), fmt::format("record {} is damaged; remove the file", places_.size() + 1));
+    }
+    places_.emplace(key, Place{.file = file, .offset = f.size + 2 * kWord, .count = count});
+    f.size += (kFrameWords + count) * kWord;
+  }
+}
+
+void ValueLog::look_at(std::size_t file) const {
+  File& f = files_[file];
+  std::error_code absent;
+  const std::uintmax_t size = std::filesystem::file_size(f.path, absent);
+  if (absent || size <= f.size) return;
+  take_records(file, text_of(f, f.size, size - f.size), false);
+}
+
+std::string ValueLog::text_of(File& file, std::size_t offset, std::size_t size) {
+  if (!file.reader.is_open()) file.reader.open(file.path, std::ios::binary);
+  file.reader.clear();
+  file.reader.seekg(static_cast<std::streamoff>(offset));
+  std::string text(size, '\0');
+  if (!file.reader.read(text.data(), static_cast<std::streamsize>(size)))
+    throw std::runtime_error(fmt::format("{}: cannot be read any more", file.path.string()));
+  return text;
+}
+
+bool ValueLog::found(std::uint64_t key, std::vector<double>& values) const {
+  const auto place = places_.find(key);
+  if (place == places_.end()) return false;
+  const auto& [file, offset, count] = place->second;
+  const std::string text = text_of(files_[file], offset, count * kWord);
+  values.resize(count);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::bit_cast<double>(word_at(text, i * kWord));
   return true;
 }
+
+bool ValueLog::find(std::uint64_t key, std::vector<double>& values, std::size_t item) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (found(key, values)) return true;
+  }
+  return share_.wait && !share_.computes(item) && wait_for(key, values, share_.owner(item));
+}
+
+bool ValueLog::wait_for(std::uint64_t key, std::vector<double>& values, std::size_t owner) const {
+  using namespace std::chrono_literals;
+  constexpr auto kLookForLife = 5ms;
+  for (std::chrono::microseconds pause = 50us; interrupted_ == nullptr || !interrupted_();
+       pause = std::min<std::chrono::microseconds>(2 * pause, 20ms)) {
+    {
+      const std::lock_guard lock(mutex_);
+      look_at(owner);
+      if (found(key, values)) {
+        companions_.arrived(owner);
+        return true;
+      }
+      if (pause > kLookForLife && companions_.wait_for(owner, "what it computes is missing") > patience_of_a_path())
+        throw std::runtime_error(fmt::format(
+            "{}: process {} of {} lives, but has not come to what is waited for here: it computes other numbers, as "
+            "machines do whose processors or mathematical libraries round differently; use machines of one kind",
+            folder_.string(), owner + 1, share_.count));
+    }
+    std::this_thread::sleep_for(pause);
+  }
+  return false;
+}
+
+double ValueLog::patience_of_a_path() const { return kNeverComes * share_.patience_s; }
 
 void ValueLog::append(std::uint64_t key, std::span<const double> values) {
   std::string text;
@@ -95,13 +184,15 @@ void ValueLog::append(std::uint64_t key, std::span<const double> values) {
   record += text;
   put(record, check_of(key, text));
   const std::lock_guard lock(mutex_);
-  const Place place{.offset = size_ + 2 * kWord, .count = values.size()};
+  File& own = files_[share_.index];
+  const Place place{.file = share_.index, .offset = own.size + 2 * kWord, .count = values.size()};
   if (!places_.emplace(key, place).second) return;
-  std::ofstream file(path_, std::ios::binary | std::ios::app);
+  std::ofstream file(own.path, std::ios::binary | std::ios::app);
   file.write(record.data(), static_cast<std::streamsize>(record.size()));
   file.close();
-  if (!file) throw std::runtime_error(fmt::format("{}: cannot be continued: {}", path_.string(), std::strerror(errno)));
-  size_ += record.size();
+  if (!file)
+    throw std::runtime_error(fmt::format("{}: cannot be continued: {}", own.path.string(), std::strerror(errno)));
+  own.size += record.size();
 }
 
 }  // namespace veridyn::numerics

@@ -3,10 +3,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include "veridyn/numerics/batches/companions.hpp"
+#include "veridyn/numerics/batches/process_share.hpp"
 
 namespace veridyn::numerics {
 
@@ -14,41 +21,73 @@ namespace veridyn::numerics {
 /// earlier one that was cut off is answered from it, with the same bits, as far as that came. For work whose next step
 /// depends on the last; independent items are a `Batch`.
 ///
-/// The file, little-endian: "veridyn values 1\n", then records of key and number of values (64 bits each), the values,
+/// Several processes that follow the same path share it: what the function is asked of at once are items with a number
+/// each, of which a process computes its share and takes the others' from their files. Whoever computes them, all
+/// processes see the same bits, so that their paths stay one.
+///
+///     FOLDER/evaluations.log      of a single process, or the first of several
+///     FOLDER/evaluations-2.log    of the second
+///
+/// A file, little-endian: "veridyn values 1\n", then records of key and number of values (64 bits each), the values,
 /// and a checksum (`Fingerprint`) of these. A record counts once it is whole: what a killed program leaves at the end
-/// is dropped. Values stay in the file, not in memory.
+/// is dropped. Values stay in the files, not in memory. Those of earlier runs, with however many processes, count.
 class ValueLog {
  public:
-  /// Opens or begins the file, which must not be written by another process.
-  /// @throws InputError where it is no such log, or is damaged before its end; std::runtime_error where it cannot be
-  /// written.
-  explicit ValueLog(std::filesystem::path file);
+  /// Opens or begins this process' file in a folder.
+  /// @param interrupted  ends the waiting for others; nullptr: nothing does
+  /// @throws InputError where a file is no such log, or is damaged before its end; std::runtime_error where it cannot
+  /// be written.
+  explicit ValueLog(std::filesystem::path folder, const ProcessShare& share = {},
+                    std::function<bool()> interrupted = nullptr);
   ValueLog(const ValueLog&) = delete;
   ValueLog& operator=(const ValueLog&) = delete;
 
-  /// Reads the values under a key (a `Fingerprint` of the function and its arguments); false where there are none. On
-  /// any thread. @throws std::runtime_error when the file cannot be read.
-  [[nodiscard]] bool find(std::uint64_t key, std::vector<double>& values) const;
+  /// The values under a key (a `Fingerprint` of the function and its arguments). False: there are none, and this
+  /// process has to compute them. On any thread.
+  /// @param item  its number among what is asked at once; it is waited for where another process computes it
+  /// @throws std::runtime_error when a file cannot be read, or a process that is waited for shows no life or does not
+  /// come to compute it: then its path is another one
+  [[nodiscard]] bool find(std::uint64_t key, std::vector<double>& values, std::size_t item = 0) const;
   /// On any thread; what is there already stays. @throws std::runtime_error when it cannot be written.
   void append(std::uint64_t key, std::span<const double> values);
 
+  [[nodiscard]] const ProcessShare& share() const { return share_; }
   [[nodiscard]] std::size_t loaded() const { return loaded_; }  ///< records there when it was opened
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
   struct Place {
+    std::size_t file = 0;    ///< of `files_`
     std::size_t offset = 0;  ///< of the first value
     std::size_t count = 0;   ///< of values
   };
+  struct File {
+    std::filesystem::path path;
+    std::size_t size = 0;  ///< of the records read so far [bytes]
+    std::ifstream reader = {};
+  };
 
-  void load();
+  void open_own();
+  void open_others();
+  /// Takes the whole records of what stands in a file behind those that were read. Not strict: a record that does not
+  /// add up ends the reading instead of the program.
+  void take_records(std::size_t file, std::string_view content, bool strict) const;
+  /// Takes what was appended to a file since.
+  void look_at(std::size_t file) const;
+  [[nodiscard]] static std::string text_of(File& file, std::size_t offset, std::size_t size);
+  [[nodiscard]] bool found(std::uint64_t key, std::vector<double>& values) const;
+  /// False when interrupted.
+  [[nodiscard]] bool wait_for(std::uint64_t key, std::vector<double>& values, std::size_t owner) const;
+  [[nodiscard]] double patience_of_a_path() const;
 
-  std::filesystem::path path_;
-  mutable std::mutex mutex_;
-  mutable std::ifstream reader_;
-  std::unordered_map<std::uint64_t, Place> places_;
-  std::size_t size_ = 0;  ///< of the file [bytes]
+  std::filesystem::path folder_;
+  ProcessShare share_;
+  std::function<bool()> interrupted_;
   std::size_t loaded_ = 0;
+  mutable std::mutex mutex_;
+  mutable std::vector<File> files_;  ///< of process `index` at `index`, then those of earlier runs with more processes
+  mutable std::unordered_map<std::uint64_t, Place> places_;
+  mutable Companions companions_;
 };
 
 }  // namespace veridyn::numerics

@@ -1,0 +1,66 @@
+#include "veridyn/numerics/batches/companions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace veridyn::numerics {
+namespace {
+
+using namespace std::chrono_literals;
+
+class CompanionsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("veridyn_companions_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  static ProcessShare share(std::size_t index) {
+    return {.index = index, .count = 2, .wait = true, .patience_s = 0.05};
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(CompanionsTest, ShowThatTheyLiveOnlyWhereTheyWait) {
+  const Companions alone(folder_, {.index = 0, .count = 2});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "process-1.alive"));
+  {
+    const Companions second(folder_, share(1));
+    while (!std::filesystem::exists(folder_ / "process-2.alive")) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "process-2.alive"));
+}
+
+TEST_F(CompanionsTest, CountHowLongSomethingIsWaitedFor) {
+  const Heartbeat other(folder_ / "process-2.alive", 5ms);
+  Companions first(folder_, share(0));
+  EXPECT_LT(first.wait_for(1, "all"), 0.02);
+  double waited = 0.0;
+  while (waited < 0.1) {
+    std::this_thread::sleep_for(2ms);
+    waited = first.wait_for(1, "all");
+  }
+  first.arrived(1);
+  EXPECT_LT(first.wait_for(1, "all"), 0.02);
+}
+
+TEST_F(CompanionsTest, NameWhoShowsNoLife) {
+  Companions first(folder_, share(0));
+  EXPECT_EQ(first.wait_for(1, "3 blocks are missing"), 0.0);
+  std::this_thread::sleep_for(60ms);
+  try {
+    (void)first.wait_for(1, "3 blocks are missing");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(
+                                  "process 2 of 2 has shown no life for 0.05 s, and 3 blocks are missing; run again"));
+  }
+}
+
+}  // namespace
+}  // namespace veridyn::numerics
