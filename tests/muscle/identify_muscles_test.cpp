@@ -258,7 +258,7 @@ Recoveries recoveries(int persons, const std::string& person) {
 }
 
 TEST(MuscleRecoverySoak, IdentifiedParametersAreCoveredAndSearchesEndInTime) {
-  const Recoveries all = recoveries(20, "noise = 0.001\n");
+  const Recoveries all = recoveries(100, "noise = 0.001\n");
   EXPECT_EQ(all.at_bound, 0u);
   EXPECT_LE(all.failed, 1u);
   EXPECT_GE(all.share(), 0.90);

@@ -227,13 +227,12 @@ TEST_P(OutputSensitivities, OfAllUnknownsAreThoseOfCentralDifferences) {
   segment.controls.excitation = ControlSignals({-0.02, 0.033, 0.071, 0.2}, u, 6, interpolation);
   const MuscleParametricModel model(system, unknowns, {segment}, {.accuracy = 1e-9, .outputs = outputs});
   const MuscleParametricModel finer(system, unknowns, {segment}, {.accuracy = 1e-12, .outputs = outputs});
-  // Measured: up to 1.6e-3 of the largest (Thelen): derivatives are integrated to 1e-6 a step at best. To 1e-8 a step
-  // they are central differences to 1.8e-4, but one that is zero until an input acts then finds no step.
-  expect_central_differences(model, finer, 2e-3);
+  // Measured: up to 1.8e-4 of the largest, of which the differences' own error is a part.
+  expect_central_differences(model, finer, 2e-4);
   // At the accuracy of estimates derivatives are integrated to 1e-5 a step, and what a step leaves that passes over the
-  // corner of Thelen's force-velocity curve stays: up to 1.4e-2, at single instants of the moment; Millard's 2.3e-3.
+  // corner of Thelen's force-velocity curve stays: up to 6e-3, at single instants of the moment; Millard's 2.3e-3.
   const MuscleParametricModel coarse(system, unknowns, {segment}, {.accuracy = 1e-6, .outputs = outputs});
-  expect_central_differences(coarse, finer, millard ? 4e-3 : 2e-2);
+  expect_central_differences(coarse, finer, millard ? 3e-3 : 8e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Muscles, OutputSensitivities,

@@ -17,13 +17,24 @@ namespace veridyn::muscle::internal {
 namespace {
 
 numerics::StepControl step_control(double accuracy) {
-  // A derivative that is zero until an input or a branch begins to act is wrong by all of itself in the step in which
-  // that happens, however short it is: with less, such a step is never found.
-  constexpr double kLeast = 1e-6;
+  // Rounding leaves no more.
+  constexpr double kFinest = 1e-8;
+  // Where all of an unknown would move the state by less than a thousandth of its scale.
+  constexpr double kLeast = 1e-3;
   return {.tolerance = accuracy,
-          .derivative_tolerance = std::max(10.0 * accuracy, kLeast),
+          .derivative_tolerance = std::max(10.0 * accuracy, kFinest),
+          .least_derivative = kLeast,
           .smallest_step = 1e-12,
           .max_steps = 200000};
+}
+
+/// The size of an unknown, a power of two: tangents are integrated as those by the unknown over its size, so that all
+/// are of the order of the state, and no bit of them depends on the unit.
+double size_of(const MuscleTask& task, Eigen::Index unknown) {
+  if (at(unknown) >= task.unknowns.size()) return 1.0;
+  const MuscleUnknown& u = task.unknowns[at(unknown)];
+  const double size = u.start != 0.0 ? std::abs(u.start) : u.high - u.low;
+  return size > 0.0 && std::isfinite(size) ? std::exp2(std::round(std::log2(size))) : 1.0;
 }
 
 /// Initial motion, and the activations that muscles start with.
@@ -88,7 +99,7 @@ double fiber_length_of(const SystemEvaluator<double>& e, const MusculoskeletalSy
 struct Forcings {
   std::vector<TangentForcing> list;
   std::vector<MuscleParameterName> of;  ///< the parameter behind each
-  std::vector<double> factor;           ///< d(parameter)/d(unknown)
+  std::vector<double> factor;           ///< d(parameter)/d(unknown over its size)
 };
 
 Forcings forcings_of(const MuscleTask& task, std::span<const Eigen::Index> active) {
@@ -98,9 +109,9 @@ Forcings forcings_of(const MuscleTask& task, std::span<const Eigen::Index> activ
     if (i >= task.unknowns.size()) continue;
     const MuscleUnknown& u = task.unknowns[i];
     for (const MuscleParameterName& name : u.parameters) {
-      double weight = 1.0;
+      double weight = size_of(task, active[column]);
       if (u.factor && !name.of_excitation())
-        weight = field_of(task.system->muscles().settings(at(name.muscle)).musculotendon, name.field);
+        weight *= field_of(task.system->muscles().settings(at(name.muscle)).musculotendon, name.field);
       result.list.push_back({column, at(name.muscle), name.of_excitation() ? TangentForcing::kExcitation : name.field,
                              name.of_excitation() ? 0.0 : weight});
       result.of.push_back(name);
@@ -135,6 +146,7 @@ class TangentSimulation {
     }
     for (std::size_t j = 0; j < columns_; ++j) {
       const std::size_t i = at(active[j]);
+      column_size_.push_back(size_of(task, active[j]));
       if (i >= task.unknowns.size()) x_[size_ + (i - task.unknowns.size()) * columns_ + j] = 1.0;
     }
   }
@@ -163,6 +175,7 @@ class TangentSimulation {
     double reached_s = begin;
     const bool reached = integrate(task_, controls_, stepper_, derivative, reached_s, x_.data(), on_step,
                                    [&](double t) { add_jumps(t); });
+    for (std::size_t j = 0; j < columns_; ++j) response_.sensitivity.col(signed_index(j)) /= column_size_[j];
     return reached && good && row_ == task_.segment->time.size();
   }
 
@@ -251,6 +264,7 @@ class TangentSimulation {
   ShapedControls controls_;
   SystemStepper stepper_;
   std::vector<double> x_, between_, rate_, last_excitation_;
+  std::vector<double> column_size_;  ///< of each column's unknown
   bool simple_outputs_;
   estimation::ModelResponse& response_;
   std::size_t row_ = 0;
