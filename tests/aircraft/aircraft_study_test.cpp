@@ -84,6 +84,20 @@ TEST(AircraftStudy, ARightModelFliesOverTheHoldOutBetterThanMeanAndLastValue) {
     ASSERT_FALSE(rows_named(analysis, name).empty());
     for (const estimation::Evidence& row : rows_named(analysis, name)) EXPECT_TRUE(row.passed()) << row.text;
   }
+  // Another aircraft's lift, flown although it does not explain the coefficient: alpha goes to where it is the weight.
+  FlightStudy demanding_nothing = study;
+  demanding_nothing.identify.min_holdout_r2 = -1e6;
+  estimation::Estimate wrong = analysis.estimate;
+  for (estimation::Parameter& p : wrong.parameters)
+    if (p.name == "CL_0") p.value -= 0.3;
+  const FlightAnalysis validated = validate(demanding_nothing, wrong, silent);
+  for (const char* name : {"flown over the hold-out", "flown against the last value"}) {
+    const std::vector<estimation::Evidence> rows = rows_named(validated, name);
+    const auto of_alpha = std::ranges::find(rows, "alpha", &estimation::Evidence::about);
+    ASSERT_NE(of_alpha, rows.end()) << name;
+    EXPECT_FALSE(of_alpha->passed()) << of_alpha->text;
+  }
+  EXPECT_NE(validated.estimate.judgement.prediction.grade, estimation::Grade::kYes);
 }
 
 TEST(AircraftStudy, AnEstimateThatWasRejectedNeverHolds) {

@@ -131,6 +131,14 @@ TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
       run("validate " + study("identify_sweep") + " --seed 99 --json --estimate-file " + estimate + out());
   ASSERT_EQ(validated.exit_code, 0) << validated.text;
   EXPECT_EQ(nlohmann::json::parse(validated.text)["verdict"], "identified");
+  // The same values, rejected where they were identified; the inertia was not excited there.
+  auto rejected = nlohmann::json::parse(read_file(estimate));
+  for (auto& p : rejected["parameters"]) p["status"] = p["name"] == "I_z" ? "not_excited" : "rejected";
+  const Outcome refused = run("validate " + study("identify_sweep") + " --seed 99 --json --estimate-file " +
+                              file("rejected.json", rejected.dump()) + out());
+  const auto summary = nlohmann::json::parse(refused.text);
+  EXPECT_EQ(summary["verdict"], "rejected");
+  EXPECT_EQ(summary["grades"]["prediction"]["grade"], "no") << summary["grades"];
 }
 
 TEST_F(VehicleProgram, RefusesWhatNoVehicleCanBeOrDo) {

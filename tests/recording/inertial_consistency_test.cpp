@@ -181,6 +181,52 @@ TEST(InertialEvidence, NamesTheSensorAndTheFault) {
   }
 }
 
+SensorMatrix sensor_with(double gain, double bias) {
+  SensorMatrix m;
+  m.gain = gain * Eigen::Matrix3d::Identity();
+  m.gain_sigma.setConstant(1e-4);
+  m.bias.setConstant(bias);
+  m.bias_sigma.setConstant(1e-4);
+  return m;
+}
+
+// The limits of docs/judgement.md.
+TEST(InertialEvidence, GradesByTheLimitsOfEachSensor) {
+  const auto outcome = [](const InertialConsistency& c, std::string_view name) {
+    const auto rows = inertial_evidence(c);
+    const auto row = std::ranges::find(rows, name, &estimation::Evidence::name);
+    if (row == rows.end()) throw std::logic_error("no row " + std::string(name));
+    return row->outcome;
+  };
+  const auto accelerometer = [](double gain, double bias) {
+    InertialConsistency c;
+    c.accelerometer = sensor_with(gain, bias);
+    return c;
+  };
+  const auto gyro = [](double gain, double bias) {
+    InertialConsistency c;
+    c.gyro = sensor_with(gain, bias);
+    return c;
+  };
+  const auto late = [](double delay_s) {
+    InertialConsistency c;
+    c.accelerometer_delay = delay_s;
+    c.accelerometer_delay_sigma = 1e-4;
+    return c;
+  };
+  using O = Outcome;
+  for (const auto& [gain, expected] : {std::pair{1.015, O::kPassed}, {1.03, O::kCare}, {0.8, O::kFailed}}) {
+    EXPECT_EQ(outcome(accelerometer(gain, 0.0), "gain of the accelerometer"), expected) << gain;
+    EXPECT_EQ(outcome(gyro(gain, 0.0), "gain of the gyro"), expected) << gain;
+  }
+  for (const auto& [bias, expected] : {std::pair{0.08, O::kPassed}, {-0.2, O::kCare}, {1.2, O::kFailed}})
+    EXPECT_EQ(outcome(accelerometer(1.0, bias), "bias of the accelerometer"), expected) << bias;
+  for (const auto& [deg, expected] : {std::pair{0.2, O::kPassed}, {-0.5, O::kCare}, {6.0, O::kFailed}})
+    EXPECT_EQ(outcome(gyro(1.0, deg * kDegree), "bias of the gyro"), expected) << deg;
+  for (const auto& [delay, expected] : {std::pair{0.015, O::kPassed}, {-0.05, O::kCare}, {0.25, O::kFailed}})
+    EXPECT_EQ(outcome(late(delay), "delay of the accelerometer"), expected) << delay;
+}
+
 TEST(InertialConsistency, LeavesOutWhatTheRecordingLacks) {
   const Recording recording = without(swaying_body(3, {}), "vel_down");
   const InertialConsistency c = inertial_consistency(recording, kWhole);

@@ -1,6 +1,9 @@
 #include "veridyn/vehicle/vehicle_study.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
 
 #include "tests/vehicle/simulated_drive.hpp"
 
@@ -17,7 +20,7 @@ TEST(VehicleStudy, IdentifiesARecordingThatItIsGiven) {
       "study.toml");
   Progress silent;
   VehicleStudy read =
-      read_study(study, record_drive(lively_drive(family_car(), 1), reference_drive_sensors(), 1), silent);
+      vehicle::read_study(study, record_drive(lively_drive(family_car(), 1), reference_drive_sensors(), 1), silent);
   study.root().finish();
   EXPECT_EQ(read.identify.mass_sigma, 15.0);
   EXPECT_EQ(read.vehicle.I_z, 1500.0 * 1.2 * 1.5);
@@ -29,10 +32,68 @@ TEST(VehicleStudy, IdentifiesARecordingThatItIsGiven) {
   EXPECT_GT(analysis.estimate.validation.at("yaw_rate").r2, 0.99);
   // On another drive: held-out data.
   VehicleStudy other =
-      read_study(study, record_drive(lively_drive(family_car(), 9), reference_drive_sensors(), 9), silent);
+      vehicle::read_study(study, record_drive(lively_drive(family_car(), 9), reference_drive_sensors(), 9), silent);
   const VehicleAnalysis validated = validate(other, analysis.estimate, silent);
   EXPECT_EQ(validated.identification.verdict, estimation::GroupVerdict::kIdentified) << validated.identification.reason;
   EXPECT_GT(validated.estimate.validation.at("yaw_rate").r2, 0.99);
+}
+
+/// An estimate with these values of C_f, C_r and I_z, whose parameters have these statuses.
+estimation::Estimate given_values(const std::array<double, 3>& values,
+                                  const std::array<estimation::ParameterStatus, 3>& status) {
+  estimation::Estimate estimate;
+  estimate.method = "output error";
+  estimate.covariance = Eigen::MatrixXd::Zero(3, 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    estimate.parameters.push_back({.name = std::array{"C_f", "C_r", "I_z"}[i],
+                                   .value = values[i],
+                                   .sigma = 0.01 * values[i],
+                                   .status = status[i]});
+    const auto k = static_cast<Eigen::Index>(i);
+    estimate.covariance(k, k) = 1e-4 * values[i] * values[i];
+  }
+  return estimate;
+}
+
+VehicleAnalysis validated_on_a_drive(const estimation::Estimate& estimate) {
+  Progress silent;
+  static const VehicleStudy drive = vehicle::read_study(
+      Study::parse("seed = 3\n[subject]\nkind = \"vehicle\"\nmass = 1500\na = 1.2\nb = 1.5\n", "study.toml"),
+      record_drive(lively_drive(family_car(), 9, 0.02, 30.0), reference_drive_sensors(), 9), silent);
+  return validate(drive, estimate, silent);
+}
+
+using Status = estimation::ParameterStatus;
+constexpr std::array kAllIdentified{Status::kIdentified, Status::kIdentified, Status::kIdentified};
+
+TEST(VehicleStudy, AnotherDriveHoldsForTheSameCarAndNotForAnother) {
+  const VehicleParameters<double> p = family_car();
+  const VehicleAnalysis same = validated_on_a_drive(given_values({p.C_f, p.C_r, p.I_z}, kAllIdentified));
+  const estimation::Evidence& row = same.identification.checks.front();
+  EXPECT_EQ(row.name, "another drive");
+  EXPECT_EQ(row.outcome, estimation::Outcome::kPassed) << row.text;
+  EXPECT_EQ(same.estimate.judgement.prediction.grade, estimation::Grade::kYes);
+  EXPECT_EQ(same.estimate.judgement.parameters.grade, estimation::Grade::kNotJudged) << "nothing was identified";
+  // Front tyres of a tenth of the stiffness hardly turn a car.
+  const VehicleAnalysis other = validated_on_a_drive(given_values({0.1 * p.C_f, p.C_r, p.I_z}, kAllIdentified));
+  EXPECT_EQ(other.identification.checks.front().outcome, estimation::Outcome::kFailed)
+      << other.identification.checks.front().text;
+  EXPECT_EQ(other.identification.verdict, estimation::GroupVerdict::kRejected);
+  EXPECT_EQ(other.estimate.judgement.prediction.grade, estimation::Grade::kNo);
+  EXPECT_THAT(other.identification.reason, ::testing::StartsWith("does not hold"));
+}
+
+// A vehicle is rejected as a whole, but what was not excited or was given keeps that status.
+TEST(VehicleStudy, AnEstimateThatWasRejectedNeverHolds) {
+  const VehicleParameters<double> p = family_car();
+  for (const Status of_inertia : {Status::kRejected, Status::kNotExcited}) {
+    const VehicleAnalysis analysis =
+        validated_on_a_drive(given_values({p.C_f, p.C_r, p.I_z}, {Status::kRejected, Status::kRejected, of_inertia}));
+    const VehicleIdentification& id = analysis.identification;
+    EXPECT_EQ(id.verdict, estimation::GroupVerdict::kRejected) << estimation::to_string(of_inertia);
+    EXPECT_EQ(id.reason, "does not hold: the estimate was rejected where it was identified");
+    EXPECT_EQ(analysis.estimate.judgement.prediction.grade, estimation::Grade::kNo);
+  }
 }
 
 }  // namespace

@@ -208,7 +208,8 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
                            drive_covariance(estimate)};
     id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, progress);
     const estimation::PredictedQuantity* r = id.validation.find("yaw_rate");
-    const bool rejected = std::ranges::all_of(std::array{"C_f", "C_r", "I_z"}, [&](const char* name) {
+    // A vehicle is rejected as a whole; what was not excited, or given, keeps that status.
+    const bool rejected = std::ranges::any_of(std::array{"C_f", "C_r", "I_z"}, [&](const char* name) {
       const estimation::Parameter* p = estimate.find(name);
       return p != nullptr && p->status == estimation::ParameterStatus::kRejected;
     });

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/aircraft/pitching_flight.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/error.hpp"
@@ -13,47 +14,8 @@ namespace veridyn::aircraft {
 namespace {
 
 using F = FlightSignal;
-
-/// Four minutes in which alpha, q and elevator move independently; q' is such that the pitching moment is the
-/// subject's, with noise.
-FlightSignals pitching(const Subject& subject) {
-  FlightSignals s;
-  s.grid = numerics::UniformGrid::covering(0.0, 240.0, 0.05);
-  s.stride = 1;
-  for (auto& signal : s.signals) signal.value.assign(s.grid.count, 0.0);
-  s.air_density.assign(s.grid.count, 1.2);
-  numerics::RandomStream random(11, "pitching");
-  const CoefficientModel& cm = *subject.model.find(Coefficient::kCm);
-  for (std::size_t k = 0; k < s.grid.count; ++k) {
-    const double t = s.grid.at(k);
-    s[F::kAirspeed].value[k] = 20.0;
-    s[F::kAlpha].value[k] = 0.08 + 0.03 * std::sin(1.1 * t);
-    s[F::kQ].value[k] = 0.4 * std::sin(1.7 * t);
-    s[F::kElevator].value[k] = 0.05 * std::sin(2.3 * t) + 0.02 * std::cos(0.7 * t);
-    const double qSc = 0.5 * 1.2 * 400.0 * subject.wing_area * subject.chord;
-    const double model = cm.linear(aero_variables(s.sample(k), subject, 1.2));
-    s[F::kQdot].value[k] = qSc * (model + 0.002 * random.normal()) / subject.inertia->Jy;
-  }
-  // As much as the noise above, as error of q'.
-  s[F::kQdot].sigma = 0.5 * 1.2 * 400.0 * subject.wing_area * subject.chord * 0.002 / subject.inertia->Jy;
-  s[F::kQdot].error = ErrorKind::kClassical;
-  return s;
-}
-
-CoefficientResult identified_cm(const Subject& subject, const FlightSignals& signals) {
-  Segments segments;
-  segments.airborne = {{0.0, 240.0}};
-  for (AxisSegments* axis : {&segments.longitudinal, &segments.lateral}) {
-    axis->excited = {{0.0, 240.0}};
-    axis->identification = {{0.0, 160.0}};
-    axis->holdout = {{160.0, 240.0}};
-  }
-  IdentifyOptions options;
-  options.coefficients = {Coefficient::kCm};
-  options.method = estimation::Method::kOls;
-  Progress silent;
-  return identify_coefficients(signals, segments, subject, options, silent).at(0);
-}
+using aircraft::testing::identified_cm;
+using aircraft::testing::pitching;
 
 TEST(BodyError, OfTheMomentOfInertiaIsACommonFactorOfItsDerivatives) {
   Subject subject = builtin_subject("thor");

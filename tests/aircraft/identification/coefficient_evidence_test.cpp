@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/estimation/regression/regression_evidence.hpp"
 
@@ -135,6 +137,44 @@ TEST(CoefficientEvidence, StartValuesThatPredictBetterAreCareOfPrediction) {
   EXPECT_THAT(row_of(checks, "hold-out against the start values").text, HasSubstr("predict better"));
 }
 
+// A model that lacks a fifth of the variance predicts as far as it goes.
+TEST(CoefficientEvidence, AWeakModelThatPredictsIsCareOfPrediction) {
+  CoefficientChecks checks = sound();
+  checks.unmodelled_share = 0.19;
+  EXPECT_EQ(row_of(checks, "hold-out").outcome, Outcome::kPassed);
+  checks.unmodelled_share = 0.25;
+  EXPECT_EQ(row_of(checks, "hold-out").outcome, Outcome::kCare);
+  EXPECT_EQ(judged(checks).prediction.grade, Grade::kWithCare);
+}
+
+TEST(CoefficientEvidence, SaysWhichMethodMayBeRecommendedAndWhyNone) {
+  const Evidence some = row_of(sound(), "choice of the method");
+  EXPECT_EQ(some.outcome, Outcome::kPassed);
+  EXPECT_EQ(some.text, "GTLS: fine");
+  estimation::RegressionComparison none = recommended();
+  none.recommends = false;
+  none.reason = "none: the residual variance is 40 of what the assumed errors give";
+  EXPECT_EQ(row_of(sound(), "choice of the method", none).outcome, Outcome::kFailed);
+  EXPECT_THAT(judged(sound(), none).parameters.decided_by, ::testing::ElementsAre(none.reason));
+  EXPECT_EQ(judged(sound(), none).prediction.grade, Grade::kYes);
+}
+
+// Every row is about its coefficient, so that grades of several do not mix.
+TEST(CoefficientEvidence, IsAboutItsCoefficient) {
+  CoefficientChecks checks = sound();
+  checks.error_over_start = 1.0;
+  estimation::RegressionComparison comparison = recommended();
+  comparison.checks = {{.name = "collinearity"}};
+  std::vector<std::string> names;
+  for (const Evidence& row : coefficient_evidence("CL", checks, comparison, {})) {
+    EXPECT_EQ(row.about, "CL") << row.name;
+    names.push_back(row.name);
+  }
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("choice of the method", "residual beyond the sensors", "hold-out",
+                                                     "bands on the hold-out", "hold-out against the start values",
+                                                     "agreement of the flight's parts", "collinearity"));
+}
+
 estimation::Parameter parameter(std::string name, double value, double sigma) {
   return {.name = std::move(name), .value = value, .sigma = sigma};
 }
@@ -188,6 +228,15 @@ TEST(Plausibility, TakesAWrongSignOrAnImpossibleLiftSlopeWithCare) {
   EXPECT_EQ(row(Coefficient::kCY, "CY_beta", 0.67, 0.01).outcome, Outcome::kCare);
   EXPECT_THAT(row(Coefficient::kCY, "CY_beta", 0.67, 0.01).advice, HasSubstr("sign of beta"));
   EXPECT_EQ(row(Coefficient::kCY, "CY_beta", 0.67, 0.5).outcome, Outcome::kPassed) << "no more than noise";
+  for (const auto& [c, name, right] : {std::tuple{Coefficient::kCL, "CL_alpha", 4.0},
+                                       {Coefficient::kCD, "CD_0", 0.05},
+                                       {Coefficient::kCY, "CY_beta", -0.7},
+                                       {Coefficient::kCl, "Cl_p", -0.5},
+                                       {Coefficient::kCm, "Cm_q", -10.0},
+                                       {Coefficient::kCn, "Cn_r", -0.2}}) {
+    EXPECT_EQ(row(c, name, right, 0.01).outcome, Outcome::kPassed) << name;
+    EXPECT_EQ(row(c, name, -right, 0.01).outcome, Outcome::kCare) << name;
+  }
   // Aspect ratio 8: Helmbold's formula gives 4.9 per rad.
   EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 3.6, 0.05).outcome, Outcome::kPassed);
   EXPECT_EQ(row(Coefficient::kCL, "CL_alpha", 1.8, 0.05).outcome, Outcome::kCare);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/aircraft/pitching_flight.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
@@ -10,6 +12,8 @@
 namespace veridyn::aircraft {
 namespace {
 
+using aircraft::testing::PitchingFlight;
+using estimation::Outcome;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -25,6 +29,118 @@ TEST(Identification, PrintsNoRatioWhereTheRegressorsLeaveNoSignal) {
     const std::string text = unmodelled_text(ratio, ratio == ratio ? 1.2 : kNaN);
     EXPECT_THAT(text, Not(HasSubstr("nan"))) << ratio;
     EXPECT_THAT(text, HasSubstr("leave no signal")) << ratio;
+  }
+}
+
+CoefficientResult cm_of(const PitchingFlight& flight) {
+  const Subject subject = builtin_subject("thor");
+  return aircraft::testing::identified_cm(subject, aircraft::testing::pitching(subject, flight));
+}
+
+estimation::Evidence row_in(const CoefficientResult& result, std::string_view name) {
+  const auto row = std::ranges::find(result.evidence, name, &estimation::Evidence::name);
+  if (row == result.evidence.end()) throw std::logic_error("no row " + std::string(name));
+  return *row;
+}
+
+// The subject's own values are the start: an estimate from noisy data can be no better.
+TEST(IdentificationRows, PassWhereTheFlightIsAsItsNoiseSays) {
+  const CoefficientResult cm = cm_of({});
+  for (const char* name :
+       {"choice of the method", "residual beyond the sensors", "hold-out", "bands on the hold-out",
+        "hold-out against the start values", "agreement of the flight's parts", "collinearity", "plausibility of Cm_q"})
+    EXPECT_EQ(row_in(cm, name).outcome, Outcome::kPassed) << row_in(cm, name).text;
+  EXPECT_NEAR(row_in(cm, "hold-out against the start values").value, 1.0, 0.01);
+  EXPECT_NEAR(row_in(cm, "bands on the hold-out").value, 0.05, 0.02);
+  EXPECT_EQ(cm.judgement.parameters.grade, estimation::Grade::kYes);
+  EXPECT_EQ(cm.judgement.prediction.grade, estimation::Grade::kYes);
+}
+
+// Half the elevator was lost and is there again in the hold-out.
+TEST(IdentificationRows, FindPartsThatAreNotOneAircraft) {
+  const CoefficientResult cm = cm_of({.elevator = 0.5});
+  EXPECT_EQ(row_in(cm, "agreement of the flight's parts").outcome, Outcome::kFailed);
+  // What the study gives is right for the hold-out.
+  EXPECT_EQ(row_in(cm, "hold-out against the start values").outcome, Outcome::kCare);
+  EXPECT_GT(row_in(cm, "hold-out against the start values").value, 1.5);
+  EXPECT_EQ(cm.judgement.parameters.grade, estimation::Grade::kNo);
+}
+
+// Held-out data three times as noisy: the band of 95 % is one of 0.65 sigma, outside of which half of a normal
+// distribution lies. The parameters are right all the same.
+TEST(IdentificationRows, FindBandsThatPromiseTooMuch) {
+  const CoefficientResult cm = cm_of({.later_noise = 0.006});
+  EXPECT_EQ(row_in(cm, "bands on the hold-out").outcome, Outcome::kCare);
+  EXPECT_NEAR(row_in(cm, "bands on the hold-out").value, 0.51, 0.04);
+  EXPECT_EQ(row_in(cm, "hold-out against the start values").outcome, Outcome::kPassed);
+  EXPECT_EQ(row_in(cm, "hold-out").outcome, Outcome::kPassed);
+}
+
+TEST(IdentificationRows, FindWhatDoesNotPredictTheHoldOut) {
+  // Mirrored, as after a servo was changed over.
+  EXPECT_EQ(row_in(cm_of({.later_elevator = -1.0}), "hold-out").outcome, Outcome::kFailed);
+  // In steady flight nothing but noise is left to explain, which is no objection to the values.
+  const estimation::Evidence steady = row_in(cm_of({.later_motion = 0.01}), "hold-out");
+  EXPECT_EQ(steady.outcome, Outcome::kCare);
+  EXPECT_THAT(steady.text, HasSubstr("hardly varies there"));
+}
+
+TEST(IdentificationRows, FindAMomentThatNoTermMakes) {
+  const CoefficientResult cm = cm_of({.unmodelled = 0.03});
+  EXPECT_EQ(row_in(cm, "residual beyond the sensors").outcome, Outcome::kFailed);
+  EXPECT_GT(row_in(cm, "residual beyond the sensors").value, 0.1);
+}
+
+// An autopilot that answers alpha with the elevator. What it does to the parameters matters where the residual holds
+// more than noise.
+TEST(IdentificationRows, FindAnElevatorThatMovesWithAlpha) {
+  const auto collinearity = [](double unmodelled) {
+    return row_in(cm_of({.unmodelled = unmodelled, .follows_alpha = 0.9}), "collinearity");
+  };
+  EXPECT_EQ(collinearity(0.02).outcome, Outcome::kCare);
+  EXPECT_THAT(collinearity(0.02).text, HasSubstr("Cm_alpha, Cm_de"));
+  EXPECT_EQ(collinearity(0.0).outcome, Outcome::kPassed);
+  EXPECT_THAT(collinearity(0.0).text, HasSubstr("no larger than sensor noise"));
+}
+
+/// Judged on the whole flight, by the values of `estimate`.
+CoefficientResult evaluated(const estimation::Estimate& estimate) {
+  Subject subject = builtin_subject("thor");
+  const FlightSignals signals = aircraft::testing::pitching(subject);
+  return evaluate_estimate(signals, aircraft::testing::pitching_segments(), subject, {}, estimate).front();
+}
+
+estimation::Estimate cm_estimate() {
+  const Subject subject = builtin_subject("thor");
+  return make_estimate(subject, std::vector<CoefficientResult>{cm_of({})});
+}
+
+TEST(AnotherFlight, HoldsForTheSameAircraftAndNotForAnother) {
+  estimation::Estimate estimate = cm_estimate();
+  const CoefficientResult same = evaluated(estimate);
+  EXPECT_EQ(row_in(same, "another flight").outcome, Outcome::kPassed);
+  EXPECT_GT(row_in(same, "another flight").value, 0.9);
+  EXPECT_EQ(same.judgement.prediction.grade, estimation::Grade::kYes);
+  for (estimation::Parameter& p : estimate.parameters)
+    if (p.name == "Cm_de") p.value = -p.value;
+  const CoefficientResult other = evaluated(estimate);
+  EXPECT_EQ(row_in(other, "another flight").outcome, Outcome::kFailed);
+  EXPECT_EQ(other.verdict, estimation::GroupVerdict::kRejected);
+  EXPECT_EQ(other.judgement.prediction.grade, estimation::Grade::kNo);
+  // Validation says nothing of the parameters.
+  EXPECT_EQ(other.judgement.parameters.grade, estimation::Grade::kNotJudged);
+}
+
+// What was not excited keeps that status in a coefficient that was rejected, and is no model of it.
+TEST(AnotherFlight, DoesNotTryWhatWasRejectedWhereItWasIdentified) {
+  for (const char* held : {"none", "Cm_q"}) {
+    estimation::Estimate estimate = cm_estimate();
+    for (estimation::Parameter& p : estimate.parameters)
+      p.status = p.name == held ? estimation::ParameterStatus::kNotExcited : estimation::ParameterStatus::kRejected;
+    const CoefficientResult cm = evaluated(estimate);
+    EXPECT_EQ(cm.reason, "Cm is not validated: it was rejected where it was identified") << held;
+    EXPECT_TRUE(cm.evidence.empty()) << held;
+    EXPECT_FALSE(estimation::usable(cm.verdict)) << held;
   }
 }
 

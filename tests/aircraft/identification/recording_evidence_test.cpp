@@ -24,6 +24,11 @@ const Flown& flown() {
   return flight;
 }
 
+const Reconstruction& clean_reconstruction() {
+  static const Reconstruction reconstruction = reconstructed(flown(), reference_options());
+  return reconstruction;
+}
+
 std::vector<FlightEvidence> evidence_of(const Recording& recording) {
   Flown flight = flown();
   flight.measured = recording;
@@ -66,6 +71,7 @@ TEST(RecordingEvidence, OfACleanFlightInModerateTurbulenceIsYes) {
   EXPECT_EQ(data_grade(rows), Grade::kYes) << texts(rows);
   // What no flight can tell is said.
   EXPECT_NE(find(rows, "controls", Outcome::kNotVerified), nullptr);
+  EXPECT_NE(find(rows, "body", Outcome::kNotVerified), nullptr);
 }
 
 // The scale of a vane against gyro and accelerometer in manoeuvres, with the control as instrument: by least squares
@@ -92,12 +98,11 @@ TEST(RecordingEvidence, FindsTheScaleOfTheVanes) {
 }
 
 TEST(RecordingEvidence, NamesWhatTheClocksShow) {
-  const Flown& flight = flown();
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
   const auto rows_with = [&](const DelayReport& report) {
-    return recording_evidence(flight.measured, reconstructed(flight, reference_options()), reference_options(),
-                              segments, std::vector<DelayReport>{report});
+    return recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments,
+                              std::vector<DelayReport>{report});
   };
   const auto gyro = rows_with({"attitude", "gyro", -0.1, 0.005, 0.9, true, "applied"});
   EXPECT_NE(find(gyro, "gyro", Outcome::kCare), nullptr) << texts(gyro);
@@ -105,16 +110,23 @@ TEST(RecordingEvidence, NamesWhatTheClocksShow) {
   EXPECT_NE(find(elevator, "elevator", Outcome::kCare), nullptr) << texts(elevator);
   const auto late = rows_with({"gps", "specific force", 0.2, 0.01, 0.9, true, "applied"});
   EXPECT_EQ(find(late, "gps", Outcome::kCare), nullptr) << texts(late);
+  EXPECT_EQ(data_grade(late), Grade::kYes) << texts(late);
+  const auto opposite = rows_with({"gps", "specific force", 0.0, 0.01, -0.9, false, "opposite sign"});
+  EXPECT_NE(find(opposite, "gps", Outcome::kCare), nullptr) << texts(opposite);
+  // A deflection that leads by what more is unexplained of than explained; a sensor that is late is taken as it is.
+  DelayReport servo{"elevator", "angular acceleration", 0.07, 0.01, 0.6, false, "in doubt"};
+  servo.in_doubt = true;
+  EXPECT_NE(find(rows_with(servo), "elevator", Outcome::kCare), nullptr) << texts(rows_with(servo));
+  servo.group = "alpha";
+  EXPECT_EQ(find(rows_with(servo), "alpha", Outcome::kCare), nullptr) << texts(rows_with(servo));
 }
 
 TEST(RecordingEvidence, SaysWhichSurfacesHaveNoDelayOfTheirOwn) {
-  const Flown& flight = flown();
   Segments segments;
   segments.airborne = {{5.0, 115.0}};
   DelayReport aileron{"aileron", "angular acceleration", 0.1, 0.02, 0.9, true, "applied"};
   const auto rows_with = [&](const std::vector<DelayReport>& delays) {
-    return recording_evidence(flight.measured, reconstructed(flight, reference_options()), reference_options(),
-                              segments, delays);
+    return recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments, delays);
   };
   const DelayReport alone = aileron;
   aileron.together = {"aileron", "rudder"};
@@ -178,6 +190,27 @@ TEST(RecordingEvidence, NamesTheSensorWhoseSamplesTheReconstructionRefuses) {
   EXPECT_FALSE(wrong->bears_on(Coefficient::kCL));
 }
 
+// The row that names the sensor counts as much as the refusal that follows from it, and no more without one.
+TEST(RecordingEvidence, ACauseCountsAsMuchAsWhatFollowsFromIt) {
+  Segments segments;
+  segments.airborne = {{5.0, 115.0}};
+  const std::vector<DelayReport> gyro_late{{"attitude", "gyro", -0.1, 0.005, 0.9, true, "applied"}};
+  const auto with_refused = [&](double share) {
+    Reconstruction reconstruction = clean_reconstruction();
+    for (SensorReport& sensor : reconstruction.sensors)
+      if (sensor.channel == "yaw")
+        sensor.innovations.rejected = static_cast<std::size_t>(share * static_cast<double>(sensor.innovations.count));
+    return recording_evidence(flown().measured, reconstruction, reference_options(), segments, gyro_late);
+  };
+  const auto outcome_in = [&](double share, std::string_view name, std::string_view about) {
+    return named(with_refused(share), name, about)->row.outcome;
+  };
+  EXPECT_EQ(outcome_in(0.1, "agreement with the reconstruction", "yaw"), Outcome::kCare);
+  EXPECT_EQ(outcome_in(0.1, "delay of the gyro", "gyro"), Outcome::kCare);
+  EXPECT_EQ(outcome_in(0.3, "agreement with the reconstruction", "yaw"), Outcome::kFailed);
+  EXPECT_EQ(outcome_in(0.3, "delay of the gyro", "gyro"), Outcome::kFailed);
+}
+
 TEST(RecordingEvidence, MeanGustsAreThoseThatTurbulenceLeaves) {
   const auto clean = evidence_of(flown().measured);
   const auto gust = std::ranges::find_if(clean, [](const FlightEvidence& e) { return e.row.name == "mean gust"; });
@@ -186,13 +219,10 @@ TEST(RecordingEvidence, MeanGustsAreThoseThatTurbulenceLeaves) {
 }
 
 TEST(RecordingEvidence, SaysThatAFlightIsShorterThanItsSlowestOscillation) {
-  Flown flight = flown();
-  const ReconstructOptions options = reference_options();
-  const Reconstruction reconstruction = reconstructed(flight, options);
   const auto row_for = [&](double end) {
     Segments segments;
     segments.airborne = {{5.0, end}};
-    const auto rows = recording_evidence(flight.measured, reconstruction, options, segments);
+    const auto rows = recording_evidence(flown().measured, clean_reconstruction(), reference_options(), segments);
     const FlightEvidence* row = named(rows, "length of the flight", "");
     return row == nullptr ? estimation::Evidence{.outcome = Outcome::kMissing} : row->row;
   };

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <mutex>
 #include <optional>
 
 #include "tests/aircraft/campaign/campaign.hpp"
+#include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/numerics/parallel.hpp"
+#include "veridyn/numerics/random.hpp"
 
 namespace veridyn::aircraft {
 namespace {
@@ -76,6 +81,7 @@ TEST(TrackingJudgement, GradesACleanFlightAndSaysWhatItRestsOn) {
   EXPECT_EQ(estimate.judgement.prediction.grade, Grade::kYes);
   // Rows of the recording, those of identify, and rows of every coefficient.
   EXPECT_NE(row_named(estimate, "deflections", "controls"), nullptr);
+  EXPECT_TRUE(row_named(estimate, "plausibility of Cm_q", "Cm_q")->passed());
   for (const char* name : {"CL", "CD", "CY", "Cl", "Cm", "Cn"}) {
     const Evidence* row = row_named(estimate, "residual beyond the sensors", name);
     ASSERT_NE(row, nullptr) << name;
@@ -111,6 +117,39 @@ TEST(TrackingJudgement, IntervalsOnLineHoldTheTruthInTurbulence) {
   const OnLineCoverage coverage = coverage_on_line("unatrap", 3);
   ASSERT_GT(coverage.all, 50);
   EXPECT_GE(static_cast<double>(coverage.covered), 0.85 * coverage.all);
+}
+
+/// Cm of an aircraft with this damping, followed over two minutes in which alpha, q and elevator move independently.
+TrackedCoefficient tracked_cm(double Cm_q) {
+  const CoefficientModel model{
+      Coefficient::kCm, {parse_term("1", "t"), parse_term("alpha", "t"), parse_term("q_n", "t")}, {0.02, -0.7, Cm_q}};
+  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(4, 4);
+  W.diagonal() << 0.0, 1e-6, 1e-8, 1e-6;
+  TrackedCoefficient c{.model = model};
+  c.tracker.emplace(model, W, TrackOptions{}, 20.0);
+  numerics::RandomStream random(7, "tracked Cm");
+  for (int k = 0; k < 2400; ++k) {
+    const double t = 0.05 * k, alpha = 0.05 * std::sin(1.1 * t), q = 0.005 * std::sin(1.7 * t);
+    const std::array<double, 3> x{1.0, alpha + 1e-3 * random.normal(), q + 1e-4 * random.normal()};
+    static_cast<void>(c.tracker->update(t, x, 0.02 - 0.7 * alpha + Cm_q * q + 1e-3 * random.normal()));
+  }
+  return c;
+}
+
+// The rows of a tracker are tested with it; here are those that know that it is an aircraft.
+TEST(TrackedEvidence, AsksWhetherAnAircraftHasSuchValues) {
+  const Subject subject = builtin_subject("thor");
+  const auto row = [&](double Cm_q) {
+    const std::vector<Evidence> rows = tracked_evidence(tracked_cm(Cm_q), subject);
+    return *std::ranges::find(rows, "plausibility of Cm_q", &Evidence::name);
+  };
+  EXPECT_EQ(row(-10.0).outcome, estimation::Outcome::kPassed) << row(-10.0).text;
+  EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << row(10.0).text;
+  // What was held was not measured.
+  TrackedCoefficient unknown = tracked_cm(10.0);
+  unknown.tracker.emplace(unknown.model, unknown.tracker->regression().options().error_covariance, TrackOptions{},
+                          20.0);
+  for (const Evidence& e : tracked_evidence(unknown, subject)) EXPECT_NE(e.name, "plausibility of Cm_q");
 }
 
 // The table of docs/tracking.md: track_coverage.md in the working folder.

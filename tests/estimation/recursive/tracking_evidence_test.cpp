@@ -22,23 +22,28 @@ struct Drift {
   double y_follows_x = 0.0;  ///< y moves as x but for this share
   double quadratic = 0.0;    ///< a term that the model lacks
   double share_of_z = 1.0;   ///< of the model in z
+  bool detect = false;       ///< changes are looked for
+  double jump_s = 1e9;       ///< when a halves
+  double noise_rho = 0.0;    ///< correlation of the noise of z from row to row
 };
 
 RegressionTracker tracked_regression(const Drift& d, double duration_s = 400.0, unsigned seed = 1) {
   Eigen::MatrixXd W = 0.0025 * Eigen::MatrixXd::Identity(4, 4);
   W(0, 0) = 0.0;
   TrackerOptions options;
-  options.detect_changes = false;
+  options.detect_changes = d.detect;
   RegressionTracker tracker({"one", "a", "b"}, W, options, kRowRate_Hz);
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
+  double noise = 0.0;
   const int rows = static_cast<int>(duration_s * kRowRate_Hz);
   for (int k = 0; k < rows; ++k) {
     const double t = k / kRowRate_Hz;
     const double x = std::sin(2.0 * t) + 0.5 * std::sin(5.3 * t + 1.0);
     const double y = d.y_moves * (d.y_follows_x * x + (1.0 - d.y_follows_x) * std::sin(3.1 * t + 0.4));
-    const double slope = 1.0 + (d.end_slope - 1.0) * t / duration_s;
-    const double z = d.share_of_z * (0.1 + slope * x + 0.5 * y) + d.quadratic * x * x + d.noise * normal(generator);
+    const double slope = t < d.jump_s ? 1.0 + (d.end_slope - 1.0) * t / duration_s : 0.5;
+    noise = d.noise_rho * noise + std::sqrt(1.0 - d.noise_rho * d.noise_rho) * normal(generator);
+    const double z = d.share_of_z * (0.1 + slope * x + 0.5 * y) + d.quadratic * x * x + d.noise * noise;
     const std::array<double, 3> row{1.0, x + 0.05 * normal(generator), y + 0.05 * normal(generator)};
     (void)tracker.update(t, row, z);
     if (k % 200 == 0) tracker.fit_equation_error();
@@ -87,6 +92,55 @@ TEST(TrackingEvidence, NamesRegressorsThatMoveTogether) {
   const Evidence row = tracking_row(tracked_regression({.noise = 0.25, .y_follows_x = 0.8}), "collinearity");
   EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
   EXPECT_NE(row.text.find("a, b"), std::string::npos) << row.text;
+  const Evidence quiet = tracking_row(tracked_regression({.y_follows_x = 0.8}), "collinearity");
+  EXPECT_EQ(quiet.outcome, Outcome::kPassed) << quiet.text;
+  EXPECT_NE(quiet.text.find("no larger than sensor noise"), std::string::npos) << quiet.text;
+}
+
+TEST(TrackingEvidence, SaysThatNeighbouringRowsCorrelate) {
+  const Evidence row = tracking_row(tracked_regression({.noise_rho = 0.8}), "residual autocorrelation");
+  EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
+  EXPECT_GT(row.value, 0.2);
+  EXPECT_TRUE(row.bears_on.empty()) << "the error bars allow for it";
+}
+
+TEST(TrackingEvidence, SaysWhichChangesWereFound) {
+  const Evidence none = tracking_row(tracked_regression({.detect = true}), "changes");
+  EXPECT_EQ(none.outcome, Outcome::kPassed) << none.text;
+  const RegressionTracker tracker = tracked_regression({.detect = true, .jump_s = 250.0});
+  const Evidence row = tracking_row(tracker, "changes");
+  EXPECT_EQ(row.outcome, Outcome::kCare) << row.text;
+  ASSERT_FALSE(tracker.changes().empty());
+  EXPECT_NEAR(tracker.changes().front().detected_s, 250.0, 10.0);
+  EXPECT_EQ(judge(tracking_rows(tracker)).parameters.grade, Grade::kWithCare);
+  EXPECT_EQ(tracking_row(tracked_regression({}, 100.0), "changes").outcome, Outcome::kNotVerified)
+      << "they were not looked for";
+}
+
+TEST(TrackingEvidence, IsMissingBeforeThereIsAnEstimate) {
+  const RegressionTracker tracker = tracked_regression({}, 0.1);
+  const std::vector<Evidence> rows = tracking_rows(tracker);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows.front().name, "estimate");
+  EXPECT_EQ(rows.front().outcome, Outcome::kMissing);
+  EXPECT_EQ(judge(rows).parameters.grade, Grade::kNotJudged);
+  EXPECT_EQ(judge(rows).prediction.grade, Grade::kNotJudged);
+}
+
+TEST(TrackingEvidence, RefusesAParameterWithoutAStandardError) {
+  const RegressionTracker tracker = tracked_regression({}, 100.0);
+  const auto failed = [&](double sigma, ParameterStatus status) {
+    RegressionEstimate estimate = tracker.estimate();
+    estimate.parameters[1].sigma = sigma;
+    estimate.parameters[1].status = status;
+    const std::vector<Evidence> rows = tracking_evidence("C", tracker, estimate);
+    return std::ranges::count_if(
+        rows, [](const Evidence& row) { return row.name == "standard error" && row.outcome == Outcome::kFailed; });
+  };
+  EXPECT_EQ(failed(0.01, ParameterStatus::kIdentified), 0);
+  EXPECT_EQ(failed(0.0, ParameterStatus::kIdentified), 1);
+  EXPECT_EQ(failed(std::nan(""), ParameterStatus::kIdentified), 1);
+  EXPECT_EQ(failed(0.0, ParameterStatus::kFixed), 0) << "it was given";
 }
 
 TEST(TrackingEvidence, FindsParametersThatDrift) {

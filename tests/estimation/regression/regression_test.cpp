@@ -122,6 +122,90 @@ TEST(Compare, NamesCollinearRegressorsBesideADirectionThatIsHeld) {
   EXPECT_EQ(row->text.find("theta1"), std::string::npos) << row->text;
 }
 
+/// The row of a name, which must be there.
+Evidence check_named(const RegressionComparison& c, std::string_view name) {
+  const auto row = std::ranges::find(c.checks, name, &Evidence::name);
+  if (row == c.checks.end()) throw std::logic_error("no row " + std::string(name));
+  return *row;
+}
+
+// Noise as W says, small enough that OLS is as good.
+TEST(CompareRows, LetARegressionPassThatIsAsItsNoiseSays) {
+  int autocorrelated = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const RegressionComparison c = compare(simulate_regression(seed, regression_theta(), errors(1e-3, 0.01)).data);
+    for (const char* name : {"collinearity", "agreement of OLS", "error scale", "sensitivity to the error ratio"})
+      EXPECT_EQ(check_named(c, name).outcome, Outcome::kPassed) << name << ": " << check_named(c, name).text;
+    autocorrelated += check_named(c, "residual autocorrelation").passed() ? 0 : 1;
+    EXPECT_EQ(c.checks.size(), 5U);
+  }
+  // A test at 5 %, for information: more than six of 40 in 1 % of all cases.
+  EXPECT_LE(autocorrelated, 6);
+}
+
+TEST(CompareRows, FindAResidualThatIsCorrelated) {
+  const auto row = [](double rho) {
+    return check_named(compare(simulate_regression(1, regression_theta(), errors(0.0, 0.01), {.error_rho = rho}).data),
+                       "residual autocorrelation");
+  };
+  EXPECT_EQ(row(0.0).outcome, Outcome::kPassed) << row(0.0).text;
+  EXPECT_EQ(row(0.9).outcome, Outcome::kCare);
+  EXPECT_NEAR(row(0.9).value, 2.0 * (1.0 - 0.9), 0.1) << "Durbin-Watson of a first-order process";
+  // The error bars are wide enough, so that no grade depends on it.
+  EXPECT_TRUE(row(0.9).bears_on.empty());
+}
+
+// Regressors with a tenth of their variance in noise: OLS is attenuated, by many of its error bars.
+TEST(CompareRows, SayThatOlsIsBiasedByNoiseOfTheRegressors) {
+  const Evidence row =
+      check_named(compare(simulate_regression(1, regression_theta(), errors(0.1, 0.1)).data), "agreement of OLS");
+  EXPECT_EQ(row.outcome, Outcome::kCare);
+  EXPECT_GT(row.value, 5.0);
+  EXPECT_THAT(row.text, testing::HasSubstr("errors of the regressors matter"));
+}
+
+TEST(CompareRows, CompareTheResidualWithTheAssumedErrors) {
+  const auto with = [](double factor) {
+    auto s = simulate_regression(1, regression_theta(), errors(1e-3, 0.01));
+    s.data.error_covariance *= factor;
+    return compare(s.data);
+  };
+  // Known to a factor of two.
+  for (const double factor : {0.6, 1.0, 1.7})
+    EXPECT_EQ(check_named(with(factor), "error scale").outcome, Outcome::kPassed) << factor;
+  for (const double factor : {0.2, 5.0}) {
+    const Evidence row = check_named(with(factor), "error scale");
+    EXPECT_EQ(row.outcome, Outcome::kCare) << factor;
+    EXPECT_NEAR(row.value, 1.0 / factor, 0.15 / factor);
+    // All errors by the same factor leave their ratio, so that the estimate stays and a method is recommended.
+    EXPECT_EQ(check_named(with(factor), "sensitivity to the error ratio").outcome, Outcome::kPassed) << factor;
+    EXPECT_TRUE(with(factor).recommends) << with(factor).reason;
+  }
+}
+
+// The trap of above: which error the difference is matters by many sigmas.
+TEST(CompareRows, SayThatTheEstimateDependsOnTheErrorRatio) {
+  auto s = simulate_regression(3, regression_theta(), errors(1e-4, 1.0));
+  s.data.error_covariance = errors(0.05, 0.01);
+  const Evidence row = check_named(compare(s.data), "sensitivity to the error ratio");
+  EXPECT_EQ(row.outcome, Outcome::kCare);
+  EXPECT_GT(row.value, row.limit);
+  EXPECT_THAT(row.text, testing::HasSubstr("error of the equation alone"));
+}
+
+TEST(CompareRows, NameRegressorsThatMoveTogether) {
+  auto s = simulate_regression(5, regression_theta(), errors(0.0, 0.01));
+  EXPECT_EQ(check_named(compare(s.data), "collinearity").outcome, Outcome::kPassed);
+  s.data.regressors.col(3) = s.data.regressors.col(2) + 0.15 * s.data.regressors.col(3);
+  s.data.regressand = s.data.regressors * regression_theta();
+  const Evidence row = check_named(compare(s.data), "collinearity");
+  EXPECT_EQ(row.outcome, Outcome::kCare);
+  // 1/(1 - R^2) of theta3, whose own part has 0.15^2 of theta2's variance.
+  EXPECT_THAT(row.text, testing::HasSubstr("theta2, theta3 move together"));
+  EXPECT_TRUE(row.bears_on.contains(Purpose::kParameters));
+  EXPECT_FALSE(row.bears_on.contains(Purpose::kPrediction));
+}
+
 TEST(Compare, MarksInsignificantParametersWithoutZeroingThem) {
   Eigen::VectorXd theta = regression_theta();
   theta(3) = 0.0;

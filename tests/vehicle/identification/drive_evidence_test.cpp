@@ -124,6 +124,8 @@ TEST(DriveEvidence, NamesWhatIsWrongWithADrive) {
        "steer reads 1.3"},
       {"yaw rate late", test::delayed({"yaw_rate"}, 0.15), "order in time", Outcome::kCare, "steer, yaw_rate",
        "yaw_rate is late"},
+      {"yaw rate very late", test::delayed({"yaw_rate"}, 0.5), "order in time", Outcome::kFailed, "steer, yaw_rate",
+       "later than tyres do"},
       {"steering late", test::delayed({"steer"}, 0.15), "order in time", Outcome::kCare, "steer", "after its effect"},
       {"steering frozen", test::frozen({"steer"}, 0.1), "steering that stands still", Outcome::kFailed, "steer",
        "steer does not move for"},
@@ -143,6 +145,24 @@ TEST(DriveEvidence, NamesWhatIsWrongWithADrive) {
     EXPECT_EQ(row->about, c.about) << c.fault << ": " << row->text;
     EXPECT_THAT(row->text, HasSubstr(c.text)) << c.fault;
     EXPECT_FALSE(row->advice.empty()) << c.fault;
+  }
+}
+
+// What no drive shows is said, and with which values.
+TEST(DriveEvidence, SaysWhatIsTakenAsGiven) {
+  const Judged found = judged(record_drive(varied_drive(3), with_positions(), 3), family_car());
+  for (const auto& [name, text] : {std::pair{"mass", "the mass of 1500 kg"}, {"centre of gravity", "a = 1.2 m"}}) {
+    const Evidence* row = find_row(found.rows, name);
+    ASSERT_NE(row, nullptr) << name;
+    EXPECT_EQ(row->outcome, Outcome::kNotVerified);
+    EXPECT_THAT(row->text, HasSubstr(text));
+  }
+  for (const char* name :
+       {"yaw rate against heading", "speed against positions", "lateral acceleration against turning",
+        "longitudinal acceleration against speed", "steering against turning", "order in time"}) {
+    const Evidence* row = find_row(found.rows, name);
+    ASSERT_NE(row, nullptr) << name;
+    EXPECT_TRUE(row->passed()) << row->text;
   }
 }
 

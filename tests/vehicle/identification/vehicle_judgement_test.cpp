@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 namespace veridyn::vehicle {
 namespace {
 
@@ -139,6 +141,94 @@ TEST(VehicleJudgement, RegressionsThatBelongToNoBicycleReject) {
   // Equation error knows linear tyres only.
   c.options.model.tyre = DriveTyre::kMagicFormula;
   EXPECT_EQ(judge_vehicle(problem, findings).verdict, estimation::GroupVerdict::kIdentified);
+}
+
+estimation::Evidence judged_row(const VehicleJudgement& judgement, std::string_view name) {
+  const auto row = std::ranges::find(judgement.checks, name, &estimation::Evidence::name);
+  if (row == judgement.checks.end()) throw std::logic_error("no row " + std::string(name));
+  return *row;
+}
+
+// Noise is known to a factor of two: up to there an autocorrelated residual needs care, and a white one is noise.
+TEST(VehicleJudgement, GradesAResidualByItsSizeAndItsAutocorrelation) {
+  using estimation::Outcome;
+  const auto outcome = [](double rmse, double lag1) {
+    Case c;
+    c.fit.quantities = {yaw_rate(0.99, rmse, lag1)};
+    c.validation.quantities = {yaw_rate(0.98, rmse, lag1)};
+    return judged_row(c.judge(), "residual beyond the sensors").outcome;
+  };
+  EXPECT_EQ(outcome(0.014, 0.9), Outcome::kPassed);
+  EXPECT_EQ(outcome(0.018, 0.9), Outcome::kCare);
+  EXPECT_EQ(outcome(0.022, 0.9), Outcome::kFailed);
+  EXPECT_EQ(outcome(0.022, 0.1), Outcome::kPassed);
+}
+
+TEST(VehicleJudgement, FindsAModelThatIsSystematicallyOffOnTheHoldOut) {
+  using estimation::Outcome;
+  const auto with = [](double rmse_there, double lag1_there, double lag1_here) {
+    Case c;
+    c.fit.quantities = {yaw_rate(0.99, 0.01, lag1_here)};
+    c.validation.quantities = {yaw_rate(0.98, rmse_there, lag1_there)};
+    return c.judge();
+  };
+  const auto outcome = [&](double rmse_there, double lag1_there, double lag1_here) {
+    return judged_row(with(rmse_there, lag1_there, lag1_here), "residual on the hold-out").outcome;
+  };
+  EXPECT_EQ(outcome(0.014, 0.5, 0.5), Outcome::kPassed) << "as it was where it was identified";
+  EXPECT_EQ(outcome(0.02, 0.1, 0.1), Outcome::kPassed) << "larger, but white";
+  EXPECT_EQ(outcome(0.02, 0.5, 0.5), Outcome::kCare);
+  EXPECT_EQ(outcome(0.011, 0.5, 0.1), Outcome::kCare);
+  const VehicleJudgement found = with(0.02, 0.5, 0.5);
+  EXPECT_EQ(found.judgement.prediction.grade, estimation::Grade::kWithCare);
+  EXPECT_EQ(found.judgement.parameters.grade, estimation::Grade::kYes);
+}
+
+/// Both methods with standard errors of 1 %, output error's C_f being `ratio` times equation error's.
+AgreementChecks agreement_where_c_f_differs(double ratio, DriveTyre tyre = DriveTyre::kLinear) {
+  Case c;
+  c.options.model.tyre = tyre;
+  EquationErrorEstimates equation_error;
+  AxleEstimate axle;
+  axle.method = estimation::Method::kGtls;
+  axle.usable = true;
+  axle.value = {6e4, 6e4, 1800.0};
+  axle.covariance.diagonal() = (0.01 * axle.value).cwiseAbs2();
+  axle.consistency_p = 0.3;
+  equation_error.regression.axles = {axle};
+  OutputErrorResult output_error;
+  output_error.estimate.usable = true;
+  output_error.raw.covariance = axle.covariance;
+  for (const auto& [name, value] : {std::pair{"C_f", ratio * 6e4}, {"C_r", 6e4}, {"I_z", 1800.0}})
+    output_error.estimate.parameters.push_back({.name = name, .value = value});
+  return check_agreement({c.signals, c.segments, c.start, c.signal_options, c.options},
+                         {.chosen = c.estimate,
+                          .equation_error = &equation_error,
+                          .output_error = &output_error,
+                          .fit = c.fit,
+                          .validation = c.validation,
+                          .by_noise = c.by_noise});
+}
+
+TEST(CheckAgreement, ComparesTheMethodsWithinTheirErrorBars) {
+  using estimation::Outcome;
+  const AgreementChecks same = agreement_where_c_f_differs(1.02);
+  ASSERT_TRUE(same.methods && same.consistency);
+  EXPECT_EQ(same.methods->outcome, Outcome::kPassed) << same.methods->text;
+  EXPECT_EQ(same.consistency->outcome, Outcome::kPassed) << same.consistency->text;
+  // 20 % by errors of 1, 1 and, for the small angles, 1 %: 11 standard deviations.
+  const AgreementChecks other = agreement_where_c_f_differs(1.2);
+  EXPECT_EQ(other.methods->outcome, Outcome::kFailed) << other.methods->text;
+  EXPECT_TRUE(other.methods->bears_on.contains(estimation::Purpose::kParameters));
+  EXPECT_FALSE(other.methods->bears_on.contains(estimation::Purpose::kPrediction));
+  EXPECT_EQ(agreement_where_c_f_differs(1.2, DriveTyre::kMagicFormula).methods->outcome, Outcome::kCare);
+}
+
+TEST(VehicleJudgement, HasARowForEveryCheckOfASoundEstimate) {
+  std::vector<std::string> names;
+  for (const estimation::Evidence& row : Case().judge().checks) names.push_back(row.name);
+  EXPECT_THAT(names, ElementsAre("residual beyond the sensors", "unmodelled share", "simulation", "plausibility of C_f",
+                                 "plausibility of C_r", "hold-out", "residual on the hold-out"));
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ TEST(VehiclePlausibility, RefusesWhatNoVehicleHas) {
   EXPECT_EQ(worst({determined("I_z", 5e3, 800.0)}, known), Outcome::kPassed) << "not beyond its error";
   EXPECT_EQ(worst({determined("mu", 5.0, 0.1)}, known), Outcome::kFailed);
   EXPECT_EQ(bound_rows(std::vector{determined("mu", 0.9, 1e-113)}).size(), 1U) << "a search that ended at a bound";
-  EXPECT_EQ(worst({determined("C_f", 3e3, 10.0)}, known), Outcome::kFailed) << "a stiffness in N/deg";
+  for (const char* stiffness : {"C_f", "C_r"})
+    EXPECT_EQ(worst({determined(stiffness, 2e3, 10.0)}, known), Outcome::kFailed) << "a stiffness in N/deg";
 }
 
 TEST(VehiclePlausibility, SaysWhatEndedAtItsBound) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
@@ -90,6 +92,69 @@ TEST(DriveTracker, HoldsWhatStraightDrivingDoesNotExcite) {
       EXPECT_NEAR(h.value[i], h.value[first], 1e-6 * std::abs(h.value[first]));
   }
   EXPECT_NE(tracker.estimate("car").verdict.find("held at the end"), std::string::npos);
+}
+
+const estimation::Evidence* tracked_row(const estimation::Estimate& estimate, std::string_view name,
+                                        std::string_view about) {
+  const auto row = std::ranges::find_if(
+      estimate.evidence, [&](const estimation::Evidence& e) { return e.name == name && e.about == about; });
+  return row == estimate.evidence.end() ? nullptr : &*row;
+}
+
+estimation::Estimate tracked_estimate(const Recording& recording) {
+  VehicleStudy study = study_of(recording);
+  Progress silent;
+  return track(study, silent).drive.estimate();
+}
+
+TEST(DriveTrackerRows, PassForACarThatDoesNotChange) {
+  const estimation::Estimate estimate = tracked_estimate(drive_with_drop(3, 100.0, 1e9));
+  for (const std::string_view axle : kTrackedAxleNames) {
+    for (const char* name : {"residual beyond the sensors", "residual autocorrelation", "collinearity", "excitation",
+                             "agreement of the recording's parts", "changes", "prediction of the next row"}) {
+      const estimation::Evidence* row = tracked_row(estimate, name, axle);
+      ASSERT_NE(row, nullptr) << name << " of " << axle;
+      EXPECT_TRUE(row->passed() || row->bears_on.empty()) << name << " of " << axle << ": " << row->text;
+    }
+    EXPECT_EQ(estimate.find(std::string(axle))->status, estimation::ParameterStatus::kIdentified) << axle;
+  }
+  EXPECT_EQ(estimate.judgement.parameters.grade, estimation::Grade::kYes);
+  EXPECT_EQ(estimate.judgement.prediction.grade, estimation::Grade::kYes);
+  EXPECT_EQ(estimate.judgement.data.grade, estimation::Grade::kNotJudged) << "the recording is not checked";
+}
+
+TEST(DriveTrackerRows, SayThatGripDroppedAndWhatIsNotExcited) {
+  const estimation::Estimate wet = tracked_estimate(drive_with_drop(1, 90.0, 60.0));
+  const bool found = std::ranges::any_of(kTrackedAxleNames, [&](std::string_view axle) {
+    return tracked_row(wet, "changes", axle)->outcome == estimation::Outcome::kCare;
+  });
+  EXPECT_TRUE(found);
+  EXPECT_EQ(wet.judgement.parameters.grade, estimation::Grade::kWithCare);
+  const estimation::Estimate straight = tracked_estimate(drive_with_drop(1, 40.0, 1e9, 1e-4));
+  EXPECT_EQ(tracked_row(straight, "excitation", "C_f")->outcome, estimation::Outcome::kCare);
+}
+
+// A steering sensor of the wrong sign, which a whole recording is refused for: to turn that way, the front tyres would
+// have to push the other way.
+TEST(DriveTrackerRows, RefuseTyresThatPushTheWrongWay) {
+  const DriveSignals s = prepare_drive_signals(mapped(drive_with_drop(3, 40.0, 1e9)), {});
+  const auto followed = [&](double sign) {
+    DriveTracker tracker(family_car(), {}, 3.0, 100.0, {1e-3, 0.05, 1e-3, 0.05});
+    for (std::size_t k = 0; k < s.size(); ++k)
+      static_cast<void>(
+          tracker.append({s.grid.at(k), sign * s[DriveSignal::kSteer].value[k], s[DriveSignal::kSpeed].value[k],
+                          s[DriveSignal::kYawRate].value[k], s[DriveSignal::kAccelY].value[k]}));
+    return tracker.estimate("car");
+  };
+  EXPECT_EQ(tracked_row(followed(1.0), "plausibility of C_f", "C_f"), nullptr);
+  const estimation::Estimate reversed = followed(-1.0);
+  EXPECT_LT(reversed.find("C_f")->value, 0.0);
+  const estimation::Evidence* row = tracked_row(reversed, "plausibility of C_f", "C_f");
+  ASSERT_NE(row, nullptr);
+  EXPECT_EQ(row->outcome, estimation::Outcome::kFailed);
+  EXPECT_NE(reversed.find("C_f")->status, estimation::ParameterStatus::kIdentified);
+  EXPECT_NE(reversed.judgement.parameters.grade, estimation::Grade::kYes);
+  EXPECT_EQ(tracked_row(reversed, "plausibility of C_r", "C_r"), nullptr) << "the rear axle does not know the steering";
 }
 
 TEST(DriveTracker, DoesNotDependOnThePiecesInWhichARecordingComes) {

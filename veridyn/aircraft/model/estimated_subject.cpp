@@ -14,13 +14,19 @@ namespace veridyn::aircraft {
 
 CoefficientModel estimated_coefficient(const CoefficientModel& structure, const std::vector<std::string>& names,
                                        const estimation::Estimate& estimate) {
+  using estimation::ParameterStatus;
   CoefficientModel model{structure.coefficient, {}, {}};
+  bool rejected = false, estimated = false;
   for (std::size_t i = 0; i < structure.size(); ++i) {
     const estimation::Parameter* p = estimate.find(names[i]);
-    if (p == nullptr || p->status == estimation::ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+    rejected = rejected || (p != nullptr && p->status == ParameterStatus::kRejected);
+    if (p == nullptr || p->status == ParameterStatus::kRejected || !std::isfinite(p->value)) continue;
+    estimated = estimated || (p->status != ParameterStatus::kNotExcited && p->status != ParameterStatus::kFixed);
     model.terms.push_back(structure.terms[i]);
     model.values.push_back(p->value);
   }
+  // A coefficient is rejected as a whole; what was held in it keeps that status, and is no model by itself.
+  if (rejected && !estimated) return {structure.coefficient, {}, {}};
   return model;
 }
 

@@ -6,7 +6,8 @@
 namespace veridyn::aircraft {
 
 /// The terms of `structure` that the estimate holds a value for under their `names` (one per term), with these values.
-/// Terms that it dropped or rejected are left out, so the result may be smaller, or empty.
+/// Terms that it dropped or rejected are left out, so the result may be smaller, or empty, as where beside rejected
+/// terms there are only held ones.
 [[nodiscard]] CoefficientModel estimated_coefficient(const CoefficientModel& structure,
                                                      const std::vector<std::string>& names,
                                                      const estimation::Estimate& estimate);
