@@ -10,6 +10,7 @@
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/numerics/parallel.hpp"
@@ -172,7 +173,8 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
   if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
   if (analysis.uncertainty.available()) folder.write("coefficient_uncertainty.csv", to_csv(analysis.uncertainty));
-  folder.write("subject.toml", graded_toml(write_subject_toml(analysis.identified), analysis.estimate.judgement));
+  folder.write("subject.toml",
+               estimation::graded_toml(write_subject_toml(analysis.identified), analysis.estimate.judgement));
   // JSBSim flies a complete model only; `veridyn export` says what is missing.
   if (analysis.identified.inertia && analysis.identified.model.unknown_parameters().empty())
     folder.write("jsbsim.xml", graded_xml(write_jsbsim(analysis.identified), analysis.estimate.judgement));

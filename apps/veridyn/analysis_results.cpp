@@ -43,10 +43,6 @@ void print_judgement(const CommonOptions& options, const estimation::Estimate& e
   }
 }
 
-std::string graded_toml(const std::string& toml, const estimation::Judgement& judgement) {
-  return fmt::format("# {}\n{}", estimation::sentence_of(judgement), toml);
-}
-
 std::string graded_xml(const std::string& xml, const estimation::Judgement& judgement) {
   const std::size_t after_declaration = xml.find('\n') + 1;
   return fmt::format("{}<!-- {} -->\n{}", xml.substr(0, after_declaration), estimation::sentence_of(judgement),

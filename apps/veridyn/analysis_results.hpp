@@ -19,8 +19,7 @@ namespace veridyn::app {
 /// The three grades in a line, then every row of the evidence that is less than passed, with what to do.
 void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate);
 
-/// A model as TOML or XML with a comment that says for which purposes it may be used.
-[[nodiscard]] std::string graded_toml(const std::string& toml, const estimation::Judgement& judgement);
+/// A model as XML with a comment that says for which purposes it may be used; TOML: `estimation::graded_toml`.
 [[nodiscard]] std::string graded_xml(const std::string& xml, const estimation::Judgement& judgement);
 
 /// The three grades and their reasons, for `--json`.

@@ -13,6 +13,7 @@
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -75,7 +76,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
     Vehicle identified;
     identified.name = drive.study.subject_name;
     identified.parameters = id.identified;
-    folder.write("subject.toml", graded_toml(write_vehicle_toml(identified), analysis.estimate.judgement));
+    folder.write("subject.toml", estimation::graded_toml(write_vehicle_toml(identified), analysis.estimate.judgement));
   }
   report::DriveReportContext context{.program = program_name()};
   context.validation_only = validation_only;

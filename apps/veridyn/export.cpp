@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
@@ -51,7 +52,7 @@ int export_aircraft(const StudyRun& run) {
   // What was graded says for which purposes its numbers may be used.
   const bool graded = estimate && !estimate->evidence.empty();
   const std::string toml = aircraft::write_subject_toml(subject);
-  if (desired("toml")) folder.write("subject.toml", graded ? graded_toml(toml, estimate->judgement) : toml);
+  if (desired("toml")) folder.write("subject.toml", graded ? estimation::graded_toml(toml, estimate->judgement) : toml);
   if (desired("csv")) folder.write("model.csv", model_csv(subject));
   if (desired("jsbsim")) {
     const std::string xml = aircraft::write_jsbsim(subject);

@@ -128,6 +128,7 @@ int rig_car(const Arguments& arguments) {
   const CarStudy& settings = *study.car;
   vehicle::Vehicle vehicle = vehicle::read_vehicle(root.table("subject"), vehicle::VehicleNeeds::kFourWheel);
   vehicle.longitudinal.wheel_radius = settings.radius;
+  for (const std::string& warning : vehicle.warnings) print_line(options, "warning: " + warning);
   OutputFolder folder(options.out);
   VirtualCar car(vehicle, virtual_car_options(settings, study.cueing.seed),
                  static_cast<std::uint16_t>(std::random_device()() & 0xffffU));

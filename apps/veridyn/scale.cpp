@@ -84,6 +84,10 @@ int scale_vehicle(const StudyRun& run) {
     print(fmt::format("  {:<22} {:+.3g} %   {}", g.formula, g.mismatch_percent, g.affects));
   print(fmt::format("  {:<22} {:+.3g} %   (gravity, separately)", r.gravity.formula, r.gravity.mismatch_percent));
   for (const std::string& line : r.gravity_changes) print("    " + line);
+  for (const Vehicle* vehicle : {&study.simulation.vehicle, study.given ? &*study.given : nullptr}) {
+    if (vehicle == nullptr) continue;
+    for (const std::string& line : vehicle->warnings) print(fmt::format("warning: {}: {}", vehicle->name, line));
+  }
   for (const std::string& line : analysis.ended_early()) print("warning: " + line);
   print(r.message());
   print(fmt::format("wrote groups.csv, scaled.toml, prototype.csv, model.csv, report.html in {}",

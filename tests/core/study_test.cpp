@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/core/files.hpp"
 
 namespace veridyn {
 namespace {
@@ -126,6 +128,38 @@ TEST(Study, TakesRelativeFilesFromItsFolder) {
   const Study files = study("log = \"flight.bin\"\nother = \"/abs/flight.bin\"\n");
   EXPECT_EQ(files.root().file("log"), "/data/flight.bin");
   EXPECT_EQ(files.root().file("other"), "/abs/flight.bin");
+}
+
+TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "veridyn_subject_of_file";
+  std::filesystem::create_directories(folder / "out");
+  write_file(folder / "out" / "subject.toml",
+             "# graded\n[subject]\nmass = -5\nspan = 2\n[subject.tyres]\nfront = \"front.tir\"\n[other]\nx = 1\n");
+  const auto in_folder = [&](const std::string& text, std::vector<std::string> overrides = {}) {
+    return Study::parse(text, "study.toml", folder, overrides);
+  };
+  const Study named = in_folder("[subject]\nfile = \"out/subject.toml\"\nspan = 3\n");
+  const StudyTable subject = named.root().table("subject");
+  EXPECT_EQ(subject.number("span", "m"), 3.0);
+  EXPECT_EQ(subject.table("tyres").file("front"), folder / "out" / "front.tir");
+  const std::string wrong = why([&] { static_cast<void>(subject.positive("mass", "kg")); });
+  EXPECT_THAT(wrong, testing::StartsWith((folder / "out" / "subject.toml").string() + ":3: subject.mass"));
+  EXPECT_NO_THROW(named.root().finish());
+  // What is written down of the run needs the file no more.
+  const Study kept = Study::parse(named.to_toml(), "kept.toml", "/elsewhere");
+  EXPECT_EQ(kept.root().table("subject").number("mass", "kg"), -5.0);
+  const Study set = in_folder("[scale.model]\nspan = 1\n", {"scale.model.file=out/subject.toml"});
+  EXPECT_EQ(set.root().table("scale").table("model").number("mass", "kg"), -5.0);
+  EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\nfile = \"absent.toml\"\n")); }),
+              HasSubstr("absent.toml: no such file"));
+  write_file(folder / "none.toml", "a = 1\n");
+  EXPECT_THAT(
+      why([&] { static_cast<void>(in_folder("\n[subject]\nfile = \"none.toml\"\n")); }),
+      testing::AllOf(testing::StartsWith("study.toml:3: subject.file"), HasSubstr("none.toml has no [subject]")));
+  write_file(folder / "chain.toml", "[subject]\nfile = \"none.toml\"\n");
+  EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\nfile = \"chain.toml\"\n")); }),
+              HasSubstr("is in another file; name that one"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Study, SaysWhereTheTomlIsBroken) {

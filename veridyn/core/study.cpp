@@ -78,7 +78,8 @@ const toml::node* find(const StudyNode& node, std::string_view key) {
 
 std::string place_of(const StudyNode& node, const toml::node* at, std::string_view path, std::string_view key) {
   const toml::node* anchor = at != nullptr ? at : node.table;
-  const std::string name = node.document ? node.document->name : "study";
+  std::string name = node.document ? node.document->name : "study";
+  if (anchor != nullptr && anchor->source().path) name = *anchor->source().path;
   const auto line = anchor != nullptr ? anchor->source().begin.line : 0;
   const std::string full = dotted(path, key);
   if (line == 0) return full.empty() ? name : fmt::format("{}: {}", name, full);
@@ -143,6 +144,45 @@ void refuse_unknown(const StudyNode& node, const std::string& path) {
   for (const auto& [key, children] : node.opened) {
     if (node.accepted.contains(key)) continue;
     for (const auto& [child_path, child] : children) refuse_unknown(*child, child_path);
+  }
+}
+
+toml::table parsed(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}:{}", name, error.source().begin.line, error.source().begin.column),
+                     fmt::format("not TOML: {}", error.description()));
+  }
+}
+
+/// Files of tyres are named from the folder of the subject that names them.
+void find_tyres_from(const std::filesystem::path& folder, toml::table& subject) {
+  for (auto&& [key, value] : subject) {
+    if (toml::table* table = value.as_table()) find_tyres_from(folder, *table);
+    auto* text = value.as_string();
+    if (text == nullptr || !(text->get().ends_with(".tir") || text->get().ends_with(".TIR"))) continue;
+    if (std::filesystem::path(text->get()).is_relative()) text->get() = (folder / text->get()).string();
+  }
+}
+
+/// Puts the keys of the [subject] in the file that `table.file` names into the table, where it does not have them
+/// itself: what an identification wrote is simulated, scaled or identified again by naming its subject.toml.
+void take_subject_of_file(toml::table& table, const std::string& path, const StudyDocument& document) {
+  const toml::node* named = table.get("file");
+  if (named == nullptr) return;
+  const std::string place = fmt::format("{}:{}: {}.file", document.name, named->source().begin.line, path);
+  std::filesystem::path file = text_from(*named, place);
+  if (file.is_relative()) file = document.folder / file;
+  toml::table other = parsed(read_file(file), file.string());
+  toml::table* subject = other.get("subject") == nullptr ? nullptr : other.get("subject")->as_table();
+  if (subject == nullptr) throw InputError(place, fmt::format("{} has no [subject]", file.string()));
+  if (subject->contains("file"))
+    throw InputError(place, fmt::format("the subject of {} is in another file; name that one", file.string()));
+  find_tyres_from(file.parent_path(), *subject);
+  table.erase("file");
+  for (auto&& [key, value] : *subject) {
+    if (!table.contains(key.str())) table.insert(key, std::move(value));
   }
 }
 
@@ -378,13 +418,11 @@ Study Study::parse(std::string_view text, std::string name, const std::filesyste
   auto document = std::make_shared<StudyDocument>();
   document->name = name;
   document->folder = folder;
-  try {
-    document->root = toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}:{}", name, error.source().begin.line, error.source().begin.column),
-                     fmt::format("not TOML: {}", error.description()));
-  }
+  document->root = parsed(text, name);
   for (const std::string& text_of_override : overrides) apply_override(document->root, text_of_override);
+  for (const char* path : {"subject", "scale.model"}) {
+    if (toml::table* table = document->root.at_path(path).as_table()) take_subject_of_file(*table, path, *document);
+  }
   auto node = std::make_shared<StudyNode>();
   node->document = document;
   node->table = &document->root;

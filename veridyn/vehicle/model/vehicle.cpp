@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
@@ -214,6 +216,8 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
   Vehicle& vehicle = known.vehicle;
   VehicleParameters<double>& p = vehicle.parameters;
   static_cast<void>(subject.text_or("kind", "vehicle"));
+  subject.accept("grades");
+  static_cast<void>(subject.has("accept_rejected"));
   if (subject.has("builtin")) {
     const BuiltinVehicle& builtin = builtin_vehicle(subject.text("builtin"), subject.place("builtin"));
     p = builtin.parameters;
@@ -249,6 +253,10 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
   vehicle.ackermann = subject.number_or("ackermann", "1", 0.0);
   vehicle.camber_per_roll = subject.number_or("camber_per_roll", "1", 0.0);
   vehicle.relaxation_length = subject.number_or("relaxation_length", "m", 0.0);
+  if (needs != VehicleNeeds::kGeometry) {
+    if (std::string warning = estimation::grades_warning(subject); !warning.empty())
+      vehicle.warnings.push_back(std::move(warning));
+  }
   return vehicle;
 }
 

@@ -1,0 +1,47 @@
+#include "veridyn/estimation/judgement/subject_grades.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace veridyn::estimation {
+namespace {
+
+constexpr std::array kGrades{Grade::kYes, Grade::kWithCare, Grade::kNotJudged, Grade::kNo};
+
+Grade grade_of(const StudyTable& grades, Purpose purpose) {
+  std::vector<std::string> words;
+  for (const Grade grade : kGrades) words.emplace_back(to_string(grade));
+  const std::string word = grades.choice_or(to_string(purpose), words, to_string(Grade::kNotJudged));
+  return kGrades[static_cast<std::size_t>(std::ranges::find(words, word) - words.begin())];
+}
+
+}  // namespace
+
+std::string graded_toml(const std::string& toml, const Judgement& judgement) {
+  std::string text = fmt::format("# {}\n{}\n[subject.grades]\n", sentence_of(judgement), toml);
+  for (const Purpose purpose : kPurposes)
+    text += fmt::format("{} = \"{}\"\n", to_string(purpose), to_string(judgement.of(purpose).grade));
+  return text;
+}
+
+std::string grades_warning(const StudyTable& subject) {
+  const bool accepted = subject.flag_or("accept_rejected", false);
+  if (!subject.has("grades")) return "";
+  const StudyTable grades = subject.table("grades");
+  const Grade parameters = grade_of(grades, Purpose::kParameters), prediction = grade_of(grades, Purpose::kPrediction);
+  static_cast<void>(grade_of(grades, Purpose::kData));
+  if (parameters != Grade::kNo) return "";
+  if (prediction == Grade::kYes || prediction == Grade::kWithCare)
+    return "the parameters of this subject predicted held-out data, but its identification found them to be no "
+           "physical "
+           "constants (grades.parameters = \"no\")";
+  const std::string what =
+      "the identification that wrote this subject rejected its parameters (grades: parameters \"no\", prediction \"" +
+      std::string(to_string(prediction)) + "\")";
+  if (!accepted) subject.fail("grades", what + "; identify again, or say accept_rejected = true in the subject");
+  return what;
+}
+
+}  // namespace veridyn::estimation
