@@ -59,22 +59,6 @@ TEST(ReadRecording, KeepsOnlyTheTopicsThatAreAskedFor) {
   EXPECT_THAT(recording.names(), ElementsAre("ATT.Roll", "ATT.Pitch", "ATT.Yaw"));
 }
 
-TEST(ToRecording, CarriesTheDamageIntoTheWarnings) {
-  const std::string bytes = testing::small_dataflash() + std::string(50, 'x');
-  const Recording recording = to_recording(read_dataflash(bytes, "x.bin"));
-  EXPECT_THAT(recording.warnings, Contains("damaged: 50 bytes and at least 1 records lost"));
-}
-
-TEST(ToRecording, TellsTwoDefinitionsOfOneNameApart) {
-  testing::DataFlashWriter log;
-  log.format(130, "ATT", "Qf", "TimeUS,Roll");
-  log.record("ATT", {1e6, 1.0});
-  log.format(131, "ATT", "Qff", "TimeUS,Roll,Pitch");
-  log.record("ATT", {2e6, 1.0, 2.0});
-  const Recording recording = to_recording(read_dataflash(log.bytes(), "x.bin"));
-  EXPECT_THAT(recording.names(), ElementsAre("ATT.Roll", "ATT~2.Roll", "ATT~2.Pitch"));
-}
-
 // A recording of ten million rows would take minutes with a quadratic step anywhere.
 TEST(ReadLog, ReadsALargeLogInTimeThatGrowsWithItsSize) {
   const Log log = read_dataflash(testing::synthetic_dataflash(20.0), "x.bin");

@@ -1,37 +1,20 @@
 #include "veridyn/recording/delays.hpp"
 
-#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "tests/io/support.hpp"
-#include "veridyn/numerics/random.hpp"
+#include "tests/recording/lively_signal.hpp"
 
 namespace veridyn::recording {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::kLivelyRate_Hz;
+using testing::later;
+using testing::lively;
 using testing::message_of;
-
-constexpr double kRate_Hz = 100.0;
-
-/// Band-limited noise: a random walk through a slow pole, the same for the same name.
-std::vector<double> lively(std::size_t count, const char* name, std::uint64_t seed = 3) {
-  numerics::RandomStream random(seed, name);
-  std::vector<double> x(count);
-  double fast = 0.0, slow = 0.0;
-  for (double& v : x) {
-    fast += 0.2 * (random.normal() - fast);
-    slow += 0.2 * (fast - slow);
-    v = slow;
-  }
-  return x;
-}
-
-std::vector<double> later(const std::vector<double>& x, std::size_t samples) {
-  std::vector<double> y(x.size(), 0.0);
-  for (std::size_t k = samples; k < x.size(); ++k) y[k] = x[k - samples];
-  return y;
-}
 
 Channel channel(const char* name, double rate, double seconds, double value = 0.0) {
   std::vector<double> stamps, values;
@@ -42,15 +25,10 @@ Channel channel(const char* name, double rate, double seconds, double value = 0.
   return make_channel(name, "rad/s", make_time_base(std::move(stamps)), std::move(values));
 }
 
-class Stopped : public Progress {
- public:
-  bool update(double) override { return false; }
-  [[nodiscard]] bool interrupted() const override { return true; }
-};
-
 TEST(Delays, PairsShareTheDelayThatBothWereGiven) {
   const std::vector<double> a = lively(3000, "a"), b = lively(3000, "b");
-  const DelayReport report = shared_delay("gps", "accelerometer", {{a, later(a, 7)}, {b, later(b, 7)}}, kRate_Hz, {});
+  const DelayReport report =
+      shared_delay("gps", "accelerometer", {{a, later(a, 7)}, {b, later(b, 7)}}, kLivelyRate_Hz, {});
   EXPECT_NEAR(report.delay_s, 0.07, 0.003);
   EXPECT_TRUE(report.applied);
   EXPECT_EQ(report.text, "applied");
@@ -58,116 +36,14 @@ TEST(Delays, PairsShareTheDelayThatBothWereGiven) {
 
 TEST(Delays, SmallOnesAreLeftAloneAndAnOppositeSignIsNamed) {
   const std::vector<double> a = lively(3000, "a");
-  const DelayReport small = shared_delay("gps", "accelerometer", {{a, a}}, kRate_Hz, {});
+  const DelayReport small = shared_delay("gps", "accelerometer", {{a, a}}, kLivelyRate_Hz, {});
   EXPECT_FALSE(small.applied);
   EXPECT_EQ(small.text, "too small to matter");
   std::vector<double> turned = later(a, 5);
   for (double& v : turned) v = -v;
-  const DelayReport opposite = shared_delay("gps", "accelerometer", {{a, turned}}, kRate_Hz, {});
+  const DelayReport opposite = shared_delay("gps", "accelerometer", {{a, turned}}, kLivelyRate_Hz, {});
   EXPECT_FALSE(opposite.applied);
   EXPECT_THAT(opposite.text, HasSubstr("opposite sign"));
-}
-
-TEST(Delays, EffectOfACauseIsAsLateAsTheLagThatExplainsItBest) {
-  const std::vector<double> cause = lively(6000, "cause"), other = lively(6000, "other");
-  std::vector<double> effect = later(cause, 6);
-  for (std::size_t k = 0; k < effect.size(); ++k) effect[k] = 2.0 * effect[k] - 0.5 * other[k] + 0.1;
-  const Progress silent;
-  const DelayReport late =
-      effect_delay("elevator", "angular acceleration", effect, {cause}, {{other}}, 1.0 / kRate_Hz, {}, silent);
-  EXPECT_TRUE(late.applied);
-  EXPECT_NEAR(late.delay_s, 0.06, 0.001);
-  EXPECT_NEAR(late.correlation, 1.0, 1e-6);
-  // An effect before its cause is none.
-  const DelayReport early =
-      effect_delay("elevator", "angular acceleration", cause, {later(cause, 6)}, {{other}}, 1.0 / kRate_Hz, {}, silent);
-  EXPECT_FALSE(early.applied);
-  EXPECT_EQ(early.text, "negative: a cause cannot follow its effect, left alone");
-  const DelayReport none = effect_delay("rudder", "angular acceleration", effect, {lively(6000, "x")}, {{other}},
-                                        1.0 / kRate_Hz, {}, silent, "surface");
-  EXPECT_EQ(none.text, "not determined: the surface explains too little");
-}
-
-// What else moves the effect may be what the cause answers: then the best lag is told, not taken off.
-TEST(Delays, OfACauseThatExplainsLessThanWhatIsLeftAreInDoubt) {
-  const std::vector<double> cause = lively(6000, "cause"), gust = lively(6000, "gust");
-  std::vector<double> effect = later(cause, 6);
-  for (std::size_t k = 0; k < effect.size(); ++k) effect[k] += 1.2 * gust[k];
-  const DelayReport report =
-      effect_delay("elevator", "angular acceleration", effect, {cause}, {}, 1.0 / kRate_Hz, {}, Progress(), "surface");
-  EXPECT_FALSE(report.applied);
-  EXPECT_TRUE(report.in_doubt);
-  EXPECT_NEAR(report.delay_s, 0.06, 4.0 * report.sigma_s);
-  EXPECT_THAT(report.text, HasSubstr("the surface explains less than what is left"));
-}
-
-// A pilot who reacts to what is recorded with noise: without the correction the cause makes up for it, too late. With
-// it, little is left for the cause to explain.
-TEST(Delays, NoiseOfWhatTheCauseReactsToIsNotTakenForADelay) {
-  const std::vector<double> motion = lively(6000, "motion"), pilot = lively(6000, "pilot");
-  numerics::RandomStream random(7, "noise");
-  constexpr double kNoise = 0.3;
-  const std::vector<double> before = later(motion, 4);
-  std::vector<double> cause(motion.size()), effect(motion.size()), recorded(motion.size());
-  for (std::size_t k = 0; k < motion.size(); ++k) {
-    cause[k] = before[k] + 0.3 * pilot[k];
-    effect[k] = cause[k] - 3.0 * motion[k];
-    recorded[k] = motion[k] + kNoise * random.normal();
-  }
-  const Progress silent;
-  const auto delay = [&](double noise_variance) {
-    return effect_delay("aileron", "roll", effect, {cause}, {{recorded, noise_variance}}, 1.0 / kRate_Hz, {}, silent);
-  };
-  EXPECT_LT(delay(0.0).delay_s, -0.03);
-  EXPECT_EQ(delay(kNoise * kNoise).text, "not determined: the cause explains too little");
-}
-
-/// A cause whose effect is 0.06 s late, with half as much noise of the same spectrum as effect.
-DelayReport noisy_delay(std::uint64_t seed) {
-  const std::vector<double> cause = lively(6000, "cause", seed), noise = lively(6000, "noise", seed);
-  std::vector<double> effect = later(cause, 6);
-  for (std::size_t k = 0; k < effect.size(); ++k) effect[k] += 0.5 * noise[k];
-  return effect_delay("elevator", "angular acceleration", effect, {cause}, {}, 1.0 / kRate_Hz, {}, Progress());
-}
-
-// The jackknife's standard error against the scatter that it predicts. Its own relative error is 1/sqrt(2 9) for ten
-// parts, over 40 seeds 4 %; that of the scatter 11 %: the ratio of sound ones lies within 1 +- 0.35.
-TEST(Delays, OfEffectsHaveAStandardErrorThatIsTheirScatter) {
-  constexpr int kSeeds = 40;
-  double squares = 0.0, predicted = 0.0;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const DelayReport report = noisy_delay(seed);
-    squares += std::pow(report.delay_s - 0.06, 2) / kSeeds;
-    // Without the half sample for causes that jump between two.
-    predicted += (std::pow(report.sigma_s, 2) - std::pow(0.5 / kRate_Hz, 2)) / kSeeds;
-  }
-  EXPECT_NEAR(std::sqrt(squares / predicted), 1.0, 0.35);
-}
-
-TEST(Delays, CausesThatMoveTogetherHaveOneThatIsRightForAllTheirEffects) {
-  const std::vector<double> stick = lively(6000, "stick"), gust = lively(6000, "gust"), own = lively(6000, "own");
-  std::vector<double> aileron = stick, rudder = stick;
-  for (std::size_t k = 0; k < stick.size(); ++k) rudder[k] = 0.4 * stick[k] + 0.05 * own[k];
-  EXPECT_GT(correlation_of(aileron, rudder), kMoveTogether);
-  EXPECT_LT(std::abs(correlation_of(aileron, own)), 0.3);
-  std::vector<double> roll = later(aileron, 8), yaw = later(rudder, 8);
-  for (std::size_t k = 0; k < roll.size(); ++k) {
-    roll[k] += 0.3 * gust[k] + 0.2 * yaw[k];
-    yaw[k] += 0.5 * gust[k];
-  }
-  const DelayReport report = common_effect_delay(
-      "aileron", "angular acceleration", {{roll, {{aileron}, {rudder}}, {}, {}}, {yaw, {{aileron}, {rudder}}, {}, {}}},
-      1.0 / kRate_Hz, {}, Progress());
-  EXPECT_TRUE(report.applied);
-  EXPECT_LT(report.sigma_s, 0.01);
-  EXPECT_NEAR(report.delay_s, 0.08, 1.96 * report.sigma_s);
-}
-
-TEST(Delays, SearchStopsWhenItIsInterrupted) {
-  const std::vector<double> x = lively(6000, "x");
-  const DelayReport report = effect_delay("elevator", "q", x, {later(x, 6)}, {}, 1.0 / kRate_Hz, {}, Stopped());
-  EXPECT_FALSE(report.applied);
-  EXPECT_EQ(report.text, "not determined: interrupted");
 }
 
 TEST(Delays, ClockForOthersMustBeFastAndLongEnoughAndIsSearchedInItsMiddle) {

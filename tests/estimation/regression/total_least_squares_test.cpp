@@ -1,8 +1,8 @@
 #include "veridyn/estimation/regression/total_least_squares.hpp"
 
+#include "tests/estimation/regression/correlated_errors.hpp"
 #include "tests/estimation/simulated_regression.hpp"
 #include "veridyn/estimation/regression/augmented_qr.hpp"
-#include "veridyn/estimation/regression/equation_error.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
@@ -11,31 +11,15 @@
 
 namespace {
 using namespace veridyn::estimation;
+using testing_support::correlated_errors;
 using testing_support::simulate_regression;
+using testing_support::true_parameters;
 namespace numerics = veridyn::numerics;
 
 Eigen::MatrixXd augmented(const RegressionData& data) {
   Eigen::MatrixXd D(data.rows(), data.parameters() + 1);
   D << data.regressors, data.regressand;
   return D;
-}
-
-// Errors of three regressors and a constant, correlated among each other and with those of the regressand.
-Eigen::MatrixXd correlated_errors(double ratio) {
-  Eigen::MatrixXd W = Eigen::MatrixXd::Zero(5, 5);
-  W(1, 1) = ratio;
-  W(2, 2) = 0.7 * ratio;
-  W(3, 3) = 0.2 * ratio;
-  W(4, 4) = 0.1;
-  W(1, 2) = W(2, 1) = 0.3 * ratio;
-  W(3, 4) = W(4, 3) = 0.05 * std::sqrt(ratio);
-  return W;
-}
-
-Eigen::VectorXd true_parameters() {
-  Eigen::VectorXd theta(4);
-  theta << 0.5, -0.7, 0.3, -1.2;
-  return theta;
 }
 
 // Deming (1943): the slope of a line through points with errors of equal variance in both coordinates.
@@ -189,22 +173,6 @@ TEST(TotalLeastSquares, JacobianIsTheDerivativeOfTheSumOfScores) {
     const Eigen::VectorXd derivative = (sum_at(tls.theta + e) - sum_at(tls.theta - e)) / (2.0 * step);
     EXPECT_LT((derivative + tls.jacobian.col(i)).norm(), 1e-6 * tls.jacobian.norm()) << i;
   }
-}
-
-TEST(EquationError, GivesFullersClosedForm) {
-  auto s = simulate_regression(11, true_parameters(), correlated_errors(0.5), {.rows = 4000});
-  s.data.error_covariance(3, 4) = s.data.error_covariance(4, 3) = 0.0;
-  s.data.error_covariance(4, 4) = 0.001;  // far too small: the rest is equation error
-  s.data.regressand_error_known = false;
-  const RegressionEstimate e = estimate(s.data, Method::kGtls);
-  ASSERT_TRUE(e.usable());
-  EXPECT_NEAR(e.error_scale, 1.0, 1e-9);
-  // With the factor N - n_p that the error scale uses.
-  const double N = static_cast<double>(s.data.rows()) - 4.0;
-  const Eigen::MatrixXd M = numerics::transposed_product(s.data.regressors, s.data.regressors) -
-                            N * s.data.error_covariance.topLeftCorner(4, 4);
-  const Eigen::VectorXd right = numerics::transposed_product(s.data.regressors, s.data.regressand);
-  EXPECT_LT((e.theta - numerics::solve_symmetric(M, right)).norm(), 1e-9);
 }
 
 struct CoverageCase {

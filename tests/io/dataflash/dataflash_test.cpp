@@ -1,7 +1,6 @@
 #include "veridyn/io/dataflash/dataflash.hpp"
 
 #include <map>
-#include <numbers>
 
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
@@ -15,83 +14,6 @@ using testing::DataFlashWriter;
 using ::testing::HasSubstr;
 using testing::message_of;
 using testing::shared_flight;
-
-Recording read_small() { return to_recording(read_dataflash(testing::small_dataflash(), "small.bin")); }
-
-TEST(DataFlash, GivesValuesInSiUnitsWhateverFormatCharacterAndMultiplierSay) {
-  const Recording recording = read_small();
-  // Character c holds hundredths, and MULT says 0.01 as well: only one of them counts.
-  EXPECT_NEAR(recording.at("ATT.Roll").value[0], 12.34 * kDegree, 1e-12);
-  EXPECT_NEAR(recording.at("ATT.Pitch").value[0], -5.67 * kDegree, 1e-12);
-  EXPECT_NEAR(recording.at("ATT.Yaw").value[0], 359.99 * kDegree, 1e-12);
-  EXPECT_EQ(recording.at("ATT.Roll").unit.name, "rad");
-  EXPECT_EQ(recording.at("ATT.Roll").recorded_unit, "deg");
-  // Character L holds 1e-7 degrees, MULT the same.
-  EXPECT_NEAR(recording.at("GPS.Lat").value[0], -37.9596764 * kDegree, 1e-12);
-  EXPECT_NEAR(recording.at("GPS.Alt").value[0], 15.78, 1e-12);
-  // A plain integer with MULT 1e-3 and unit gauss: 250 mG = 25 microtesla.
-  EXPECT_NEAR(recording.at("GPS.MagX").value[0], 250e-3 * 1e-4, 1e-15);
-  EXPECT_NEAR(recording.at("BARO.Temp").value[0], 21.5 + 273.15, 1e-9);
-  // Not a time stamp, but a time: microseconds by MULT.
-  EXPECT_NEAR(recording.at("BARO.SMS").value[1], 1.04, 1e-12);
-  EXPECT_NEAR(recording.at("IMU.GyrX").value[0], 0.5, 0.0);
-}
-
-TEST(DataFlash, SplitsInstancesAndSharesTheTimeBaseOfAMessage) {
-  const Recording recording = read_small();
-  EXPECT_EQ(recording.at("IMU.AccZ").size(), 8U);
-  EXPECT_EQ(recording.at("IMU[1].AccZ").size(), 8U);
-  EXPECT_DOUBLE_EQ(recording.at("IMU[1].AccZ").value[0], -9.5);
-  EXPECT_NEAR(recording.at("IMU[1].AccZ").times()[1], 1.02001, 1e-12);
-  EXPECT_EQ(recording.at("IMU.AccZ").time, recording.at("IMU.GyrX").time);
-  EXPECT_FALSE(recording.has("IMU.I"));
-  EXPECT_FALSE(recording.has("IMU.TimeUS"));
-}
-
-TEST(DataFlash, ReadsArraysTextsParametersModesAndMessages) {
-  const Recording recording = read_small();
-  EXPECT_DOUBLE_EQ(recording.at("ISBD.x[0]").value[0], -3.0);
-  EXPECT_DOUBLE_EQ(recording.at("ISBD.x[31]").value[0], 28.0);
-  EXPECT_DOUBLE_EQ(recording.parameters.at("SERVO1_TRIM"), 1500.0);
-  EXPECT_EQ(recording.information.at("vehicle"), "ArduPlane");
-  EXPECT_EQ(recording.information.at("firmware"), "ArduPlane V4.2.3 (abcdef01)");
-  ASSERT_EQ(recording.events.size(), 2U);
-  EXPECT_EQ(recording.events[1].kind, "mode");
-  EXPECT_EQ(recording.events[1].text, "FBWA");
-  EXPECT_TRUE(recording.warnings.empty());
-}
-
-TEST(DataFlash, KnowsTheUnitsOfStandardMessagesInLogsWithoutUnitRecords) {
-  DataFlashWriter log;
-  log.format(130, "IMU2", "Qff", "TimeUS,GyrX,AccZ");
-  log.format(131, "ATT", "Qcf", "TimeUS,Roll,Pitch");
-  log.format(132, "MINE", "Qf", "TimeUS,Roll");
-  log.record("IMU2", {1e6, 0.5, -9.75});
-  log.record("ATT", {1e6, 90.0, 45.0});
-  log.record("MINE", {1e6, 45.0});
-  const Recording recording = to_recording(read_dataflash(log.bytes(), "old.bin"));
-  EXPECT_EQ(recording.at("IMU2.GyrX").unit.name, "rad/s");
-  EXPECT_NEAR(recording.at("ATT.Roll").value[0], std::numbers::pi / 2, 1e-12);
-  EXPECT_NEAR(recording.at("ATT.Pitch").value[0], std::numbers::pi / 4, 1e-12);
-  EXPECT_DOUBLE_EQ(recording.at("MINE.Roll").value[0], 45.0);
-}
-
-TEST(DataFlash, AdvancesByTheLengthOfTheFormatWhereTheColumnsSumToSomethingElse) {
-  DataFlashWriter log;
-  log.format(130, "CAM", "Qff", "TimeUS,A,B", 25);   // 19 by its columns: six bytes more
-  log.format(131, "BAR3", "Qff", "TimeUS,A,B", 15);  // 19 by its columns: B does not fit
-  for (int i = 0; i < 4; ++i) {
-    log.record("CAM", {1e6 + i, 1.0 + i, 2.0});
-    log.record("BAR3", {1e6 + i, 3.0 + i, 4.0});
-  }
-  const Log result = read_dataflash(log.bytes(), "odd.bin");
-  EXPECT_EQ(result.damage.bytes_lost, 0U);
-  EXPECT_EQ(result.find("CAM")->size(), 4U);
-  EXPECT_DOUBLE_EQ(result.find("CAM")->find("B")->value(3), 2.0);
-  EXPECT_DOUBLE_EQ(result.find("BAR3")->find("A")->value(3), 6.0);
-  EXPECT_EQ(result.find("BAR3")->find("B"), nullptr);
-  EXPECT_THAT(result.damage.notes, Contains(HasSubstr("CAM 25/19, BAR3 15/19")));
-}
 
 TEST(DataFlash, IsNotHeldUpByALengthBelowThree) {
   for (const int length : {1, 2}) {
@@ -162,21 +84,6 @@ TEST(DataFlash, DropsSpikesOfTheClockAndCountsDoubledStamps) {
   EXPECT_EQ(attitude.doubled, 1U);
   EXPECT_DOUBLE_EQ(attitude.find("Roll")->value(10), 11.0);
   EXPECT_THAT(result.damage.notes, Contains(HasSubstr("2 samples dropped")));
-}
-
-TEST(DataFlash, TakesTheClockOfTheRecordBeforeForMessagesWithoutOne) {
-  DataFlashWriter log;
-  log.format(130, "ATT", "If", "TimeMS,Roll");
-  log.format(131, "EV", "B", "Id");
-  log.record("ATT", {5000.0, 1.0});
-  log.record("EV", {10.0});
-  log.record("ATT", {6000.0, 1.0});
-  log.record("EV", {11.0});
-  const Log result = read_dataflash(log.bytes(), "old.bin");
-  EXPECT_THAT(*result.find("EV")->time, ::testing::ElementsAre(5.0, 6.0));
-  ASSERT_EQ(result.events.size(), 2U);
-  EXPECT_EQ(result.events[0].text, "armed");
-  EXPECT_EQ(result.events[1].text, "disarmed");
 }
 
 TEST(DataFlash, SaysWhatIsWrongWithAFileThatIsNone) {
@@ -270,18 +177,6 @@ TEST(RealDataFlash, ValuesAreThoseOfAnIndependentDecoder) {
   EXPECT_NEAR(recording.at("MAG.MagX").value.front(), -234e-3 * 1e-4, 1e-12);  // milligauss in tesla
   EXPECT_NEAR(recording.at("BARO.Press").value.front(), 101535.71875, 1e-9);
   EXPECT_NEAR(recording.at("XKF1.Yaw").value.back(), 153.82 * kDegree, 1e-12);
-}
-
-TEST(RealDataFlash, UnitsOfAnOldLogComeFromTheTableOfKnownMessages) {
-  const auto path = shared_flight("ardupilot/pymavlink_test.BIN");
-  VERIDYN_NEEDS_SHARED(path);
-  const Recording recording = to_recording(read_dataflash_file(path));
-  EXPECT_NEAR(recording.at("IMU.GyrX").value.front(), -0.1165708526968956, 1e-12);
-  EXPECT_EQ(recording.at("IMU.GyrX").unit.name, "rad/s");
-  EXPECT_NEAR(recording.at("ATT.Pitch").value.front(), 2.58 * kDegree, 1e-12);
-  EXPECT_NEAR(recording.at("GPS.Lat").value.front(), -35.3626277 * kDegree, 1e-12);
-  EXPECT_NEAR(recording.at("RCOU.C1").value.front(), 1560e-6, 1e-15);
-  EXPECT_NEAR(recording.at("NKF1.Yaw").value.front(), 337.09 * kDegree, 1e-12);
 }
 
 }  // namespace

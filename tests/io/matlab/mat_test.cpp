@@ -1,12 +1,9 @@
 #include "veridyn/io/matlab/mat.hpp"
 
-#include <matio.h>
-#include <zlib.h>
-
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 #include <numbers>
 
+#include "tests/io/matlab/small_mat_log.hpp"
 #include "tests/io/support.hpp"
 #include "tests/support/synthetic_logs.hpp"
 #include "veridyn/core/index.hpp"
@@ -15,91 +12,13 @@ namespace veridyn::io {
 namespace {
 
 using ::testing::ElementsAre;
+using testing::expect_small_mat;
 using ::testing::HasSubstr;
 using testing::message_of;
 using testing::shared_flight;
 
-void expect_small(const Log& log) {
-  const LogTopic* flight = log.find("flight");
-  ASSERT_NE(flight, nullptr);
-  EXPECT_THAT(*flight->time, ElementsAre(0.0, 0.02, 0.04));
-  EXPECT_DOUBLE_EQ(flight->find("p")->value(2), 0.3);
-  EXPECT_DOUBLE_EQ(flight->find("q")->value(0), -1.0);
-  EXPECT_EQ(log.information.at("flight.note"), "hi");
-  const LogTopic* tables = log.find("");
-  ASSERT_NE(tables, nullptr);
-  EXPECT_THAT(tables->find("table")->shape, ElementsAre(2U, 3U));
-  EXPECT_DOUBLE_EQ(tables->find("table")->value(5), 6.0);
-  const Recording recording = to_recording(log);
-  EXPECT_THAT(recording.names(), ElementsAre("flight.p", "flight.q"));
-}
-
 TEST(Mat, MakesSeriesOfVectorsBesideATimeAndTablesOfTheRest) {
-  expect_small(read_mat(testing::small_mat(), "small.mat"));
-}
-
-TEST(Mat, ReadsCompressedVariables) {
-  const std::string plain = testing::small_mat();
-  std::string packed = plain.substr(0, 128);
-  std::size_t at = 128;
-  while (at < plain.size()) {
-    std::uint32_t size = 0;
-    std::memcpy(&size, plain.data() + at + 4, 4);
-    uLongf length = compressBound(size + 8);
-    std::string body(length, '\0');
-    ASSERT_EQ(compress(reinterpret_cast<Bytef*>(body.data()), &length,
-                       reinterpret_cast<const Bytef*>(plain.data() + at), size + 8),
-              Z_OK);
-    body.resize(length);
-    packed += testing::pack(std::uint32_t{15}, static_cast<std::uint32_t>(length)) + body;
-    at += 8 + size;
-  }
-  expect_small(read_mat(packed, "packed.mat"));
-}
-
-/// The same variables as `small_mat`, written by matio.
-void write_with_matio(const std::filesystem::path& path, mat_ft version, matio_compression compression) {
-  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, version);
-  ASSERT_NE(file, nullptr);
-  std::size_t column[2] = {3, 1};
-  std::size_t one[2] = {1, 1};
-  std::size_t text[2] = {1, 2};
-  std::size_t table[2] = {2, 3};
-  double time[] = {0.0, 0.02, 0.04};
-  double p[] = {0.1, 0.2, 0.3};
-  std::int16_t q[] = {-1, 0, 7};
-  char note[] = "hi";
-  double numbers[] = {1, 2, 3, 4, 5, 6};
-  matvar_t* fields[] = {Mat_VarCreate("time", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, column, time, 0),
-                        Mat_VarCreate("p", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, column, p, 0),
-                        Mat_VarCreate("q", MAT_C_INT16, MAT_T_INT16, 2, column, q, 0),
-                        Mat_VarCreate("note", MAT_C_CHAR, MAT_T_UINT8, 2, text, note, 0), nullptr};
-  matvar_t* flight = Mat_VarCreate("flight", MAT_C_STRUCT, MAT_T_STRUCT, 2, one, fields, 0);
-  matvar_t* array = Mat_VarCreate("table", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, table, numbers, 0);
-  EXPECT_EQ(Mat_VarWrite(file, flight, compression), 0);
-  EXPECT_EQ(Mat_VarWrite(file, array, compression), 0);
-  Mat_VarFree(flight);
-  Mat_VarFree(array);
-  Mat_Close(file);
-}
-
-TEST(Mat, ReadsWhatMatioWritesInAllVersions) {
-  const testing::TemporaryFolder folder;
-  write_with_matio(folder.path() / "5.mat", MAT_FT_MAT5, MAT_COMPRESSION_NONE);
-  expect_small(read_mat_file(folder.path() / "5.mat"));
-  write_with_matio(folder.path() / "7.mat", MAT_FT_MAT5, MAT_COMPRESSION_ZLIB);
-  expect_small(read_mat_file(folder.path() / "7.mat"));
-  write_with_matio(folder.path() / "73.mat", MAT_FT_MAT73, MAT_COMPRESSION_NONE);
-  expect_small(read_mat_file(folder.path() / "73.mat"));
-}
-
-TEST(Mat, LosesOnlyTheVariableThatIsDamaged) {
-  std::string bytes = testing::small_mat();
-  bytes[128 + 8] = 0x55;  // type of the first variable's flags
-  const Log log = read_mat(bytes, "x.mat");
-  EXPECT_EQ(log.damage.records_lost, 1U);
-  EXPECT_EQ(log.find("flight"), nullptr);
-  EXPECT_NE(log.find("")->find("table"), nullptr);
+  expect_small_mat(read_mat(testing::small_mat(), "small.mat"));
 }
 
 TEST(Mat, SaysWhatIsWrongWithAFileThatIsNone) {

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/folders.hpp"
-#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/io/packets/packet_decoder.hpp"
@@ -148,52 +146,6 @@ TEST(KnownPackets, DecodeEveryCapturedPacketOfLiveForSpeed) {
   }
   EXPECT_EQ(packets, 13U);
   EXPECT_GT(numbers, 150U);
-}
-
-TEST(KnownPackets, OutSimIsOfTheWorldAndWithoutGravity) {
-  const std::filesystem::path file =
-      test::shared_folder() / "data" / "vehicle" / "lfs_packets" / "OutSimPack_without_OutSim_ID.bin";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << "; DecodesAPacketByHand is without it";
-  const PacketDecoder decoder(known_packet("outsim"));
-  std::vector<double> values(decoder.layout().fields.size());
-  ASSERT_TRUE(decoder.decode(read_file(file), values));
-  ASSERT_TRUE(decoder.is_plausible(values));
-  const PacketMotion m = decoder.motion(values);
-  // The car drives where it points; its course is the velocity's in the world.
-  const Eigen::Vector3d forward = m.attitude * Eigen::Vector3d::UnitX();
-  EXPECT_NEAR(
-      std::remainder(std::atan2(m.velocity.y(), m.velocity.x()) - std::atan2(forward.y(), forward.x()), 2.0 * kPi), 0.0,
-      1e-4);
-  EXPECT_NEAR(m.speed, m.velocity.norm(), 0.01);
-  EXPECT_GT(m.acceleration.x(), 4.0) << "it speeds up";
-  EXPECT_LT(std::abs(m.acceleration.z()), 1.0);
-}
-
-TEST(KnownPackets, DecodesAPacketByHand) {
-  // Time 1500 ms, heading 90 deg anticlockwise from north, nose up 0.1 rad; 2 m/s^2 and 10 m/s to the west.
-  std::string bytes(64, '\0');
-  const auto put = [&](std::size_t at, auto number) { std::memcpy(bytes.data() + at, &number, sizeof number); };
-  put(0, std::uint32_t{1500});
-  put(16, static_cast<float>(kPi / 2.0));
-  put(20, 0.1F);
-  put(28, -2.0F);
-  put(40, -10.0F);
-  put(56, std::int32_t{-65536});
-  const PacketDecoder decoder(known_packet("outsim"));
-  std::vector<double> values(decoder.layout().fields.size());
-  ASSERT_TRUE(decoder.decode(bytes, values));
-  const PacketMotion m = decoder.motion(values);
-  EXPECT_DOUBLE_EQ(m.time, 1.5);
-  EXPECT_DOUBLE_EQ(m.position.y(), -1.0);
-  EXPECT_NEAR((m.attitude * Eigen::Vector3d::UnitX() - Eigen::Vector3d(-std::cos(0.1), 0.0, std::sin(0.1))).norm(), 0.0,
-              1e-7);
-  EXPECT_NEAR(m.acceleration.x(), 2.0 * std::cos(0.1), 1e-7);
-  EXPECT_NEAR(m.acceleration.z(), -2.0 * std::sin(0.1), 1e-7);
-  EXPECT_NEAR(m.speed, 10.0 * std::cos(0.1), 1e-6);
-  EXPECT_FALSE(decoder.decode(bytes + "x", values));
-  EXPECT_FALSE(decoder.decode(bytes.substr(1), values));
-  std::vector<double> of_beamng(known_packet("beamng").fields.size());
-  EXPECT_FALSE(PacketDecoder(known_packet("beamng")).decode(std::string(88, 'B'), of_beamng)) << "BNG1 is missing";
 }
 
 }  // namespace

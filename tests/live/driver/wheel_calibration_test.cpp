@@ -9,7 +9,6 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/files.hpp"
-#include "veridyn/live/driver/driver_command.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -169,26 +168,6 @@ TEST(WheelCalibration, ThatCannotBeIsRefusedWithFileLineAndKey) {
       "ThatCannotBeIsRefusedWithFileLineAndKey.toml:4: steering.left: is 3000000000, beyond what an axis can say");
   EXPECT_NE(with("[brake]", "[brakes]").find("brake"), std::string::npos);
   EXPECT_NE(with("left = 0", "left = 0\nleft_lock = 3").find("left_lock"), std::string::npos);
-}
-
-TEST(DriverCommand, IsAlwaysWithinTheRange) {
-  const DriverCommandOptions options;
-  options.validate();
-  const auto command = [&](const DriverInput& input) {
-    const CarCommand result = car_command(input, options);
-    EXPECT_EQ(what_is_wrong(result, options.range), "");
-    return result;
-  };
-  EXPECT_NEAR(command({.steering = 7.854}).steering, 0.6, 1e-3);
-  EXPECT_EQ(command({.steering = -20.0}).steering, -0.6);
-  EXPECT_EQ(command({.throttle = 1.0}).drive_force, 100.0);
-  EXPECT_EQ(command({.throttle = 1.0, .reverse = true}).drive_force, -50.0);
-  EXPECT_EQ(command({.throttle = 1.0, .brake = 0.1}), (CarCommand{.brake = 0.1}));
-  // NaN stays NaN: the operator's end does not send it.
-  EXPECT_EQ(what_is_wrong(car_command({.brake = kNaN}, options), options.range), "brake");
-  EXPECT_EQ(why([] { DriverCommandOptions{.steering_ratio = 0.0}.validate(); }), "steering_ratio: is 0; must be > 0");
-  EXPECT_EQ(why([] { DriverCommandOptions{.reverse_share = kNaN}.validate(); }),
-            "reverse_share: is nan; must be from 0 to 1");
 }
 
 }  // namespace

@@ -1,24 +1,21 @@
 #include "veridyn/live/driver/wheel_event.hpp"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <linux/input.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "tests/live/driver/recorded_wheel.hpp"
-#include "tests/live/serial/without_rights.hpp"
+#include "tests/live/driver/wheel_file.hpp"
 #include "tests/support/refusal.hpp"
-#include "veridyn/live/driver/wheel_device.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {
 namespace {
 
 using testing::RecordedWheel;
+using testing::WheelFile;
 
 RecordedWheel short_drive() {
   RecordedWheel wheel;
@@ -35,24 +32,6 @@ std::vector<WheelEvent> decoded(WheelEventDecoder& decoder, Bytes bytes) {
 }
 
 Bytes bytes_of(const std::string& text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
-
-class WheelFile {
- public:
-  explicit WheelFile(const std::string& content) : path_(path_of_test()) {
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~WheelFile() { std::filesystem::remove(path_); }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  /// Tests run alongside each other, each in a process of its own.
-  static std::string path_of_test() {
-    static int count = 0;
-    return fmt::format("{}wheel_{}_{}.events", ::testing::TempDir(),
-                       ::testing::UnitTest::GetInstance()->current_test_info()->name(), count++);
-  }
-  std::string path_;
-};
 
 TEST(WheelEvent, HasTheKernelsNumbersAndLayout) {
   static_assert(kSyncEvent == EV_SYN && kKeyEvent == EV_KEY && kAxisEvent == EV_ABS);
@@ -175,38 +154,6 @@ TEST(WheelAxes, LeaveOutWhatIsHalfDropped) {
   EXPECT_EQ(axes.value(0), 1);
   RecordedWheel().axis(0, 4).report().play([&](const WheelEvent& event) { axes.take(event); });
   EXPECT_EQ(axes.value(0), 4);
-}
-
-TEST(WheelDevice, IsRefusedInOneLine) {
-  const auto refusal = [](const std::string& path) { return why([&] { WheelDevice device(path); }); };
-  const WheelFile file("text");
-  if (!has_wheel_devices()) {
-    EXPECT_EQ(refusal(file.path()),
-              file.path() + ": this build reads no wheels: it was made without libevdev (VERIDYN_WHEEL)");
-    return;
-  }
-  EXPECT_EQ(refusal("/dev/input/event_none"), "/dev/input/event_none: there is no such device; is it plugged in?");
-  EXPECT_EQ(refusal(file.path()), file.path() + ": not an input device");
-  EXPECT_EQ(refusal("/dev/null"), "/dev/null: not an input device");
-  {
-    const testing::WithoutRights closed("wheel_without_rights");
-    EXPECT_EQ(refusal(closed.path()), closed.path() + ": no right to open it; members of the group 'input' have it");
-  }
-  EXPECT_EQ(refusal(::testing::TempDir()), ::testing::TempDir() + ": not an input device");
-}
-
-TEST(WheelDevice, IsAWheelWithSteeringAndAPedal) {
-  const auto refusal = [](std::vector<WheelAxis> axes) { return why([&] { check_wheel("event5", "Device", axes); }); };
-  const WheelAxis x{.code = ABS_X, .lowest = 0, .highest = 65535},
-      wheel{.code = ABS_WHEEL, .lowest = -512, .highest = 511}, z{.code = ABS_Z, .lowest = 0, .highest = 255},
-      hat{.code = ABS_HAT0X, .lowest = -1, .highest = 1};
-  EXPECT_EQ(refusal({x, z}), "nothing was refused");
-  EXPECT_EQ(refusal({wheel, z}), "nothing was refused");
-  EXPECT_EQ(refusal({z, hat}), "event5: 'Device' is not a wheel: it has neither ABS_X nor ABS_WHEEL");
-  EXPECT_EQ(refusal({}), "event5: 'Device' is not a wheel: it has neither ABS_X nor ABS_WHEEL");
-  EXPECT_EQ(refusal({x}), "event5: 'Device' is not a wheel with pedals: it has one axis only");
-  EXPECT_EQ(refusal({x, {.code = ABS_Z, .lowest = 5, .highest = 5}}),
-            "event5: 'Device': axis ABS_Z has no range: 5 to 5");
 }
 
 }  // namespace

@@ -27,10 +27,6 @@ PlatformOrder some_order() {
 
 std::string_view view(const auto& bytes) { return {bytes.data(), bytes.size()}; }
 
-TEST(Crc32, IsThatOfEthernet) {
-  EXPECT_EQ(crc32("123456789"), 0xcbf43926U);  // check value of the catalogue of CRCs
-}
-
 TEST(PlatformOrder, LiesInItsPacketAsTheDocumentSays) {
   const OrderBytes bytes = encode(some_order());
   const std::string_view b = view(bytes);

@@ -3,50 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "tests/live/recording/some_records.hpp"
 #include "tests/support/refusal.hpp"
-#include "veridyn/core/files.hpp"
-#include "veridyn/live/recording/live_recorder.hpp"
 #include "veridyn/numerics/random.hpp"
 
 namespace veridyn::live {
 namespace {
 
 using ::testing::HasSubstr;
-
-LiveHead some_head() {
-  return {.program = "veridyn 1.0",
-          .study = "[live]\n",
-          .study_name = "rig.toml",
-          .started = 42,
-          .started_utc = 1'700'000'000'000'000'000,
-          .session = 7};
-}
-
-std::vector<LiveRecord> some_records() {
-  LiveRecord datagram;
-  datagram.kind = LiveRecord::Kind::kDatagram;
-  datagram.time = 10;
-  datagram.link = LinkOf::kPlatform;
-  datagram.datagram = {.bytes = "bytes \0 of it", .sender = {0x7f000001, 99}, .arrival = 9};
-  LiveRecord request;
-  request.kind = LiveRecord::Kind::kRequest;
-  request.time = 11;
-  request.request = OperatorRequest::kEmergency;
-  LiveRecord knob;
-  knob.kind = LiveRecord::Kind::kKnob;
-  knob.time = 12;
-  knob.knob = 3;
-  knob.count = 5;
-  knob.value = 0.1;
-  LiveRecord step;
-  step.kind = LiveRecord::Kind::kStep;
-  step.time = 13;
-  step.sent = 14;
-  step.order = "an order";
-  return {datagram, request, knob, step};
-}
+using testing::some_head;
+using testing::some_records;
 
 std::string encoded(const std::vector<LiveRecord>& records) {
   std::string all;
@@ -136,44 +107,6 @@ TEST(LiveFile, StandsWhateverBytesAreInIt) {
       EXPECT_THAT(error.what(), HasSubstr("has no head"));
     }
   }
-}
-
-class LiveRecorderTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("veridyn_recorder_{}.vlr", ::testing::UnitTest::GetInstance()->current_test_info()->name());
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-  std::filesystem::path path_;
-};
-
-TEST_F(LiveRecorderTest, WritesEveryRecordInOrder) {
-  constexpr int kCount = 20000;
-  {
-    LiveRecorder recorder(path_, some_head());
-    LiveRecord r = some_records()[3];
-    for (int k = 0; k < kCount; ++k) {
-      r.time = k;
-      recorder.record(r);
-    }
-    EXPECT_EQ(recorder.lost(), 0U);
-    EXPECT_EQ(recorder.trouble(), "");
-  }
-  int k = 0;
-  const LiveFile file = read_live_file(path_);
-  for (const std::string_view block : file.blocks)
-    EXPECT_TRUE(for_each_record(block, [&](const LiveRecord& r) { EXPECT_EQ(r.time, k++); }));
-  EXPECT_EQ(k, kCount);
-  EXPECT_EQ(file.cut_bytes, 0U);
-  EXPECT_GT(file.blocks.size(), 5U);
-}
-
-TEST_F(LiveRecorderTest, CountsWhatTheDiskDoesNotTakeAndSaysSo) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
-  // A disk that is full from the first byte on is refused at once.
-  EXPECT_THAT(why([] { LiveRecorder("/dev/full", some_head()); }), HasSubstr("No space left on device"));
-  EXPECT_THAT(why([] { LiveRecorder("/nowhere/run.vlr", some_head()); }), HasSubstr("/nowhere/run.vlr"));
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "tests/live/rig/car_links_in_memory.hpp"
-#include "veridyn/core/files.hpp"
-#include "veridyn/live/rig/live_replay.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -93,50 +91,6 @@ TEST(CarLink, LosesWhatADamagedLineLosesAndDrivesOn) {
   EXPECT_EQ(r.loop.rig().state(), RigState::kRunning);
   EXPECT_EQ(r.links.platform.counts().outside, 0U);
   EXPECT_EQ(r.links.car.end().verdicts()[CommandVerdict::kOutOfRange], 0U);
-}
-
-TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_replay.vlr";
-  {
-    CarRun r(0.01);
-    LiveRecorder recorder(path, {.program = "test",
-                                 .study = test::kCarStudy,
-                                 .study_name = "rig.toml",
-                                 .started = 0,
-                                 .started_utc = 0,
-                                 .session = 5});
-    r.run(4.0, &recorder);
-    r.control.emergency();
-    r.run(1.0, &recorder);
-  }
-  Progress progress;
-  const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
-  std::filesystem::remove(path);
-  EXPECT_EQ(replayed.times.steps, 500U);
-  EXPECT_EQ(replayed.different, 0U);
-  ASSERT_TRUE(replayed.car);
-  EXPECT_EQ(replayed.car->commands, 500U);
-  EXPECT_EQ(replayed.car->commands_different, 0U);
-  EXPECT_GT(replayed.car->drive.rows(), 200U);
-  EXPECT_GT(replayed.times.pedal_to_command.count(), 400U);
-}
-
-TEST(CarLink, ReplayFindsACommandThatDiffers) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "veridyn_car_differs.vlr";
-  {
-    CarRun r;
-    LiveRecorder recorder(path, {.program = "test",
-                                 .study = test::kCarStudy,
-                                 .study_name = "rig.toml",
-                                 .started = 0,
-                                 .started_utc = 0,
-                                 .session = 6});
-    r.run(1.0, &recorder);  // as session 5
-  }
-  Progress progress;
-  const LiveReplay replayed = replay(read_live_file(path), path.string(), progress);
-  std::filesystem::remove(path);
-  EXPECT_EQ(replayed.car->commands_different, replayed.car->commands);
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <map>
 
+#include "tests/vehicle/identification/identified_drive.hpp"
 #include "tests/vehicle/interrupting_progress.hpp"
 #include "tests/vehicle/simulated_drive.hpp"
-#include "veridyn/core/error.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
@@ -17,26 +17,11 @@ namespace {
 using estimation::ParameterStatus;
 using testing::drive_bicycle;
 using testing::family_car;
+using testing::identify;
 using testing::InterruptingProgress;
 using testing::lively_drive;
-using testing::mapped;
+using testing::relative;
 using testing::WanderingSteer;
-
-VehicleIdentification identify(const VehicleTrajectory& trajectory, const DriveSensorSet& sensors, std::uint64_t seed,
-                               const VehicleIdentifyOptions& options = {},
-                               VehicleParameters<double> start = family_car(), Progress&& progress = {}) {
-  start.C_f = 80000.0;
-  start.C_r = 80000.0;
-  start.I_z = 2000.0;
-  const DriveSignalOptions signal_options;
-  const DriveSignals signals = prepare_drive_signals(mapped(record_drive(trajectory, sensors, seed)), signal_options);
-  const DriveSegments segments = find_drive_segments(signals, {});
-  return identify_parameters({signals, segments, start, signal_options, options}, progress);
-}
-
-double relative(const VehicleIdentification& id, VehicleMethod method, const char* name, double truth) {
-  return std::abs(id.find(method)->find(name)->value / truth - 1.0);
-}
 
 TEST(VehicleIdentification, RecoversTheTruthFromAPerfectLogByOutputError) {
   const VehicleParameters<double> p = family_car();
@@ -51,30 +36,6 @@ TEST(VehicleIdentification, RecoversTheTruthFromAPerfectLogByOutputError) {
   EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_f", p.C_f), 0.004);
   EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_r", p.C_r), 0.004);
   EXPECT_LT(relative(id, VehicleMethod::kGtls, "I_z", p.I_z), 0.004);
-}
-
-TEST(VehicleIdentification, EstimatesFromSmallAnglesAreExactToTheSquareOfTheAngle) {
-  const VehicleParameters<double> p = family_car();
-  double error[2];
-  for (const bool half : {false, true}) {
-    const VehicleIdentification id =
-        identify(lively_drive(p, 1, half ? 0.01 : 0.02), testing::perfect_sensors(), 1, {.output_error = false});
-    error[half ? 1 : 0] = relative(id, VehicleMethod::kOls, "C_f", p.C_f);
-  }
-  EXPECT_NEAR(error[0] / error[1], 4.0, 0.8);
-}
-
-TEST(VehicleIdentification, RecoversTheTruthWithMeasuredLateralVelocity) {
-  const VehicleParameters<double> p = family_car();
-  DriveSensorSet sensors = testing::perfect_sensors();
-  sensors[DriveSensorKind::kLateralVelocity].enabled = true;
-  const VehicleIdentification id = identify(lively_drive(p, 2), sensors, 1);
-  ASSERT_TRUE(id.regression && id.regression->data.direct);
-  // The direct form takes no small angles; what is left is the interpolation of the recording.
-  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_f", p.C_f), 1e-4);
-  EXPECT_LT(relative(id, VehicleMethod::kGtls, "C_r", p.C_r), 1e-4);
-  EXPECT_LT(relative(id, VehicleMethod::kGtls, "I_z", p.I_z), 1e-4);
-  EXPECT_LT(relative(id, VehicleMethod::kOutputError, "C_f", p.C_f), 1e-6);
 }
 
 /// How often intervals of drives with the reference sensors, their biases drawn each time, contain the true value.
@@ -151,22 +112,6 @@ TEST(VehicleIdentification, SaysThatStraightDrivingExcitesNothing) {
   EXPECT_EQ(id.identified.C_f, 80000.0) << "what is not known stays at the start";
 }
 
-TEST(VehicleIdentification, SteadyCorneringGivesTheUndersteerGradientOnly) {
-  const VehicleParameters<double> p = family_car();
-  const auto trajectory = drive_bicycle<BicycleModel<double, LinearTyre<double>>>(
-      [&](double) { return testing::linear_bicycle(p); }, 60.0, [](double t) { return 5e-4 * t; },
-      [](double) { return 20.0; });
-  const VehicleIdentification id = identify(trajectory, reference_drive_sensors(), 4, {.output_error = false});
-  const AxleEstimate* axle = id.regression->find(estimation::Method::kPcaGtls);
-  ASSERT_NE(axle, nullptr);
-  EXPECT_LT(std::abs(axle->understeer - understeer_gradient(p)), 3.0 * axle->understeer_sigma);
-  EXPECT_LT(axle->understeer_sigma, 0.1 * understeer_gradient(p));
-  for (const char* name : {"C_f", "C_r", "I_z"})
-    EXPECT_EQ(id.best()->find(name)->status, ParameterStatus::kNotExcited)
-        << name << ": " << id.best()->find(name)->sigma;
-  EXPECT_EQ(id.best()->find("understeer_gradient")->status, ParameterStatus::kIdentified);
-}
-
 using MagicBicycle = BicycleModel<double, SimpleMagicFormulaTyre<double>>;
 MagicBicycle magic_bicycle(const VehicleParameters<double>& p, double mu) {
   const auto load = static_loads(p, 9.80665);
@@ -220,21 +165,6 @@ TEST(VehicleIdentification, NoticesThatTheLinearModelIsWrongForSaturatingTyres) 
   EXPECT_FALSE(id.warnings.empty());
 }
 
-TEST(VehicleIdentification, UncertaintyOfTheMassGoesIntoTheErrorBars) {
-  const VehicleParameters<double> p = family_car();
-  VehicleIdentifyOptions options{.output_error = false};
-  const VehicleTrajectory drive = lively_drive(p, 1);
-  const VehicleIdentification sure = identify(drive, reference_drive_sensors(), 1, options);
-  options.mass_sigma = 75.0;
-  const VehicleIdentification unsure = identify(drive, reference_drive_sensors(), 1, options);
-  const auto* a = sure.find(VehicleMethod::kGtls)->find("C_f");
-  const auto* b = unsure.find(VehicleMethod::kGtls)->find("C_f");
-  EXPECT_NEAR(b->sigma, std::hypot(a->sigma, 0.05 * a->value), 1e-6 * b->sigma);
-  // The understeer gradient is a ratio of motions: the mass cancels.
-  EXPECT_NEAR(unsure.find(VehicleMethod::kGtls)->find("understeer_gradient")->sigma,
-              sure.find(VehicleMethod::kGtls)->find("understeer_gradient")->sigma, 1e-12);
-}
-
 TEST(VehicleIdentification, StopsSoonWhereverItIsInterrupted) {
   const VehicleTrajectory drive = lively_drive(family_car(), 1, 0.02, 30.0);
   const auto asked = [&](long n) {
@@ -247,23 +177,6 @@ TEST(VehicleIdentification, StopsSoonWhereverItIsInterrupted) {
   const long all = asked(1000000);
   ASSERT_GT(all, 20);
   for (const long n : {1L, all / 4, all / 2, 3 * all / 4, all}) EXPECT_LE(asked(n), n + 8) << n << " of " << all;
-}
-
-TEST(VehicleIdentifyOptions, RefuseWhatMakesNoSense) {
-  const auto message = [](const char* toml) -> std::string {
-    try {
-      const Study study = Study::parse(toml, "study.toml");
-      static_cast<void>(VehicleIdentifyOptions::read(study.root().table("identify")));
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
-  };
-  EXPECT_NE(message("[identify]\nestimate = [\"C_ff\"]\n").find("did you mean 'C_f'"), std::string::npos);
-  EXPECT_NE(message("[identify]\nestimate = [\"mu\"]\n").find("linear tyres do not have"), std::string::npos);
-  EXPECT_NE(message("[identify]\nsignal_to_noise = nan\n"), "");
-  EXPECT_NE(message("[identify]\nsmoothing = -1\n").find(">= 0"), std::string::npos);
-  EXPECT_NE(message("[identify]\nuncertainty = { mass = -1 }\n").find("standard deviation"), std::string::npos);
 }
 
 }  // namespace

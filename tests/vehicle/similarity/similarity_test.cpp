@@ -10,6 +10,7 @@
 #include <set>
 
 #include "tests/support/refusal.hpp"
+#include "tests/vehicle/similarity/builtin_subject.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/vehicle/model/bicycle_model.hpp"
@@ -19,10 +20,7 @@
 namespace veridyn::vehicle {
 namespace {
 
-SimilaritySubject subject_of(std::string_view name) {
-  const BuiltinVehicle& vehicle = builtin_vehicle(name);
-  return {.parameters = vehicle.parameters, .speed = vehicle.speed};
-}
+using testing::subject_of;
 
 using MotionState = Eigen::Matrix<double, 5, 1>;  // v, r, yaw, x, y
 
@@ -43,30 +41,6 @@ MotionState reference_run(const VehicleParameters<double>& p, double u, double t
   const int steps = static_cast<int>(std::lround(until * 1000.0));
   for (int k = 0; k < steps; ++k) s = numerics::runge_kutta_4_step(derivative, k * 1e-3 * time, s, 1e-3 * time);
   return s;
-}
-
-// The published table: stiffnesses 100 and 200 where 96 and 192 would be similar, I_x 0.188 for 0.1888.
-TEST(Similarity, FindsTheRoundingOfThePublishedModelAndNothingElse) {
-  const SimilarityReport report = compare(subject_of("reference"), subject_of("reference_1to5"));
-  const std::vector<GroupComparison> found = report.mismatches();
-  ASSERT_EQ(found.size(), 3U) << report.message();
-  EXPECT_EQ(found[0].parameter, "C_f");
-  EXPECT_EQ(found[0].formula, "C_f L/(m u^2)");
-  EXPECT_NEAR(found[0].mismatch_percent, 100.0 * (100.0 / 96.0 - 1.0), 1e-9);
-  EXPECT_EQ(found[1].parameter, "C_r");
-  EXPECT_NEAR(found[1].mismatch_percent, 100.0 * (200.0 / 192.0 - 1.0), 1e-9);
-  EXPECT_EQ(found[2].parameter, "I_x");
-  EXPECT_EQ(found[2].formula, "I_x/(m L^2)");
-  EXPECT_NEAR(found[2].mismatch_percent, -0.4, 0.05);
-  EXPECT_FALSE(report.similar_without_gravity());
-  // All others are exact but for the rounding of double.
-  EXPECT_EQ(std::ranges::count_if(report.groups, [](const auto& g) { return std::abs(g.mismatch_percent) > 1e-9; }), 3);
-  EXPECT_EQ(report.gravity.formula, "g L/u^2");
-  EXPECT_NEAR(report.gravity.prototype, 0.0552, 5e-5);
-  EXPECT_NEAR(report.gravity.model, 0.2758, 5e-5);  // 9.80665 * 0.45/16 = 0.27581; printed 0.2759 is for g = 9.81
-  EXPECT_NEAR(report.gravity.mismatch_percent, 400.0, 1e-9);
-  EXPECT_FALSE(report.gravity_changes.empty());
-  EXPECT_NE(report.gravity_changes.front().find("forces scale by 1/625 but weight by 1/125"), std::string::npos);
 }
 
 TEST(Similarity, HasOneGroupForEachQuantityBeyondTheRank) {
@@ -206,18 +180,6 @@ TEST(Similarity, ChoosesWhatIsNotGivenAndSaysSo) {
   ASSERT_EQ(twin.chosen.size(), 2U);
   EXPECT_EQ(twin.chosen[0], "mass 8.8 kg: the same density");
   EXPECT_EQ(twin.chosen[1], "speed 4 m/s: equal times");
-}
-
-// What the mismatch does to the response: stiffer tyres by 1/24 on both axles lower the understeer gradient by 4 %.
-TEST(Similarity, SaysWhatAMismatchDoesToTheResponse) {
-  const SimilarityReport report = compare(subject_of("reference"), subject_of("reference_1to5"));
-  const auto find = [&](std::string_view name) {
-    return *std::ranges::find_if(report.behaviour, [&](const auto& one) { return one.name == name; });
-  };
-  EXPECT_NEAR(find("understeer gradient").change_percent, -4.0, 1e-9);
-  EXPECT_NEAR(find("heave frequency").change_percent, 0.0, 1e-9);
-  EXPECT_NEAR(find("lateral acceleration at lift-off of a rigid vehicle").change_percent, 400.0, 1e-9);
-  EXPECT_NEAR(find("roll frequency").change_percent, 100.0 * (std::sqrt(0.1888 / 0.188) - 1.0), 1e-9);
 }
 
 TEST(Similarity, ScalesATrajectoryThereAndBack) {
