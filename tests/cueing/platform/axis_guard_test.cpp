@@ -66,6 +66,27 @@ TEST(AxisGuard, GoesToAFarPositionAndStopsThere) {
   EXPECT_LT(there, 110);
 }
 
+/// 20 deg at 30 deg/s: held back on all of the way, by the rate in the middle of it; no more where it has arrived.
+TEST(AxisGuard, IsLimitedWhileItLagsAndBeyondItsRange) {
+  AxisGuard guard(roll());
+  guard.reset(0.0);
+  int limited = 0, lagging = 0;
+  for (int k = 0; k < 200; ++k) {
+    const AxisState s = guard.step(15.0 * kDegree, 0.01);
+    const bool lags = 15.0 * kDegree - s.position > 0.5 * kDegree;
+    lagging += lags ? 1 : 0;
+    limited += lags && guard.limited() ? 1 : 0;
+  }
+  EXPECT_GT(lagging, 40);
+  EXPECT_GE(limited, lagging - 3);
+  EXPECT_FALSE(guard.limited());
+  for (int k = 0; k < 200; ++k) (void)guard.step(2.0 * roll().highest, 0.01);
+  EXPECT_NEAR(guard.state().position, roll().highest, 1e-6);
+  EXPECT_TRUE(guard.limited());
+  for (int k = 0; k < 200; ++k) (void)guard.step(roll().highest, 0.01);
+  EXPECT_FALSE(guard.limited());
+}
+
 /// A step that the jerk cannot follow ends where it leads to, without swinging on.
 TEST(AxisGuard, ComesToRestAfterStepsOfAnySize) {
   const PlatformLimits& platform = built_in_platform("three_axis").limits;

@@ -110,7 +110,7 @@ AxisGuard::AxisGuard(const AxisLimits& limits) : limits_((check(limits), limits)
 AxisState AxisGuard::reset(double position) {
   take_new_limits();
   state_ = {nearest_inside(std::isfinite(position) ? position : 0.0, limits_), 0.0, 0.0};
-  wanted_ = state_.position;
+  asked_ = wanted_ = state_.position;
   wanted_rate_ = wanted_acceleration_ = last_step_ = 0.0;
   limited_ = false;
   return state_;
@@ -123,7 +123,7 @@ void AxisGuard::change_limits(const AxisLimits& limits) {
 
 bool AxisGuard::limited() const {
   constexpr double kNoticed = 1e-3;
-  return limited_ && std::abs(state_.position - wanted_) > kNoticed * (limits_.highest - limits_.lowest);
+  return limited_ && std::abs(state_.position - asked_) > kNoticed * (limits_.highest - limits_.lowest);
 }
 
 void AxisGuard::take_new_limits() {
@@ -132,10 +132,11 @@ void AxisGuard::take_new_limits() {
 
 AxisState AxisGuard::step(double wanted, double step) {
   if (new_limits_ && safe(state_, *new_limits_)) take_new_limits();
-  if (!std::isfinite(wanted)) wanted = wanted_;
-  wanted = nearest_inside(wanted, limits_);
+  const double asked = std::isfinite(wanted) ? wanted : asked_;
+  wanted = nearest_inside(std::isfinite(wanted) ? wanted : wanted_, limits_);
   if (!(step > 0.0) || !std::isfinite(step)) step = 0.0;
   if (step == 0.0) return state_;
+  asked_ = asked;
   if (step > kLongestStep || new_limits_) {
     if (step > kLongestStep) stop(step);
     wanted_ = nearest_inside(fastest_stop(state_, limits_).position, new_limits_.value_or(limits_));
@@ -153,7 +154,7 @@ AxisState AxisGuard::step(double wanted, double step) {
   last_step_ = step;
   const double pieces = std::ceil(step / kLongestPiece * (1.0 - 1e-9));
   const double final_rate = mean_rate + 0.5 * acceleration * step;
-  limited_ = false;
+  limited_ = wanted != asked;
   for (double k = 1.0; k <= pieces; ++k) {
     const double left = step * (1.0 - k / pieces);
     follow(wanted - left * (final_rate - 0.5 * acceleration * left), step / pieces, final_rate - acceleration * left,
@@ -166,14 +167,15 @@ AxisState AxisGuard::step(double wanted, double step) {
 AxisState AxisGuard::brake(double step) {
   if (!(step > 0.0) || !std::isfinite(step)) return state_;
   stop(step);
-  wanted_ = nearest_inside(fastest_stop(state_, limits_).position, limits_);
+  asked_ = wanted_ = nearest_inside(fastest_stop(state_, limits_).position, limits_);
   wanted_rate_ = wanted_acceleration_ = 0.0;
   last_step_ = step;
   limited_ = false;
   return state_;
 }
 
-double AxisGuard::wanted_acceleration(double wanted, double rate, double acceleration, double step) const {
+AxisGuard::Following AxisGuard::wanted_acceleration(double wanted, double rate, double acceleration,
+                                                    double step) const {
   const AxisLimits& most = new_limits_ ? *new_limits_ : limits_;
   const AxisState then = after(state_, 0.0, step);
   const double off = wanted - then.position, distance = std::abs(off);
@@ -187,15 +189,16 @@ double AxisGuard::wanted_acceleration(double wanted, double rate, double acceler
   const double missing = within(rate + towards, fastest) - then.rate;
   // No more than the jerk takes back in time (half of a^2 / 2 J = missing), or the axis would swing for ever.
   const double taken_back = std::sqrt(std::abs(missing) * std::min(limits_.jerk, most.jerk));
-  return within(acceleration + within(2.0 * kBandwidth * missing, taken_back),
-                std::min(limits_.acceleration, most.acceleration));
+  return {.allowed = within(acceleration + within(2.0 * kBandwidth * missing, taken_back),
+                            std::min(limits_.acceleration, most.acceleration)),
+          .unlimited = acceleration + 2.0 * kBandwidth * (rate + kNear * off - then.rate)};
 }
 
 void AxisGuard::follow(double wanted, double step, double rate, double acceleration) {
   const double most = new_limits_ ? std::min(limits_.jerk, new_limits_->jerk) : limits_.jerk;
-  const double needed = (wanted_acceleration(wanted, rate, acceleration, step) - state_.acceleration) / step;
-  const double jerk = within(needed, most);
-  limited_ = limited_ || jerk != needed;
+  const Following following = wanted_acceleration(wanted, rate, acceleration, step);
+  const double jerk = within((following.allowed - state_.acceleration) / step, most);
+  limited_ = limited_ || jerk != (following.unlimited - state_.acceleration) / step;
   if (const auto next = piece(jerk, step)) {
     state_ = *next;
     return;

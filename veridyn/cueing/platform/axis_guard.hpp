@@ -34,15 +34,19 @@ class AxisGuard {
 
   [[nodiscard]] const AxisState& state() const { return state_; }
   [[nodiscard]] const AxisLimits& limits() const { return limits_; }  ///< in force
-  /// Whether a limit held the last step back, and the axis is off what is wanted by more than a thousandth of its
-  /// range.
+  /// Whether a limit held the last step back (of position, rate, acceleration or jerk, or the way that it takes to
+  /// stop), and the axis is off what is wanted by more than a thousandth of its range.
   [[nodiscard]] bool limited() const;
 
   static constexpr double kLongestStep = 0.1;  ///< [s]
 
  private:
   void follow(double wanted, double step, double rate, double acceleration);
-  [[nodiscard]] double wanted_acceleration(double wanted, double rate, double acceleration, double step) const;
+  /// The acceleration by which the axis follows: as its limits allow, and as it would without them.
+  struct Following {
+    double allowed = 0.0, unlimited = 0.0;
+  };
+  [[nodiscard]] Following wanted_acceleration(double wanted, double rate, double acceleration, double step) const;
   /// The end of a piece of constant jerk, where the piece is allowed.
   [[nodiscard]] std::optional<AxisState> piece(double jerk, double step) const;
   void stop(double step);
@@ -51,6 +55,7 @@ class AxisGuard {
   AxisLimits limits_;
   std::optional<AxisLimits> new_limits_;
   AxisState state_;
+  double asked_ = 0.0;  ///< wanted, before it was brought within the range
   double wanted_ = 0.0, wanted_rate_ = 0.0, wanted_acceleration_ = 0.0;
   double last_step_ = 0.0;
   bool limited_ = false;
