@@ -76,8 +76,8 @@ std::vector<Argument> search_checkpoint_arguments() {
                "between processes",
        .type = "FOLDER"},
       {.name = "--shard",
-       .help = "of a person's tasks: this is the I-th of N processes, started together without mpirun, that share "
-               "the simulations",
+       .help = "of a person's tasks, without mpirun: this is the I-th of N processes that are started together and "
+               "share the simulations",
        .type = "I/N"}};
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "apps/veridyn/checkpoint.hpp"
 #include "apps/veridyn/console.hpp"
@@ -139,14 +140,23 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
 int run_on_study(std::string_view command, const Arguments& arguments) {
   const Row& row = *std::find_if(kTable.begin(), kTable.end(), [&](const Row& r) { return r.command == command; });
   const std::string& path = arguments.text("STUDY");
-  const StudyRun run = parse_study(std::string(command), path, read_file(path), arguments);
-  const Domain domain = domain_of(run.study);
+  const bool first = launched_process().rank == 0;
+  std::optional<StudyRun> parsed;
+  Domain domain = Domain::kAircraft;
+  try {
+    parsed = parse_study(std::string(command), path, read_file(path), arguments);
+    domain = domain_of(parsed->study);
+  } catch (const InputError&) {
+    // Of several processes the first says what is wrong.
+    if (!first) return kWrongInput;
+    throw;
+  }
+  const StudyRun& run = *parsed;
   const Cell& cell = row.cells[domain];
   if (!cell.shares_work && !runs_alone(command)) return kDone;
   if (cell.run != nullptr) {
     const int exit_code = cell.run(run);
-    // Of several processes the first talks.
-    if (launched_process().rank == 0)
+    if (first)
       for (const std::string& note : run.study.notes()) print_line(arguments.common, "note: " + note);
     return exit_code;
   }

@@ -22,7 +22,7 @@ void refuse_checkpoint(const StudyRun& run) {
   // `demo`, which identifies too, has no such options.
   for (const Argument& argument : search_checkpoint_arguments()) {
     if (run.arguments.values.contains(argument.name) && !run.arguments.text(argument.name).empty())
-      throw InputError(argument.name, "is for a person's tasks; identify of other studies starts from the beginning");
+      throw InputError(argument.name, "is for a person's tasks; other studies are identified at once, in one process");
   }
 }
 
@@ -73,7 +73,7 @@ int identify_muscles(const StudyRun& asked) {
                                     checkpoint.share.index + 1, checkpoint.share.count));
     return kDone;
   }
-  if (log && log->loaded() > 0)
+  if (log && log->loaded() > 0 && checkpoint.share.count == 1)
     print_line(options,
                fmt::format("{} simulations of the search were in {}", analysis.resumed, log->folder().string()));
   progress.stage("writing the results");

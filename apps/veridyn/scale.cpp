@@ -8,6 +8,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/similarity_report.hpp"
@@ -73,7 +74,8 @@ int scale_vehicle(const StudyRun& run) {
   if (analysis.interrupted) throw Interrupted();
   const SimilarityReport& r = analysis.judged();
   folder.write("groups.csv", groups_csv(r));
-  folder.write("scaled.toml", write_vehicle_toml(analysis.twin));
+  folder.write("scaled.toml",
+               write_vehicle_toml(analysis.twin) + estimation::grades_table(run.study.root().table("subject")));
   folder.write("prototype.csv", io::to_csv(to_recording(analysis.prototype)));
   folder.write("model.csv", io::to_csv(to_recording(analysis.runs.back().trajectory)));
   folder.write("report.html", report::to_html(report::similarity_report(study, analysis, program_name())));

@@ -10,6 +10,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/vehicle_report.hpp"
@@ -62,7 +63,8 @@ int simulate_vehicle(const StudyRun& run) {
   std::string metrics = "metric,value,unit,source\n";
   for (const Metric& m : driven.metrics) metrics += fmt::format("{},{},{},{}\n", m.name, m.value, m.unit, m.source);
   folder.write("metrics.csv", metrics);
-  folder.write("subject.toml", write_vehicle_toml(vehicle.vehicle));
+  folder.write("subject.toml",
+               write_vehicle_toml(vehicle.vehicle) + estimation::grades_table(run.study.root().table("subject")));
   folder.write("report.html", report::to_html(report::vehicle_report(vehicle, driven, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
   folder.publish(run.record(vehicle.seed, vehicle.inputs), run.options(), summary_of(folder.path(), vehicle, driven));

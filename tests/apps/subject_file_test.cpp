@@ -28,7 +28,7 @@ TEST_F(SubjectFileProgram, AnIdentifiedCarIsSimulatedAndScaled) {
   EXPECT_THAT(written, HasSubstr("[subject.grades]"));
   const Outcome simulated = run("simulate " + driven(file) + " --out " + (folder_ / "simulated").string());
   EXPECT_EQ(simulated.exit_code, 0) << simulated.text;
-  EXPECT_THAT(simulated.text, Not(HasSubstr("physical constants")));
+  EXPECT_THAT(simulated.text, Not(HasSubstr("no physical constants")));
   const std::string stiffness = written.substr(written.find("C_f = "), 20);
   EXPECT_THAT(read_file(folder_ / "simulated" / "subject.toml"), HasSubstr(stiffness));
   const std::string scale = (test::source_folder() / "examples/studies/vehicle/scale.toml").string();
@@ -45,9 +45,12 @@ TEST_F(SubjectFileProgram, RejectedParametersAreNotDriven) {
                  "subject.toml:4: subject.grades: the identification that wrote this subject rejected its parameters");
   const Outcome asked_for = run("simulate " + driven(file.string(), "accept_rejected = true\n") + loud());
   EXPECT_EQ(asked_for.exit_code, 0) << asked_for.text;
+  // What it writes carries the grades on.
+  EXPECT_THAT(read_file(folder_ / "out" / "subject.toml"),
+              HasSubstr("[subject.grades]\ndata = \"not judged\"\nparameters = \"no\""));
   EXPECT_THAT(asked_for.text, HasSubstr("warning: the identification that wrote this subject rejected its parameters"));
   write_file(file, car + "parameters = \"no\"\nprediction = \"with care\"\n");
-  EXPECT_THAT(run("simulate " + driven(file.string()) + loud()).text, HasSubstr("to be no physical constants"));
+  EXPECT_THAT(run("simulate " + driven(file.string()) + loud()).text, HasSubstr("are no physical constants"));
 }
 
 }  // namespace

@@ -134,7 +134,8 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "veridyn_subject_of_file";
   std::filesystem::create_directories(folder / "out");
   write_file(folder / "out" / "subject.toml",
-             "# graded\n[subject]\nmass = -5\nspan = 2\n[subject.tyres]\nfront = \"front.tir\"\n[other]\nx = 1\n");
+             "# graded\n[subject]\nmass = -5\nspan = 2\nname = \"a.tir\"\n[subject.tyres]\nfront = \"front.tir\"\n"
+             "[subject.inertia]\nJx = 1\nJy = 2\n[subject.model.CL]\nalpha = 4\nq_n = 5\n[other]\nx = 1\n");
   const auto in_folder = [&](const std::string& text, std::vector<std::string> overrides = {}) {
     return Study::parse(text, "study.toml", folder, overrides);
   };
@@ -144,7 +145,14 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   EXPECT_EQ(subject.table("tyres").file("front"), folder / "out" / "front.tir");
   const std::string wrong = why([&] { static_cast<void>(subject.positive("mass", "kg")); });
   EXPECT_THAT(wrong, testing::StartsWith((folder / "out" / "subject.toml").string() + ":3: subject.mass"));
-  EXPECT_NO_THROW(named.root().finish());
+  // Tables within are filled too, but for a coefficient, which is one or the other.
+  const Study filled = in_folder("[subject]\nfile = \"out/subject.toml\"\ninertia.Jx = 9\nmodel.CL.alpha = 3\n");
+  const StudyTable inertia = filled.root().table("subject").table("inertia");
+  EXPECT_EQ(inertia.number("Jx", "kg m^2"), 9.0);
+  EXPECT_EQ(inertia.number("Jy", "kg m^2"), 2.0);
+  EXPECT_FALSE(filled.root().table("subject").table("model").table("CL").has("q_n"));
+  EXPECT_EQ(filled.root().table("subject").text("name"), "a.tir");
+  EXPECT_THAT(filled.notes(), ElementsAre(HasSubstr("what the study does not give is of ")));
   // What is written down of the run needs the file no more.
   const Study kept = Study::parse(named.to_toml(), "kept.toml", "/elsewhere");
   EXPECT_EQ(kept.root().table("subject").number("mass", "kg"), -5.0);
@@ -158,7 +166,9 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
       testing::AllOf(testing::StartsWith("study.toml:3: subject.file"), HasSubstr("none.toml has no [subject]")));
   write_file(folder / "chain.toml", "[subject]\nfile = \"none.toml\"\n");
   EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\nfile = \"chain.toml\"\n")); }),
-              HasSubstr("is in another file; name that one"));
+              HasSubstr("takes its subject from another file; name that one"));
+  EXPECT_THAT(why([&] { static_cast<void>(in_folder("[subject]\na = 1\n", {"subject.file="})); }),
+              testing::StartsWith("--set subject.file: is empty"));
   std::filesystem::remove_all(folder);
 }
 

@@ -158,32 +158,55 @@ toml::table parsed(std::string_view text, const std::string& name) {
 
 /// Files of tyres are named from the folder of the subject that names them.
 void find_tyres_from(const std::filesystem::path& folder, toml::table& subject) {
-  for (auto&& [key, value] : subject) {
-    if (toml::table* table = value.as_table()) find_tyres_from(folder, *table);
-    auto* text = value.as_string();
-    if (text == nullptr || !(text->get().ends_with(".tir") || text->get().ends_with(".TIR"))) continue;
-    if (std::filesystem::path(text->get()).is_relative()) text->get() = (folder / text->get()).string();
+  for (const char* path : {"tyre", "tyres.front", "tyres.rear"}) {
+    auto* text = subject.at_path(path).as_string();
+    if (text != nullptr && (text->get().ends_with(".tir") || text->get().ends_with(".TIR")))
+      text->get() = std::filesystem::absolute(folder / text->get()).string();
+  }
+}
+
+/// Puts keys of `other` into `table` where it does not have them, in tables within as well; those of `whole` are taken
+/// or left as they are.
+void fill_from(toml::table& table, toml::table&& other, std::string_view whole) {
+  for (auto&& [key, value] : other) {
+    toml::node* own = table.get(key.str());
+    if (own == nullptr) {
+      table.insert(key, std::move(value));
+    } else if (own->is_table() && value.is_table()) {
+      toml::table& within = *own->as_table();
+      if (key.str() != whole) {
+        fill_from(within, std::move(*value.as_table()), whole);
+        continue;
+      }
+      for (auto&& [part, of_part] : *value.as_table())
+        if (!within.contains(part.str())) within.insert(part, std::move(of_part));
+    }
   }
 }
 
 /// Puts the keys of the [subject] in the file that `table.file` names into the table, where it does not have them
-/// itself: what an identification wrote is simulated, scaled or identified again by naming its subject.toml.
-void take_subject_of_file(toml::table& table, const std::string& path, const StudyDocument& document) {
+/// itself: what an identification wrote is simulated, scaled or identified again by naming its subject.toml. A
+/// coefficient of `model` is the study's or the file's as a whole, as with a built-in subject.
+void take_subject_of_file(toml::table& table, const std::string& path, StudyDocument& document) {
   const toml::node* named = table.get("file");
   if (named == nullptr) return;
-  const std::string place = fmt::format("{}:{}: {}.file", document.name, named->source().begin.line, path);
+  // An override has no line.
+  const std::string place = named->source().path
+                                ? fmt::format("{}:{}: {}.file", document.name, named->source().begin.line, path)
+                                : fmt::format("--set {}.file", path);
   std::filesystem::path file = text_from(*named, place);
+  if (file.empty()) throw InputError(place, "is empty; expected a file such as out/identify/subject.toml");
   if (file.is_relative()) file = document.folder / file;
+  if (!std::filesystem::is_regular_file(file)) throw InputError(place, fmt::format("{}: no such file", file.string()));
   toml::table other = parsed(read_file(file), file.string());
   toml::table* subject = other.get("subject") == nullptr ? nullptr : other.get("subject")->as_table();
   if (subject == nullptr) throw InputError(place, fmt::format("{} has no [subject]", file.string()));
   if (subject->contains("file"))
-    throw InputError(place, fmt::format("the subject of {} is in another file; name that one", file.string()));
+    throw InputError(place, fmt::format("{} takes its subject from another file; name that one", file.string()));
   find_tyres_from(file.parent_path(), *subject);
   table.erase("file");
-  for (auto&& [key, value] : *subject) {
-    if (!table.contains(key.str())) table.insert(key, std::move(value));
-  }
+  fill_from(table, std::move(*subject), "model");
+  document.notes.push_back(fmt::format("{}: what the study does not give is of {}", place, file.string()));
 }
 
 void apply_override(toml::table& root, const std::string& text) {
@@ -420,7 +443,7 @@ Study Study::parse(std::string_view text, std::string name, const std::filesyste
   document->folder = folder;
   document->root = parsed(text, name);
   for (const std::string& text_of_override : overrides) apply_override(document->root, text_of_override);
-  for (const char* path : {"subject", "scale.model"}) {
+  for (const char* path : {"subject", "scale.model", "cue.vehicle"}) {
     if (toml::table* table = document->root.at_path(path).as_table()) take_subject_of_file(*table, path, *document);
   }
   auto node = std::make_shared<StudyNode>();

@@ -94,7 +94,8 @@ DrivenMotion read_drive(const StudyTable& root, const recording::MotionOptions& 
           .samples = at_driver(vehicle::motion_samples(driven.trajectory, options_of.gravity,
                                                        options_of.longitudinal ? options_of.longitudinal->grade : 0.0),
                                driver),
-          .inputs = simulation.inputs};
+          .inputs = simulation.inputs,
+          .notes = simulation.vehicle.warnings};
 }
 
 std::vector<StudyAlgorithm> read_algorithms(const StudyTable& root, const StudyTable& cue, const Platform& platform) {

@@ -109,9 +109,11 @@ TEST(BatchEvaluator, TwoProcessesEvaluateHalfEachAndComeToTheSameBits) {
   for (std::thread& p : processes) p.join();
   EXPECT_EQ(found[0], numbers(alone));
   EXPECT_EQ(found[1], numbers(alone));
-  // Every point once; many batches of a search in two dimensions have one point, which is the first process'.
+  // Every point once, but for those that the single process left: the second may compute its share of them before the
+  // first has told it. Many batches of a search in two dimensions have one point, which is the first process'.
   const std::size_t all = alone.evaluations().size();
-  EXPECT_EQ(calls[0] + calls[1], all - left);
+  EXPECT_GE(calls[0] + calls[1], all - left);
+  EXPECT_LE(calls[0] + calls[1], all);
   EXPECT_GT(calls[1], all / 8);
   std::filesystem::remove_all(folder);
 }

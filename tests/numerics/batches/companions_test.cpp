@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -49,17 +50,25 @@ TEST_F(CompanionsTest, CountHowLongSomethingIsWaitedFor) {
   EXPECT_LT(first.wait_for(1, "all"), 0.02);
 }
 
-TEST_F(CompanionsTest, NameWhoShowsNoLife) {
-  Companions first(folder_, share(0));
-  EXPECT_EQ(first.wait_for(1, "3 blocks are missing"), 0.0);
-  std::this_thread::sleep_for(60ms);
-  try {
-    (void)first.wait_for(1, "3 blocks are missing");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr(
-                                  "process 2 of 2 has shown no life for 0.05 s, and 3 blocks are missing; run again"));
-  }
+TEST_F(CompanionsTest, NameWhoShowsNoLifeAndWhoWasNeverSeen) {
+  const auto failure_after = [&](std::chrono::milliseconds time) {
+    Companions first(folder_, share(0));
+    EXPECT_EQ(first.wait_for(1, "3 blocks are missing"), 0.0);
+    std::this_thread::sleep_for(time);
+    try {
+      static_cast<void>(first.wait_for(1, "3 blocks are missing"));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(failure_after(60ms), "");
+  EXPECT_THAT(failure_after(260ms), ::testing::HasSubstr("process 2 of 2 was never seen in 0.25 s, and 3 blocks are "
+                                                         "missing; start all 2 at the same time"));
+  std::ofstream(folder_ / "process-2.alive") << "node7, process 4711\n12\n";
+  EXPECT_THAT(failure_after(60ms),
+              ::testing::HasSubstr("process 2 of 2 (node7, process 4711) has shown no life for 0.05 s, and 3 blocks "
+                                   "are missing; run again to go on"));
 }
 
 }  // namespace

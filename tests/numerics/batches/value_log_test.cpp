@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -79,12 +80,14 @@ TEST_F(ValueLogTest, CutAnywhereItHoldsWholeRecordsAndGoesOn) {
   fill();
   const std::string whole = read_file(file_);
   const std::size_t head = 17, second = head + 40, third = second + 24;
-  for (std::size_t size = head; size <= whole.size(); ++size) {
+  for (std::size_t size = 0; size <= whole.size(); ++size) {
     write_file(file_, whole.substr(0, size));
-    ValueLog log(folder_);
     const std::size_t kept = size == whole.size() ? 3U : size >= third ? 2U : size >= second ? 1U : 0U;
-    ASSERT_EQ(log.loaded(), kept) << size;
-    log.append(100, std::vector{8.0});
+    {
+      ValueLog log(folder_);
+      ASSERT_EQ(log.loaded(), kept) << size;
+      log.append(100, std::vector{8.0});
+    }
     const ValueLog again(folder_);
     ASSERT_EQ(again.loaded(), kept + 1) << size;
     ASSERT_TRUE(again.find(100, values_));
@@ -182,9 +185,70 @@ TEST_F(ValueLogTest, NamesTheProcessThatShowsNoLifeAndTheOneThatGoesAnotherWay) 
     }
     return std::string();
   };
-  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 has shown no life for 0.05 s, and what it computes is missing"));
+  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 was never seen in 0.25 s, and what it computes is missing; start "
+                                   "all 2 at the same time"));
   const Heartbeat other(folder_ / "process-2.alive", std::chrono::milliseconds(5));
-  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 lives, but has not come to what is waited for here"));
+  EXPECT_THAT(failure(), HasSubstr("process 2 of 2 lives, but has computed nothing for"));
+}
+
+TEST_F(ValueLogTest, GoesOnWaitingForAProcessThatComputesOtherThings) {
+  std::atomic<bool> done = false;
+  std::thread other([&] {
+    ValueLog log(folder_, share(1, 2, 0.03));
+    // Ten times the patience are over long before the key that is waited for comes.
+    for (std::uint64_t k = 0; k < 80; ++k) {
+      log.append(100 + k, std::vector{0.0});
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    log.append(7, std::vector{3.0});
+    while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  const ValueLog log(folder_, share(0, 2, 0.03));
+  EXPECT_TRUE(log.find(7, values_, 1));
+  EXPECT_THAT(values_, ElementsAre(3.0));
+  done = true;
+  other.join();
+}
+
+TEST_F(ValueLogTest, FindsWhatTheOwnerHasFromAnotherProcessFile) {
+  const ValueLog log(folder_, share(0, 2));
+  const Heartbeat second(folder_ / "process-2.alive");
+  // Of an earlier run with three processes, of which the third had not ended.
+  std::thread third([&] { ValueLog(folder_, share(2, 3)).append(7, std::vector{5.0}); });
+  EXPECT_TRUE(log.find(7, values_, 1));
+  EXPECT_THAT(values_, ElementsAre(5.0));
+  third.join();
+}
+
+TEST_F(ValueLogTest, OneProcessAtATimeWritesAFile) {
+  const ValueLog running(folder_, share(1, 2));
+  try {
+    const ValueLog again(folder_, share(1, 3));
+    FAIL() << "both write";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("evaluations-2.log"));
+    EXPECT_THAT(error.what(), HasSubstr("is written by another process that runs"));
+  }
+  EXPECT_NO_THROW(ValueLog(folder_, share(0, 2)));
+}
+
+TEST_F(ValueLogTest, NoticesAFileThatChangesWhileItRuns) {
+  ValueLog log(folder_);
+  log.append(9, std::vector{4.5});
+  std::string text = read_file(file_);
+  text[17 + 16] ^= 1;
+  std::ofstream(file_, std::ios::binary | std::ios::in | std::ios::out) << text;
+  EXPECT_THROW(static_cast<void>(log.find(9, values_)), std::runtime_error);
+}
+
+TEST_F(ValueLogTest, AFailureOnOneThreadEndsTheWaitingOfOthers) {
+  ValueLog log(folder_, share(0, 2));
+  bool found = true;
+  std::thread waiting([&] { found = log.find(7, values_, 1); });
+  std::filesystem::remove_all(folder_);
+  EXPECT_THROW(log.append(8, std::vector{1.0}), std::runtime_error);
+  waiting.join();
+  EXPECT_FALSE(found);
 }
 
 TEST_F(ValueLogTest, WaitsNoLongerWhenInterrupted) {

@@ -132,6 +132,7 @@ Subject read_subject(const StudyTable& table) {
   Subject s;
   // What was rejected is no number there, and a study that needs it says so.
   table.accept("grades");
+  static_cast<void>(table.flag_or("accept_rejected", false));
   if (table.has("builtin")) s = builtin_subject(table.text("builtin"), table.place("builtin"));
   s.name = table.text_or("name", s.name.empty() ? "aircraft" : s.name);
   s.description = table.text_or("description", s.description);

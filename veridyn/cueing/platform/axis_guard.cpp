@@ -141,6 +141,8 @@ AxisState AxisGuard::step(double wanted, double step) {
     if (step > kLongestStep) stop(step);
     wanted_ = nearest_inside(fastest_stop(state_, limits_).position, new_limits_.value_or(limits_));
     wanted_rate_ = wanted_acceleration_ = 0.0;
+    // In a gap nobody knows what was asked for.
+    if (step > kLongestStep) asked_ = wanted_;
     limited_ = true;
     if (step <= kLongestStep) follow(wanted_, step, 0.0, 0.0);
     last_step_ = step;
@@ -148,13 +150,14 @@ AxisState AxisGuard::step(double wanted, double step) {
   }
   const double before = wanted_, mean_rate = (wanted - before) / step;
   const double between = 0.5 * (step + last_step_);
-  const double acceleration = within((mean_rate - wanted_rate_) / between, limits_.acceleration);
+  const double mean_acceleration = (mean_rate - wanted_rate_) / between;
+  const double acceleration = within(mean_acceleration, limits_.acceleration);
   wanted_rate_ = mean_rate;
   wanted_acceleration_ = acceleration;
   last_step_ = step;
   const double pieces = std::ceil(step / kLongestPiece * (1.0 - 1e-9));
   const double final_rate = mean_rate + 0.5 * acceleration * step;
-  limited_ = wanted != asked;
+  limited_ = wanted != asked || acceleration != mean_acceleration;
   for (double k = 1.0; k <= pieces; ++k) {
     const double left = step * (1.0 - k / pieces);
     follow(wanted - left * (final_rate - 0.5 * acceleration * left), step / pieces, final_rate - acceleration * left,
@@ -183,22 +186,29 @@ AxisGuard::Following AxisGuard::wanted_acceleration(double wanted, double rate, 
   constexpr double kNear = kBandwidth / 2.0;
   const double braking = kOfAcceleration * std::min(limits_.acceleration, most.acceleration);
   const double far_from = braking / (kNear * kNear);
-  const double towards =
-      distance < far_from ? kNear * off : std::copysign(std::sqrt(2.0 * braking * (distance - far_from / 2.0)), off);
+  Following following;
+  const auto limited = [&](double value, double limit) {
+    following.limited = following.limited || std::abs(value) > limit;
+    return within(value, limit);
+  };
+  const bool far = distance >= far_from;
+  following.limited = far;
+  const double towards = far ? std::copysign(std::sqrt(2.0 * braking * (distance - far_from / 2.0)), off) : kNear * off;
   const double fastest = 0.999 * std::min(limits_.rate, most.rate);
-  const double missing = within(rate + towards, fastest) - then.rate;
+  const double missing = limited(rate + towards, fastest) - then.rate;
   // No more than the jerk takes back in time (half of a^2 / 2 J = missing), or the axis would swing for ever.
   const double taken_back = std::sqrt(std::abs(missing) * std::min(limits_.jerk, most.jerk));
-  return {.allowed = within(acceleration + within(2.0 * kBandwidth * missing, taken_back),
-                            std::min(limits_.acceleration, most.acceleration)),
-          .unlimited = acceleration + 2.0 * kBandwidth * (rate + kNear * off - then.rate)};
+  following.acceleration = limited(acceleration + limited(2.0 * kBandwidth * missing, taken_back),
+                                   std::min(limits_.acceleration, most.acceleration));
+  return following;
 }
 
 void AxisGuard::follow(double wanted, double step, double rate, double acceleration) {
   const double most = new_limits_ ? std::min(limits_.jerk, new_limits_->jerk) : limits_.jerk;
   const Following following = wanted_acceleration(wanted, rate, acceleration, step);
-  const double jerk = within((following.allowed - state_.acceleration) / step, most);
-  limited_ = limited_ || jerk != (following.unlimited - state_.acceleration) / step;
+  const double needed = (following.acceleration - state_.acceleration) / step;
+  const double jerk = within(needed, most);
+  limited_ = limited_ || following.limited || std::abs(needed) > most;
   if (const auto next = piece(jerk, step)) {
     state_ = *next;
     return;

@@ -42,9 +42,10 @@ class AxisGuard {
 
  private:
   void follow(double wanted, double step, double rate, double acceleration);
-  /// The acceleration by which the axis follows: as its limits allow, and as it would without them.
+  /// The acceleration by which the axis follows, and whether a limit made it less.
   struct Following {
-    double allowed = 0.0, unlimited = 0.0;
+    double acceleration = 0.0;
+    bool limited = false;
   };
   [[nodiscard]] Following wanted_acceleration(double wanted, double rate, double acceleration, double step) const;
   /// The end of a piece of constant jerk, where the piece is allowed.

@@ -19,6 +19,14 @@ Grade grade_of(const StudyTable& grades, Purpose purpose) {
 
 }  // namespace
 
+std::string grades_table(const StudyTable& subject) {
+  if (!subject.has("grades")) return "";
+  std::string text = "\n[subject.grades]\n";
+  for (const Purpose purpose : kPurposes)
+    text += fmt::format("{} = \"{}\"\n", to_string(purpose), to_string(grade_of(subject.table("grades"), purpose)));
+  return text;
+}
+
 std::string graded_toml(const std::string& toml, const Judgement& judgement) {
   std::string text = fmt::format("# {}\n{}\n[subject.grades]\n", sentence_of(judgement), toml);
   for (const Purpose purpose : kPurposes)
@@ -34,9 +42,8 @@ std::string grades_warning(const StudyTable& subject) {
   static_cast<void>(grade_of(grades, Purpose::kData));
   if (parameters != Grade::kNo) return "";
   if (prediction == Grade::kYes || prediction == Grade::kWithCare)
-    return "the parameters of this subject predicted held-out data, but its identification found them to be no "
-           "physical "
-           "constants (grades.parameters = \"no\")";
+    return "the parameters of this subject predicted held-out data, but are no physical constants: their "
+           "identification graded them \"no\"";
   const std::string what =
       "the identification that wrote this subject rejected its parameters (grades: parameters \"no\", prediction \"" +
       std::string(to_string(prediction)) + "\")";

@@ -51,9 +51,10 @@ struct EnsembleSample {
 
 /// Samples a density by an ensemble of walkers that move in two halves, each by positions of the other half
 /// (Foreman-Mackey et al. 2013, PASP 125:306), so that a half's moves are independent of each other and their densities
-/// are asked for at once. Moves, at random: differences of two walkers (ter Braak 2006,
-/// Stat Comput 16:239), stretches (Goodman & Weare 2010, Comm Appl Math Comp Sci 5:65), and, with `near`, independent
-/// draws of a t distribution of ten degrees of freedom around it, which mix quickly where the density is nearly normal.
+/// are asked for at once: the same bits on any number of threads. Moves, at random: differences of two walkers (ter
+/// Braak 2006, Stat Comput 16:239), stretches (Goodman & Weare 2010, Comm Appl Math Comp Sci 5:65), and, with `near`,
+/// independent draws of a t distribution of ten degrees of freedom around it, which mix quickly where the density is
+/// nearly normal.
 ///
 /// The first quarter of the steps is warm-up. It ends when it has as many independent draws as wanted by the
 /// autocorrelation of the walkers' mean over walkers (Sokal's window), or after `steps`.

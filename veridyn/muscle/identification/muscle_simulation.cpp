@@ -28,12 +28,15 @@ numerics::StepControl step_control(double accuracy) {
           .max_steps = 200000};
 }
 
-/// The size of an unknown, a power of two: tangents are integrated as those by the unknown over its size, so that all
-/// are of the order of the state, and no bit of them depends on the unit.
+/// The size of an unknown, a power of two, so that it costs no rounding: tangents are integrated as those by the
+/// unknown over its size, so that all are of the order of the state.
 double size_of(const MuscleTask& task, Eigen::Index unknown) {
   if (at(unknown) >= task.unknowns.size()) return 1.0;
   const MuscleUnknown& u = task.unknowns[at(unknown)];
-  const double size = u.start != 0.0 ? std::abs(u.start) : u.high - u.low;
+  // A start may be next to nothing, as that of a delay.
+  constexpr double kOfRange = 0.1;
+  const double range = u.high - u.low;
+  const double size = std::max(std::abs(u.start), std::isfinite(range) ? kOfRange * range : 0.0);
   return size > 0.0 && std::isfinite(size) ? std::exp2(std::round(std::log2(size))) : 1.0;
 }
 

@@ -10,6 +10,9 @@
 namespace veridyn::numerics {
 namespace {
 
+/// A process that was never seen is waited for by so many times the patience.
+constexpr double kToBeStarted = 5.0;
+
 std::string alive_name(std::size_t index) { return fmt::format("process-{}.alive", index + 1); }
 
 }  // namespace
@@ -22,12 +25,19 @@ Companions::Companions(std::filesystem::path folder, const ProcessShare& share)
 double Companions::wait_for(std::size_t owner, std::string_view missing) {
   const auto now = std::chrono::steady_clock::now();
   Watch& watch = watches_.try_emplace(owner, Watch{HeartbeatWatch(folder_ / alive_name(owner)), now}).first->second;
-  if (watch.beat.silence().count() > share_.patience_s) {
-    const std::string who = watch.beat.who().empty() ? "" : fmt::format(" ({})", watch.beat.who());
+  const double silence = watch.beat.silence().count();
+  if (watch.beat.who().empty()) {
+    // Jobs of an array do not start at one time.
+    if (silence > kToBeStarted * share_.patience_s)
+      throw std::runtime_error(
+          fmt::format("{}: process {} of {} was never seen in {:g} s, and {}; start all {} at the same time",
+                      folder_.string(), owner + 1, share_.count, kToBeStarted * share_.patience_s, missing,
+                      share_.count));
+  } else if (silence > share_.patience_s) {
     throw std::runtime_error(
-        fmt::format("{}: process {} of {}{} has shown no life for {:g} s, and {}; run again to "
+        fmt::format("{}: process {} of {} ({}) has shown no life for {:g} s, and {}; run again to "
                     "go on",
-                    folder_.string(), owner + 1, share_.count, who, share_.patience_s, missing));
+                    folder_.string(), owner + 1, share_.count, watch.beat.who(), share_.patience_s, missing));
   }
   return std::chrono::duration<double>(now - watch.since).count();
 }

@@ -21,7 +21,8 @@ class Companions {
 
   /// Notes that something of process `owner` (counted from 0) is waited for: `missing`, "5 blocks are missing".
   /// @return for how long it has been waited for without a break [s]; `arrived` ends that
-  /// @throws std::runtime_error naming the process when it has shown no life for the share's patience.
+  /// @throws std::runtime_error naming the process when it has shown no life for the share's patience, or was never
+  /// seen for five times as long.
   double wait_for(std::size_t owner, std::string_view missing);
   /// What was waited for is there.
   void arrived(std::size_t owner);

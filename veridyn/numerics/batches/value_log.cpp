@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <ranges>
 #include <stdexcept>
 #include <thread>
 
@@ -24,9 +25,11 @@ constexpr std::size_t kFrameWords = 3;
 /// A process that lives and for so many times the patience has not computed what it should never will.
 constexpr double kNeverComes = 10.0;
 
+constexpr std::string_view kLogName = "evaluations";
+
 /// Of the process with that index.
 std::filesystem::path file_in(const std::filesystem::path& folder, std::size_t index) {
-  return folder / (index == 0 ? std::string("evaluations.log") : fmt::format("evaluations-{}.log", index + 1));
+  return folder / (index == 0 ? fmt::format("{}.log", kLogName) : fmt::format("{}-{}.log", kLogName, index + 1));
 }
 
 void put(std::string& text, std::uint64_t word) {
@@ -68,23 +71,29 @@ void ValueLog::open_own() {
   files_.resize(std::max<std::size_t>(1, share_.count));
   for (std::size_t i = 0; i < files_.size(); ++i) files_[i].path = file_in(folder_, i);
   File& own = files_[share_.index];
-  if (!std::filesystem::exists(own.path)) {
-    write_file(own.path, kLogFormat);
+  lock_ = std::make_unique<FileLock>(own.path);
+  const std::string content = read_file(own.path);
+  if (content.size() < kLogFormat.size() && kLogFormat.starts_with(content)) {
+    std::ofstream file(own.path, std::ios::binary | std::ios::trunc);
+    file << kLogFormat << std::flush;
+    if (!file)
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", own.path.string(), std::strerror(errno)));
     own.size = kLogFormat.size();
     return;
   }
-  const std::string content = read_file(own.path);
   take_records(share_.index, content, true);
   // In place: others may be reading it.
   if (own.size < content.size()) std::filesystem::resize_file(own.path, own.size);
 }
 
-void ValueLog::open_others() {
-  for (std::size_t i = files_.size(); std::filesystem::exists(file_in(folder_, i)); ++i) {
-    files_.push_back({.path = file_in(folder_, i)});
+void ValueLog::open_others() const {
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kLogName) || entry.path().extension() != ".log") continue;
+    if (std::ranges::find(files_, entry.path(), &File::path) == files_.end()) files_.push_back({.path = entry.path()});
   }
   for (std::size_t i = 0; i < files_.size(); ++i)
-    if (i != share_.index) look_at(i);
+    if (i != share_.index) static_cast<void>(look_at(i, true));
 }
 
 void ValueLog::take_records(std::size_t file, std::string_view content, bool strict) const {
@@ -113,12 +122,25 @@ void ValueLog::take_records(std::size_t file, std::string_view content, bool str
   }
 }
 
-void ValueLog::look_at(std::size_t file) const {
+bool ValueLog::look_at(std::size_t file, bool anew) const {
   File& f = files_[file];
-  std::error_code absent;
-  const std::uintmax_t size = std::filesystem::file_size(f.path, absent);
-  if (absent || size <= f.size) return;
-  take_records(file, text_of(f, f.size, size - f.size), false);
+  std::uintmax_t size = 0;
+  if (anew) {
+    f.reader.close();
+    f.reader.clear();
+    f.reader.open(f.path, std::ios::binary | std::ios::ate);
+    if (!f.reader.is_open()) return false;
+    size = static_cast<std::uintmax_t>(std::max<std::streamoff>(0, f.reader.tellg()));
+  } else {
+    std::error_code absent;
+    size = std::filesystem::file_size(f.path, absent);
+    if (absent) return false;
+  }
+  if (size <= f.size) return false;
+  const std::size_t before = f.size;
+  // Nobody writes those of an earlier run.
+  take_records(file, text_of(f, f.size, size - f.size), file >= share_.count);
+  return f.size > std::max(before, kLogFormat.size());
 }
 
 std::string ValueLog::text_of(File& file, std::size_t offset, std::size_t size) {
@@ -135,7 +157,11 @@ bool ValueLog::found(std::uint64_t key, std::vector<double>& values) const {
   const auto place = places_.find(key);
   if (place == places_.end()) return false;
   const auto& [file, offset, count] = place->second;
-  const std::string text = text_of(files_[file], offset, count * kWord);
+  const std::string record = text_of(files_[file], offset - 2 * kWord, (count + kFrameWords) * kWord);
+  const std::string_view text = std::string_view(record).substr(2 * kWord, count * kWord);
+  if (word_at(record, 0) != key || word_at(record, record.size() - kWord) != check_of(key, text))
+    throw std::runtime_error(
+        fmt::format("{}: was changed by something else while this runs", files_[file].path.string()));
   values.resize(count);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::bit_cast<double>(word_at(text, i * kWord));
   return true;
@@ -146,35 +172,57 @@ bool ValueLog::find(std::uint64_t key, std::vector<double>& values, std::size_t 
     const std::lock_guard lock(mutex_);
     if (found(key, values)) return true;
   }
-  return share_.wait && !share_.computes(item) && wait_for(key, values, share_.owner(item));
+  if (!share_.wait || share_.computes(item)) return false;
+  try {
+    return wait_for(key, values, share_.owner(item));
+  } catch (...) {
+    failed_ = true;
+    throw;
+  }
 }
 
 bool ValueLog::wait_for(std::uint64_t key, std::vector<double>& values, std::size_t owner) const {
   using namespace std::chrono_literals;
-  constexpr auto kLookForLife = 5ms;
-  for (std::chrono::microseconds pause = 50us; interrupted_ == nullptr || !interrupted_();
+  constexpr auto kPatient = 5ms;
+  for (std::chrono::microseconds pause = 50us; !failed_ && (interrupted_ == nullptr || !interrupted_());
        pause = std::min<std::chrono::microseconds>(2 * pause, 20ms)) {
     {
       const std::lock_guard lock(mutex_);
-      look_at(owner);
-      if (found(key, values)) {
-        companions_.arrived(owner);
-        return true;
-      }
-      if (pause > kLookForLife && companions_.wait_for(owner, "what it computes is missing") > patience_of_a_path())
-        throw std::runtime_error(fmt::format(
-            "{}: process {} of {} lives, but has not come to what is waited for here: it computes other numbers, as "
-            "machines do whose processors or mathematical libraries round differently; use machines of one kind",
-            folder_.string(), owner + 1, share_.count));
+      if (has_come(key, values, owner, pause > kPatient)) return true;
     }
     std::this_thread::sleep_for(pause);
   }
   return false;
 }
 
-double ValueLog::patience_of_a_path() const { return kNeverComes * share_.patience_s; }
+bool ValueLog::has_come(std::uint64_t key, std::vector<double>& values, std::size_t owner, bool patient) const {
+  bool alive = look_at(owner, patient);
+  // It may stand in another file: of a process of an earlier run that had not ended.
+  if (patient) open_others();
+  const bool there = found(key, values);
+  alive = alive || there;
+  if (alive) companions_.arrived(owner);
+  if (there || !patient || alive) return there;
+  const double waited = companions_.wait_for(owner, "what it computes is missing");
+  if (waited > kNeverComes * share_.patience_s)
+    throw std::runtime_error(fmt::format(
+        "{}: process {} of {} lives, but has computed nothing for {:.0f} s that is waited for here: it is busy with "
+        "something else, or on another path, as on a machine whose processor or mathematical library rounds "
+        "differently; use machines of one kind",
+        folder_.string(), owner + 1, share_.count, waited));
+  return false;
+}
 
 void ValueLog::append(std::uint64_t key, std::span<const double> values) {
+  try {
+    write_record(key, values);
+  } catch (...) {
+    failed_ = true;
+    throw;
+  }
+}
+
+void ValueLog::write_record(std::uint64_t key, std::span<const double> values) {
   std::string text;
   text.reserve(values.size() * kWord);
   for (const double v : values) put(text, std::bit_cast<std::uint64_t>(v));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "veridyn/numerics/batches/companions.hpp"
+#include "veridyn/numerics/batches/file_lock.hpp"
 #include "veridyn/numerics/batches/process_share.hpp"
 
 namespace veridyn::numerics {
@@ -35,8 +37,8 @@ class ValueLog {
  public:
   /// Opens or begins this process' file in a folder.
   /// @param interrupted  ends the waiting for others; nullptr: nothing does
-  /// @throws InputError where a file is no such log, or is damaged before its end; std::runtime_error where it cannot
-  /// be written.
+  /// @throws InputError where a file is no such log, or is damaged before its end, or another process that runs writes
+  /// it; std::runtime_error where it cannot be written.
   explicit ValueLog(std::filesystem::path folder, const ProcessShare& share = {},
                     std::function<bool()> interrupted = nullptr);
   ValueLog(const ValueLog&) = delete;
@@ -45,8 +47,8 @@ class ValueLog {
   /// The values under a key (a `Fingerprint` of the function and its arguments). False: there are none, and this
   /// process has to compute them. On any thread.
   /// @param item  its number among what is asked at once; it is waited for where another process computes it
-  /// @throws std::runtime_error when a file cannot be read, or a process that is waited for shows no life or does not
-  /// come to compute it: then its path is another one
+  /// @throws std::runtime_error when a file cannot be read or was changed, or a process that is waited for shows no
+  /// life or computes nothing for long: then its path may be another one
   [[nodiscard]] bool find(std::uint64_t key, std::vector<double>& values, std::size_t item = 0) const;
   /// On any thread; what is there already stays. @throws std::runtime_error when it cannot be written.
   void append(std::uint64_t key, std::span<const double> values);
@@ -68,26 +70,32 @@ class ValueLog {
   };
 
   void open_own();
-  void open_others();
+  /// Those of other processes, also of earlier runs, that are not open yet.
+  void open_others() const;
   /// Takes the whole records of what stands in a file behind those that were read. Not strict: a record that does not
   /// add up ends the reading instead of the program.
   void take_records(std::size_t file, std::string_view content, bool strict) const;
-  /// Takes what was appended to a file since.
-  void look_at(std::size_t file) const;
+  /// Takes what was appended to a file since; true where that was a record. `anew`: opens it again, for a network file
+  /// system may know of what others wrote only then.
+  bool look_at(std::size_t file, bool anew) const;
   [[nodiscard]] static std::string text_of(File& file, std::size_t offset, std::size_t size);
   [[nodiscard]] bool found(std::uint64_t key, std::vector<double>& values) const;
-  /// False when interrupted.
+  /// False when interrupted, or when another thread failed.
   [[nodiscard]] bool wait_for(std::uint64_t key, std::vector<double>& values, std::size_t owner) const;
-  [[nodiscard]] double patience_of_a_path() const;
+  /// One look of that; `patient`: it has lasted for a while.
+  [[nodiscard]] bool has_come(std::uint64_t key, std::vector<double>& values, std::size_t owner, bool patient) const;
+  void write_record(std::uint64_t key, std::span<const double> values);
 
   std::filesystem::path folder_;
   ProcessShare share_;
   std::function<bool()> interrupted_;
   std::size_t loaded_ = 0;
+  mutable std::atomic<bool> failed_ = false;  ///< on some thread: nobody waits any more
   mutable std::mutex mutex_;
   mutable std::vector<File> files_;  ///< of process `index` at `index`, then those of earlier runs with more processes
   mutable std::unordered_map<std::uint64_t, Place> places_;
   mutable Companions companions_;
+  std::unique_ptr<FileLock> lock_;
 };
 
 }  // namespace veridyn::numerics
