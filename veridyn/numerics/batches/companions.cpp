@@ -29,10 +29,9 @@ double Companions::wait_for(std::size_t owner, std::string_view missing) {
   if (watch.beat.who().empty()) {
     // Jobs of an array do not start at one time.
     if (silence > kToBeStarted * share_.patience_s)
-      throw std::runtime_error(
-          fmt::format("{}: process {} of {} was never seen in {:g} s, and {}; start all {} at the same time",
-                      folder_.string(), owner + 1, share_.count, kToBeStarted * share_.patience_s, missing,
-                      share_.count));
+      throw std::runtime_error(fmt::format(
+          "{}: process {} of {} was never seen in {:g} s, and {}; start all {} at the same time", folder_.string(),
+          owner + 1, share_.count, kToBeStarted * share_.patience_s, missing, share_.count));
   } else if (silence > share_.patience_s) {
     throw std::runtime_error(
         fmt::format("{}: process {} of {} ({}) has shown no life for {:g} s, and {}; run again to "

@@ -61,7 +61,7 @@ enum class VehicleNeeds {
 ///     kind = "vehicle"
 ///     name = "my car"
 ///     builtin = "reference"          # start from a built-in vehicle; every key below then overrides it
-///     file = "out/id/subject.toml"   # or from the [subject] of a file (`Study::parse`): one that `identify` wrote, say
+///     file = "out/id/subject.toml"   # or from the [subject] of a file: one that `identify` wrote, say
 ///     mass = "1100 kg"               # and the other names of kVehicleFields
 ///     track = 1.5                    # both axles; so also K_s, C_s, K_b, K_t
 ///     tyre = "linear"                # "fiala" (smooth friction limit, needs mu), "magic formula", or a .tir file
@@ -72,9 +72,9 @@ enum class VehicleNeeds {
 ///     front = "front.tir"            # tyre files of the axles, instead of `tyre`
 ///     rear = "rear.tir"
 ///     slip_stiffness = 100000        # linear, fiala, magic formula: dFx/dkappa [N]; 1.3 C of the axle when left out
-///     C = 1.3                        # magic formula: shape, curvature E, load dependence; stiffness is C_f, C_r at
-///     E = 0.0                        # the static load, friction mu
-///     mu_load = 0.0
+///     C = 1.3                        # magic formula: shape; stiffness is C_f, C_r at the static load, friction mu
+///     E = 0.0                        # curvature
+///     mu_load = 0.0                  # dependence on load
 ///     stiffness_saturation = 0.0
 ///     [subject.longitudinal]         # see LongitudinalParameters; names as there
 ///
