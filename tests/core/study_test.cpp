@@ -152,7 +152,7 @@ TEST(Study, TakesTheSubjectOfAFileWhereItHasNoKeysOfItsOwn) {
   EXPECT_EQ(inertia.number("Jy", "kg m^2"), 2.0);
   EXPECT_FALSE(filled.root().table("subject").table("model").table("CL").has("q_n"));
   EXPECT_EQ(filled.root().table("subject").text("name"), "a.tir");
-  EXPECT_THAT(filled.notes(), ElementsAre(HasSubstr("what the study does not give is of ")));
+  EXPECT_THAT(filled.notes(), ElementsAre(HasSubstr("what this table does not give is taken from ")));
   // What is written down of the run needs the file no more.
   const Study kept = Study::parse(named.to_toml(), "kept.toml", "/elsewhere");
   EXPECT_EQ(kept.root().table("subject").number("mass", "kg"), -5.0);

@@ -206,7 +206,7 @@ void take_subject_of_file(toml::table& table, const std::string& path, StudyDocu
   find_tyres_from(file.parent_path(), *subject);
   table.erase("file");
   fill_from(table, std::move(*subject), "model");
-  document.notes.push_back(fmt::format("{}: what the study does not give is of {}", place, file.string()));
+  document.notes.push_back(fmt::format("{}: what this table does not give is taken from {}", place, file.string()));
 }
 
 void apply_override(toml::table& root, const std::string& text) {
