@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "veridyn/numerics/linear_algebra/orthogonal.hpp"
 #include "veridyn/numerics/linear_algebra/products.hpp"
@@ -93,6 +95,92 @@ std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_cau
   return sums;
 }
 
+/// `sums_at` for every lag of signals without gaps: only products of what moves with what does not are made anew, the
+/// others are differences of running sums.
+class SumsWithoutGaps {
+ public:
+  /// Nothing where a value is missing, or rows are left out.
+  static std::optional<SumsWithoutGaps> of(const DelayedEffect& e) {
+    if (e.effect.size() >= 2 * kMostRows) return std::nullopt;
+    const auto complete = [](const std::vector<double>& x) {
+      return std::ranges::all_of(x, [](double v) { return std::isfinite(v); });
+    };
+    const auto all = [&](const std::vector<Explanatory>& list) {
+      return std::ranges::all_of(list, [&](const Explanatory& x) { return complete(x.value); });
+    };
+    if (!complete(e.effect) || !all(e.others) || !all(e.late_others) || !all(e.causes)) return std::nullopt;
+    return SumsWithoutGaps(e);
+  }
+
+  [[nodiscard]] std::vector<PartialSums> at(long lag) const {
+    const auto parts = static_cast<long>(kParts);
+    std::vector<PartialSums> sums(kParts, PartialSums(width()));
+    for (long part = 0; part < parts; ++part) {
+      const long begin = std::max((part * n_ + parts - 1) / parts, std::max(0L, lag));
+      const long end = std::min(((part + 1) * n_ + parts - 1) / parts, n_ + std::min(0L, lag));
+      if (begin >= end) continue;
+      Eigen::MatrixXd& products = sums[static_cast<std::size_t>(part)].products;
+      put_running(still_, still_place_, begin, end, products);
+      put_running(moving_, moving_place_, begin - lag, end - lag, products);
+      for (std::size_t i = 0; i < still_.signals.size(); ++i) {
+        for (std::size_t j = 0; j < moving_.signals.size(); ++j) {
+          const Eigen::Index row = still_place_[i], column = moving_place_[j];
+          products(row, column) = products(column, row) =
+              still_.signals[i].segment(begin, end - begin).dot(moving_.signals[j].segment(begin - lag, end - begin));
+        }
+      }
+    }
+    return sums;
+  }
+
+ private:
+  /// Signals, and of each pair the sum of its products before each sample.
+  struct Group {
+    std::vector<Eigen::VectorXd> signals;
+    std::vector<Eigen::VectorXd> running;  ///< pairs (i, j <= i), row by row
+  };
+
+  explicit SumsWithoutGaps(const DelayedEffect& e) : n_(static_cast<long>(e.effect.size())) {
+    const std::vector<Column> columns = columns_at(e, 1, true);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const bool moves = columns[c].lag != 0;
+      (moves ? moving_place_ : still_place_).push_back(static_cast<Eigen::Index>(c));
+      (moves ? moving_ : still_)
+          .signals.push_back(columns[c].signal == nullptr
+                                 ? Eigen::VectorXd(Eigen::VectorXd::Ones(n_))
+                                 : Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(columns[c].signal->data(), n_)));
+    }
+    for (Group* group : {&still_, &moving_}) {
+      for (std::size_t i = 0; i < group->signals.size(); ++i) {
+        for (std::size_t j = 0; j <= i; ++j) {
+          Eigen::VectorXd sum(n_ + 1);
+          sum(0) = 0.0;
+          for (long k = 0; k < n_; ++k) sum(k + 1) = sum(k) + group->signals[i](k) * group->signals[j](k);
+          group->running.push_back(std::move(sum));
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Eigen::Index width() const {
+    return static_cast<Eigen::Index>(still_.signals.size() + moving_.signals.size());
+  }
+
+  static void put_running(const Group& group, const std::vector<Eigen::Index>& place, long begin, long end,
+                          Eigen::MatrixXd& products) {
+    std::size_t pair = 0;
+    for (std::size_t i = 0; i < group.signals.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j, ++pair)
+        products(place[i], place[j]) = products(place[j], place[i]) =
+            group.running[pair](end) - group.running[pair](begin);
+    }
+  }
+
+  long n_;
+  Group still_, moving_;
+  std::vector<Eigen::Index> still_place_, moving_place_;  ///< columns of `sums_at`
+};
+
 /// Variances of the noise of the columns of `sums_at`.
 Eigen::VectorXd noise_of(const DelayedEffect& e, bool with_causes) {
   std::vector<double> variances{0.0};
@@ -105,14 +193,20 @@ Eigen::VectorXd noise_of(const DelayedEffect& e, bool with_causes) {
 
 /// The share that is explained at each lag, of all effects: with all parts, and without each.
 struct Shares {
+  explicit Shares(const std::vector<DelayedEffect>& effects) {
+    for (const DelayedEffect& effect : effects) complete.push_back(SumsWithoutGaps::of(effect));
+  }
+
   std::vector<double> whole;
   std::array<std::vector<double>, kParts> without;
+  std::vector<std::optional<SumsWithoutGaps>> complete;  ///< by effect
 
   void add(const std::vector<DelayedEffect>& effects, long lag) {
     double all = 0.0;
     std::array<double, kParts> rest{};
-    for (const DelayedEffect& effect : effects) {
-      const std::vector<PartialSums> parts = sums_at(effect, lag, true);
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+      const DelayedEffect& effect = effects[e];
+      const std::vector<PartialSums> parts = complete[e] ? complete[e]->at(lag) : sums_at(effect, lag, true);
       const Eigen::VectorXd noise = noise_of(effect, true);
       for (std::size_t left_out = 0; left_out <= kParts; ++left_out) {
         PartialSums together(parts[0].products.cols());
@@ -166,7 +260,7 @@ DelayReport common_effect_delay(std::string cause_name, std::string effect_name,
   DelayReport report{std::move(cause_name), std::move(effect_name), 0.0, 0.0, 0.0, false, ""};
   const auto longest = static_cast<long>(options.max_delay_s / step_s);
   const long first = -longest;
-  Shares shares;
+  Shares shares(effects);
   for (long lag = first; lag <= longest; ++lag) {
     if (progress.interrupted()) {
       report.text = "not determined: interrupted";
