@@ -147,8 +147,8 @@ TEST(TrackedEvidence, AsksWhetherAnAircraftHasSuchValues) {
   EXPECT_EQ(row(10.0).outcome, estimation::Outcome::kCare) << row(10.0).text;
   // What was held was not measured.
   TrackedCoefficient unknown = tracked_cm(10.0);
-  unknown.tracker.emplace(unknown.model, unknown.tracker->regression().options().error_covariance, TrackOptions{},
-                          20.0);
+  const Eigen::MatrixXd W = unknown.tracker->regression().options().error_covariance;
+  unknown.tracker.emplace(unknown.model, W, TrackOptions{}, 20.0);
   for (const Evidence& e : tracked_evidence(unknown, subject)) EXPECT_NE(e.name, "plausibility of Cm_q");
 }
 
