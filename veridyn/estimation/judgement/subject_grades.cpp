@@ -44,7 +44,7 @@ std::string grades_warning(const StudyTable& subject) {
   if (prediction == Grade::kYes || prediction == Grade::kWithCare)
     return "the parameters of this subject predicted held-out data, but are no physical constants: their "
            "identification graded them \"no\"";
-  const std::string what =
+  std::string what =
       "the identification that wrote this subject rejected its parameters (grades: parameters \"no\", prediction \"" +
       std::string(to_string(prediction)) + "\")";
   if (!accepted) subject.fail("grades", what + "; identify again, or say accept_rejected = true in the subject");
