@@ -23,4 +23,4 @@ for folder in "$@"; do
   found=$(sed -nE "s|^ *\"file\": \"($PWD/($build/)?$folder/.*\.c(pp\|xx))\".*|\1|p" "$build/compile_commands.json" | grep -v cmake_pch || true)
   [ -n "$found" ] || { echo "tidy: no source is compiled in '$folder'" >&2; exit 2; }
   echo "$found"
-done | sort -u | xargs -P "$jobs" -n 1 bash -c 'tidy "$0"'
+done | sort -u | xargs -r -P "$jobs" -n 1 bash -c 'tidy "$0"'
