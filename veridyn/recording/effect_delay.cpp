@@ -60,20 +60,29 @@ std::vector<Column> columns_at(const DelayedEffect& e, long lag, bool with_cause
   return columns;
 }
 
+/// Rows of one of the kParts parts of a recording of `n` samples that have a sample `lag` before: from begin to end.
+struct RowRange {
+  long begin = 0, end = 0;
+};
+RowRange rows_of(long part, long n, long lag) {
+  const auto parts = static_cast<long>(kParts);
+  return {std::max((part * n + parts - 1) / parts, std::max(0L, lag)),
+          std::min(((part + 1) * n + parts - 1) / parts, n + std::min(0L, lag))};
+}
+
 /// Of a regression of the effect on a constant, the others, and what is late and the causes (or no causes) `lag`
 /// samples before, part by part.
 std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_causes) {
   constexpr long kBlock = 256;
-  const auto n = static_cast<long>(e.effect.size()), parts = static_cast<long>(kParts);
+  const auto n = static_cast<long>(e.effect.size());
   const long stride = std::max<long>(1, n / static_cast<long>(kMostRows));
   const std::vector<Column> columns = columns_at(e, lag, with_causes);
   const auto width = static_cast<Eigen::Index>(columns.size());
   std::vector<PartialSums> sums(kParts, PartialSums(width));
   Eigen::MatrixXd block(kBlock, width);
   using Strided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
-  for (long part = 0; part < parts; ++part) {
-    const long begin = std::max((part * n + parts - 1) / parts, std::max(0L, lag));
-    const long end = std::min(((part + 1) * n + parts - 1) / parts, n + std::min(0L, lag));
+  for (long part = 0; part < static_cast<long>(kParts); ++part) {
+    const auto [begin, end] = rows_of(part, n, lag);
     for (long k = (begin + stride - 1) / stride * stride; k < end; k += kBlock * stride) {
       const long rows = std::min(kBlock, (end - k + stride - 1) / stride);
       auto filled = block.topRows(rows);
@@ -95,8 +104,8 @@ std::vector<PartialSums> sums_at(const DelayedEffect& e, long lag, bool with_cau
   return sums;
 }
 
-/// `sums_at` for every lag of signals without gaps: only products of what moves with what does not are made anew, the
-/// others are differences of running sums.
+/// `sums_at` for every lag of signals without gaps: only products of what moves with what does not are computed for
+/// each of them, the others are differences of running sums.
 class SumsWithoutGaps {
  public:
   /// Nothing where a value is missing, or rows are left out.
@@ -113,11 +122,9 @@ class SumsWithoutGaps {
   }
 
   [[nodiscard]] std::vector<PartialSums> at(long lag) const {
-    const auto parts = static_cast<long>(kParts);
     std::vector<PartialSums> sums(kParts, PartialSums(width()));
-    for (long part = 0; part < parts; ++part) {
-      const long begin = std::max((part * n_ + parts - 1) / parts, std::max(0L, lag));
-      const long end = std::min(((part + 1) * n_ + parts - 1) / parts, n_ + std::min(0L, lag));
+    for (long part = 0; part < static_cast<long>(kParts); ++part) {
+      const auto [begin, end] = rows_of(part, n_, lag);
       if (begin >= end) continue;
       Eigen::MatrixXd& products = sums[static_cast<std::size_t>(part)].products;
       put_running(still_, still_place_, begin, end, products);

@@ -130,7 +130,7 @@ bool operator==(const Subject& a, const Subject& b) {
 
 Subject read_subject(const StudyTable& table) {
   Subject s;
-  // What was rejected is no number there, and a study that needs it says so.
+  // Rejected coefficients are "unknown" in such a file, and whoever needs their numbers refuses that.
   table.accept("grades");
   static_cast<void>(table.flag_or("accept_rejected", false));
   if (table.has("builtin")) s = builtin_subject(table.text("builtin"), table.place("builtin"));

@@ -17,21 +17,26 @@ Grade grade_of(const StudyTable& grades, Purpose purpose) {
   return kGrades[static_cast<std::size_t>(std::ranges::find(words, word) - words.begin())];
 }
 
+/// `grade` of every purpose as a table.
+template <typename GradeOf>
+std::string table_of(const GradeOf& grade) {
+  std::string text = "\n[subject.grades]\n";
+  for (const Purpose purpose : kPurposes)
+    text += fmt::format("{} = \"{}\"\n", to_string(purpose), to_string(grade(purpose)));
+  return text;
+}
+
 }  // namespace
 
 std::string grades_table(const StudyTable& subject) {
   if (!subject.has("grades")) return "";
-  std::string text = "\n[subject.grades]\n";
-  for (const Purpose purpose : kPurposes)
-    text += fmt::format("{} = \"{}\"\n", to_string(purpose), to_string(grade_of(subject.table("grades"), purpose)));
-  return text;
+  const StudyTable grades = subject.table("grades");
+  return table_of([&](Purpose purpose) { return grade_of(grades, purpose); });
 }
 
 std::string graded_toml(const std::string& toml, const Judgement& judgement) {
-  std::string text = fmt::format("# {}\n{}\n[subject.grades]\n", sentence_of(judgement), toml);
-  for (const Purpose purpose : kPurposes)
-    text += fmt::format("{} = \"{}\"\n", to_string(purpose), to_string(judgement.of(purpose).grade));
-  return text;
+  return fmt::format("# {}\n{}{}", sentence_of(judgement), toml,
+                     table_of([&](Purpose purpose) { return judgement.of(purpose).grade; }));
 }
 
 std::string grades_warning(const StudyTable& subject) {

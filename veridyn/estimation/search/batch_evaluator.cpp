@@ -85,8 +85,7 @@ SearchEvaluation BatchEvaluator::evaluated(std::size_t item, const Eigen::Vector
 
 bool BatchEvaluator::compute(std::span<const Eigen::VectorXd> points) {
   std::vector<SearchEvaluation> batch(points.size());
-  const std::vector<std::size_t> order =
-      (shared_ == nullptr ? numerics::ProcessShare() : shared_->share()).own_first(points.size());
+  const std::vector<std::size_t> order = numerics::share_of(shared_).own_first(points.size());
   const auto one = [&](std::size_t k) { batch[order[k]] = evaluated(order[k], points[order[k]]); };
   const auto proceed = [&](std::size_t) { return !progress_->interrupted(); };
   if (progress_->interrupted() || !numerics::parallel_for(points.size(), progress_->threads(), one, proceed)) {

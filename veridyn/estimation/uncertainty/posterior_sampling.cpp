@@ -159,8 +159,7 @@ double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, std::s
 /// Of all points, of which a shared log leaves some to other processes.
 void kept_densities(const Posterior& posterior, std::span<const Eigen::VectorXd> points, std::span<double> densities,
                     numerics::ValueLog* log, int threads) {
-  const std::vector<std::size_t> order =
-      (log == nullptr ? numerics::ProcessShare() : log->share()).own_first(points.size());
+  const std::vector<std::size_t> order = numerics::share_of(log).own_first(points.size());
   numerics::parallel_for(points.size(), threads, [&](std::size_t k) {
     densities[order[k]] = kept_density(posterior, points[order[k]], order[k], log);
   });

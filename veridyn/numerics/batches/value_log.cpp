@@ -122,10 +122,10 @@ void ValueLog::take_records(std::size_t file, std::string_view content, bool str
   }
 }
 
-bool ValueLog::look_at(std::size_t file, bool anew) const {
+bool ValueLog::look_at(std::size_t file, bool reopen) const {
   File& f = files_[file];
   std::uintmax_t size = 0;
-  if (anew) {
+  if (reopen) {
     f.reader.close();
     f.reader.clear();
     f.reader.open(f.path, std::ios::binary | std::ios::ate);

@@ -75,9 +75,9 @@ class ValueLog {
   /// Takes the whole records of what stands in a file behind those that were read. Not strict: a record that does not
   /// add up ends the reading instead of the program.
   void take_records(std::size_t file, std::string_view content, bool strict) const;
-  /// Takes what was appended to a file since; true where that was a record. `anew`: opens it again, for a network file
-  /// system may know of what others wrote only then.
-  bool look_at(std::size_t file, bool anew) const;
+  /// Takes what was appended to a file since; true where that was a record. `reopen`: a network
+  /// file system may show what others wrote only then.
+  bool look_at(std::size_t file, bool reopen) const;
   [[nodiscard]] static std::string text_of(File& file, std::size_t offset, std::size_t size);
   [[nodiscard]] bool found(std::uint64_t key, std::vector<double>& values) const;
   /// False when interrupted, or when another thread failed.
@@ -97,5 +97,10 @@ class ValueLog {
   mutable Companions companions_;
   std::unique_ptr<FileLock> lock_;
 };
+
+/// Of a log, or of work that keeps none and is not shared.
+[[nodiscard]] inline ProcessShare share_of(const ValueLog* log) {
+  return log == nullptr ? ProcessShare() : log->share();
+}
 
 }  // namespace veridyn::numerics
