@@ -86,7 +86,7 @@ Checkpoint checkpoint_of(const Arguments& arguments) {
   Checkpoint checkpoint{
       .folder = arguments.text("--checkpoint"), .first = process.rank == 0, .options = arguments.common};
   const std::string& shard = arguments.text("--shard");
-  const bool merge = arguments.values.contains("--merge") && arguments.flag("--merge");
+  const bool merge = arguments.given("--merge");
   if (merge && !shard.empty()) throw InputError("--merge", "computes nothing, --shard a part; choose one of them");
   const std::string part = merge ? "--merge" : "--shard";
   if (merge || !shard.empty()) {

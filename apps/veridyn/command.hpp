@@ -63,6 +63,14 @@ struct Arguments {
   }
   [[nodiscard]] double number(std::string_view name) const { return std::get<double>(at(name)); }
   [[nodiscard]] bool flag(std::string_view name) const { return std::get<bool>(at(name)); }
+  /// Whether the command has a text or flag of this name and the user gave it: `demo` runs what other commands do
+  /// without having their options.
+  [[nodiscard]] bool given(std::string_view name) const {
+    const auto found = values.find(name);
+    if (found == values.end()) return false;
+    const auto* const flag = std::get_if<bool>(&found->second);
+    return flag != nullptr ? *flag : !std::get<std::string>(found->second).empty();
+  }
 
  private:
   [[nodiscard]] const ArgumentValue& at(std::string_view name) const { return values.at(std::string(name)); }

@@ -162,7 +162,7 @@ void print_scores(const CommonOptions& options, const CueingStudy& study, const 
 }  // namespace
 
 int cue_platform(const StudyRun& run) {
-  if (run.arguments.flag("--live")) return cue_live(run);
+  if (run.arguments.given("--live")) return cue_live(run);
   OutputFolder folder(run.options().out);
   TerminalProgress progress = progress_of(run.options());
   const CueingStudy study = cueing::read_study(run.study, progress);

@@ -19,9 +19,8 @@ namespace veridyn::app {
 namespace {
 
 void refuse_checkpoint(const StudyRun& run) {
-  // `demo`, which identifies too, has no such options.
   for (const Argument& argument : search_checkpoint_arguments()) {
-    if (run.arguments.values.contains(argument.name) && !run.arguments.text(argument.name).empty())
+    if (run.arguments.given(argument.name))
       throw InputError(argument.name, "is for a person's tasks; other studies are identified at once, in one process");
   }
 }

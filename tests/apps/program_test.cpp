@@ -383,5 +383,13 @@ TEST_F(Program, WritesStudiesOfGroundTestsThatItUnderstands) {
   }
 }
 
+// The README's first command: every part of it, with the options that the parts' own commands have and it has not.
+TEST_F(Program, DemoRunsAllOfItsParts) {
+  const Outcome done = run("demo --set flight.duration=120" + out());
+  ASSERT_EQ(done.exit_code, 0) << done.text;
+  for (const char* part : {"aircraft", "vehicle", "vehicle/scale", "muscle", "cueing"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / part / "report.html")) << part;
+}
+
 }  // namespace
 }  // namespace veridyn
