@@ -20,10 +20,14 @@ build: setup ## build/release/bin/veridyn, without tests
 demo: build ## a complete run on a built-in aircraft; report in out/demo
 	$(BUILD)/bin/veridyn demo --out out/demo
 
+# So many tests that wait (tests/waiting_tests.txt) run next to JOBS tests that compute.
+WAITING ?= 3
+
 test: setup format-check ## build and run the whole test suite
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING
 	cmake --build $(BUILD) -j $(JOBS)
-	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS) -LE soak
+	@echo '{"version": {"major": 1, "minor": 0}, "local": [{"cores": [{"id": "all", "slots": $(JOBS)}], "waiting": [{"id": "all", "slots": $(WAITING)}]}]}' >$(BUILD)/test_resources.json
+	ctest --test-dir $(BUILD) --output-on-failure -j $$(($(JOBS) + $(WAITING))) --resource-spec-file test_resources.json -LE soak
 
 docs: setup ## API reference from the headers: build/docs/html/index.html
 	@node tools/docs.mjs build/docs

@@ -150,7 +150,8 @@ endfunction()
 # veridyn_module_tests(NAME [DEPENDS ...] [WITHOUT a_test.cpp ...])
 # One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
 # label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs. Those
-# that tests/long_tests.txt names have the label `NAME.long` instead, and do not run under the sanitizers.
+# that tests/long_tests.txt names have the label `NAME.long` instead, and do not run under the sanitizers. Each takes a core
+# of those that `make test` distributes, but for those that tests/waiting_tests.txt names.
 function(veridyn_module_tests name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
@@ -163,11 +164,32 @@ function(veridyn_module_tests name)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target} 24)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt)
+  set(lists ${PROJECT_SOURCE_DIR}/tests/long_tests.txt ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${lists})
   file(STRINGS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt long REGEX "^[^#]")
   list(TRANSFORM long REPLACE "(.+)" "*\\1*")
   list(JOIN long ":" long)
-  gtest_discover_tests(${target} TEST_FILTER -*Soak*:${long} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name} TIMEOUT 600)
-  gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name}.long TIMEOUT 600)
+  set(of_each DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 RESOURCE_GROUPS cores:1 LABELS)
+  gtest_discover_tests(${target} TEST_FILTER -*Soak*:${long} TEST_LIST ${target}_short ${of_each} ${name})
+  gtest_discover_tests(${target} TEST_FILTER ${long}-*Soak* TEST_LIST ${target}_long ${of_each} ${name}.long)
   gtest_discover_tests(${target} TEST_FILTER *Soak* DISCOVERY_TIMEOUT 60 PROPERTIES LABELS soak ENVIRONMENT VERIDYN_SOAK=1 TIMEOUT 7200)
+
+  # What CTest reads after the tests of this folder.
+  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt waiting REGEX "^[^#]")
+  list(JOIN waiting "|" waiting)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/waiting_tests.cmake)
+  file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
+foreach(test IN LISTS @target@_short @target@_long)
+  if(test MATCHES "@waiting@")
+    set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS waiting:1 COST 1000)
+  endif()
+endforeach()
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file})
+endfunction()
+
+# veridyn_waiting_tests(TEST...): tests that mostly wait; they take no core of those that `make test` distributes, and start
+# first.
+function(veridyn_waiting_tests)
+  set_tests_properties(${ARGN} PROPERTIES RESOURCE_GROUPS waiting:1 COST 1000)
 endfunction()
