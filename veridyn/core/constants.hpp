@@ -7,6 +7,8 @@ namespace veridyn {
 
 /// The ratio of a circle's circumference to its diameter.
 inline constexpr double kPi = std::numbers::pi;
+/// A full turn [rad].
+inline constexpr double kFullTurn = 2.0 * std::numbers::pi;
 /// Standard gravity [m/s^2].
 inline constexpr double kGravity = 9.80665;
 /// One degree [rad].

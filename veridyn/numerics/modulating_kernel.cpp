@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 
@@ -17,7 +18,7 @@ ModulatingKernel modulating_kernel(double rate_Hz, double cutoff_Hz) {
   constexpr int kPower = 6;
   // Standard deviation T/sqrt(2 n + 3) of the kernel; a Gaussian of that width has the gain 1/sqrt(2) at
   // sqrt(ln 2)/(2 pi s).
-  const double T = std::sqrt(2.0 * kPower + 3.0) * std::sqrt(std::log(2.0)) / (2.0 * M_PI * cutoff_Hz);
+  const double T = std::sqrt(2.0 * kPower + 3.0) * std::sqrt(std::log(2.0)) / (kFullTurn * cutoff_Hz);
   const double step = 1.0 / rate_Hz;
   const auto m = static_cast<int>(std::floor(T / step));
   ModulatingKernel kernel;

@@ -187,11 +187,10 @@ std::vector<double> decimate(std::span<const double> x, std::size_t factor) {
 }
 
 void unwrap_angles(std::span<double> angle) {
-  constexpr double kTurn = 2.0 * kPi;
   double previous = kNaN;
   for (double& a : angle) {
     if (!std::isfinite(a)) continue;
-    if (std::isfinite(previous)) a -= kTurn * std::round((a - previous) / kTurn);
+    if (std::isfinite(previous)) a -= kFullTurn * std::round((a - previous) / kFullTurn);
     previous = a;
   }
 }

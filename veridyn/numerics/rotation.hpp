@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
+
 namespace veridyn::numerics {
 
 /// Three components along the axes of a frame.
@@ -105,9 +107,8 @@ template <typename Scalar>
 
 /// An angle brought to (-pi, pi].
 [[nodiscard]] inline double wrap_angle(double angle) {
-  const double turn = 2.0 * M_PI;
-  const double wrapped = std::remainder(angle, turn);
-  return wrapped <= -M_PI ? wrapped + turn : wrapped;
+  const double wrapped = std::remainder(angle, kFullTurn);
+  return wrapped <= -kPi ? wrapped + kFullTurn : wrapped;
 }
 
 }  // namespace veridyn::numerics

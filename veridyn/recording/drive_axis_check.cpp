@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 
 #include "veridyn/core/constants.hpp"
@@ -21,7 +20,6 @@ using Values = std::vector<double>;
 constexpr PerInertialChannel<const char*> kSignalNames = {"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y",
                                                           "gyro_z",  "roll",    "pitch",   "yaw",    "speed",
                                                           "steer",   "pos_x",   "pos_y"};
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSmoothing = 0.4;      // length of each of two moving averages [s]
 constexpr double kComparedBlock = 5.0;  // [s]
 constexpr double kLongestLag = 1.0;     // between two sensors [s]
@@ -33,7 +31,7 @@ constexpr std::size_t kMostFaults = 3;  // looked for together
 
 Values averaged(const Values& x, double step) {
   const auto half = static_cast<std::ptrdiff_t>(0.5 * kSmoothing / step);
-  Values sum(x.size() + 1, 0.0), out(x.size(), kNone);
+  Values sum(x.size() + 1, 0.0), out(x.size(), kNaN);
   std::vector<std::size_t> bad(x.size() + 1, 0);
   for (std::size_t k = 0; k < x.size(); ++k) {
     const bool ok = std::isfinite(x[k]);
@@ -51,7 +49,7 @@ Values averaged(const Values& x, double step) {
 Values smooth(const Values& x, double step) { return averaged(averaged(x, step), step); }
 
 Values change(const Values& x, double step) {
-  Values out(x.size(), kNone);
+  Values out(x.size(), kNaN);
   for (std::size_t k = 1; k + 1 < x.size(); ++k) out[k] = (x[k + 1] - x[k - 1]) / (2.0 * step);
   return out;
 }
@@ -145,7 +143,7 @@ AxisRelation related(std::string text, const Values& y_raw, const Values& x_raw,
     squares += (rest.slope() - r.slope) * (rest.slope() - r.slope);
     used += 1.0;
   }
-  const double half = used > 1.0 ? 1.96 * std::sqrt(squares * (used - 1.0) / used) : kNone;
+  const double half = used > 1.0 ? 1.96 * std::sqrt(squares * (used - 1.0) / used) : kNaN;
   r.low = r.slope - half;
   r.high = r.slope + half;
   const bool enough = r.seconds >= kShortest && std::sqrt(all.variance_x()) > least;
@@ -269,7 +267,7 @@ Exchange exchanged(const DriveMotion& m, const Values& speed_change, const Value
 
 double median_of(Values values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return kNone;
+  if (values.empty()) return kNaN;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -299,7 +297,7 @@ std::vector<Compared> compare(const DriveMotion& m) {
     Values over_ground(x.size());
     for (std::size_t k = 0; k < x.size(); ++k) over_ground[k] = std::hypot(x[k], y[k]);
     const double most = 5.0 * median_of(over_ground);  // where one run ends and another one begins it jumps
-    for (double& v : over_ground) v = v > most ? kNone : v;
+    for (double& v : over_ground) v = v > most ? kNaN : v;
     all.push_back(
         {related("speed against the change of position", s[kSpeed], over_ground, m.step, 0.5, true), {kSpeed}, {}});
   }
@@ -426,8 +424,8 @@ DriveMotion drive_motion(const Recording& recording) {
     Channel whole = *channel;
     if (to == kRoll || to == kPitch || to == kYaw) {  // angles may go round
       for (std::size_t k = 1; k < whole.value.size(); ++k) {
-        const double turn = std::round((whole.value[k] - whole.value[k - 1]) / (2.0 * kPi));
-        if (std::isfinite(turn)) whole.value[k] -= 2.0 * kPi * turn;
+        const double turn = std::round((whole.value[k] - whole.value[k - 1]) / kFullTurn);
+        if (std::isfinite(turn)) whole.value[k] -= kFullTurn * turn;
       }
     }
     m.signals[to] = interpolated(whole, grid);

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 
@@ -19,7 +19,7 @@ struct CoefficientChecks {
   /// Share of the hold-out outside the band of 95 % that the residual of the identification part gives.
   double outside_bands = 0.0;
   /// Root mean square error on the hold-out over that of the values that the study started from; NaN without these.
-  double error_over_start = std::numeric_limits<double>::quiet_NaN();
+  double error_over_start = kNaN;
   double scatter = 1.0;  ///< chi-square of the flight's parts over its degrees of freedom
   bool has_holdout = false;
   numerics::Autocorrelation residual_autocorrelation;

@@ -185,7 +185,7 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
 template <typename Scalar>
 bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
                                 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
-  constexpr double kLargest_rad = 80.0 * kPi / 180.0;
+  constexpr double kLargest_rad = 80.0 * kDegree;
   constexpr double kSlowest_mps = 2.0;
   const Segment& s = segments_[segment];
   const std::span<const Scalar> parameters(theta.data(), parameters_.size());

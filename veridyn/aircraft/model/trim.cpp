@@ -85,8 +85,8 @@ Eigen::Matrix4d block(const Eigen::Matrix<double, 8, 8>& A, const std::array<int
 
 std::string Trim::message() const {
   const std::string where = fmt::format("level flight at {:g} m/s", condition.airspeed);
-  const std::string state = fmt::format("alpha {:.2f} deg, elevator {:.2f} deg, throttle {:.3f}", alpha * 180.0 / kPi,
-                                        controls.de * 180.0 / kPi, controls.throttle);
+  const std::string state = fmt::format("alpha {:.2f} deg, elevator {:.2f} deg, throttle {:.3f}", alpha / kDegree,
+                                        controls.de / kDegree, controls.throttle);
   switch (end) {
     case TrimEnd::kConverged:
       return fmt::format("{}: {}", where, state);

@@ -4,6 +4,7 @@
 
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/simulation/dryden.hpp"
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft {
 
@@ -35,10 +36,10 @@ struct InformationBound {
 
 /// White errors of one sample, 1 sigma, and how many samples there are a second.
 struct BoundSensors {
-  double alpha = 0.6 * 0.017453292519943295;  ///< vane [rad]; 0: there is none
-  double beta = 0.6 * 0.017453292519943295;   ///< vane [rad]; 0: there is none
-  double accelerometer = 0.05;                ///< [m/s^2]
-  double dynamic_pressure = 10.0;             ///< [Pa]; 0: there is no pitot tube
+  double alpha = 0.6 * kDegree;    ///< vane [rad]; 0: there is none
+  double beta = 0.6 * kDegree;     ///< vane [rad]; 0: there is none
+  double accelerometer = 0.05;     ///< [m/s^2]
+  double dynamic_pressure = 10.0;  ///< [Pa]; 0: there is no pitot tube
   double rate_Hz = 100.0;
   /// Takes the airspeed as known (no longitudinal gust, measurements at constant airspeed), as the specification's
   /// figures do. A filter does not know it: the force

@@ -27,7 +27,7 @@ Observability observability_of(double sigma, double prior_sigma) {
 }
 
 double display_value(double value, const std::string& unit) {
-  return unit.starts_with("rad") ? value * 180.0 / kPi : value;
+  return unit.starts_with("rad") ? value / kDegree : value;
 }
 
 std::string display_unit(const std::string& unit) {

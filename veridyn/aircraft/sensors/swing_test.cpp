@@ -107,7 +107,7 @@ std::vector<std::string> warnings_of(const SwingRun& run) {
   if (slower > 0.002) {
     warnings.push_back(fmt::format(
         "{}: swings of {:.0f} deg at first make it slower by about {:.1f} %, the inertia larger by {:.1f} %", run.file,
-        run.fit.amplitude() * 180.0 / kPi, 100.0 * slower, 200.0 * slower));
+        run.fit.amplitude() / kDegree, 100.0 * slower, 200.0 * slower));
   }
   if (run.swing.principal_share < 0.9) {
     warnings.push_back(fmt::format("{}: only {:.0f} % of the motion is about its main axis", run.file,

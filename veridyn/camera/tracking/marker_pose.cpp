@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::camera {
@@ -104,7 +105,7 @@ std::optional<PoseMeasurement> fit_pose(std::span<const Spot* const> spots, std:
     place += step.head<2>();
     heading += step(2);
   }
-  result.pose << place, std::remainder(heading, 2.0 * M_PI);
+  result.pose << place, std::remainder(heading, kFullTurn);
   result.noise = information.inverse();
   const Eigen::Matrix<double, 3, TrackCamera::kParameters> J = result.noise * through;
   result.map = J * calibration.covariance * J.transpose();

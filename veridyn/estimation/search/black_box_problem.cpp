@@ -16,7 +16,7 @@ bool SearchValues::finite() const {
 }
 
 double SearchValues::violation() const {
-  if (!finite()) return std::numeric_limits<double>::infinity();
+  if (!finite()) return kInfinity;
   double sum = 0.0;
   for (const double c : constraints) sum += c > 0.0 ? c * c : 0.0;
   // The square of a small violation may vanish; it is one nevertheless.

@@ -2,16 +2,17 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "veridyn/core/constants.hpp"
 
 namespace veridyn::estimation {
 
 /// What an expensive computation delivers at one point. NaN anywhere: it could not be computed there.
 struct SearchValues {
-  double objective = std::numeric_limits<double>::quiet_NaN();
+  double objective = kNaN;
   std::vector<double> constraints = {};  ///< each holds where it is <= 0
 
   /// Whether all of it could be computed.

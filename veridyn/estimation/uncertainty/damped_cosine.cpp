@@ -12,7 +12,6 @@
 namespace veridyn::estimation {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
 constexpr std::size_t kSpectrumSamples = 1000;
 constexpr int kIterations = 100;
 
@@ -40,8 +39,8 @@ double spectral_peak(const std::vector<double>& t, const std::vector<double>& y)
   std::vector<std::complex<double>> sum(static_cast<std::size_t>((highest - first) / step) + 1);
   for (std::size_t i = 0; i < ts.size(); ++i) {
     // One turn further from frequency to frequency: a multiplication instead of a sine and a cosine.
-    const std::complex<double> start = (ys[i] - mean) * std::polar(1.0, -kTurn * first * (ts[i] - ts[0]));
-    const std::complex<double> turn = std::polar(1.0, -kTurn * step * (ts[i] - ts[0]));
+    const std::complex<double> start = (ys[i] - mean) * std::polar(1.0, -kFullTurn * first * (ts[i] - ts[0]));
+    const std::complex<double> turn = std::polar(1.0, -kFullTurn * step * (ts[i] - ts[0]));
     double re = start.real(), im = start.imag();
     for (std::complex<double>& s : sum) {
       s += std::complex<double>(re, im);
@@ -53,7 +52,7 @@ double spectral_peak(const std::vector<double>& t, const std::vector<double>& y)
   const auto peak = std::max_element(sum.begin(), sum.end(),
                                      [](const auto& a, const auto& b) { return std::norm(a) < std::norm(b); });
   const double best = first + step * static_cast<double>(peak - sum.begin());
-  return kTurn * best;
+  return kFullTurn * best;
 }
 
 /// a, b, c of given w, s.
@@ -106,7 +105,7 @@ const char* to_string(DampedCosineEnd end) {
 }
 
 double DampedCosine::undamped_frequency() const { return std::hypot(damped_frequency, decay); }
-double DampedCosine::cycles() const { return damped_frequency * duration / kTurn; }
+double DampedCosine::cycles() const { return damped_frequency * duration / kFullTurn; }
 double DampedCosine::amplitude() const { return std::hypot(cosine, sine); }
 double DampedCosine::operator()(double time) const {
   const double t = time - start;
@@ -131,7 +130,7 @@ DampedCosine fit_damped_cosine(std::span<const double> time, std::span<const dou
   p(0) = spectral_peak(t, y);
   solve_linear(t, y, p);
   Linearisation at = linearise(t, y, p);
-  const double resolution = kTurn / fit.duration;
+  const double resolution = kFullTurn / fit.duration;
   double damping = 1e-3;
   fit.end = DampedCosineEnd::kNoConvergence;
   for (int i = 0; i < kIterations; ++i) {

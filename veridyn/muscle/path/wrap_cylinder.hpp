@@ -130,7 +130,7 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
   result.r2 = Vector3(q.x() * aq + q.y() * bq, q.y() * aq - q.x() * bq, Scalar(0.0));
   Scalar angle = atan2((result.r1.x() * result.r2.y() - result.r1.y() * result.r2.x()) * Scalar(turn),
                        result.r1.x() * result.r2.x() + result.r1.y() * result.r2.y());
-  if (long_way && angle < Scalar(0.0)) angle += Scalar(2.0 * kPi);
+  if (long_way && angle < Scalar(0.0)) angle += Scalar(kFullTurn);
   const Scalar arc = radius * angle;
   const Scalar planar = d1 + arc + d2;
   const Scalar dz = q.z() - p.z();

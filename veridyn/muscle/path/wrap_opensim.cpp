@@ -106,7 +106,7 @@ SurfacePolygon surface_polygon(const Vector3d& a, double factor, const Section& 
   const Vector3d e1 = (r1 - center).normalized();
   const Vector3d d2 = (r2 - center).normalized();
   const double angle = std::acos(std::clamp(e1.dot(d2), -1.0, 1.0));
-  const double step = (far_side ? angle - 2.0 * kPi : angle) / segments;
+  const double step = (far_side ? angle - kFullTurn : angle) / segments;
   const Vector3d e3 = e1.cross(d2).normalized();
   const Vector3d e2 = e3.cross(e1);
   Vector3d before = r1;
@@ -310,7 +310,7 @@ OpenSimWrap wrap_sphere(const WrapObject& object, const Vector3d& p, const Vecto
   wrap.r1 = r1;
   wrap.r2 = r2;
   // Negative on what OpenSim calls the far side; its absolute value is the length.
-  wrap.surface_length = radius * (far_side ? angle - 2.0 * kPi : angle);
+  wrap.surface_length = radius * (far_side ? angle - kFullTurn : angle);
   return wrap;
 }
 

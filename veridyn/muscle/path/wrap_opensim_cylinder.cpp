@@ -118,7 +118,7 @@ double spiral_length(double radius, bool only_wrap_of_path, const Vector3d& p, c
   Vector3d& r2 = choice.r2;
   for (int iteration = 0;; ++iteration) {
     double theta = angle_between(radial(r1), radial(r2));
-    if (choice.long_wrap) theta = 2.0 * kPi - theta;
+    if (choice.long_wrap) theta = kFullTurn - theta;
     const double length = std::hypot(radius * theta, r2.z() - r1.z());
     const int segments = std::max(1, static_cast<int>(length / 0.002));
     if (only_wrap_of_path || segments < 2 || iteration >= 100) return length;

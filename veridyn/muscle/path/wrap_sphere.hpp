@@ -79,7 +79,7 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
   }
   const double turn = long_way ? -1.0 : 1.0;
   Scalar angle = atan2(normal.dot(result.r1.cross(result.r2)) * Scalar(turn), result.r1.dot(result.r2));
-  if (long_way && angle < Scalar(0.0)) angle += Scalar(2.0 * kPi);
+  if (long_way && angle < Scalar(0.0)) angle += Scalar(kFullTurn);
   result.status = WrapStatus::kWrapped;
   result.surface_length = radius * angle;
   result.length = d1 + result.surface_length + d2;

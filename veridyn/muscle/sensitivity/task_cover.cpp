@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 
@@ -43,7 +43,7 @@ class CoverSearch {
       : share_(std::move(share)), muscles_(std::move(muscles)), tasks_(std::move(tasks)), excites_(excites) {}
 
   [[nodiscard]] TaskSet evaluate(std::vector<std::size_t> tasks) const {
-    TaskSet set{.tasks = std::move(tasks), .weakest = muscles_.empty() ? 0.0 : std::numeric_limits<double>::infinity()};
+    TaskSet set{.tasks = std::move(tasks), .weakest = muscles_.empty() ? 0.0 : kInfinity};
     std::sort(set.tasks.begin(), set.tasks.end());
     for (const std::size_t m : muscles_) {
       double most = 0.0;

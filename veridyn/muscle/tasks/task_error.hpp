@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/regression/regression_data.hpp"
 
 namespace veridyn::muscle {
@@ -18,7 +19,7 @@ struct TaskError {
 };
 
 /// Motion below which a target has no NRMSE: 1 deg of an angle [rad]; of other outputs as many metres.
-inline constexpr double kLeastRange = 3.14159265358979323846 / 180.0;
+inline constexpr double kLeastRange = kDegree;
 
 /// `target` and `predicted` are samples x outputs; an empty prediction is a simulation that could not finish.
 /// @throws std::invalid_argument when other sizes differ.

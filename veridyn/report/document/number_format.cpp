@@ -93,7 +93,7 @@ std::vector<double> round_for_storage(const std::vector<double>& values, double 
 
 ReadableNumber readable(double value, const std::string& unit, std::string_view name) {
   const bool rate_of_turns = name.find("frequency") != name.npos || name.find("bandwidth") != name.npos;
-  if (rate_of_turns && unit == "rad/s") return {value / (2.0 * kPi), "Hz"};
+  if (rate_of_turns && unit == "rad/s") return {value / kFullTurn, "Hz"};
   static const std::array<std::tuple<const char*, const char*, double>, 8> kReadable{{
       {"rad", "deg", 1.0 / kDegree},
       {"rad/s", "deg/s", 1.0 / kDegree},

@@ -63,7 +63,7 @@ void add_rider(Scene& scene, const Place& head, double plate_down) {
   std::vector<Place> wheel;
   constexpr int kSpokes = 18;
   for (int k = 0; k <= kSpokes; ++k) {
-    const double turn = 2.0 * kPi * k / kSpokes;
+    const double turn = kFullTurn * k / kSpokes;
     wheel.push_back(at(0.38 + 0.06 * std::cos(turn), 0.16 * std::sin(turn), 0.36 - 0.14 * std::cos(turn)));
   }
   add(Kind::kLine, SceneTone::kLink, wheel, 3.0);
@@ -105,7 +105,7 @@ void add_shapes(Scene& scene, const cueing::Platform& platform) {
   std::vector<Place> ground;
   constexpr int kCorners = 36;
   for (int k = 0; k < kCorners; ++k) {
-    const double turn = 2.0 * kPi * k / kCorners;
+    const double turn = kFullTurn * k / kCorners;
     ground.emplace_back(radius * std::cos(turn), radius * std::sin(turn), floor);
   }
   add(Kind::kFace, SceneTone::kGround, points(ground, false), 0.0);

@@ -13,7 +13,7 @@ using cueing::MaskPoint;
 using cueing::ResponsePoint;
 
 /// The number a whole turn away that is nearest to the one before [rad].
-double near_to(double before, double phase) { return before + std::remainder(phase - before, 2.0 * kPi); }
+double near_to(double before, double phase) { return before + std::remainder(phase - before, kFullTurn); }
 
 bool limits_phase(const std::vector<MaskPoint>& mask) {
   for (const MaskPoint& m : mask) {
