@@ -30,7 +30,7 @@ struct StudyDocument {
   std::vector<std::string> notes;
 };
 
-/// One table of the document with the keys that were read and the tables opened from it.
+/// One table of the document that it keeps alive, with the keys that were read and the tables opened from it.
 struct StudyNode {
   std::shared_ptr<StudyDocument> document;
   const toml::table* table = nullptr;  ///< null for a table that is absent

@@ -46,7 +46,7 @@ class AdditiveRungeKutta {
         [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
         [&](double reached) {
           begin_ = t;
-          start_ = x;
+          std::copy(x, x + n_, stage(kStart));
           const bool go_on = on_step(t, reached);
           std::copy(stage(kEnd), stage(kEnd) + n_, x);
           std::copy(stage(kEndRate), stage(kEndRate) + n_, stage(0));
@@ -58,10 +58,10 @@ class AdditiveRungeKutta {
   /// The state at `time` within the step that `on_step` was told of; call it there only. Third order.
   void interpolate(double time, double* out) const {
     const double s = (time - begin_) / h_, r = 1.0 - s;
-    const double *end = stage(kEnd), *first = stage(0), *last = stage(kEndRate);
+    const double *start = stage(kStart), *end = stage(kEnd), *first = stage(0), *last = stage(kEndRate);
     for (std::size_t i = 0; i < n_; ++i) {
-      const double difference = end[i] - start_[i];
-      out[i] = start_[i] + s * (difference + r * ((h_ * first[i] - difference) * r + (difference - h_ * last[i]) * s));
+      const double difference = end[i] - start[i];
+      out[i] = start[i] + s * (difference + r * ((h_ * first[i] - difference) * r + (difference - h_ * last[i]) * s));
     }
   }
 
@@ -70,6 +70,7 @@ class AdditiveRungeKutta {
 
  private:
   static constexpr std::size_t kStages = 6, kEnd = 6, kEndRate = 7, kScratch = 8, kArrays = 9;
+  static constexpr std::size_t kStart = kScratch;  ///< between steps, when nothing else is in it
   static constexpr double kGamma = 0.25;
   static constexpr std::array<double, kStages> kTime{0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0};
   using Table = std::array<std::array<double, kStages>, kStages>;
@@ -171,7 +172,6 @@ class AdditiveRungeKutta {
   std::size_t tangents_, n_;
   std::vector<double> work_;
   std::vector<double> column_;
-  const double* start_ = nullptr;
   double begin_ = 0.0, h_ = 0.0;
   StepSizes sizes_{0.25, 0.06};
 };

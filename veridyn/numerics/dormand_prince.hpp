@@ -48,7 +48,7 @@ class DormandPrince {
         [&](double h) { return try_step(f, t, x, h); }, [&] { return error_of(scale, control); },
         [&](double reached) {
           begin_ = t;
-          start_ = x;
+          std::copy(x, x + n_, stage(kStart));
           const bool go_on = on_step(t, reached);
           std::copy(stage(kEnd), stage(kEnd) + n_, x);
           std::copy(stage(6), stage(6) + n_, stage(0));
@@ -61,16 +61,17 @@ class DormandPrince {
   void interpolate(double time, Scalar* out) const {
     const double s = (time - begin_) / h_;
     const double r = 1.0 - s;
+    const Scalar* const start = stage(kStart);
     constexpr double d1 = -12715105075.0 / 11282082432.0, d3 = 87487479700.0 / 32700410799.0,
                      d4 = -10690763975.0 / 1880347072.0, d5 = 701980252875.0 / 199316789632.0,
                      d6 = -1453857185.0 / 822651844.0, d7 = 69997945.0 / 29380423.0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const Scalar difference = stage(kEnd)[i] - start_[i];
+      const Scalar difference = stage(kEnd)[i] - start[i];
       const Scalar bulge = h_ * stage(0)[i] - difference;
       const Scalar tail = difference - h_ * stage(6)[i] - bulge;
       const Scalar correction = h_ * (d1 * stage(0)[i] + d3 * stage(2)[i] + d4 * stage(3)[i] + d5 * stage(4)[i] +
                                       d6 * stage(5)[i] + d7 * stage(6)[i]);
-      out[i] = start_[i] + s * (difference + r * (bulge + s * (tail + r * correction)));
+      out[i] = start[i] + s * (difference + r * (bulge + s * (tail + r * correction)));
     }
   }
 
@@ -80,7 +81,8 @@ class DormandPrince {
   [[nodiscard]] double step_size() const { return sizes_.step_size(); }
 
  private:
-  static constexpr std::size_t kEnd = 7, kArrays = 9;
+  static constexpr std::size_t kEnd = 7, kScratch = 8, kArrays = 9;
+  static constexpr std::size_t kStart = kScratch;  ///< between steps, when nothing else is in it
   [[nodiscard]] Scalar* stage(std::size_t i) { return work_.data() + i * n_; }
   [[nodiscard]] const Scalar* stage(std::size_t i) const { return work_.data() + i * n_; }
 
@@ -92,7 +94,7 @@ class DormandPrince {
 
   template <typename F>
   bool try_step(F& f, double t, const Scalar* x, double h) {
-    Scalar* const y = stage(8);
+    Scalar* const y = stage(kScratch);
     Scalar *k1 = stage(0), *k2 = stage(1), *k3 = stage(2), *k4 = stage(3), *k5 = stage(4), *k6 = stage(5),
            *k7 = stage(6);
     for (std::size_t i = 0; i < n_; ++i) y[i] = x[i] + (h * 0.2) * k1[i];
@@ -188,7 +190,6 @@ class DormandPrince {
   std::size_t n_;               ///< values and their tangents
   std::vector<Scalar> work_;    ///< stages k1 to k7, the end of the step, a scratch state
   std::vector<double> column_;  ///< by tangent: size, then error
-  const Scalar* start_ = nullptr;
   double begin_ = 0.0;
   double h_ = 0.0;
   StepSizes sizes_{0.2, 0.04};  ///< Hairer's constants for this method

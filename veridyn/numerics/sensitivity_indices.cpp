@@ -15,7 +15,7 @@
 namespace veridyn::numerics {
 namespace {
 
-/// Results of one row of the design: at A, at B, and at A with each column of B in turn.
+/// View of the results by rows of the design: at A, at B, and at A with each column of B in turn.
 struct Rows {
   std::vector<std::size_t> kept;
   const Eigen::VectorXd* y = nullptr;

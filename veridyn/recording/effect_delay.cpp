@@ -44,7 +44,7 @@ struct PartialSums {
   }
 };
 
-/// A column of `sums_at`: the signal `lag` samples before; null: 1.
+/// View of a signal as a column of `sums_at`: the signal `lag` samples before; null: 1.
 struct Column {
   const std::vector<double>* signal = nullptr;
   long lag = 0;

@@ -87,7 +87,7 @@ struct Flaw {
   std::string text, advice;
 };
 
-/// The runs of a channel with what is known of them.
+/// View of a channel and of what its kind is, with its runs.
 struct Sampled {
   const SampledChannel* which = nullptr;
   const Channel* channel = nullptr;

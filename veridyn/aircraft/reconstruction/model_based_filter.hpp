@@ -21,7 +21,7 @@ struct ModelError {
   [[nodiscard]] double density(std::size_t i) const { return modelled[i] ? walk[i] : kUnknownWalk; }
 };
 
-/// Motion of an aircraft whose aerodynamics are known, in moving air.
+/// View of a subject, whose aerodynamics are known, moving through air that moves: the subject must outlive it.
 ///
 /// The specification's state [Va alpha beta W] with the wind-axes equations of section 8 holds in air that moves
 /// uniformly. In gusts, the velocity relative to the air also changes because the air does:

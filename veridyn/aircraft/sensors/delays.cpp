@@ -183,7 +183,7 @@ class Alignment {
     return compare(group, "accelerometer and attitude", {{implied_airspeed_derivative(), airspeed_derivative()}});
   }
 
-  /// Others of an effect's equation, all functions of the same moment.
+  /// View of an alignment that collects the others of an effect's equation, all functions of the same moment.
   class Equation {
    public:
     Equation(const Alignment& alignment, Series airspeed) : from_(alignment), Va_(std::move(airspeed)) {

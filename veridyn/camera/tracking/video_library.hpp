@@ -13,7 +13,7 @@ struct VideoProperties {
   double frames = 0.0;  ///< 0 or less: it does not say
 };
 
-/// A decoded frame in grey; the pixels are there until the next one is read.
+/// View of a decoded frame in grey: the pixels are there until the next one is read.
 struct DecodedFrame {
   const std::uint8_t* pixels = nullptr;
   std::size_t row_bytes = 0;

@@ -169,6 +169,7 @@ VERIDYN_INLINE void turn_pairs(Rows<kColumns>& V, Rows<kColumns>& B, const Rows<
   }
 }
 
+/// View of the arrays that a tracked decomposition consists of.
 struct Tracked {
   double* vectors;  // rows of V
   double* values;

@@ -13,7 +13,7 @@
 
 namespace veridyn::estimation {
 
-/// How evaluations are made and kept.
+/// How evaluations are made and kept; view of the log that processes share, where there is one.
 struct EvaluationOptions {
   std::size_t max_evaluations = std::numeric_limits<std::size_t>::max();  ///< of all searches together
   std::filesystem::path log = {};  ///< empty: in memory only. A log that is there is continued

@@ -85,6 +85,7 @@ class Posterior {
   }
 
  private:
+  /// View of a parameter of the model that is sampled.
   struct Unknown {
     const ModelParameter* what;
     double value;

@@ -421,7 +421,7 @@ class TaskEstimation {
     return ParameterStatus::kNotExcited;
   }
 
-  /// Searches within a stage show no progress of their own.
+  /// View of a progress for searches within a stage, which show none of their own.
   class Watched : public Progress {
    public:
     explicit Watched(const Progress& outer) : outer_(outer) {}

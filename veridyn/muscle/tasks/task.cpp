@@ -65,7 +65,7 @@ double share_of_reserves(const MusculoskeletalSystem& system, const MuscleTrajec
   return share;
 }
 
-/// Interruptions are looked for between tasks; within one nothing is shown.
+/// View of a progress within a task: it is interrupted with it and shows nothing.
 class Silent : public Progress {
  public:
   explicit Silent(const Progress& outer) : outer_(outer) {}

@@ -61,7 +61,7 @@ std::string quoted(const std::vector<std::string>& lines, std::size_t i) {
 
 }  // namespace
 
-/// A batch at work.
+/// View of a batch at work, with what is there of its blocks: the batch must outlive it.
 struct BlockStore::Round {
   explicit Round(const Batch& of)
       : batch(&of),
