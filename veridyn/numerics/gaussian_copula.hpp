@@ -33,8 +33,7 @@ class GaussianCopula {
   void couple(Eigen::Ref<Eigen::MatrixXd> normal) const;
 
   [[nodiscard]] Eigen::Index size() const { return factor_.rows(); }
-  /// Of the normal variables, after repair.
-  [[nodiscard]] const Eigen::MatrixXd& normal_correlation() const { return repair_.matrix; }
+  /// The correlation of the normal variables, and what had to be repaired of it.
   [[nodiscard]] const NearestCorrelation& repair() const { return repair_; }
 
  private:

@@ -50,7 +50,6 @@ class GuardedFilter {
   /// Whether the estimate is the model-based filter's.
   [[nodiscard]] bool model_based() const { return guard_.trusted(); }
   [[nodiscard]] const estimation::InnovationGuard& guard() const { return guard_; }
-  [[nodiscard]] const Monitors& free_monitors() const { return free_monitors_; }
   /// The filter in use.
   [[nodiscard]] const internal::AirDataEstimator& active() const { return model_based() ? *based_ : *free_; }
   /// Attitude, velocity, gusts and wind of the filter in use.

@@ -19,14 +19,14 @@ namespace veridyn::aircraft {
 /// whose table prints 2 sigma.
 struct SensorSigma {
   double accelerometer = 0.05;         ///< m/s^2
-  double gyro = 0.35 * kPi / 180.0;    ///< rad/s
+  double gyro = 0.35 * kDegree;        ///< rad/s
   double attitude = 0.75 * kPi / 180;  ///< each Euler angle [rad]
   double velocity = 0.05;              ///< north and east [m/s]
   double velocity_down = 0.1;          ///< m/s
   double dynamic_pressure = 10.0;      ///< Pa
   double airspeed = 0.5;               ///< m/s
-  double alpha = 0.6 * kPi / 180.0;    ///< rad
-  double beta = 0.6 * kPi / 180.0;     ///< rad
+  double alpha = 0.6 * kDegree;        ///< rad
+  double beta = 0.6 * kDegree;         ///< rad
 };
 
 /// Which filter delivers the motion through the air.
@@ -144,7 +144,6 @@ struct ReconstructOptions {
   [[nodiscard]] bool estimates_air_data_errors() const {
     return alpha_bias || beta_bias || alpha_scale || pitot_scale || pitot_bias;
   }
-  [[nodiscard]] bool estimates_sensor_errors() const { return estimates_imu_biases() || estimates_air_data_errors(); }
 };
 
 /// The least standard deviations that `sensors = "auto"` assumes of an ordinary autopilot. Attitude and velocity of its
@@ -154,13 +153,13 @@ struct ReconstructOptions {
 [[nodiscard]] SensorSigma autopilot_floor();
 
 // What is assumed of sensor errors that are to be estimated, 1 sigma.
-inline constexpr double kImuScalePrior = 0.05;               ///< scale factors of gyro and accelerometer
-inline constexpr double kGyroBiasPrior = kPi / 180.0;        ///< rad/s
-inline constexpr double kAccelBiasPrior = 0.5;               ///< m/s^2
-inline constexpr double kVaneBiasPrior = 5.0 * kPi / 180.0;  ///< rad
-inline constexpr double kAlphaScalePrior = 0.3;              ///< slope of the upwash
-inline constexpr double kPitotScalePrior = 0.2;              ///< of the pressure
-inline constexpr double kPitotBiasPrior = 20.0;              ///< Pa
+inline constexpr double kImuScalePrior = 0.05;           ///< scale factors of gyro and accelerometer
+inline constexpr double kGyroBiasPrior = kDegree;        ///< rad/s
+inline constexpr double kAccelBiasPrior = 0.5;           ///< m/s^2
+inline constexpr double kVaneBiasPrior = 5.0 * kDegree;  ///< rad
+inline constexpr double kAlphaScalePrior = 0.3;          ///< slope of the upwash
+inline constexpr double kPitotScalePrior = 0.2;          ///< of the pressure
+inline constexpr double kPitotBiasPrior = 20.0;          ///< Pa
 
 /// A named setting of the specification's table, with its intensities times `scale`: "low_light", "low_moderate",
 /// "medium_light", "medium_moderate", "none".

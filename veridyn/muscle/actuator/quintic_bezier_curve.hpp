@@ -45,9 +45,7 @@ class QuinticBezierCurve {
   [[nodiscard]] double end() const { return end_; }
   [[nodiscard]] double slope_below() const { return slope_below_; }
   [[nodiscard]] double slope_above() const { return slope_above_; }
-  [[nodiscard]] double value_at_begin() const { return y_begin_; }
   [[nodiscard]] double value_at_end() const { return y_end_; }
-  [[nodiscard]] bool tabulated() const { return tabulated_; }
   [[nodiscard]] double table_error() const { return table_error_; }
 
   [[nodiscard]] numerics::FunctionValue<double> exact(double x) const;

@@ -58,8 +58,6 @@ class SystemEvaluator {
   [[nodiscard]] std::span<const Scalar> fiber_length() const { return fiber_; }
   [[nodiscard]] const MuscleGroup<Scalar>& muscles() const { return muscles_; }
   [[nodiscard]] ReducedDynamics<Scalar>& dynamics() { return reduced_; }
-  /// Whether fitted paths were ever evaluated outside the ranges that they were fitted over.
-  [[nodiscard]] bool beyond_fit() const { return beyond_fit_; }
   /// Evaluations of the derivative so far.
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
@@ -83,7 +81,6 @@ class SystemEvaluator {
   std::vector<Scalar> excitation_, activation_, fiber_, activation_rate_, fiber_velocity_, force_;
   FiberSolver fiber_solver_;
   long evaluations_ = 0;
-  bool beyond_fit_ = false;
 };
 
 }  // namespace veridyn::muscle

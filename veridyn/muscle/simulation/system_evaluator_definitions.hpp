@@ -58,7 +58,7 @@ template <typename Scalar>
 void SystemEvaluator<Scalar>::update_paths() {
   const MusclePaths& paths = system_->paths();
   if (const FittedPaths* fit = system_->fit()) {
-    beyond_fit_ |= !fit->evaluate(paths, reduced_.kinematics(), q_, path_workspace_, length_.data(), gradient_.data());
+    fit->evaluate(paths, reduced_.kinematics(), q_, path_workspace_, length_.data(), gradient_.data());
   } else {
     paths.evaluate(reduced_.kinematics(), q_, path_workspace_);
     std::copy(path_workspace_.length.begin(), path_workspace_.length.end(), length_.begin());
