@@ -142,12 +142,12 @@ Row calibration_row(const SensorFit& fit) {
   const SensorCalibration& c = fit.calibration;
   const auto [unit, name] = shown_unit_of(fit);
   const double sigma_scale = std::sqrt(c.covariance(0, 0)), sigma_bias = unit * std::sqrt(c.covariance(1, 1));
-  return {.cells = {text_cell(c.channel), text_cell(fit.method), number_cell(static_cast<double>(fit.raw.size()), 0),
-                    measured_cell(c.scale, sigma_scale), measured_cell(sigma_scale, sigma_scale),
-                    measured_cell(unit * c.bias, sigma_bias), measured_cell(sigma_bias, sigma_bias),
-                    number_cell(unit * fit.rms), number_cell(unit * fit.worst), number_cell(fit.whiteness.p_value),
-                    number_cell(unit * fit.hysteresis), number_cell(unit * fit.bend), number_cell(fit.quadratic_p),
-                    text_cell(name)},
+  return {.cells = {text_cell(c.channel), text_cell(method_text(fit)),
+                    number_cell(static_cast<double>(fit.raw.size()), 0), measured_cell(c.scale, sigma_scale),
+                    measured_cell(sigma_scale, sigma_scale), measured_cell(unit * c.bias, sigma_bias),
+                    measured_cell(sigma_bias, sigma_bias), number_cell(unit * fit.rms), number_cell(unit * fit.worst),
+                    number_cell(fit.whiteness.p_value), number_cell(unit * fit.hysteresis),
+                    number_cell(unit * fit.bend), number_cell(fit.quadratic_p), text_cell(name)},
           .status = !fit.usable            ? Status::kBad
                     : fit.findings.empty() ? Status::kGood
                                            : Status::kCaution};

@@ -104,16 +104,14 @@ class Fitting {
 
   void line() {
     estimation::RegressionData d = data(false);
-    estimation::Method method = estimation::Method::kOls;
     if (in_.sigma_reference > 0.0) {
-      method = estimation::Method::kGtls;
+      fit_.method = estimation::Method::kGtls;
       d.error_covariance =
           Eigen::Vector3d(0.0, in_.sigma_reference * in_.sigma_reference, in_.sigma_raw * in_.sigma_raw).asDiagonal();
       // The ratio of the errors is what was stated; their size is what the residual shows.
       d.error_scale_known = false;
     }
-    const estimation::RegressionEstimate e = estimation::estimate(d, method);
-    fit_.method = std::string(estimation::to_string(method));
+    const estimation::RegressionEstimate e = estimation::estimate(d, fit_.method);
     fit_.usable = e.usable() && e.theta(1) != 0.0;
     if (!fit_.usable) {
       fit_.findings.push_back(e.message);
@@ -135,7 +133,7 @@ class Fitting {
         fmt::format("the reference changes too little to tell a scale ({:.2g} +- {:.2g}): scale 1 is kept, the "
                     "bias fitted alone",
                     fit_.calibration.scale, std::sqrt(fit_.calibration.covariance(0, 0))));
-    fit_.method += " (bias only)";
+    fit_.bias_only = true;
     fit_.calibration.scale = 1.0;
     fit_.calibration.bias = mean;
     fit_.calibration.covariance << 0.0, 0.0, 0.0, squares / (n - 1.0) / n;
@@ -211,7 +209,7 @@ class Fitting {
   void findings() {
     if (!fit_.usable) return;
     const auto shown = [&](double value) {
-      return fit_.unit == "rad" ? fmt::format("{:.2g} deg", value * 180.0 / kPi)
+      return fit_.unit == "rad" ? fmt::format("{:.2g} deg", value / kDegree)
                                 : fmt::format("{:.3g} {}", value, fit_.unit);
     };
     if (fit_.quadratic_p < kSignificance) {
@@ -290,6 +288,10 @@ CalibrationStudy CalibrationStudy::read(const StudyTable& table) {
   return study;
 }
 
+std::string method_text(const SensorFit& fit) {
+  return fmt::format("{}{}", estimation::to_string(fit.method), fit.bias_only ? " (bias only)" : "");
+}
+
 CalibrationResult calibrate(const CalibrationStudy& study) {
   const io::Table table = io::read_table(study.file);
   CalibrationResult result;
@@ -324,7 +326,8 @@ CalibrationResult calibrate(const CalibrationStudy& study) {
     e.fit[c.channel + ".whiteness_p"] = fit.whiteness.p_value;
     e.fit[c.channel + ".quadratic_p"] = fit.quadratic_p;
     e.fit[c.channel + ".hysteresis"] = fit.hysteresis;
-    if (std::find(methods.begin(), methods.end(), fit.method) == methods.end()) methods.push_back(fit.method);
+    const std::string method = method_text(fit);
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
     (fit.findings.empty() ? good : caution).push_back(c.channel);
     for (const std::string& finding : fit.findings) e.warnings.push_back(fmt::format("{}: {}", c.channel, finding));
   }

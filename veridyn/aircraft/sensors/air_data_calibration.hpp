@@ -8,6 +8,7 @@
 #include "veridyn/aircraft/sensors/channel_map.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -72,8 +73,9 @@ struct CalibrationStudy {
 /// Fit of one sensor and what the residual says about it.
 struct SensorFit {
   SensorCalibration calibration;
-  std::string unit;                              ///< of the true quantity, SI
-  std::string method;                            ///< "OLS" or "GTLS"
+  std::string unit;  ///< of the true quantity, SI
+  estimation::Method method = estimation::Method::kOls;
+  bool bias_only = false;                        ///< the points do not determine a scale: it is 1
   std::vector<double> reference, raw, residual;  ///< residual = corrected - reference, in the order of the points
   std::vector<int> direction;                    ///< +1 reference rising, -1 falling, 0 neither
   double rms = 0.0, worst = 0.0;
@@ -86,6 +88,9 @@ struct SensorFit {
   std::vector<std::string> findings;  ///< in words, what is not as a straight line with white noise
   bool usable = false;
 };
+
+/// "OLS", or "GTLS (bias only)".
+[[nodiscard]] std::string method_text(const SensorFit& fit);
 
 /// Fits of all sensors of a calibration.
 struct CalibrationResult {
