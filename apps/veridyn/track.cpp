@@ -82,7 +82,7 @@ void publish_filter(const StudyRun& run, OutputFolder& folder, const FlightStudy
   folder.write("models.csv", models_csv(filter.models()));
   Summary& entry = summary["filter"];
   entry["model_based_share"] = filter.model_based_share();
-  entry["falls"] = filter.falls();
+  entry["reverts"] = filter.reverts();
   entry["models"] = filter.models().size();
   print_line(run.options(), filter.statement());
   if (!study.truth) return;

@@ -45,8 +45,8 @@ FlightStudy guarded_study(const std::string& track = "", double duration = 150.0
   return read_study(Study::parse(fmt::format(kGuarded, seed, duration, flight, track), "test.toml"), silent);
 }
 
-/// The study's aircraft with all of CL, CD and CY times a factor, as what is believed at the start.
-void believe(FlightStudy& study, double factor) {
+/// The study's aircraft with all of CL, CD and CY times a factor, as what is trusted at the start.
+void trust_at_start(FlightStudy& study, double factor) {
   study.filter_subject = study.subject;
   for (const Coefficient c : kForceCoefficients)
     for (double& v : study.filter_subject->model.at(c).values) v *= factor;
@@ -76,15 +76,15 @@ double share_used(const TrackedFlight& flight, double from, double to) {
 TEST(TrackGuarded, AWrongModelAtTheStartDoesNotSurvive) {
   Progress silent;
   FlightStudy study = guarded_study();
-  believe(study, 0.5);
+  trust_at_start(study, 0.5);
   const TrackedFlight flight = track_flight(study, silent).flight;
   const FilterHistory& filter = flight.filter();
   EXPECT_EQ(filter.models().front().source[0], ModelSource::kStudy);
-  EXPECT_GE(filter.falls() + (filter.model_free().front().begin < 3.0 ? 1 : 0), 1u) << "the wrong model was trusted";
+  EXPECT_GE(filter.reverts() + (filter.model_free().front().begin < 3.0 ? 1 : 0), 1u) << "the wrong model was trusted";
   const FilterModel& last = filter.models().back();
   for (const ModelSource source : last.source) EXPECT_EQ(source, ModelSource::kTracked);
   const double lift = *last.aero->at(Coefficient::kCL).value_of("alpha");
-  EXPECT_NEAR(lift, 3.607, 0.15) << "believed at the start: 1.8";
+  EXPECT_NEAR(lift, 3.607, 0.15) << "trusted at the start: 1.8";
   EXPECT_GT(share_used(flight, 120.0, 150.0), 0.9);
   for (const char* quantity : {"alpha", "beta", "airspeed"}) {
     const TrackedFilterError e = error_of(study, flight, quantity);
@@ -97,7 +97,7 @@ TEST(TrackGuarded, AWrongModelAtTheStartDoesNotSurvive) {
 TEST(TrackGuarded, NoModelConfirmsItself) {
   Progress silent;
   FlightStudy study = guarded_study();
-  believe(study, 1.5);
+  trust_at_start(study, 1.5);
   const estimation::Estimate with_model = track_flight(study, silent).flight.tracker().estimate();
   study.track.filter = TrackFilter::kModelFree;
   const estimation::Estimate without = track_flight(study, silent).flight.tracker().estimate();
@@ -223,14 +223,14 @@ std::array<Recording, 4> filtered_in_four_ways(FlightStudy study) {
   study.track.starts_from_study = false;
   results[2] = track_flight(study, silent).flight.filter().recording();
   study.track.starts_from_study = true;
-  believe(study, 0.5);
+  trust_at_start(study, 0.5);
   results[3] = track_flight(study, silent).flight.filter().recording();
   return results;
 }
 
 // Writes guarded_tracking.md: the table of docs/tracking.md.
 TEST(TrackGuardedSoak, ErrorsWithFaultsOfVaneAndPitotTube) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running test; set VERIDYN_SOAK=1 to run it";
   const auto held = [](double, double first) { return first; };
   const auto plus = [](double by) { return [by](double value, double) { return value + by; }; };
   const std::vector<SensorFault> faults{
@@ -274,7 +274,7 @@ TEST(TrackGuardedSoak, ErrorsWithFaultsOfVaneAndPitotTube) {
       }
       table += "\n";
     }
-    // Without a fault the model helps, whatever was believed at the start.
+    // Without a fault the model helps, whatever was trusted at the start.
     if (std::string_view(fault.name) != "none") continue;
     for (std::size_t w = 1; w < 4; ++w) EXPECT_LT(square[1][w][0], square[1][0][0]) << w;
   }

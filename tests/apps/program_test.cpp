@@ -147,7 +147,7 @@ TEST_F(Program, TracksWithAGuardedFilterThatLearnsTheModel) {
   ASSERT_EQ(tracked.exit_code, 0) << tracked.text;
   const auto filter = nlohmann::json::parse(tracked.text)["filter"];
   EXPECT_GT(filter["model_based_share"], 0.7);
-  EXPECT_GE(filter["falls"], 1) << "it had to notice the ice";
+  EXPECT_GE(filter["reverts"], 1) << "it had to notice the ice";
   EXPECT_LT(filter["rms_error"]["alpha"]["guarded"], filter["rms_error"]["alpha"]["model_free"]);
   EXPECT_THAT(read_file(in_out("models.csv")), HasSubstr("CL changed at"));
   EXPECT_THAT(read_file(in_out("filter.csv")), HasSubstr("model_based"));
@@ -362,7 +362,7 @@ TEST_F(Program, CalibratesAirDataAndAppliesItToARecording) {
   const double corrected = mean_alpha("");
   EXPECT_THAT(read_file(folder_ / "out" / "run.json"), HasSubstr("calibration.toml"));
   file("calibration.toml", "[alpha]\nscale = 1.0\nbias = 0\n");
-  // The filter believes the vane's mean.
+  // The filter trusts the vane's mean.
   EXPECT_NEAR(mean_alpha("") - corrected, 2.0 * M_PI / 180.0, 0.1 * M_PI / 180.0);
   file("calibration.toml", "[alpa]\nscale = 1.0\nbias = 0\n");
   fs::remove_all(folder_ / "out");

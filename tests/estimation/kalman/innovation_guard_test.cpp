@@ -60,7 +60,7 @@ TEST(InnovationGuard, NoticesAChangeWithinTwoWindows) {
 TEST(InnovationGuard, ReturnsOnlyAfterSoundWindowsInARow) {
   InnovationGuard guard(GuardOptions{.return_after_s = 5.0});
   guard.restart(0.0, false);
-  const std::size_t before = guard.falls();
+  const std::size_t before = guard.reverts();
   double returned = -1.0;
   for (int k = 1; k <= 2000; ++k) {
     const double t = 0.01 * k;
@@ -69,7 +69,7 @@ TEST(InnovationGuard, ReturnsOnlyAfterSoundWindowsInARow) {
     if (guard.trusted() && returned < 0.0) returned = t;
   }
   EXPECT_NEAR(returned, 9.0, 0.02) << "the window up to 4 s was bad";
-  EXPECT_EQ(guard.falls(), before);
+  EXPECT_EQ(guard.reverts(), before);
 }
 
 TEST(InnovationGuard, TakesSilenceAndNaNForNoProof) {

@@ -50,9 +50,8 @@ Recording replay_guarded(const Recording& mapped, const ReconstructOptions& opti
                                  .first_stamp = stamps.first,
                                  .spectrum = turbulence,
                                  .recording = &mapped};
-  internal::GuardedPass pass = internal::run_guarded(
-      task, Eigen::Matrix<double, 5, 1>::Zero(), in_use,
-      internal::ResultColumns(stamps.time.size(), internal::estimated_columns(options, true)), progress);
+  internal::GuardedPass pass = internal::run_guarded(task, Eigen::Matrix<double, 5, 1>::Zero(), in_use,
+                                                     internal::estimated_columns(options, true), progress);
   Recording out;
   out.source = mapped.source;
   out.frame = Frame::kFrd;

@@ -116,16 +116,16 @@ void ResultColumns::widen(std::size_t count, const std::vector<ResultColumns>& s
   }
 }
 
-void ResultColumns::copy_errors(std::size_t i, const ResultColumns& from, std::size_t first) {
-  for (std::size_t c = first; c < kColumns.size(); ++c) {
+void ResultColumns::copy_columns(std::size_t i, const ResultColumns& from, std::size_t first, std::size_t last) {
+  for (std::size_t c = first; c < last; ++c) {
     if (value_[c].empty() || from.value_[c].empty()) continue;
     value_[c][i] = from.value_[c][i];
     sigma_[c][i] = from.sigma_[c][i];
   }
 }
 
-void ResultColumns::copy_sample(std::size_t i, const ResultColumns& from) {
-  copy_errors(i, from, 0);
+void ResultColumns::copy_sample(std::size_t i, const ResultColumns& from, std::size_t last) {
+  copy_columns(i, from, 0, last);
   for (std::size_t k = 0; k < 3; ++k) gust_[k][i] = from.gust_[k][i];
   density_[i] = from.density_[i];
 }

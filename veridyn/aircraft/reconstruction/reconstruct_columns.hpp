@@ -57,6 +57,8 @@ inline constexpr std::array<ColumnName, 38> kColumns{{{"airspeed", "m/s"},
                                                       {"CL_error", "1"},
                                                       {"CD_error", "1"},
                                                       {"CY_error", "1"}}};
+/// Which of them there are.
+using ColumnSet = std::array<bool, kColumns.size()>;
 inline constexpr std::size_t kFirstImuBias = 18;
 inline constexpr std::size_t kFirstImuScale = 24;
 inline constexpr std::size_t kFirstAirDataError = 30;
@@ -79,7 +81,7 @@ struct CovarianceView {
 class ResultColumns {
  public:
   /// Space for `size` samples of the columns that are `present`.
-  ResultColumns(std::size_t size, const std::array<bool, kColumns.size()>& present) : size_(size) {
+  ResultColumns(std::size_t size, const ColumnSet& present) : size_(size) {
     for (std::size_t c = 0; c < kColumns.size(); ++c) {
       if (!present[c]) continue;
       value_[c].resize(size);
@@ -105,10 +107,10 @@ class ResultColumns {
   /// constant k moved by one sigma.
   void widen(std::size_t count, const std::vector<ResultColumns>& shifted, const Eigen::MatrixXd& correlation);
 
-  /// Takes columns `first` and behind of sample `i` from another set of results.
-  void copy_errors(std::size_t i, const ResultColumns& from, std::size_t first = kFirstImuBias);
-  /// Takes sample `i` from another set of results.
-  void copy_sample(std::size_t i, const ResultColumns& from);
+  /// Takes the columns from `first` to before `last` of sample `i` from another set of results, where both have them.
+  void copy_columns(std::size_t i, const ResultColumns& from, std::size_t first, std::size_t last);
+  /// Takes sample `i` from another set of results, of the columns those before `last`.
+  void copy_sample(std::size_t i, const ResultColumns& from, std::size_t last = kColumns.size());
 
   /// Moves the first `count` samples into a recording.
   void move_into(Recording& recording, const TimeBase& time, std::size_t count);

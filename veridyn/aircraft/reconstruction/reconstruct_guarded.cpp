@@ -10,13 +10,61 @@
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::aircraft::internal {
+namespace {
+
+/// Where the model-based smoother's estimate stands: it is contaminated on both sides of a stretch in which the model
+/// was wrong.
+std::vector<char> trusted_samples(const GuardTrace& trace, std::span<const double> stamps) {
+  std::vector<char> trusted = trace.model_based;
+  double last_wrong = -kInfinity;
+  for (std::size_t k = 0; k < trusted.size(); ++k) {
+    if (!trace.model_based[k]) last_wrong = stamps[k];
+    if (stamps[k] - last_wrong < kGuardMargin_s) trusted[k] = 0;
+  }
+  double next_wrong = kInfinity;
+  for (std::size_t k = trusted.size(); k-- > 0;) {
+    if (!trace.model_based[k]) next_wrong = stamps[k];
+    if (next_wrong - stamps[k] < kGuardMargin_s) trusted[k] = 0;
+  }
+  return trusted;
+}
+
+/// What a guarded filter estimates along a recording: all but errors of the air data, which are known along a run.
+std::optional<ColumnSet> columns_of_guarded(const ReconstructOptions& options) {
+  if (!options.keep_filter) return std::nullopt;
+  ColumnSet columns = estimated_columns(options, true);
+  std::fill(columns.begin() + kFirstAirDataError, columns.begin() + kFirstCoefficientError, false);
+  return columns;
+}
+
+/// The estimate of the filter that was active. What that does not estimate is the model-based filter's: errors of the
+/// air data, and of the coefficients while the model-free filter was active.
+ResultColumns with_active_filter(ResultColumns based, const GuardedPass& guarded) {
+  for (std::size_t k = 0; k < guarded.count; ++k)
+    based.copy_sample(k, *guarded.filtered, guarded.trace.model_based[k] ? kColumns.size() : kFirstCoefficientError);
+  return based;
+}
+
+/// The model-based smoother's first `count` samples where they are trusted, else the model-free one's; of that all
+/// errors of sensors where `free_errors`.
+ResultColumns joined(ResultColumns based, const ResultColumns& free, const std::vector<char>& trusted,
+                     std::size_t count, bool free_errors) {
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!trusted[k]) based.copy_sample(k, free);
+    if (free_errors) based.copy_columns(k, free, kFirstImuBias, kColumns.size());
+  }
+  return based;
+}
+
+}  // namespace
 
 GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error,
-                        std::span<const ModelInUse> models, std::optional<ResultColumns> filtered, Progress& progress) {
+                        std::span<const ModelInUse> models, const std::optional<ColumnSet>& kept, Progress& progress) {
   const FlightStreams& s = *task.streams;
   const ReconstructOptions& o = *task.options;
   const std::vector<double>& stamps = *task.stamps;
-  GuardedPass pass{.trace = {}, .filtered = std::move(filtered)};
+  GuardedPass pass;
+  if (kept) pass.filtered.emplace(stamps.size(), *kept);
   GuardTrace& trace = pass.trace;
   trace.model_based.assign(stamps.size(), 0);
   trace.nis_ratio.assign(stamps.size(), 0.0);
@@ -63,7 +111,7 @@ GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>
           !progress.update(static_cast<double>(pass.count) / static_cast<double>(stamps.size())))
         return pass;
     }
-    trace.reverts += filter.guard().falls();
+    trace.reverts += filter.guard().reverts();
   }
   return pass;
 }
@@ -85,38 +133,27 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   Solution based = solve_model_based(whole, progress);
   const ModelInUse known{
       .from_s = -kInfinity, .subject = std::make_shared<const Subject>(*task.subject), .error = motion_of(task).error};
-  GuardedPass guarded = run_guarded(task, free.air_error, {&known, 1}, std::move(based.filtered), progress);
-  const GuardTrace& trace = guarded.trace;
-  based.filtered = std::move(guarded.filtered);
-  based.count = std::min(based.count, free.count);
+  GuardedPass guarded = run_guarded(task, free.air_error, {&known, 1}, columns_of_guarded(*task.options), progress);
 
-  // The model-based smoother is contaminated on both sides of a stretch in which the model was wrong.
-  const std::vector<double>& stamps = *task.stamps;
-  double last_wrong = -1e300;
-  std::vector<char> trusted = trace.model_based;
-  for (std::size_t k = 0; k < trusted.size(); ++k) {
-    if (!trace.model_based[k]) last_wrong = stamps[k];
-    if (stamps[k] - last_wrong < kGuardMargin_s) trusted[k] = 0;
-  }
-  double next_wrong = 1e300;
-  for (std::size_t k = trusted.size(); k-- > 0;) {
-    if (!trace.model_based[k]) next_wrong = stamps[k];
-    if (next_wrong - stamps[k] < kGuardMargin_s) trusted[k] = 0;
-  }
+  const bool reverted = guarded.trace.reverts > 0;
+  const std::size_t count = std::min(based.count, free.count);
+  const std::vector<char> trusted = trusted_samples(guarded.trace, *task.stamps);
+  std::optional<ResultColumns> filtered;
+  if (guarded.filtered) filtered = with_active_filter(*std::move(based.filtered), guarded);
   // Sensor errors are one estimate over the whole flight: once the model was not trusted, they come without it.
-  for (std::size_t k = 0; k < based.count; ++k) {
-    if (!trusted[k]) based.smoothed->copy_sample(k, *free.smoothed);
-    if (trace.reverts > 0) based.smoothed->copy_errors(k, *free.smoothed);
-  }
-  if (trace.reverts > 0) {
-    based.monitors = free.monitors;
-    based.error_columns = free.error_columns;
-    based.air_error_found = free.air_error_found;
-    based.not_applied = free.not_applied;
-    based.error_covariance = free.error_covariance;
-  }
-  based.guard = std::move(guarded.trace);
-  return based;
+  Solution& errors = reverted ? free : based;
+  return {.smoothed = joined(*std::move(based.smoothed), *free.smoothed, trusted, count, reverted),
+          .filtered = std::move(filtered),
+          .monitors = errors.monitors,
+          .count = count,
+          .error_columns = std::move(errors.error_columns),
+          .error_covariance = std::move(errors.error_covariance),
+          .air_error = based.air_error,
+          .air_error_found = errors.air_error_found,
+          .air_data_errors_converged = based.air_data_errors_converged,
+          .not_applied = std::move(errors.not_applied),
+          .guard = std::move(guarded.trace),
+          .contradiction = based.contradiction};
 }
 
 }  // namespace veridyn::aircraft::internal

@@ -30,7 +30,7 @@ estimation::InnovationGate gate_of(const SolveTask& task) {
   return gate;
 }
 
-/// The share of the progress that a pass makes up.
+/// View of a progress, of which a pass makes up the share `from` to `to`.
 struct PassProgress {
   Progress* progress;
   double from, to;

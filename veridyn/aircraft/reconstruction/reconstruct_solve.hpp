@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -91,17 +90,17 @@ struct Solution {
 /// `kGuardMargin_s` of where the model was not trusted, there the model-free smoother's.
 [[nodiscard]] Solution solve_guarded(const SolveTask& task, Progress& progress);
 inline constexpr double kGuardMargin_s = 3.0;
-/// Goes through the recording with the guarded filter; its estimate is written over `filtered`, where that is kept.
+/// Goes through the recording with the guarded filter.
 /// @param models in the order of their times; before the first of them there is none
+/// @param kept columns of the active filter's estimate; none: only the trace is
 [[nodiscard]] GuardedPass run_guarded(const SolveTask& task, const Eigen::Matrix<double, 5, 1>& air_error,
-                                      std::span<const ModelInUse> models, std::optional<ResultColumns> filtered,
+                                      std::span<const ModelInUse> models, const std::optional<ColumnSet>& kept,
                                       Progress& progress);
 
 /// `model_based` and `guard_ratio` on the first `count` stamps.
 void add_guard_channels(const GuardTrace& trace, const TimeBase& time, std::size_t count, Recording& filtered);
 
 /// The columns that the options estimate; `aerodynamics`: the filter knows a force model.
-using ColumnSet = std::array<bool, kColumns.size()>;
 [[nodiscard]] ColumnSet estimated_columns(const ReconstructOptions& options, bool aerodynamics);
 
 /// Stamps of the results.

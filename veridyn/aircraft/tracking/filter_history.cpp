@@ -104,7 +104,7 @@ std::vector<TimeSpan> FilterHistory::model_free() const {
   return spans;
 }
 
-std::size_t FilterHistory::falls() const {
+std::size_t FilterHistory::reverts() const {
   std::size_t count = 0;
   for (std::size_t k = 1; k < time_.size(); ++k)
     if (model_based()[k - 1] != 0.0 && model_based()[k] == 0.0) ++count;
@@ -112,11 +112,11 @@ std::size_t FilterHistory::falls() const {
 }
 
 std::string FilterHistory::statement() const {
-  const std::size_t fell = falls();
+  const std::size_t count = reverts();
   return fmt::format(
       "The model-based filter was used {:.0f} % of the time; {}; models given: {}.", 100.0 * model_based_share(),
-      fell == 0 ? std::string("it was never taken back")
-                : fmt::format("it was taken back {} time{}", fell, fell > 1 ? "s" : ""),
+      count == 0 ? std::string("it was never taken back")
+                 : fmt::format("it was taken back {} time{}", count, count > 1 ? "s" : ""),
       std::count_if(models_.begin(), models_.end(), [](const FilterModel& m) { return m.aero.has_value(); }));
 }
 

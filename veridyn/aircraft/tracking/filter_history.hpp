@@ -38,7 +38,7 @@ class FilterHistory {
   /// When it was the model-free filter's.
   [[nodiscard]] std::vector<TimeSpan> model_free() const;
   /// How often the guard, or the loss of the model, ended the use of the model-based filter.
-  [[nodiscard]] std::size_t falls() const;
+  [[nodiscard]] std::size_t reverts() const;
   /// One sentence on the above.
   [[nodiscard]] std::string statement() const;
   /// Airspeed and flow angles of both filters against the truth, without the first 10 s.

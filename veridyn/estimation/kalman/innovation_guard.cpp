@@ -24,7 +24,7 @@ void InnovationGuard::restart(double t, bool trusted) noexcept {
   sums_.fill({});
   window_end_ = t + options_.window_s;
   sound_since_ = t;
-  if (trusted_ && !trusted) ++falls_;
+  if (trusted_ && !trusted) ++reverts_;
   trusted_ = trusted;
   alarm_ = false;
 }
@@ -68,7 +68,7 @@ bool InnovationGuard::advance(double t) {
   window_end_ += options_.window_s;
   if (!(window_end_ > t)) window_end_ = t + options_.window_s;  // after a gap
   if (alarm_) {
-    if (trusted_) ++falls_;
+    if (trusted_) ++reverts_;
     trusted_ = false;
   }
   if (!sound) {

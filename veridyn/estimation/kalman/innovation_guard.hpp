@@ -56,7 +56,7 @@ class InnovationGuard {
   [[nodiscard]] double worst() const noexcept { return worst_; }
   [[nodiscard]] std::size_t worst_sensor() const noexcept { return worst_sensor_; }
   /// Changes from trust to distrust so far.
-  [[nodiscard]] std::size_t falls() const noexcept { return falls_; }
+  [[nodiscard]] std::size_t reverts() const noexcept { return reverts_; }
 
  private:
   [[nodiscard]] double limit(double p, std::size_t n);
@@ -80,7 +80,7 @@ class InnovationGuard {
   bool alarm_ = false;
   double worst_ = 0.0;
   std::size_t worst_sensor_ = 0;
-  std::size_t falls_ = 0;
+  std::size_t reverts_ = 0;
 };
 
 }  // namespace veridyn::estimation
