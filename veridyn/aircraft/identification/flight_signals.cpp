@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
 
+#include "veridyn/aircraft/model/atmosphere.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
@@ -19,46 +25,51 @@ using recording::on_grid;
 
 constexpr double kDefaultPass_Hz = 10.0;
 
-/// View of what flight signals are made from.
-class Preparation {
- public:
-  Preparation(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
-              const SignalOptions& options, const SensorSigma* known)
-      : mapped_(mapped), smoothed_(smoothed), subject_(subject), options_(options), known_(known) {}
+/// The grid of a flight and the filters that all of its signals go through.
+struct CommonGrid {
+  numerics::UniformGrid grid;
+  numerics::LowPassDesign filter;
+  FirKernel smooth, differentiate;
+  std::size_t stride = 1;
+};
 
-  FlightSignals run() {
-    choose_grid();
-    inertial();
-    flow();
-    inputs();
-    thrust();
-    context();
-    return std::move(out_);
+CommonGrid common_grid(const MappedRecording& mapped, const SignalOptions& options) {
+  const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
+  require_channels(mapped, needed, "the aerodynamic forces");
+  const Channel& gyro = mapped.recording.at("gyro_x");
+  const double rate = recording::grid_rate(gyro, options.rate_Hz);
+  if (!(rate >= 10.0)) {
+    throw InputError(mapped.recording.source,
+                     fmt::format("its gyro is sampled at {:.1f} Hz; derivatives need at least 10 Hz", gyro.rate_Hz()));
   }
+  numerics::LowPassDesign filter;
+  filter.rate_Hz = rate;
+  filter.pass_Hz = options.pass_Hz > 0.0 ? options.pass_Hz : std::min(kDefaultPass_Hz, rate / 5.0);
+  filter.stop_Hz = std::min(1.5 * filter.pass_Hz, 0.5 * rate);
+  filter.validate();
+  return {.grid = recording::grid_over(gyro, rate, mapped.recording.source),
+          .filter = filter,
+          .smooth = numerics::low_pass(filter),
+          .differentiate = numerics::low_pass_differentiator(filter),
+          .stride = std::max<std::size_t>(1, static_cast<std::size_t>(rate / (2.0 * filter.stop_Hz)))};
+}
 
- private:
-  void choose_grid() {
-    const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
-    require_channels(mapped_, needed, "the aerodynamic forces");
-    const Channel& gyro = mapped_.recording.at("gyro_x");
-    const double rate = recording::grid_rate(gyro, options_.rate_Hz);
-    if (!(rate >= 10.0)) {
-      throw InputError(
-          mapped_.recording.source,
-          fmt::format("its gyro is sampled at {:.1f} Hz; derivatives need at least 10 Hz", gyro.rate_Hz()));
-    }
-    out_.grid = recording::grid_over(gyro, rate, mapped_.recording.source);
-    out_.filter.rate_Hz = rate;
-    out_.filter.pass_Hz = options_.pass_Hz > 0.0 ? options_.pass_Hz : std::min(kDefaultPass_Hz, rate / 5.0);
-    out_.filter.stop_Hz = std::min(1.5 * out_.filter.pass_Hz, 0.5 * rate);
-    out_.filter.validate();
-    smooth_ = numerics::low_pass(out_.filter);
-    differentiate_ = numerics::low_pass_differentiator(out_.filter);
-    out_.stride = std::max<std::size_t>(1, static_cast<std::size_t>(rate / (2.0 * out_.filter.stop_Hz)));
+/// View of a recording's channels as they come onto a grid and through its filters, and of what is known of their
+/// noise.
+class GriddedChannels {
+ public:
+  GriddedChannels(const MappedRecording& mapped, const CommonGrid& common, const SignalOptions& options,
+                  const SensorSigma* known)
+      : mapped_(mapped), common_(common), options_(options), known_(known) {}
+
+  [[nodiscard]] const Channel* find(std::string_view name) const { return mapped_.recording.find(name); }
+  [[nodiscard]] const std::string& source() const { return mapped_.recording.source; }
+  [[nodiscard]] std::vector<double> raw(const std::string& name) const {
+    return on_grid(mapped_.recording.at(name), common_.grid);
   }
 
   /// Standard deviation of the white noise of a channel, as the user says or as its content above the pass band shows.
-  double noise_of(const std::string& name, const std::vector<double>& raw) const {
+  [[nodiscard]] double noise_of(const std::string& name, const std::vector<double>& raw) const {
     if (const std::optional<double> given = recording::given_noise(options_.noise, name)) return *given;
     if (known_ != nullptr) {
       if (name.starts_with("gyro")) return known_->gyro;
@@ -66,231 +77,275 @@ class Preparation {
       if (name == "alpha") return known_->alpha;
       if (name == "beta") return known_->beta;
     }
-    const double rate = out_.filter.rate_Hz;
+    const double rate = common_.filter.rate_Hz;
     // A channel that is slower than the grid was interpolated: its noise is not white there and is measured as
     // recorded.
     const Channel& channel = mapped_.recording.at(name);
     return channel.rate_Hz() < 0.8 * rate ? recording::noise_floor(channel) : recording::noise_floor(raw, rate);
   }
 
-  std::vector<double> linear_on_grid(const Channel& channel) const {
-    return on_grid(channel, out_.grid, recording::Holes::kOfHalfASecond, numerics::Interpolation::kLinear);
+  /// A measured channel of white noise `sd` through a filter.
+  [[nodiscard]] GridSignal filtered(const FirKernel& kernel, const std::string& name, const std::vector<double>& raw,
+                                    double sd, std::string origin) const {
+    return {.value = numerics::filter(raw, kernel),
+            .sigma = left_by(kernel, name, sd),
+            .error = ErrorKind::kClassical,
+            .origin = std::move(origin)};
   }
 
-  void put(FlightSignal which, std::vector<double> value, double sigma, ErrorKind kind, std::string origin) {
-    GridSignal& signal = out_[which];
-    signal.value = std::move(value);
-    signal.sigma = sigma;
-    signal.error = kind;
-    signal.origin = std::move(origin);
-  }
-
+ private:
   /// Noise that is left when white noise sampled at the channel's rate has passed the filter. A channel slower than
   /// the grid was interpolated, so that more of its noise lies in the pass band.
-  double left_by(const FirKernel& kernel, const std::string& name, double sd) const {
+  [[nodiscard]] double left_by(const FirKernel& kernel, const std::string& name, double sd) const {
     const double recorded = mapped_.recording.at(name).rate_Hz();
-    const double per_grid_sample = std::max(1.0, out_.filter.rate_Hz / recorded);
+    const double per_grid_sample = std::max(1.0, common_.filter.rate_Hz / recorded);
     return sd * std::sqrt(kernel.noise_gain() * per_grid_sample);
   }
 
-  void inertial() {
-    const std::array<const char*, 3> gyros{"gyro_x", "gyro_y", "gyro_z"};
-    const std::array<const char*, 3> accels{"accel_x", "accel_y", "accel_z"};
-    const std::array<FlightSignal, 3> rates{FlightSignal::kP, FlightSignal::kQ, FlightSignal::kR};
-    const std::array<FlightSignal, 3> derivatives{FlightSignal::kPdot, FlightSignal::kQdot, FlightSignal::kRdot};
-    const std::array<FlightSignal, 3> forces{FlightSignal::kAx, FlightSignal::kAy, FlightSignal::kAz};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::vector<double> raw = on_grid(mapped_.recording.at(gyros[i]), out_.grid);
-      const double sd = noise_of(gyros[i], raw);
-      put(rates[i], numerics::filter(raw, smooth_), left_by(smooth_, gyros[i], sd), ErrorKind::kClassical,
-          "filtered gyro");
-      put(derivatives[i], numerics::filter(raw, differentiate_), left_by(differentiate_, gyros[i], sd),
-          ErrorKind::kClassical, "differentiated gyro");
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::vector<double> raw = on_grid(mapped_.recording.at(accels[i]), out_.grid);
-      const double sd = noise_of(accels[i], raw);
-      put(forces[i], numerics::filter(raw, smooth_), left_by(smooth_, accels[i], sd), ErrorKind::kClassical,
-          "filtered accelerometer");
-    }
-    move_to_centre_of_gravity();
-  }
-
-  /// a_cg = a - w' x r - w x (w x r), r from the centre of gravity to the sensor.
-  void move_to_centre_of_gravity() {
-    const Eigen::Vector3d r(subject_.imu_position[0], subject_.imu_position[1], subject_.imu_position[2]);
-    if (r.norm() == 0.0) return;
-    for (std::size_t k = 0; k < out_.size(); ++k) {
-      const auto at = [&](FlightSignal s) { return out_[s].value[k]; };
-      const Eigen::Vector3d w(at(FlightSignal::kP), at(FlightSignal::kQ), at(FlightSignal::kR));
-      const Eigen::Vector3d dw(at(FlightSignal::kPdot), at(FlightSignal::kQdot), at(FlightSignal::kRdot));
-      const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
-      out_[FlightSignal::kAx].value[k] -= lever.x();
-      out_[FlightSignal::kAy].value[k] -= lever.y();
-      out_[FlightSignal::kAz].value[k] -= lever.z();
-    }
-    out_.notes.push_back(fmt::format("accelerometer moved by ({:.3f}, {:.3f}, {:.3f}) m to the centre of gravity",
-                                     -r.x(), -r.y(), -r.z()));
-  }
-
-  /// Root mean square of a sigma channel: the typical error of the smoother.
-  double typical_sigma(const char* name) const {
-    const Channel* sigma = smoothed_.find(name);
-    if (sigma == nullptr) return 0.0;
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const double s : sigma->value) {
-      if (!std::isfinite(s)) continue;
-      sum += s * s;
-      ++count;
-    }
-    return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
-  }
-
-  void flow() {
-    put(FlightSignal::kAirspeed, on_grid(smoothed_.at("airspeed"), out_.grid), typical_sigma("sigma_airspeed"),
-        ErrorKind::kBerkson, "smoother");
-    out_.alpha_smoothed = on_grid(smoothed_.at("alpha"), out_.grid);
-    out_.beta_smoothed = on_grid(smoothed_.at("beta"), out_.grid);
-    flow_angle(FlightSignal::kAlpha, "alpha", out_.alpha_smoothed);
-    flow_angle(FlightSignal::kBeta, "beta", out_.beta_smoothed);
-  }
-
-  void flow_angle(FlightSignal which, const char* name, const std::vector<double>& smoothed) {
-    const Channel* vane = mapped_.recording.find(name);
-    if (options_.flow_angles == FlowAngles::kVane && vane == nullptr) {
-      throw InputError(mapped_.recording.source,
-                       fmt::format("has no {} vane, which signals.flow_angles = \"vane\" asks for", name));
-    }
-    if (vane == nullptr || options_.flow_angles == FlowAngles::kSmoothed) {
-      // The smoother follows what the filter cannot: the same pass band for all regressors.
-      put(which, numerics::filter(smoothed, smooth_), typical_sigma(fmt::format("sigma_{}", name).c_str()),
-          ErrorKind::kBerkson, "smoother");
-      return;
-    }
-    std::vector<double> raw = on_grid(*vane, out_.grid);
-    const double sd = noise_of(name, raw);
-    std::vector<double> value = numerics::filter(raw, smooth_);
-    // The smoother may have found a bias of the vane: the mean difference where both are there.
-    const Channel* bias = smoothed_.find(fmt::format("{}_bias", name));
-    if (bias != nullptr && !bias->empty()) {
-      const double b = numerics::median(bias->value);
-      for (double& v : value) v -= b;
-      out_.notes.push_back(fmt::format("{} vane: estimated bias of {:.2f} deg taken off", name, b * 180.0 / kPi));
-    }
-    put(which, std::move(value), left_by(smooth_, name, sd), ErrorKind::kClassical, "filtered vane");
-  }
-
-  void inputs() {
-    const std::array<std::pair<const char*, FlightSignal>, 3> surfaces{{{"elevator", FlightSignal::kElevator},
-                                                                        {"aileron", FlightSignal::kAileron},
-                                                                        {"rudder", FlightSignal::kRudder}}};
-    for (const auto& [name, which] : surfaces) {
-      const Channel* channel = mapped_.recording.find(name);
-      if (channel == nullptr) continue;
-      // Positions of servos are what was commanded or read back: known, but for the delay that was taken off before.
-      const std::vector<double> position = linear_on_grid(*channel);
-      if (channel->rate_Hz() > 0.8 * out_.filter.rate_Hz) find_jumps(position, which);
-      put(which, numerics::filter(position, smooth_), 0.0, ErrorKind::kExact, "filtered position");
-    }
-    const std::vector<double>& taps = smooth_.taps;
-    out_.jump_response.assign(taps.size() + 1, 0.0);
-    for (std::size_t i = 0; i < taps.size(); ++i) {
-      out_.jump_response[i] += 0.5 * taps[i];
-      out_.jump_response[i + 1] += 0.5 * taps[i];
-    }
-  }
-
-  /// Changes within one sample by a good part of the throw, with little change before and after. A servo with a lag of
-  /// two samples or more shows none.
-  void find_jumps(const std::vector<double>& position, FlightSignal control) {
-    constexpr double kOfThrow = 0.05;
-    constexpr double kNeighbours = 0.3;
-    double low = kInfinity, high = -kInfinity;
-    for (const double v : position) {
-      if (!std::isfinite(v)) continue;
-      low = std::min(low, v);
-      high = std::max(high, v);
-    }
-    for (std::size_t k = 2; k + 1 < position.size(); ++k) {
-      const double change = std::abs(position[k] - position[k - 1]);
-      if (!(change > kOfThrow * (high - low))) continue;
-      const double beside =
-          std::max(std::abs(position[k - 1] - position[k - 2]), std::abs(position[k + 1] - position[k]));
-      if (beside < kNeighbours * change) out_.jumps.push_back({control, k});
-    }
-  }
-
-  void thrust() {
-    const Channel* rho = smoothed_.find("air_density");
-    out_.air_density = rho != nullptr ? linear_on_grid(*rho) : std::vector<double>(out_.size(), 1.225);
-    double last = 1.225;
-    for (double& density : out_.air_density) {
-      if (!std::isfinite(density)) density = last;
-      last = density;
-    }
-    if (const Channel* channel = mapped_.recording.find("thrust")) {
-      put(FlightSignal::kThrust, numerics::filter(on_grid(*channel, out_.grid), smooth_), 0.0, ErrorKind::kExact,
-          "recorded");
-      return;
-    }
-    const Channel* throttle = mapped_.recording.find("throttle");
-    if (subject_.propulsion.kind == PropulsionKind::kNone || throttle == nullptr) {
-      out_.notes.emplace_back(throttle == nullptr ? "thrust is unknown: the log has neither thrust nor throttle"
-                                                  : "thrust is unknown: the subject has no propulsion model");
-      return;
-    }
-    const std::vector<double> command = linear_on_grid(*throttle);
-    const std::vector<double>& airspeed = out_[FlightSignal::kAirspeed].value;
-    std::vector<double> force(out_.size(), kNaN);
-    out_.torque.assign(out_.size(), 0.0);
-    out_.thrust_per_airspeed.assign(out_.size(), 0.0);
-    constexpr double kStep_mps = 0.01;
-    double rotor = kNaN;
-    for (std::size_t k = 0; k < out_.size(); ++k) {
-      if (!std::isfinite(command[k]) || !std::isfinite(airspeed[k])) continue;
-      const double steady = subject_.propulsion.steady_rotor_speed(command[k]);
-      const bool lags = subject_.propulsion.kind == PropulsionKind::kPropeller && std::isfinite(rotor);
-      rotor = lags ? steady + (rotor - steady) * std::exp(-out_.grid.step / subject_.propulsion.time_constant) : steady;
-      // The propeller sees the airspeed along its axis.
-      const double along = std::cos(out_.alpha_smoothed[k]) * std::cos(out_.beta_smoothed[k]);
-      const auto load_at = [&](double Va) {
-        return subject_.propulsion.load(command[k], Va * along, out_.air_density[k], rotor);
-      };
-      const auto load = load_at(airspeed[k]);
-      force[k] = load.thrust;
-      out_.torque[k] = load.torque;
-      out_.thrust_per_airspeed[k] =
-          (load_at(airspeed[k] + kStep_mps).thrust - load_at(airspeed[k] - kStep_mps).thrust) / (2.0 * kStep_mps);
-    }
-    put(FlightSignal::kThrust, std::move(force), 0.0, ErrorKind::kExact, "propulsion model");
-  }
-
-  void context() {
-    const auto take = [&](const char* name) {
-      const Channel* channel = smoothed_.find(name);
-      return channel == nullptr ? std::vector<double>(out_.size(), kNaN) : on_grid(*channel, out_.grid);
-    };
-    out_.roll = angle_on_grid(smoothed_.at("roll"), out_.grid);
-    out_.pitch = angle_on_grid(smoothed_.at("pitch"), out_.grid);
-    out_.yaw = angle_on_grid(smoothed_.at("yaw"), out_.grid);
-    out_.vel_north = take("vel_north");
-    out_.vel_east = take("vel_east");
-    out_.vel_down = take("vel_down");
-    out_.wind_north = take("wind_north");
-    out_.wind_east = take("wind_east");
-    out_.wind_down = take("wind_down");
-  }
-
   const MappedRecording& mapped_;
-  const Recording& smoothed_;
-  const Subject& subject_;
+  const CommonGrid& common_;
   const SignalOptions& options_;
   const SensorSigma* known_;
-  FirKernel smooth_;
-  FirKernel differentiate_;
-  FlightSignals out_;
 };
+
+/// A control or a force that is known but for its delay.
+GridSignal exact(std::vector<double> value, std::string origin) {
+  return {.value = std::move(value), .sigma = 0.0, .error = ErrorKind::kExact, .origin = std::move(origin)};
+}
+
+std::vector<double> linear_on_grid(const Channel& channel, const numerics::UniformGrid& grid) {
+  return on_grid(channel, grid, recording::Holes::kOfHalfASecond, numerics::Interpolation::kLinear);
+}
+
+/// Rates, their derivatives and specific forces, about x, y and z.
+struct InertialSignals {
+  std::array<GridSignal, 3> rate, rate_derivative, force;
+};
+
+InertialSignals inertial_signals(const GriddedChannels& channels, const CommonGrid& common) {
+  const std::array<const char*, 3> gyros{"gyro_x", "gyro_y", "gyro_z"};
+  const std::array<const char*, 3> accels{"accel_x", "accel_y", "accel_z"};
+  InertialSignals signals;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double> raw = channels.raw(gyros[i]);
+    const double sd = channels.noise_of(gyros[i], raw);
+    signals.rate[i] = channels.filtered(common.smooth, gyros[i], raw, sd, "filtered gyro");
+    signals.rate_derivative[i] = channels.filtered(common.differentiate, gyros[i], raw, sd, "differentiated gyro");
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::vector<double> raw = channels.raw(accels[i]);
+    const double sd = channels.noise_of(accels[i], raw);
+    signals.force[i] = channels.filtered(common.smooth, accels[i], raw, sd, "filtered accelerometer");
+  }
+  return signals;
+}
+
+/// Specific force at the centre of gravity: a_cg = a - w' x r - w x (w x r), `r` from there to the sensor [m].
+std::array<GridSignal, 3> force_at_centre_of_gravity(const InertialSignals& at_sensor, const Eigen::Vector3d& r) {
+  std::array<GridSignal, 3> force = at_sensor.force;
+  for (std::size_t k = 0; k < force[0].value.size(); ++k) {
+    const auto at = [k](const std::array<GridSignal, 3>& s) {
+      return Eigen::Vector3d(s[0].value[k], s[1].value[k], s[2].value[k]);
+    };
+    const Eigen::Vector3d w = at(at_sensor.rate), dw = at(at_sensor.rate_derivative);
+    const Eigen::Vector3d lever = dw.cross(r) + w.cross(w.cross(r));
+    for (std::size_t i = 0; i < 3; ++i) force[i].value[k] -= lever(static_cast<Eigen::Index>(i));
+  }
+  return force;
+}
+
+/// Root mean square of a sigma channel: the typical error of the smoother.
+double typical_sigma(const Recording& smoothed, const std::string& name) {
+  const Channel* sigma = smoothed.find(name);
+  if (sigma == nullptr) return 0.0;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double s : sigma->value) {
+    if (!std::isfinite(s)) continue;
+    sum += s * s;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
+
+/// A flow angle and what was assumed of it.
+struct FlowAngle {
+  GridSignal signal;
+  std::string note;  ///< empty: nothing
+};
+
+/// @param smoothed_angle the smoother's, on the grid
+FlowAngle flow_angle(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
+                     FlowAngles choice, const std::string& name, const std::vector<double>& smoothed_angle) {
+  const Channel* vane = channels.find(name);
+  if (choice == FlowAngles::kVane && vane == nullptr) {
+    throw InputError(channels.source(),
+                     fmt::format("has no {} vane, which signals.flow_angles = \"vane\" asks for", name));
+  }
+  if (vane == nullptr || choice == FlowAngles::kSmoothed) {
+    // The smoother follows what the filter cannot: the same pass band for all regressors.
+    return {.signal = {.value = numerics::filter(smoothed_angle, common.smooth),
+                       .sigma = typical_sigma(smoothed, "sigma_" + name),
+                       .error = ErrorKind::kBerkson,
+                       .origin = "smoother"},
+            .note = {}};
+  }
+  const std::vector<double> raw = channels.raw(name);
+  FlowAngle angle{.signal = channels.filtered(common.smooth, name, raw, channels.noise_of(name, raw), "filtered vane"),
+                  .note = {}};
+  // The smoother may have found a bias of the vane: the mean difference where both are there.
+  const Channel* bias = smoothed.find(name + "_bias");
+  if (bias != nullptr && !bias->empty()) {
+    const double b = numerics::median(bias->value);
+    for (double& v : angle.signal.value) v -= b;
+    angle.note = fmt::format("{} vane: estimated bias of {:.2f} deg taken off", name, b / kDegree);
+  }
+  return angle;
+}
+
+/// Air density on the grid [kg/m^3]; where it is missing the last known one.
+std::vector<double> air_density_on(const Recording& smoothed, const numerics::UniformGrid& grid) {
+  const Channel* rho = smoothed.find("air_density");
+  if (rho == nullptr) return std::vector<double>(grid.count, kSeaLevelDensity);
+  std::vector<double> density = linear_on_grid(*rho, grid);
+  double last = kSeaLevelDensity;
+  for (double& d : density) {
+    if (!std::isfinite(d)) d = last;
+    last = d;
+  }
+  return density;
+}
+
+/// Motion through the air.
+struct FlowSignals {
+  GridSignal airspeed, alpha, beta;
+  std::vector<double> alpha_smoothed, beta_smoothed;  ///< the smoother's, whatever is regressed on
+  std::vector<double> air_density;                    ///< [kg/m^3]
+  std::vector<std::string> notes;
+};
+
+FlowSignals flow_signals(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
+                         FlowAngles choice) {
+  std::vector<double> alpha_smoothed = on_grid(smoothed.at("alpha"), common.grid);
+  std::vector<double> beta_smoothed = on_grid(smoothed.at("beta"), common.grid);
+  FlowAngle alpha = flow_angle(channels, common, smoothed, choice, "alpha", alpha_smoothed);
+  FlowAngle beta = flow_angle(channels, common, smoothed, choice, "beta", beta_smoothed);
+  std::vector<std::string> notes;
+  for (const FlowAngle* angle : {&alpha, &beta})
+    if (!angle->note.empty()) notes.push_back(angle->note);
+  return {.airspeed = {.value = on_grid(smoothed.at("airspeed"), common.grid),
+                       .sigma = typical_sigma(smoothed, "sigma_airspeed"),
+                       .error = ErrorKind::kBerkson,
+                       .origin = "smoother"},
+          .alpha = std::move(alpha.signal),
+          .beta = std::move(beta.signal),
+          .alpha_smoothed = std::move(alpha_smoothed),
+          .beta_smoothed = std::move(beta_smoothed),
+          .air_density = air_density_on(smoothed, common.grid),
+          .notes = std::move(notes)};
+}
+
+/// Changes within one sample by a good part of the throw, with little change before and after. A servo with a lag of
+/// two samples or more shows none.
+std::vector<DeflectionJump> jumps_of(std::span<const double> position, FlightSignal control) {
+  constexpr double kOfThrow = 0.05;
+  constexpr double kNeighbours = 0.3;
+  double low = kInfinity, high = -kInfinity;
+  for (const double v : position) {
+    if (!std::isfinite(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  std::vector<DeflectionJump> jumps;
+  for (std::size_t k = 2; k + 1 < position.size(); ++k) {
+    const double change = std::abs(position[k] - position[k - 1]);
+    if (!(change > kOfThrow * (high - low))) continue;
+    const double neighbouring =
+        std::max(std::abs(position[k - 1] - position[k - 2]), std::abs(position[k + 1] - position[k]));
+    if (neighbouring < kNeighbours * change) jumps.push_back({control, k});
+  }
+  return jumps;
+}
+
+/// What an impulse midway between two samples becomes.
+std::vector<double> response_to_jump(const FirKernel& kernel) {
+  std::vector<double> response(kernel.taps.size() + 1, 0.0);
+  for (std::size_t i = 0; i < kernel.taps.size(); ++i) {
+    response[i] += 0.5 * kernel.taps[i];
+    response[i + 1] += 0.5 * kernel.taps[i];
+  }
+  return response;
+}
+
+/// Position of a surface and where it jumps.
+struct Deflection {
+  GridSignal signal;  ///< not available where it is not recorded
+  std::vector<DeflectionJump> jumps;
+};
+
+Deflection deflection(const GriddedChannels& channels, const CommonGrid& common, const char* name, FlightSignal which) {
+  const Channel* channel = channels.find(name);
+  if (channel == nullptr) return {};
+  // Positions of servos are what was commanded or read back: known, but for the delay that was taken off before.
+  const std::vector<double> position = linear_on_grid(*channel, common.grid);
+  const bool fast = channel->rate_Hz() > 0.8 * common.filter.rate_Hz;
+  return {.signal = exact(numerics::filter(position, common.smooth), "filtered position"),
+          .jumps = fast ? jumps_of(position, which) : std::vector<DeflectionJump>{}};
+}
+
+/// Thrust along a flight and what comes with it where it is computed.
+struct ThrustSignals {
+  GridSignal thrust;
+  std::vector<double> torque, per_airspeed;  ///< see FlightSignals
+  std::string note;                          ///< why there is none
+};
+
+/// Thrust of the subject's propulsion under the recorded throttle.
+/// @param command on a grid of `step` [s], as `flow`
+ThrustSignals computed_thrust(const Propulsion& propulsion, const std::vector<double>& command, double step,
+                              const FlowSignals& flow) {
+  const std::vector<double>& airspeed = flow.airspeed.value;
+  std::vector<double> force(command.size(), kNaN), torque(command.size(), 0.0), per_airspeed(command.size(), 0.0);
+  constexpr double kStep_mps = 0.01;
+  double rotor = kNaN;
+  for (std::size_t k = 0; k < command.size(); ++k) {
+    if (!std::isfinite(command[k]) || !std::isfinite(airspeed[k])) continue;
+    const double steady = propulsion.steady_rotor_speed(command[k]);
+    const bool lags = propulsion.kind == PropulsionKind::kPropeller && std::isfinite(rotor);
+    rotor = lags ? steady + (rotor - steady) * std::exp(-step / propulsion.time_constant) : steady;
+    // The propeller sees the airspeed along its axis.
+    const double along = std::cos(flow.alpha_smoothed[k]) * std::cos(flow.beta_smoothed[k]);
+    const auto load_at = [&](double Va) { return propulsion.load(command[k], Va * along, flow.air_density[k], rotor); };
+    const auto load = load_at(airspeed[k]);
+    force[k] = load.thrust;
+    torque[k] = load.torque;
+    per_airspeed[k] =
+        (load_at(airspeed[k] + kStep_mps).thrust - load_at(airspeed[k] - kStep_mps).thrust) / (2.0 * kStep_mps);
+  }
+  return {.thrust = exact(std::move(force), "propulsion model"),
+          .torque = std::move(torque),
+          .per_airspeed = std::move(per_airspeed),
+          .note = {}};
+}
+
+/// The channel `thrust`, or with `throttle` the subject's propulsion.
+ThrustSignals thrust_signals(const GriddedChannels& channels, const CommonGrid& common, const Propulsion& propulsion,
+                             const FlowSignals& flow) {
+  if (channels.find("thrust") != nullptr) {
+    return {.thrust = exact(numerics::filter(channels.raw("thrust"), common.smooth), "recorded"),
+            .torque = {},
+            .per_airspeed = {},
+            .note = {}};
+  }
+  const Channel* throttle = channels.find("throttle");
+  if (propulsion.kind != PropulsionKind::kNone && throttle != nullptr)
+    return computed_thrust(propulsion, linear_on_grid(*throttle, common.grid), common.grid.step, flow);
+  return {.thrust = {},
+          .torque = {},
+          .per_airspeed = {},
+          .note = throttle == nullptr ? "thrust is unknown: the log has neither thrust nor throttle"
+                                      : "thrust is unknown: the subject has no propulsion model"};
+}
 
 }  // namespace
 
@@ -315,7 +370,69 @@ FlightSample<double> FlightSignals::sample(std::size_t k) const {
 
 FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed, const Subject& subject,
                               const SignalOptions& options, const SensorSigma* known) {
-  return Preparation(mapped, smoothed, subject, options, known).run();
+  const CommonGrid common = common_grid(mapped, options);
+  const GriddedChannels channels(mapped, common, options, known);
+  const numerics::UniformGrid& grid = common.grid;
+  FlightSignals flight;
+  flight.grid = grid;
+  flight.filter = common.filter;
+  flight.stride = common.stride;
+  const auto note = [&flight](std::string text) {
+    if (!text.empty()) flight.notes.push_back(std::move(text));
+  };
+
+  using F = FlightSignal;
+  InertialSignals inertial = inertial_signals(channels, common);
+  const Eigen::Vector3d arm(subject.imu_position[0], subject.imu_position[1], subject.imu_position[2]);
+  if (arm.norm() > 0.0) {
+    inertial.force = force_at_centre_of_gravity(inertial, arm);
+    note(fmt::format("accelerometer moved by ({:.3f}, {:.3f}, {:.3f}) m to the centre of gravity", -arm.x(), -arm.y(),
+                     -arm.z()));
+  }
+  const std::array<F, 3> rates{F::kP, F::kQ, F::kR}, derivatives{F::kPdot, F::kQdot, F::kRdot},
+      forces{F::kAx, F::kAy, F::kAz};
+  for (std::size_t i = 0; i < 3; ++i) {
+    flight[rates[i]] = std::move(inertial.rate[i]);
+    flight[derivatives[i]] = std::move(inertial.rate_derivative[i]);
+    flight[forces[i]] = std::move(inertial.force[i]);
+  }
+
+  FlowSignals flow = flow_signals(channels, common, smoothed, options.flow_angles);
+  ThrustSignals thrust = thrust_signals(channels, common, subject.propulsion, flow);
+  for (std::string& text : flow.notes) note(std::move(text));
+  note(std::move(thrust.note));
+  flight[F::kAirspeed] = std::move(flow.airspeed);
+  flight[F::kAlpha] = std::move(flow.alpha);
+  flight[F::kBeta] = std::move(flow.beta);
+  flight.alpha_smoothed = std::move(flow.alpha_smoothed);
+  flight.beta_smoothed = std::move(flow.beta_smoothed);
+  flight.air_density = std::move(flow.air_density);
+  flight[F::kThrust] = std::move(thrust.thrust);
+  flight.torque = std::move(thrust.torque);
+  flight.thrust_per_airspeed = std::move(thrust.per_airspeed);
+
+  for (const auto& [name, which] :
+       {std::pair("elevator", F::kElevator), std::pair("aileron", F::kAileron), std::pair("rudder", F::kRudder)}) {
+    Deflection surface = deflection(channels, common, name, which);
+    flight[which] = std::move(surface.signal);
+    flight.jumps.insert(flight.jumps.end(), surface.jumps.begin(), surface.jumps.end());
+  }
+  flight.jump_response = response_to_jump(common.smooth);
+
+  flight.roll = angle_on_grid(smoothed.at("roll"), grid);
+  flight.pitch = angle_on_grid(smoothed.at("pitch"), grid);
+  flight.yaw = angle_on_grid(smoothed.at("yaw"), grid);
+  const auto where_known = [&](const char* name) {
+    const Channel* channel = smoothed.find(name);
+    return channel == nullptr ? std::vector<double>(grid.count, kNaN) : on_grid(*channel, grid);
+  };
+  flight.vel_north = where_known("vel_north");
+  flight.vel_east = where_known("vel_east");
+  flight.vel_down = where_known("vel_down");
+  flight.wind_north = where_known("wind_north");
+  flight.wind_east = where_known("wind_east");
+  flight.wind_down = where_known("wind_down");
+  return flight;
 }
 
 }  // namespace veridyn::aircraft
