@@ -26,7 +26,7 @@ constexpr double kSettling_s = 1.0;
 /// Differences below it, in standard deviations of the flight's signals, are rounding.
 constexpr double kNoDifference = 1e-9;
 
-/// A number of the subject that may vary.
+/// View of a number of the subject that may vary.
 struct SubjectNumber {
   std::string name, unit;
   double* value;
@@ -77,7 +77,7 @@ struct Stretch {
 
 std::string stretch_name(const Manoeuvre& m) {
   std::vector<std::string_view> surfaces;
-  for (const Surface s : m.surfaces) surfaces.push_back(kSurfaceNames[static_cast<std::size_t>(s)]);
+  for (const Surface s : m.surfaces) surfaces.push_back(kSurfaceNames[s]);
   std::string text = fmt::format("{:g} s: {}", m.start, name_of(m.kind));
   if (!surfaces.empty()) text += fmt::format(" {}", fmt::join(surfaces, ", "));
   return text;

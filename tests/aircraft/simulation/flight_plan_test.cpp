@@ -38,15 +38,15 @@ TEST(Excitation, HasTheShapesOfItsManoeuvres) {
                        .amplitude = {0.1, 0.2},
                        .pulse = 0.5},
                       {.kind = ManoeuvreKind::kTurn, .start = 40, .duration = 5, .bank = 0.4}});
-  EXPECT_EQ(e.at(9.9)[0], 0.0);
-  EXPECT_EQ(e.at(11.4)[0], 0.1);
-  EXPECT_EQ(e.at(11.6)[0], -0.1);
-  EXPECT_EQ(e.at(12.6)[0], 0.1);
-  EXPECT_EQ(e.at(13.1)[0], -0.1);
-  EXPECT_EQ(e.at(13.6)[0], 0.0);
-  EXPECT_EQ(e.at(15.6)[2], 0.2);  // 3.5 s and a pause of 2 s later
-  EXPECT_TRUE(e.excited(12.0)[2]);
-  EXPECT_FALSE(e.excited(12.0)[1]);
+  EXPECT_EQ(e.at(9.9)[Surface::kElevator], 0.0);
+  EXPECT_EQ(e.at(11.4)[Surface::kElevator], 0.1);
+  EXPECT_EQ(e.at(11.6)[Surface::kElevator], -0.1);
+  EXPECT_EQ(e.at(12.6)[Surface::kElevator], 0.1);
+  EXPECT_EQ(e.at(13.1)[Surface::kElevator], -0.1);
+  EXPECT_EQ(e.at(13.6)[Surface::kElevator], 0.0);
+  EXPECT_EQ(e.at(15.6)[Surface::kRudder], 0.2);  // 3.5 s and a pause of 2 s later
+  EXPECT_TRUE(e.excited(12.0)[Surface::kRudder]);
+  EXPECT_FALSE(e.excited(12.0)[Surface::kAileron]);
   EXPECT_TRUE(std::isnan(e.bank(39.0)));
   EXPECT_EQ(e.bank(41.0), 0.4);
 }
@@ -54,12 +54,12 @@ TEST(Excitation, HasTheShapesOfItsManoeuvres) {
 // A day of the default plan has a thousand multisines, all but two equal.
 TEST(Excitation, DesignsEqualMultisinesOnce) {
   const auto begin = std::chrono::steady_clock::now();
-  const Excitation day(default_plan(86400.0, {0.1, 0.1, 0.1, 0.1}));
+  const Excitation day(default_plan(86400.0, {{0.1, 0.1, 0.1, 0.1}}));
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 3.0);
-  const Excitation one(default_plan(300.0, {0.1, 0.1, 0.1, 0.1}));
+  const Excitation one(default_plan(300.0, {{0.1, 0.1, 0.1, 0.1}}));
   EXPECT_EQ(day.at(20.0), one.at(20.0));
   EXPECT_EQ(day.at(16.0 * 300.0 + 20.0), one.at(20.0));
-  EXPECT_NE(one.at(20.0)[0], 0.0);
+  EXPECT_NE(one.at(20.0)[Surface::kElevator], 0.0);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(Simulation, SwitchingASensorOffLeavesTheOthersUnchanged) {
   SimulationOptions o = calm("unatrap", 5);
   o.turbulence = dryden_settings("low_moderate", "test");
   const SimulatedFlight all = fly(o);
-  o.sensors[1].enabled = false;  // gyro
+  o.sensors[SimulatedSensor::kGyro].enabled = false;
   const SimulatedFlight some = fly(o);
   EXPECT_FALSE(some.measured.has("gyro_x"));
   for (const Channel& c : some.measured.channels()) EXPECT_EQ(c.value, all.measured.at(c.name).value) << c.name;

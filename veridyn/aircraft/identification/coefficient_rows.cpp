@@ -80,8 +80,7 @@ std::string identification_obstacle(const CoefficientModel& model, const FlightS
   }
   for (const FlightSignal signal : needed_signals(model)) {
     if (!signals[signal].available()) {
-      return fmt::format("{} needs {}, which the log does not have", name,
-                         kFlightSignalNames[static_cast<std::size_t>(signal)]);
+      return fmt::format("{} needs {}, which the log does not have", name, kFlightSignalNames[signal]);
     }
   }
   return {};

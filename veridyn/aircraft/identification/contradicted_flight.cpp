@@ -57,8 +57,7 @@ std::vector<CoefficientResult> not_identified(const Subject& subject, const Iden
                                               const Contradiction& contradiction,
                                               std::span<const FlightEvidence> evidence) {
   std::vector<CoefficientResult> results;
-  for (std::size_t i = 0; i < kCoefficients; ++i) {
-    const auto coefficient = static_cast<Coefficient>(i);
+  for (const Coefficient coefficient : enumerators<Coefficient, kCoefficients>()) {
     const CoefficientModel* model = subject.model.find(coefficient);
     const auto& some = options.coefficients;
     if (model == nullptr || (!some.empty() && std::ranges::find(some, coefficient) == some.end())) continue;

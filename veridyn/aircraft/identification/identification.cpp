@@ -448,13 +448,14 @@ std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signal
   std::vector<CoefficientResult> results;
   const FlightView flight{signals, segments, subject, options, recording};
   progress.stage("identifying coefficients");
-  for (std::size_t i = 0; i < kCoefficients; ++i) {
-    const auto c = static_cast<Coefficient>(i);
+  std::size_t done = 0;
+  for (const Coefficient c : enumerators<Coefficient, kCoefficients>()) {
+    ++done;
     const CoefficientModel* model = subject.model.find(c);
     const auto& some = options.coefficients;
     if (model == nullptr || (!some.empty() && std::find(some.begin(), some.end(), c) == some.end())) continue;
     results.push_back(identify_coefficient(*model, flight));
-    if (!progress.update(static_cast<double>(i + 1) / static_cast<double>(kCoefficients))) break;
+    if (!progress.update(static_cast<double>(done) / static_cast<double>(kCoefficients))) break;
   }
   return results;
 }
@@ -464,8 +465,8 @@ std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, c
                                                  const estimation::Estimate& estimate) {
   std::vector<CoefficientResult> results;
   const FlightView flight{signals, segments, subject, options, {}};
-  for (std::size_t i = 0; i < kCoefficients; ++i) {
-    const CoefficientModel* structure = subject.model.find(static_cast<Coefficient>(i));
+  for (const Coefficient c : enumerators<Coefficient, kCoefficients>()) {
+    const CoefficientModel* structure = subject.model.find(c);
     if (structure == nullptr) continue;
     std::vector<std::string> names;
     for (const Term& term : structure->terms)

@@ -33,10 +33,10 @@ enum class FlightSignal {
   kThrust
 };
 inline constexpr std::size_t kFlightSignals = 16;  ///< values of FlightSignal
-/// In the order of FlightSignal.
-inline constexpr std::array<std::string_view, kFlightSignals> kFlightSignalNames = {
-    "alpha", "beta",  "airspeed", "accel_x", "accel_y",  "accel_z", "p",      "q",
-    "r",     "p_dot", "q_dot",    "r_dot",   "elevator", "aileron", "rudder", "thrust"};
+/// As in reports and messages.
+inline constexpr EnumArray<FlightSignal, std::string_view, kFlightSignals> kFlightSignalNames{
+    {"alpha", "beta", "airspeed", "accel_x", "accel_y", "accel_z", "p", "q", "r", "p_dot", "q_dot", "r_dot", "elevator",
+     "aileron", "rudder", "thrust"}};
 
 /// One sample of the flight signals: rad, m/s, m/s^2 (specific force), rad/s, rad/s^2, N.
 template <typename Scalar>
@@ -68,9 +68,9 @@ template <typename Scalar>
 /// The constants of the aircraft that enter the coefficients, as a type that can carry derivatives or errors.
 enum class BodyConstant { kMass, kWingArea, kSpan, kChord, kJx, kJy, kJz, kJxz };
 inline constexpr std::size_t kBodyConstants = 8;  ///< values of BodyConstant
-/// In the order of BodyConstant.
-inline constexpr std::array<std::string_view, kBodyConstants> kBodyConstantNames = {
-    "mass", "wing_area", "span", "chord", "Jx", "Jy", "Jz", "Jxz"};
+/// As in studies.
+inline constexpr EnumArray<BodyConstant, std::string_view, kBodyConstants> kBodyConstantNames{
+    {"mass", "wing_area", "span", "chord", "Jx", "Jy", "Jz", "Jxz"}};
 
 /// kg, m^2, m, m, kg m^2; inertia is zero when the subject has none.
 template <typename Scalar>

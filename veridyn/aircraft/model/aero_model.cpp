@@ -20,7 +20,7 @@ namespace {
 constexpr int kHighestPower = 9;
 constexpr int kHighestDegree = 5;
 
-std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[static_cast<std::size_t>(v)]; }
+std::string_view variable_name(AeroVariable v) { return kAeroVariableNames[v]; }
 
 bool is_angle(AeroVariable v) {
   return v == AeroVariable::kAlpha || v == AeroVariable::kBeta || v == AeroVariable::kDe || v == AeroVariable::kDa ||
@@ -47,6 +47,7 @@ std::vector<std::string_view> split(std::string_view s, char separator) {
 /// Shortest text that reads back to the same number.
 std::string number_text(double x) { return fmt::format("{}", x); }
 
+/// View of the text of a term and of the place that messages name.
 class TermParser {
  public:
   TermParser(std::string_view text, std::string_view place) : text_(text), place_(place) {}
@@ -84,9 +85,8 @@ class TermParser {
   }
 
   AeroVariable parse_variable(std::string_view word) const {
-    for (std::size_t i = 0; i < kAeroVariables; ++i) {
-      if (kAeroVariableNames[i] == word) return static_cast<AeroVariable>(i);
-    }
+    for (const AeroVariable v : enumerators<AeroVariable, kAeroVariables>())
+      if (kAeroVariableNames[v] == word) return v;
     const std::vector<std::string> known(kAeroVariableNames.begin(), kAeroVariableNames.end());
     if (word.empty()) fail("a factor is missing");
     fail(fmt::format("unknown variable '{}'{}", word, suggestion(word, known)));
@@ -221,7 +221,12 @@ StallBlend read_stall(const StudyTable& table, const StallBlend& base, StallForm
   return stall;
 }
 
-std::string_view form_name(StallForm form) {
+/// NaN values (unknown) are equal to each other.
+bool same_value(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+}  // namespace
+
+std::string_view name_of(StallForm form) {
   switch (form) {
     case StallForm::kFull:
       return "full";
@@ -233,15 +238,9 @@ std::string_view form_name(StallForm form) {
   return {};
 }
 
-/// NaN values (unknown) are equal to each other.
-bool same_value(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-
-}  // namespace
-
 std::optional<Coefficient> find_coefficient(std::string_view name) {
-  for (std::size_t i = 0; i < kCoefficients; ++i) {
-    if (kCoefficientNames[i] == name) return static_cast<Coefficient>(i);
-  }
+  for (const Coefficient c : enumerators<Coefficient, kCoefficients>())
+    if (kCoefficientNames[c] == name) return c;
   return std::nullopt;
 }
 
@@ -385,7 +384,7 @@ AeroModel read_aero_model(const StudyTable& table, AeroModel base) {
     const StudyTable stall = table.table("stall");
     const std::vector<std::string> forms = {"full", "source", "separation", "none"};
     const StallBlend start = base.stall.value_or(StallBlend{});
-    const std::string form = stall.choice_or("form", forms, form_name(start.form));
+    const std::string form = stall.choice_or("form", forms, name_of(start.form));
     if (form == "none") {
       base.stall.reset();
     } else {
@@ -411,7 +410,7 @@ std::string write_aero_model_toml(const AeroModel& model, std::string_view headi
   }
   if (model.stall) {
     out += fmt::format("\n[{}.stall]\nM = {}\nalpha0 = {}\nform = \"{}\"\ndrag = {}\n", heading, model.stall->M,
-                       model.stall->alpha0, form_name(model.stall->form), model.stall->drag);
+                       model.stall->alpha0, name_of(model.stall->form), model.stall->drag);
   }
   return out;
 }

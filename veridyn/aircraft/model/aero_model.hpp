@@ -22,15 +22,16 @@ namespace veridyn::aircraft {
 /// CL and CD along the wind axes, CY along body y, moments about body axes.
 enum class Coefficient { kCL, kCD, kCY, kCl, kCm, kCn };
 inline constexpr std::size_t kCoefficients = 6;  ///< values of Coefficient
-/// In the order of the enum.
-inline constexpr std::array<std::string_view, kCoefficients> kCoefficientNames = {"CL", "CD", "CY", "Cl", "Cm", "Cn"};
+/// As in studies and results.
+inline constexpr EnumArray<Coefficient, std::string_view, kCoefficients> kCoefficientNames{
+    {"CL", "CD", "CY", "Cl", "Cm", "Cn"}};
 /// "CL".
-[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[static_cast<std::size_t>(c)]; }
+[[nodiscard]] inline std::string_view name_of(Coefficient c) { return kCoefficientNames[c]; }
 /// "lift".
 [[nodiscard]] inline std::string_view meaning_of(Coefficient c) {
-  constexpr std::array<std::string_view, kCoefficients> kMeanings = {
-      "lift", "drag", "side force", "rolling moment", "pitching moment", "yawing moment"};
-  return kMeanings[static_cast<std::size_t>(c)];
+  constexpr EnumArray<Coefficient, std::string_view, kCoefficients> kMeanings{
+      {"lift", "drag", "side force", "rolling moment", "pitching moment", "yawing moment"}};
+  return kMeanings[c];
 }
 /// The coefficient called `name`, or none.
 [[nodiscard]] std::optional<Coefficient> find_coefficient(std::string_view name);
@@ -38,9 +39,9 @@ inline constexpr std::array<std::string_view, kCoefficients> kCoefficientNames =
 /// What an aerodynamic coefficient may depend on.
 enum class AeroVariable { kAlpha, kBeta, kPn, kQn, kRn, kDe, kDa, kDr, kCT, kVa };
 inline constexpr std::size_t kAeroVariables = 10;  ///< values of AeroVariable
-/// Names in terms, in the order of the enum.
-inline constexpr std::array<std::string_view, kAeroVariables> kAeroVariableNames = {
-    "alpha", "beta", "p_n", "q_n", "r_n", "de", "da", "dr", "CT", "Va"};
+/// Names in terms.
+inline constexpr EnumArray<AeroVariable, std::string_view, kAeroVariables> kAeroVariableNames{
+    {"alpha", "beta", "p_n", "q_n", "r_n", "de", "da", "dr", "CT", "Va"}};
 
 /// Values of the variables at one moment: angles and deflections [rad], p_n = b p / (2 Va), q_n = c q / (2 Va),
 /// r_n = b r / (2 Va) [-], thrust coefficient CT = T / (qbar S) [-], airspeed [m/s].

@@ -82,10 +82,9 @@ std::string to_json(const Subject& s, const estimation::Estimate* estimate) {
         {"Jx", s.inertia->Jx}, {"Jy", s.inertia->Jy}, {"Jz", s.inertia->Jz}, {"Jxz", s.inertia->Jxz}};
   }
   if (s.model.stall) {
-    constexpr const char* forms[] = {"full", "source", "separation"};
     json["stall"] = {{"M", s.model.stall->M},
                      {"alpha0_rad", s.model.stall->alpha0},
-                     {"form", forms[static_cast<std::size_t>(s.model.stall->form)]},
+                     {"form", name_of(s.model.stall->form)},
                      {"drag", s.model.stall->drag}};
   }
   if (estimate != nullptr && !estimate->evidence.empty()) {

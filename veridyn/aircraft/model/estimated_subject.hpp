@@ -6,7 +6,7 @@
 namespace veridyn::aircraft {
 
 /// The terms of `structure` that the estimate holds a value for under their `names` (one per term), with these values.
-/// Terms that it dropped or rejected are left out, so the result may be smaller, or empty, as where beside rejected
+/// Terms that it dropped or rejected are left out, so the result may be smaller, or empty, as where alongside rejected
 /// terms there are only held ones.
 [[nodiscard]] CoefficientModel estimated_coefficient(const CoefficientModel& structure,
                                                      const std::vector<std::string>& names,

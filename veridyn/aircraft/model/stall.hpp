@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 namespace veridyn::aircraft {
 
@@ -60,6 +61,8 @@ enum class StallForm {
   kSource,      ///< only CL_0 + CL_alpha alpha and CD_0 + CD_alpha alpha are blended, the other terms are added whole
   kSeparation,  ///< Kirchhoff's wing: CL_0 + CL_alpha alpha times ((1 + sqrt(1 - s)) / 2)^2; drag keeps its terms
 };
+/// "full", as in a study.
+[[nodiscard]] std::string_view name_of(StallForm form);
 
 /// How a model behaves beyond stall. Without it the terms hold at every angle of attack.
 ///

@@ -1,25 +1,25 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "veridyn/aircraft/reconstruction/air_data_measurement.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/estimation/kalman/kalman_filter.hpp"
 
 /// Inside of reconstruct.cpp: the filter going through one segment, event by event.
 namespace veridyn::aircraft::internal {
 
 /// The innovations of all sensors.
-using Monitors = std::array<estimation::InnovationMonitor, kSensors>;
+using Monitors = EnumArray<Sensor, estimation::InnovationMonitor, kSensors>;
 
 /// Of attitude, ground velocity and pitot tube, which alone correct what they measure, the one that no longer corrects
 /// it. Vanes are not among them: without one the gust model bounds its angle.
 [[nodiscard]] inline std::optional<Sensor> lost_sensor(const Monitors& monitors) {
-  for (std::size_t i = 0; i <= kPitot; ++i)
-    if (monitors[i].lost()) return static_cast<Sensor>(i);
+  for (const Sensor which : {kRoll, kPitch, kYaw, kVelNorth, kVelEast, kVelDown, kPitot})
+    if (monitors[which].lost()) return which;
   return std::nullopt;
 }
 
@@ -69,11 +69,10 @@ class EventCursor {
     const FlightStreams& s = *streams_;
     while (next_gyro_ < s.gyro.t.size() && s.gyro.t[next_gyro_] <= t_) ++next_gyro_;
     while (next_accel_ < s.accel.t.size() && s.accel.t[next_accel_] <= t_) ++next_accel_;
-    for (std::size_t i = 0; i < kSensors; ++i) {
-      const Stream& stream = s.sensors[i];
-      for (; next_[i] < stream.t.size() && stream.t[next_[i]] <= t_; ++next_[i]) {
-        sample(static_cast<Sensor>(i), stream.v[next_[i]], stream.sigma);
-      }
+    for (const Sensor which : enumerators<Sensor, kSensors>()) {
+      const Stream& stream = s.sensors[which];
+      std::size_t& next = next_[which];
+      for (; next < stream.t.size() && stream.t[next] <= t_; ++next) sample(which, stream.v[next], stream.sigma);
     }
     at_output_ = next_output_ < output_t_->size() && (*output_t_)[next_output_] <= t_;
     if (at_output_) ++next_output_;
@@ -89,7 +88,7 @@ class EventCursor {
   const std::vector<double>* output_t_;
   double end_;
   double t_;
-  std::array<std::size_t, kSensors> next_{};
+  EnumArray<Sensor, std::size_t, kSensors> next_{};
   std::size_t next_gyro_ = 0, next_accel_ = 0, next_output_ = 0;
   std::size_t gyro_cursor_ = 0, accel_cursor_ = 0, density_cursor_ = 0;
   ControlStreams::Cursor control_cursor_;

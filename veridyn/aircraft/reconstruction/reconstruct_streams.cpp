@@ -231,18 +231,10 @@ FlightStreams load_streams(const Recording& recording, const ReconstructOptions&
 
   s.sigma = choose_sigma(s, o);
   const SensorSigma& q = s.sigma;
-  const std::array<double, kSensors> sigma{q.attitude,
-                                           q.attitude,
-                                           q.attitude,
-                                           q.velocity,
-                                           q.velocity,
-                                           q.velocity_down,
-                                           s.pitot_is_pressure ? q.dynamic_pressure : q.airspeed,
-                                           q.alpha,
-                                           q.beta,
-                                           q.accelerometer,
-                                           q.accelerometer,
-                                           q.accelerometer};
+  const EnumArray<Sensor, double, kSensors> sigma{{q.attitude, q.attitude, q.attitude, q.velocity, q.velocity,
+                                                   q.velocity_down,
+                                                   s.pitot_is_pressure ? q.dynamic_pressure : q.airspeed, q.alpha,
+                                                   q.beta, q.accelerometer, q.accelerometer, q.accelerometer}};
   for (std::size_t i = 0; i < kSensors; ++i) s.sensors[i].sigma = sigma[i];
   return s;
 }

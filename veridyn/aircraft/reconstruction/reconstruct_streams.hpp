@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/model/flight_dynamics.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_options.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 
 /// Inside of reconstruct.cpp: a recording's channels made ready for event-driven filtering.
@@ -56,7 +57,7 @@ struct ControlStreams {
 /// All streams of a flight.
 struct FlightStreams {
   ControlStreams controls;
-  std::array<Stream, kSensors> sensors;
+  EnumArray<Sensor, Stream, kSensors> sensors;
   VectorStream gyro, accel;
   std::vector<double> density_t, density;  ///< linear between, constant beyond; one entry when constant
   std::string density_origin;

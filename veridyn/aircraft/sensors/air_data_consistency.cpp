@@ -22,7 +22,7 @@ constexpr double kRowInterval_s = 0.5;
 constexpr double kStandardDensity = 1.225;
 constexpr std::size_t kFewestRows = 60;
 constexpr double kLocalWind_s = 30.0;
-/// Standard error of the scale from which the headings do not tell it from the wind.
+/// Standard error of the scale from which on it is not distinguishable from the wind by the headings.
 constexpr double kDeterminedScale = 0.05;
 /// Gusts are correlated over seconds: lags of half a minute [moments].
 constexpr Eigen::Index kLongestLag = 60;
@@ -106,8 +106,8 @@ estimation::InstrumentalEstimate solve(RegressionData data, Eigen::Index regress
 Determined of(const estimation::InstrumentalEstimate& estimate, Eigen::Index i) {
   // Three of these standard errors are as rare as three of a normal distribution, however few gusts there were.
   constexpr double kThreeSigma = 0.99865;
-  const double few = numerics::student_t_quantile(kThreeSigma, std::max(3.0, estimate.degrees_of_freedom)) / 3.0;
-  return {estimate.theta(i), few * std::sqrt(estimate.covariance(i, i))};
+  const double factor = numerics::student_t_quantile(kThreeSigma, std::max(3.0, estimate.degrees_of_freedom)) / 3.0;
+  return {estimate.theta(i), factor * std::sqrt(estimate.covariance(i, i))};
 }
 
 /// Horizontal part of the airspeed at a sink rate; NaN without airspeed.
@@ -142,7 +142,7 @@ AirDataConsistency scale_and_wind(const FlightRows& rows) {
   const estimation::InstrumentalEstimate estimate = solve(std::move(data), 3, 2);
   if (!estimate.usable) return out;
   out.airspeed_scale = of(estimate, 0);
-  // Where the headings do not tell scale from wind, the scale is taken as right.
+  // Where scale and wind are not distinguishable by the headings, the scale is taken as right.
   const double scale = out.airspeed_scale->sigma < kDeterminedScale ? out.airspeed_scale->value : 1.0;
   for (Eigen::Index i = 0; i < 2; ++i) {
     out.wind(i) = -estimate.theta(1 + i) / scale;

@@ -1,13 +1,14 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string_view>
+
+#include "veridyn/core/enum_array.hpp"
 
 namespace veridyn::aircraft {
 
 // clang-format off
-/// What is true of the simulated aircraft at one moment, in the order of kTruthChannels.
+/// What is true of the simulated aircraft at one moment.
 enum class Truth : std::size_t {
   kPosNorth, kPosEast, kPosDown,
   kVelNorth, kVelEast, kVelDown,
@@ -42,7 +43,7 @@ struct TruthChannel {
 /// Names and units. `accel` is the specific force at the centre of gravity, `imu_accel` at the accelerometer; `wind` is
 /// the whole motion of the air (mean and gusts, NED), `gust` the turbulence in body axes; the coefficients are those
 /// that act (moments about the centre of gravity, thrust taken out); `force` and `moment` are all but gravity.
-inline constexpr std::array<TruthChannel, kTruthCount> kTruthChannels = {{
+inline constexpr EnumArray<Truth, TruthChannel, kTruthCount> kTruthChannels = {{{
     {"pos_north", "m"}, {"pos_east", "m"}, {"pos_down", "m"},
     {"vel_north", "m/s"}, {"vel_east", "m/s"}, {"vel_down", "m/s"},
     {"roll", "rad", true}, {"pitch", "rad"}, {"yaw", "rad", true},
@@ -61,14 +62,14 @@ inline constexpr std::array<TruthChannel, kTruthCount> kTruthChannels = {{
     {"force_x", "N"}, {"force_y", "N"}, {"force_z", "N"},
     {"moment_x", "N m"}, {"moment_y", "N m"}, {"moment_z", "N m"},
     {"mag_x", "T"}, {"mag_y", "T"}, {"mag_z", "T"},
-}};
+}}};
 // clang-format on
 
-/// All true quantities at one moment, SI, in the order of kTruthChannels.
+/// All true quantities at one moment, SI.
 struct TruthSample {
-  std::array<double, kTruthCount> value{};
-  [[nodiscard]] double& operator[](Truth t) { return value[static_cast<std::size_t>(t)]; }
-  [[nodiscard]] double operator[](Truth t) const { return value[static_cast<std::size_t>(t)]; }
+  EnumArray<Truth, double, kTruthCount> value{};
+  [[nodiscard]] double& operator[](Truth t) { return value[t]; }
+  [[nodiscard]] double operator[](Truth t) const { return value[t]; }
 };
 
 }  // namespace veridyn::aircraft

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/nearest.hpp"
 
@@ -56,9 +55,9 @@ SensorSettings read_sensor(const StudyTable& t, const SensorKind& kind, SensorSe
 
 }  // namespace
 
-const std::array<SensorKind, kSensorKinds>& sensor_kinds() {
+const EnumArray<SimulatedSensor, SensorKind, kSensorKinds>& sensor_kinds() {
   using T = Truth;
-  static constexpr std::array<SensorKind, kSensorKinds> kKinds = {{
+  static constexpr EnumArray<SimulatedSensor, SensorKind, kSensorKinds> kKinds = {{{
       {"accelerometer", "m/s^2", 3, {T::kImuAccelX, T::kImuAccelY, T::kImuAccelZ}, {"accel_x", "accel_y", "accel_z"}},
       {"gyro", "rad/s", 3, {T::kGyroX, T::kGyroY, T::kGyroZ}, {"gyro_x", "gyro_y", "gyro_z"}},
       {"ahrs", "rad", 3, {T::kRoll, T::kPitch, T::kYaw}, {"roll", "pitch", "yaw"}},
@@ -77,39 +76,33 @@ const std::array<SensorKind, kSensorKinds>& sensor_kinds() {
        {"elevator", "aileron", "rudder", "throttle"}},
       {"tachometer", "rad/s", 1, {T::kEngineSpeed}, {"engine_speed"}},
       {"thrust", "N", 1, {T::kThrust}, {"thrust"}},
-  }};
+  }}};
   return kKinds;
 }
 
 SensorSet reference_sensors() {
+  using enum SimulatedSensor;
   SensorSet set;
-  const auto sensor = [&set](std::string_view name) -> SensorSettings& {
-    for (std::size_t i = 0; i < kSensorKinds; ++i) {
-      if (sensor_kinds()[i].name == name) return set[i];
-    }
-    VERIDYN_ASSERT(false);
-    return set[0];
-  };
-  const auto give = [&](std::string_view name, double rate, std::array<double, 4> sigma) {
-    sensor(name).rate = rate;
-    sensor(name).sigma = sigma;
+  const auto give = [&set](SimulatedSensor which, double rate, std::array<double, 4> sigma) {
+    set[which].rate = rate;
+    set[which].sigma = sigma;
   };
   const auto each = [](double s) { return std::array<double, 4>{s, s, s, s}; };
-  give("accelerometer", 100, each(0.05));
-  give("gyro", 100, each(0.35 * kDegree));
-  give("ahrs", 100, each(0.75 * kDegree));
-  give("magnetometer", 50, each(0.2e-6));
-  give("gps_velocity", 20, {0.05, 0.05, 0.1, 0});
-  give("gps_position", 20, {1.0, 1.0, 2.0, 0});
-  give("barometer", 20, each(5.0));
-  give("thermometer", 20, each(0.25));
-  give("pitot", 100, each(10.0));
-  give("alpha_vane", 100, each(0.6 * kDegree));
-  give("beta_vane", 100, each(0.6 * kDegree));
-  give("servos", 100, each(0.0));
-  give("tachometer", 100, each(0.0));
-  give("thrust", 100, each(0.0));
-  sensor("thrust").enabled = false;
+  give(kAccelerometer, 100, each(0.05));
+  give(kGyro, 100, each(0.35 * kDegree));
+  give(kAhrs, 100, each(0.75 * kDegree));
+  give(kMagnetometer, 50, each(0.2e-6));
+  give(kGpsVelocity, 20, {0.05, 0.05, 0.1, 0});
+  give(kGpsPosition, 20, {1.0, 1.0, 2.0, 0});
+  give(kBarometer, 20, each(5.0));
+  give(kThermometer, 20, each(0.25));
+  give(kPitot, 100, each(10.0));
+  give(kAlphaVane, 100, each(0.6 * kDegree));
+  give(kBetaVane, 100, each(0.6 * kDegree));
+  give(kServos, 100, each(0.0));
+  give(kTachometer, 100, each(0.0));
+  give(kThrust, 100, each(0.0));
+  set[kThrust].enabled = false;
   return set;
 }
 
@@ -126,8 +119,9 @@ SensorSet read_sensors(const StudyTable& table) {
       table.fail(key, fmt::format("unknown sensor{}", suggestion(key, names)));
     }
   }
-  for (std::size_t i = 0; i < kSensorKinds; ++i) {
-    set[i] = read_sensor(table.table_or_empty(sensor_kinds()[i].name), sensor_kinds()[i], set[i]);
+  for (const SimulatedSensor which : enumerators<SimulatedSensor, kSensorKinds>()) {
+    const SensorKind& kind = sensor_kinds()[which];
+    set[which] = read_sensor(table.table_or_empty(kind.name), kind, set[which]);
   }
   return set;
 }
@@ -164,15 +158,15 @@ void Sensor::sample(double /*event_time*/, double stamp, double share, const Tru
   for (std::size_t i = 0; i < kind_.channels; ++i) {
     const Truth source = kind_.source[i];
     double truth = now[source];
-    const bool angle = kTruthChannels[static_cast<std::size_t>(source)].angle;
+    const bool angle = kTruthChannels[source].angle;
     if (share < 1.0) {
       double change = now[source] - last_[source];
-      if (angle) change = std::remainder(change, 2.0 * kPi);
+      if (angle) change = std::remainder(change, kFullTurn);
       truth = last_[source] + share * change;
     }
     wander_[i] += walk_step * noise_.normal();
     y[i] = settings_.bias[i] + wander_[i] + (1.0 + settings_.scale) * truth + settings_.sigma[i] * noise_.normal();
-    if (angle) y[i] = std::remainder(y[i], 2.0 * kPi);
+    if (angle) y[i] = std::remainder(y[i], kFullTurn);
     if (settings_.resolution > 0.0) y[i] = settings_.resolution * std::round(y[i] / settings_.resolution);
   }
   if (settings_.dropout > 0.0) {
@@ -194,7 +188,7 @@ void Sensor::move_into(Recording& recording) {
   if (!settings_.enabled) return;
   const TimeBase base = make_time_base(std::move(time_));
   for (std::size_t i = 0; i < kind_.channels; ++i) {
-    const std::string_view unit = kTruthChannels[static_cast<std::size_t>(kind_.source[i])].unit;
+    const std::string_view unit = kTruthChannels[kind_.source[i]].unit;
     recording.add(make_channel(std::string(kind_.channel[i]), unit, base, std::move(value_[i])));
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/sensors/flight_truth.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -39,14 +40,29 @@ struct SensorKind {
   std::array<std::string_view, 4> channel;
 };
 
-/// All sensors, in a fixed order: accelerometer, gyro, ahrs, magnetometer, gps_velocity, gps_position, barometer,
-/// thermometer, pitot, alpha_vane, beta_vane, servos, tachometer, thrust.
-inline constexpr std::size_t kSensorKinds = 14;
-/// All sensors that can be simulated, in the order of SensorSet.
-[[nodiscard]] const std::array<SensorKind, kSensorKinds>& sensor_kinds();
+/// All sensors that can be simulated.
+enum class SimulatedSensor {
+  kAccelerometer,
+  kGyro,
+  kAhrs,
+  kMagnetometer,
+  kGpsVelocity,
+  kGpsPosition,
+  kBarometer,
+  kThermometer,
+  kPitot,
+  kAlphaVane,
+  kBetaVane,
+  kServos,
+  kTachometer,
+  kThrust
+};
+inline constexpr std::size_t kSensorKinds = 14;  ///< values of SimulatedSensor
+/// What each of them is.
+[[nodiscard]] const EnumArray<SimulatedSensor, SensorKind, kSensorKinds>& sensor_kinds();
 
-/// Settings of every sensor, in the order of `sensor_kinds()`.
-using SensorSet = std::array<SensorSettings, kSensorKinds>;
+/// Settings of every sensor.
+using SensorSet = EnumArray<SimulatedSensor, SensorSettings, kSensorKinds>;
 
 /// The reference set (two standard deviations): accelerometer 0.1 m/s^2, gyro 0.7 deg/s, AHRS angles 1.5 deg, pitot 20
 /// Pa, vanes 1.2 deg at 100 Hz; GPS velocity 0.1 m/s (down 0.2) at 20 Hz. Ours for the rest: GPS position 2 m (down 4

@@ -18,17 +18,16 @@ Autopilot::Autopilot(const Subject& s, const Trim& trim, const LinearModel& mode
                      double excitation_gain)
     : trim_(trim),
       model_(model),
-      limits_({s.elevator, s.aileron, s.rudder, s.throttle}),
+      limits_{{s.elevator, s.aileron, s.rudder, s.throttle}},
       down_(-height),
       heading_(heading),
       excitation_gain_(excitation_gain),
       airspeed_(trim.condition.airspeed) {}
 
-std::array<double, kSurfaces> Autopilot::command(double t, double step, const TruthSample& x,
-                                                 const Excitation& excitation) {
+PerSurface<double> Autopilot::command(double t, double step, const TruthSample& x, const Excitation& excitation) {
   const double Va = trim_.condition.airspeed;
   const double g = trim_.condition.gravity;
-  const std::array<bool, kSurfaces> excited = excitation.excited(t);
+  const PerSurface<bool> excited = excitation.excited(t);
   const double longitudinal = excited[0] ? excitation_gain_ : 1.0;
   const double lateral = excited[1] || excited[2] ? excitation_gain_ : 1.0;
   const double engine = excited[3] ? excitation_gain_ : 1.0;
@@ -43,7 +42,7 @@ std::array<double, kSurfaces> Autopilot::command(double t, double step, const Tr
   } else {
     if (turning_) heading_ = x[Truth::kYaw];
     turning_ = false;
-    const double error = std::remainder(heading_ - x[Truth::kYaw], 2.0 * kPi);
+    const double error = std::remainder(heading_ - x[Truth::kYaw], kFullTurn);
     phi_desired = std::clamp(0.8 * error, -25 * kDegree, 25 * kDegree);
   }
   const double p_desired = std::clamp(1.5 * (phi_desired - phi), -40 * kDegree, 40 * kDegree);
@@ -75,11 +74,10 @@ std::array<double, kSurfaces> Autopilot::command(double t, double step, const Tr
   throttle_integral_ = std::clamp(throttle_integral_ + 0.08 * engine * thrust_effect * speed_error * step, -0.5, 0.5);
   const double throttle = trim_.controls.throttle + throttle_integral_ + 0.5 * engine * thrust_effect * speed_error;
 
-  std::array<double, kSurfaces> out = {de, da, dr, throttle};
-  const std::array<double, kSurfaces> extra = excitation.at(t);
-  for (std::size_t i = 0; i < kSurfaces; ++i) {
-    out[i] = std::clamp(out[i] + extra[i], limits_[i].lower, limits_[i].upper);
-  }
+  PerSurface<double> out{{de, da, dr, throttle}};
+  const PerSurface<double> extra = excitation.at(t);
+  for (const Surface s : enumerators<Surface, kSurfaces>())
+    out[s] = std::clamp(out[s] + extra[s], limits_[s].lower, limits_[s].upper);
   return out;
 }
 

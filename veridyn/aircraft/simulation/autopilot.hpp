@@ -18,13 +18,13 @@ class Autopilot {
             double excitation_gain);
 
   /// Commands in the order of Surface, to be held over `step` seconds.
-  [[nodiscard]] std::array<double, kSurfaces> command(double t, double step, const TruthSample& truth,
-                                                      const Excitation& excitation);
+  [[nodiscard]] PerSurface<double> command(double t, double step, const TruthSample& truth,
+                                           const Excitation& excitation);
 
  private:
   Trim trim_;
   LinearModel model_;
-  std::array<Actuator, kSurfaces> limits_;
+  PerSurface<Actuator> limits_;
   double down_;  ///< desired position [m]
   double heading_;
   double excitation_gain_;

@@ -122,7 +122,7 @@ void start_at_zero(Multisine& m, double duration) {
       (raw_value(m, c) <= 0.0 ? a : b) = c;
     }
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
-      m.phase[k] = std::remainder(m.phase[k] + 2.0 * kPi * m.frequency[k] * a, 2.0 * kPi);
+      m.phase[k] = std::remainder(m.phase[k] + 2.0 * kPi * m.frequency[k] * a, kFullTurn);
     }
     return;
   }
@@ -152,7 +152,7 @@ double Manoeuvre::end() const {
   return start + n * pulse_count(kind) * pulse + std::max(0.0, n - 1.0) * kPause;
 }
 
-std::array<double, kSurfaces> default_amplitudes(const Subject& s, const Trim& trim, const LinearModel& m) {
+PerSurface<double> default_amplitudes(const Subject& s, const Trim& trim, const LinearModel& m) {
   // Steady state of the fast modes under one surface: w and q for the elevator, v and r for the rudder.
   const auto steady = [&m](int i, int j, int control) {
     Eigen::Matrix2d A;
@@ -165,18 +165,18 @@ std::array<double, kSurfaces> default_amplitudes(const Subject& s, const Trim& t
   const double p_per_da = std::abs(m.B(3, 1) / m.A(3, 3));
   const double beta_per_dr = std::abs(steady(1, 5, 2)(0)) / Va;
   const auto limited = [](double target, double gain, const Actuator& a, double trimmed) {
-    const double room = 0.5 * std::min(a.upper - trimmed, trimmed - a.lower);
-    return gain > 1e-9 ? std::clamp(target / gain, 0.0, std::max(0.0, room)) : 0.0;
+    const double travel = 0.5 * std::min(a.upper - trimmed, trimmed - a.lower);
+    return gain > 1e-9 ? std::clamp(target / gain, 0.0, std::max(0.0, travel)) : 0.0;
   };
-  return {limited(3.0 * kDegree, alpha_per_de, s.elevator, trim.controls.de),
-          limited(20.0 * kDegree, p_per_da, s.aileron, trim.controls.da),
-          limited(4.0 * kDegree, beta_per_dr, s.rudder, trim.controls.dr), 0.15};
+  return {{limited(3.0 * kDegree, alpha_per_de, s.elevator, trim.controls.de),
+           limited(20.0 * kDegree, p_per_da, s.aileron, trim.controls.da),
+           limited(4.0 * kDegree, beta_per_dr, s.rudder, trim.controls.dr), 0.15}};
 }
 
-std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kSurfaces>& amplitudes) {
+std::vector<Manoeuvre> default_plan(double duration, const PerSurface<double>& amplitudes) {
   using enum Surface;
   using enum ManoeuvreKind;
-  const auto amplitude = [&amplitudes](Surface s) { return amplitudes[static_cast<std::size_t>(s)]; };
+  const auto amplitude = [&amplitudes](Surface s) { return amplitudes[s]; };
   std::vector<Manoeuvre> plan;
   const auto add = [&](ManoeuvreKind kind, double start, double length, const std::vector<Surface>& surfaces,
                        double pulse, double bank) {
@@ -216,7 +216,7 @@ std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kS
   return plan;
 }
 
-std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const std::array<double, kSurfaces>& amplitudes) {
+std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const PerSurface<double>& amplitudes) {
   const std::vector<std::string> kinds = {"doublet", "3211", "multisine", "turn", "pulse"};
   const std::vector<std::string> names(kSurfaceNames.begin(), kSurfaceNames.end());
   std::vector<Manoeuvre> out;
@@ -249,7 +249,7 @@ std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const std::arra
         t.fail("amplitude", fmt::format("has {} numbers, expected 1 or {}", m.amplitude.size(), m.surfaces.size()));
       }
     } else {
-      for (const Surface s : m.surfaces) m.amplitude.push_back(amplitudes[static_cast<std::size_t>(s)]);
+      for (const Surface s : m.surfaces) m.amplitude.push_back(amplitudes[s]);
     }
     if (m.kind == ManoeuvreKind::kMultisine) {
       if (t.has("band")) {
@@ -288,7 +288,7 @@ std::vector<Multisine> make_multisines(std::size_t count, double duration, doubl
     const double n = static_cast<double>(m.frequency.size());
     for (std::size_t k = 0; k < m.frequency.size(); ++k) {
       const double j = static_cast<double>(k) + 1.0;
-      m.phase.push_back(std::remainder(-kPi * j * (j - 1.0) / n, 2.0 * kPi));
+      m.phase.push_back(std::remainder(-kPi * j * (j - 1.0) / n, kFullTurn));
     }
     lower_peak(m, duration);
     start_at_zero(m, duration);
@@ -312,8 +312,8 @@ Excitation::Excitation(std::vector<Manoeuvre> manoeuvres) : manoeuvres_(std::mov
   }
 }
 
-std::array<double, kSurfaces> Excitation::at(double t) const {
-  std::array<double, kSurfaces> out{};
+PerSurface<double> Excitation::at(double t) const {
+  PerSurface<double> out{};
   for (std::size_t i = 0; i < manoeuvres_.size(); ++i) {
     const Manoeuvre& m = manoeuvres_[i];
     if (m.kind == ManoeuvreKind::kTurn || t < m.start || t >= m.end()) continue;
@@ -325,17 +325,17 @@ std::array<double, kSurfaces> Excitation::at(double t) const {
         const double begin = m.start + static_cast<double>(k) * (pulse_count(m.kind) * m.pulse + kPause);
         shape = pulse_shape(m.kind, (t - begin) / m.pulse);
       }
-      out[static_cast<std::size_t>(m.surfaces[k])] += m.amplitude[k] * shape;
+      out[m.surfaces[k]] += m.amplitude[k] * shape;
     }
   }
   return out;
 }
 
-std::array<bool, kSurfaces> Excitation::excited(double t) const {
-  std::array<bool, kSurfaces> out{};
+PerSurface<bool> Excitation::excited(double t) const {
+  PerSurface<bool> out{};
   for (const Manoeuvre& m : manoeuvres_) {
     if (m.kind == ManoeuvreKind::kTurn || t < m.start || t >= m.end()) continue;
-    for (const Surface s : m.surfaces) out[static_cast<std::size_t>(s)] = true;
+    for (const Surface s : m.surfaces) out[s] = true;
   }
   return out;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "veridyn/aircraft/model/trim.hpp"
+#include "veridyn/core/enum_array.hpp"
 #include "veridyn/core/study.hpp"
 
 namespace veridyn::aircraft {
@@ -14,8 +14,11 @@ namespace veridyn::aircraft {
 /// What the pilot moves.
 enum class Surface { kElevator, kAileron, kRudder, kThrottle };
 inline constexpr std::size_t kSurfaces = 4;  ///< values of Surface
-/// In the order of Surface.
-inline constexpr std::array<std::string_view, kSurfaces> kSurfaceNames = {"elevator", "aileron", "rudder", "throttle"};
+/// A value for each surface.
+template <typename T>
+using PerSurface = EnumArray<Surface, T, kSurfaces>;
+/// As in studies and logs.
+inline constexpr PerSurface<std::string_view> kSurfaceNames{{"elevator", "aileron", "rudder", "throttle"}};
 
 /// Shapes of planned inputs.
 enum class ManoeuvreKind {
@@ -44,13 +47,12 @@ struct Manoeuvre {
 /// Largest deflections that keep a small excitation small, from the linear model about a trim: the elevator changes
 /// alpha by about 3 deg in the steady state, the aileron rolls at 20 deg/s, the rudder yields 4 deg of sideslip; never
 /// more than half of the travel to a stop. Throttle 0.15.
-[[nodiscard]] std::array<double, kSurfaces> default_amplitudes(const Subject& subject, const Trim& trim,
-                                                               const LinearModel& model);
+[[nodiscard]] PerSurface<double> default_amplitudes(const Subject& subject, const Trim& trim, const LinearModel& model);
 
 /// A plan of five minutes that excites everything twice, for identification and for validation: multisines on the
 /// elevator, then on aileron and rudder, 3-2-1-1 and doublets on each surface, a change of throttle, a turn each way
 /// and straight legs. Repeated for longer flights; what does not end before `duration` is left out.
-[[nodiscard]] std::vector<Manoeuvre> default_plan(double duration, const std::array<double, kSurfaces>& amplitudes);
+[[nodiscard]] std::vector<Manoeuvre> default_plan(double duration, const PerSurface<double>& amplitudes);
 
 /// Reads `[[flight.manoeuvre]]`:
 ///
@@ -62,8 +64,7 @@ struct Manoeuvre {
 ///     pulse = 0.5                        # [s] doublet, 3211, pulse
 ///     band = [0.1, 2.0]                  # [Hz] multisine
 ///     bank = "25 deg"                    # turn
-[[nodiscard]] std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight,
-                                                     const std::array<double, kSurfaces>& amplitudes);
+[[nodiscard]] std::vector<Manoeuvre> read_manoeuvres(const StudyTable& flight, const PerSurface<double>& amplitudes);
 
 /// One multisine: harmonics of 1/duration with phases of low peak.
 struct Multisine {
@@ -84,9 +85,9 @@ class Excitation {
   explicit Excitation(std::vector<Manoeuvre> manoeuvres);
 
   /// What is added to each surface at `t`.
-  [[nodiscard]] std::array<double, kSurfaces> at(double t) const;
+  [[nodiscard]] PerSurface<double> at(double t) const;
   /// Which surfaces are excited at `t`.
-  [[nodiscard]] std::array<bool, kSurfaces> excited(double t) const;
+  [[nodiscard]] PerSurface<bool> excited(double t) const;
   /// Bank of the turn at `t` [rad]; NaN outside turns.
   [[nodiscard]] double bank(double t) const;
   [[nodiscard]] const std::vector<Manoeuvre>& manoeuvres() const { return manoeuvres_; }

@@ -26,9 +26,7 @@ FlightReplay::FlightReplay(const Recording& truth, double gravity) : gravity_(gr
   for (std::size_t i = 0; i < kTruthCount; ++i) value_[i] = truth.at(kTruthChannels[i].name).value;
 }
 
-std::vector<double> FlightReplay::flown(std::size_t signal) const {
-  return value_[static_cast<std::size_t>(kReplaySignals[signal])];
-}
+std::vector<double> FlightReplay::flown(std::size_t signal) const { return value_[kReplaySignals[signal]]; }
 
 Eigen::Vector3d FlightReplay::vector(Truth first, std::size_t sample) const {
   const auto i = static_cast<std::size_t>(first);

@@ -43,10 +43,10 @@ class FlightReplay {
   [[nodiscard]] RigidBodyState<double> state(std::size_t sample) const;
   [[nodiscard]] Controls<double> controls(std::size_t sample) const;
   [[nodiscard]] Eigen::Vector3d vector(Truth first, std::size_t sample) const;
-  [[nodiscard]] double value(Truth t, std::size_t sample) const { return value_[static_cast<std::size_t>(t)][sample]; }
+  [[nodiscard]] double value(Truth t, std::size_t sample) const { return value_[t][sample]; }
 
   std::vector<double> time_;
-  std::array<std::vector<double>, kTruthCount> value_;
+  EnumArray<Truth, std::vector<double>, kTruthCount> value_;
   double gravity_;
 };
 

@@ -77,7 +77,7 @@ SimulationOptions read_simulation(const StudyTable& root) {
   const std::vector<std::string> plans = {"default", "none"};
   const std::string plan = flight.choice_or("plan", plans, "default");
   if (flight.has("manoeuvre")) {
-    std::array<double, kSurfaces> amplitudes{};
+    PerSurface<double> amplitudes{};
     if (o.subject.inertia && o.subject.model.unknown_parameters().empty()) {
       const Trim trim = find_trim(o.subject, {.airspeed = o.airspeed,
                                               .density = standard_atmosphere(o.altitude).density,

@@ -105,7 +105,7 @@ class TruthRecorder {
 
  private:
   std::vector<double> time_;
-  std::array<std::vector<double>, kTruthCount> value_;
+  EnumArray<Truth, std::vector<double>, kTruthCount> value_;
 };
 
 void check(const SimulationOptions& o) {
@@ -155,12 +155,13 @@ class FlyingAircraft {
   [[nodiscard]] bool finite() const { return now_.state.allFinite(); }
 
   /// Over one step from `t` [s], where the truth is `truth`, with the surfaces commanded to `command`.
-  void advance(double t, const TruthSample& truth, const std::array<double, kSurfaces>& command) {
-    for (std::size_t i = 0; i < kSurfaces; ++i) servos_[i].advance(command[i]);
+  void advance(double t, const TruthSample& truth, const PerSurface<double>& command) {
+    for (const Surface s : enumerators<Surface, kSurfaces>()) servos_[s].advance(command[s]);
     gusts_.advance(step_, truth[Truth::kAirspeed]);
     wind_.advance(step_);
     Moment next;
-    next.controls = {servos_[0].position(), servos_[1].position(), servos_[2].position(), servos_[3].position(), 0.0};
+    next.controls = {servos_[Surface::kElevator].position(), servos_[Surface::kAileron].position(),
+                     servos_[Surface::kRudder].position(), servos_[Surface::kThrottle].position(), 0.0};
     next.controls.rotor_speed =
         now_.controls.rotor_speed +
         rotor_share_ * (subject_.propulsion.steady_rotor_speed(next.controls.throttle) - now_.controls.rotor_speed);
@@ -204,7 +205,7 @@ class FlyingAircraft {
   double gravity_;
   double ground_;
   double rotor_share_;
-  std::array<Servo, kSurfaces> servos_;
+  PerSurface<Servo> servos_;
   DrydenGusts gusts_;
   Wind wind_;
   Moment now_;
@@ -224,7 +225,7 @@ std::vector<Event> events_of(std::span<const Manoeuvre> manoeuvres, std::span<co
   for (const Manoeuvre& m : manoeuvres) {
     if (m.start > end) continue;
     std::vector<std::string_view> names;
-    for (const Surface surface : m.surfaces) names.push_back(kSurfaceNames[static_cast<std::size_t>(surface)]);
+    for (const Surface surface : m.surfaces) names.push_back(kSurfaceNames[surface]);
     events.push_back({m.start, "manoeuvre", fmt::format("{} {}", name_of(m.kind), fmt::join(names, ", "))});
   }
   for (const ModelChange& change : changes) events.push_back({change.time, "change", change.text});
@@ -241,8 +242,8 @@ std::string SimulatedFlight::message() const {
   const auto at = [this] { return fmt::format("at {:.1f} s", end_time); };
   switch (end) {
     case SimulationEnd::kCompleted:
-      return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time, alpha_min * 180.0 / kPi,
-                         alpha_max * 180.0 / kPi);
+      return fmt::format("flew {:.0f} s, angle of attack {:.1f} to {:.1f} deg", end_time, alpha_min / kDegree,
+                         alpha_max / kDegree);
     case SimulationEnd::kNoTrim:
       return trim.message();
     case SimulationEnd::kGround:
