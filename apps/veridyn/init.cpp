@@ -104,7 +104,7 @@ file = @LOG@
 
 [uncertainty]
 # draws = 100000                 # of the Monte Carlo on the measured coefficients
-# sigma = { thrust = "0.5 N" }   # error of a signal, where the log cannot tell
+# sigma = { thrust = "0.5 N" }   # error of a signal, where the log does not show it
 
 [validate]
 # period = "5 s"                 # the model is started again this often

@@ -58,7 +58,7 @@ class PlatformByHand {
   }
 
   /// One order at its time. @return where the axis was told to be
-  double tell(PlatformAxis axis, double wanted) {
+  double command(PlatformAxis axis, double wanted) {
     clock_.sleep_until(rate_.next());
     cueing::PlatformState to;
     set_axis(to, axis, {.position = wanted, .rate = 0.0, .acceleration = 0.0});
@@ -126,9 +126,10 @@ ToldAndReached play(PlatformByHand& platform, PlatformAxis axis, const TestSigna
   const auto steps = static_cast<long>(duration * study.options.rate);
   const cueing::AxisLimits& limits = study.cueing.platform.limits[axis];
   for (long k = 0; k < steps && !interruption.requested(); ++k)
-    motion.told.push_back(platform.tell(axis, wanted_position(signal, limits, static_cast<double>(k) * motion.step)));
+    motion.told.push_back(
+        platform.command(axis, wanted_position(signal, limits, static_cast<double>(k) * motion.step)));
   constexpr double kHomeWithin = 3.0;  // [s]
-  for (long k = 0; k < static_cast<long>(kHomeWithin * study.options.rate); ++k) platform.tell(axis, 0.0);
+  for (long k = 0; k < static_cast<long>(kHomeWithin * study.options.rate); ++k) platform.command(axis, 0.0);
   double last = 0.0;
   for (std::size_t k = 0; k < motion.told.size(); ++k) {
     last = platform.reached(first + static_cast<std::uint32_t>(k), axis).value_or(last);

@@ -43,7 +43,7 @@ void check_filters(const FlightStudy& study) {
     throw InputError(study.name,
                      fmt::format("reconstruct.filter = \"{}\" contradicts tracking: rows that were filtered "
                                  "with a model would confirm that model; leave it out; track.filter = "
-                                 "\"guarded\" runs a model-based filter beside the tracker",
+                                 "\"guarded\" runs a model-based filter alongside the tracker",
                                  to_string(o.filter)));
   }
   if (study.track.filter == TrackFilter::kGuarded && o.estimates_air_data_errors()) {

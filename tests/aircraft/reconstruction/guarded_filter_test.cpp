@@ -58,7 +58,7 @@ TEST(GuardedFilter, RevertsFromAWrongModelAndIsThenAsGoodAsTheModelFreeFilter) {
 
 class GuardSoak : public ::testing::TestWithParam<int> {};
 TEST_P(GuardSoak, NeverDistrustsARightModelInTenMinutes) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running test; set VERIDYN_SOAK=1 to run it";
   Flown f = fly({.duration = 600.0, .seed = static_cast<std::uint64_t>(GetParam())});
   ReconstructOptions o = reference_options();
   o.filter = FilterKind::kGuarded;

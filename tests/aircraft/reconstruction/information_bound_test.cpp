@@ -87,7 +87,7 @@ struct GustReplay {
   }
 };
 
-// Long simulation of the linear problem with the filter and smoother of the estimation room: 2000 s, several hundred
+// Long simulation of the linear problem with the filter and smoother of the estimation module: 2000 s, several hundred
 // correlation times, so that the sample RMS scatters by about a percent.
 TEST(InformationBound, IsWhatALongLinearSimulationAttains) {
   constexpr double kSpeed = 15.0, kSigma = 0.6 * kDegree;

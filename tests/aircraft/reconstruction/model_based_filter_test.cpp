@@ -215,7 +215,7 @@ TEST(ModelBasedFilter, ReachesTheSpecificationsBoundWhereTheAirspeedIsKnown) {
 
 class ModelBasedSoak : public ::testing::TestWithParam<double> {};
 TEST_P(ModelBasedSoak, ReachesTheBoundOverTenSeeds) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running test; set VERIDYN_SOAK=1 to run it";
   compare(GetParam(), 10, 200.0);
 }
 INSTANTIATE_TEST_SUITE_P(Speeds, ModelBasedSoak, ::testing::Values(15.0, 20.0, 25.0));

@@ -113,7 +113,7 @@ TEST(Reconstruct, ReachesTheInformationBoundInModerateTurbulence) { fly(15.0, 2,
 // The full campaign: half a minute of computing, so only where VERIDYN_SOAK is set (`make soak`).
 class ReconstructSoak : public ::testing::TestWithParam<double> {};
 TEST_P(ReconstructSoak, ReachesTheInformationBoundOverTenSeeds) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running test; set VERIDYN_SOAK=1 to run it";
   fly(GetParam(), 10, 300.0);
 }
 INSTANTIATE_TEST_SUITE_P(Speeds, ReconstructSoak, ::testing::Values(15.0, 25.0));

@@ -80,7 +80,7 @@ TEST(SensorErrors, HaveRealisticSigmasInTurbulence) {
 }
 
 TEST(SensorErrorsSoak, HaveRealisticSigmasOverManySeeds) {
-  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long form; set VERIDYN_SOAK=1 to run it";
+  if (std::getenv("VERIDYN_SOAK") == nullptr) GTEST_SKIP() << "long-running test; set VERIDYN_SOAK=1 to run it";
   for (const auto& [name, ratio] : normalised_errors(24, 120.0, true)) {
     EXPECT_LT(ratio, 1.6) << name;
     // The checks' doubt is that of slow gusts, which these made flights do not answer: 0.35 to 0.55 here.

@@ -12,8 +12,8 @@ namespace {
 using estimation::RegressionData;
 
 /// Variance of z that neither the model nor the errors of the regressors explain: z'z/N - W_.. of the moment equations
-/// (Fuller 1987, sec. 2.2), over the directions of the regressors that hold signal beside their error. The others, such
-/// as those of terms that move together, would leave whatever rounding makes of them.
+/// (Fuller 1987, sec. 2.2), over the directions of the regressors that hold signal besides their error. The others,
+/// such as those of terms that move together, would leave whatever rounding makes of them.
 double unexplained_variance(const RegressionData& data) {
   constexpr double kDependent = 1e-10;
   constexpr double kMostError = 0.9;  // of a direction's power

@@ -74,7 +74,7 @@ struct CoefficientResult {
   double unmodelled_share = 0.0;
   /// Change of the parameters per standard deviation of mass, geometry and inertia; see body_sensitivity.
   Eigen::MatrixXd body_sensitivity;
-  /// Standard deviation of each parameter for what the recording leaves in doubt of airspeed and vanes, beside its
+  /// Standard deviation of each parameter for what the recording leaves in doubt of airspeed and vanes, alongside its
   /// interval; empty unless identified.
   Eigen::VectorXd air_data_doubt;
   numerics::FitMeasures identification_fit;

@@ -251,7 +251,7 @@ std::optional<FlightEvidence> length_row(const Reconstruction& reconstruction, c
        .advice = passed ? std::string() : fmt::format("record at least {:.0f} s in the air", 2.0 * period)}};
 }
 
-/// What no channel of a flight can tell: the aircraft answers a deflection the same whatever it is called.
+/// What no channel of a flight can show: the aircraft answers a deflection the same whatever it is called.
 FlightEvidence deflection_row(const Recording& recording) {
   std::vector<std::string> surfaces;
   for (const char* name : {"elevator", "aileron", "rudder"})

@@ -14,8 +14,8 @@
 ///
 /// Like mass and geometry, a wrong scale is the same in every row: it does not average out and shows in no residual.
 /// Unlike them it is partly measured by the recording itself, on the headings and in the manoeuvres that were flown. It
-/// is stated beside the interval and not added to it: the interval says what noise and turbulence leave if air data are
-/// right, which a calibration can establish; the doubt says what is left without one.
+/// is stated alongside the interval and not added to it: the interval says what noise and turbulence leave if air data
+/// are right, which a calibration can establish; the doubt says what is left without one.
 namespace veridyn::aircraft {
 
 /// The signals as they would be with an error of so many standard deviations.
@@ -29,8 +29,8 @@ namespace veridyn::aircraft {
                                               const Eigen::VectorXd& theta,
                                               const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate);
 
-/// The row that states doubts beside intervals: "not verified" where one is larger than its parameter's standard error,
-/// which it names, else passed. Grades do not depend on it.
+/// The row that states doubts alongside intervals: "not verified" where one is larger than its parameter's standard
+/// error, which it names, else passed. Grades do not depend on it.
 [[nodiscard]] estimation::Evidence doubt_row(const std::string& coefficient,
                                              std::span<const estimation::Parameter> parameters,
                                              const Eigen::VectorXd& doubt);

@@ -22,7 +22,7 @@ enum class AirDataSource {
 /// Which filter estimates the motion through the air of a tracked flight.
 enum class TrackFilter {
   kModelFree,  ///< no aerodynamics
-  kGuarded     ///< a model-based filter with the tracked coefficients beside it, as long as its innovations allow
+  kGuarded     ///< a model-based filter with the tracked coefficients alongside, as long as its innovations allow
 };
 /// "model-free", "guarded".
 [[nodiscard]] std::string_view to_string(TrackFilter filter);

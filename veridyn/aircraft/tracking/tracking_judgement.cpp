@@ -55,12 +55,12 @@ estimation::Estimate judged_estimate(const FlightTracker& tracker, std::span<con
     const auto first = estimate.parameters.begin() + static_cast<std::ptrdiff_t>(at);
     const auto last = first + signed_index(c.model.size());
     at += c.model.size();
-    const std::vector<Evidence> own = tracked_evidence(c, tracker.subject());
-    std::vector<Evidence> all = own;
+    const std::vector<Evidence> rows = tracked_evidence(c, tracker.subject());
+    std::vector<Evidence> all = rows;
     for (const FlightEvidence& e : of_flight)
       if (e.bears_on(c.model.coefficient)) all.push_back(e.row);
     parts.push_back(estimation::judge(all));
-    estimate.evidence.insert(estimate.evidence.end(), own.begin(), own.end());
+    estimate.evidence.insert(estimate.evidence.end(), rows.begin(), rows.end());
     const std::vector<estimation::Parameter> marked =
         estimation::marked({first, last}, estimation::verdict_of(parts.back()));
     std::copy(marked.begin(), marked.end(), first);
