@@ -87,7 +87,10 @@ TEST(PlansByIpopt, CostTheSameOnADriveOfAPerson) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file << "; CostTheSameOnASimulatedDrive is without it";
   Progress progress;
   const Study study = Study::parse("[data]\nfile = \"" + file.string() + "\"\n", "stage", {}, {});
-  expect_same(compared(read_study(study, progress).vehicle, 0.6), 50);
+  // The first half of it: plans along the other one pose no other problems.
+  std::vector<recording::MotionSample> drive = read_study(study, progress).vehicle;
+  drive.resize(drive.size() / 2);
+  expect_same(compared(drive, 0.6), 50);
 }
 
 }  // namespace

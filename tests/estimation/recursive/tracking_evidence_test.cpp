@@ -162,15 +162,21 @@ TEST(TrackingEvidence, DoesNotCallAPredictionWhatPredictsNothing) {
   EXPECT_EQ(row.outcome, Outcome::kFailed) << row.text;
 }
 
-TEST(TrackingEvidence, RaisesFewAlarmsOnCleanRecordings) {
+/// Rows that are less than passed, and bear on something, in so many clean recordings.
+int false_alarms(unsigned recordings) {
   int alarms = 0;
-  for (unsigned seed = 1; seed <= 100; ++seed) {
+  for (unsigned seed = 1; seed <= recordings; ++seed) {
     const RegressionTracker tracker = tracked_regression({}, 330.0, seed);
     for (const Evidence& row : tracking_rows(tracker)) alarms += !row.passed() && !row.bears_on.empty();
   }
-  // Stated: at most 2 of 100 recordings with a row that is less than passed.
-  EXPECT_LE(alarms, 2);
+  return alarms;
 }
+
+// Stated: at most 2 of 100 recordings with a row that is less than passed. At that rate 25 recordings have two of them
+// with a probability of 9 %, at five times that rate with one of 73 %.
+TEST(TrackingEvidence, RaisesFewAlarmsOnCleanRecordings) { EXPECT_LE(false_alarms(25), 1); }
+
+TEST(TrackingEvidenceSoak, RaisesFewAlarmsOnAHundredCleanRecordings) { EXPECT_LE(false_alarms(100), 2); }
 
 TEST(RegressionTracker, TakesWhatWDoesNotExplainForErrorOfTheEquation) {
   // GTLS that takes noise of z for noise of the regressors overcorrects the slope.
