@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "veridyn/core/error.hpp"
@@ -19,13 +20,30 @@
 namespace veridyn::cueing {
 namespace {
 
+/// Runs that several figures and the curves of a study show, each computed when it is asked for first.
+class Runs {
+ public:
+  const Experiment& ramp_about(PlatformAxis axis) {
+    std::optional<Experiment>& run = axis == PlatformAxis::kPitch ? ramp_pitch_ : ramp_roll_;
+    if (!run) run = ramp(axis);
+    return *run;
+  }
+  const Experiment& track() {
+    if (!track_) track_ = level_track();
+    return *track_;
+  }
+
+ private:
+  std::optional<Experiment> ramp_pitch_, ramp_roll_, track_;
+};
+
 /// Something that a study may compare.
 struct Quantity {
   const char* name;
   const char* at;    ///< unit of what it depends on; empty: nothing
   const char* unit;  ///< SI
   const char* text;  ///< how it is printed
-  std::function<double(double at)> value;
+  std::function<double(double at, Runs& runs)> value;
 };
 
 double largest(const Experiment& e, std::size_t curve) {
@@ -61,41 +79,47 @@ ResponsePoint response(Cue cue, double frequency) {
 std::span<const Quantity> quantities() {
   using enum PlatformAxis;
   static const std::vector<Quantity> all = {
-      {"pitch_reached", "rad", "rad", "pitch reached when told", [](double x) { return reached(kPitch, x); }},
-      {"roll_reached", "rad", "rad", "roll reached when told", [](double x) { return reached(kRoll, x); }},
-      {"pitch_held", "m/s^2", "rad", "pitch held under a force of", [](double x) { return held_tilt(kPitch, x); }},
-      {"roll_held", "m/s^2", "rad", "roll held under a force of", [](double x) { return held_tilt(kRoll, x); }},
-      {"tilt_wanted", "m/s^2", "rad", "tilt that stands for", [](double x) { return std::asin(x / kGravity); }},
+      {"pitch_reached", "rad", "rad", "pitch reached when told", [](double x, Runs&) { return reached(kPitch, x); }},
+      {"roll_reached", "rad", "rad", "roll reached when told", [](double x, Runs&) { return reached(kRoll, x); }},
+      {"pitch_held", "m/s^2", "rad", "pitch held under a force of",
+       [](double x, Runs&) { return held_tilt(kPitch, x); }},
+      {"roll_held", "m/s^2", "rad", "roll held under a force of", [](double x, Runs&) { return held_tilt(kRoll, x); }},
+      {"tilt_wanted", "m/s^2", "rad", "tilt that stands for", [](double x, Runs&) { return std::asin(x / kGravity); }},
       {"chassis_pitch", "1", "rad", "pitch of a chassis at 15 deg, reference",
-       [](double x) { return reached(kPitch, 15.0 * kDegree * x / 20.0); }},
+       [](double x, Runs&) { return reached(kPitch, 15.0 * kDegree * x / 20.0); }},
       {"ramp_pitch_with", "", "rad", "largest pitch on the ramp, with washout",
-       [](double) { return largest(ramp(kPitch), 1); }},
+       [](double, Runs& runs) { return largest(runs.ramp_about(kPitch), 1); }},
       {"ramp_pitch_without", "", "rad", "largest pitch on the ramp, without",
-       [](double) { return largest(ramp(kPitch), 2); }},
+       [](double, Runs& runs) { return largest(runs.ramp_about(kPitch), 2); }},
       {"ramp_roll_with", "", "rad", "largest roll on the ramp, with washout",
-       [](double) { return largest(ramp(kRoll), 1); }},
+       [](double, Runs& runs) { return largest(runs.ramp_about(kRoll), 1); }},
       {"ramp_roll_without", "", "rad", "largest roll on the ramp, without",
-       [](double) { return largest(ramp(kRoll), 2); }},
+       [](double, Runs& runs) { return largest(runs.ramp_about(kRoll), 2); }},
       {"level_track_naive", "", "rad", "largest false pitch, accelerometer alone",
-       [](double) { return largest(level_track(), 0); }},
+       [](double, Runs& runs) { return largest(runs.track(), 0); }},
       {"level_track_camera", "", "rad", "largest false pitch, with the camera",
-       [](double) { return largest(level_track(), 1); }},
-      {"threshold_roll", "", "rad/s", "threshold of roll", [](double) { return usual_thresholds().rate[0]; }},
-      {"threshold_pitch", "", "rad/s", "threshold of pitch", [](double) { return usual_thresholds().rate[1]; }},
-      {"threshold_yaw", "", "rad/s", "threshold of yaw", [](double) { return usual_thresholds().rate[2]; }},
-      {"threshold_surge", "", "m/s^2", "threshold of surge", [](double) { return usual_thresholds().force[0]; }},
-      {"threshold_sway", "", "m/s^2", "threshold of sway", [](double) { return usual_thresholds().force[1]; }},
-      {"threshold_heave", "", "m/s^2", "threshold of heave", [](double) { return usual_thresholds().force[2]; }},
-      {"shoarai_surge", "1", "m", "shoarai/washout, surge at step", [](double x) { return golden(x, true).shift.x(); }},
-      {"shoarai_heave", "1", "m", "shoarai/washout, heave at step", [](double x) { return golden(x, true).shift.z(); }},
-      {"shoarai_roll", "1", "rad", "shoarai/washout, roll at step", [](double x) { return golden(x, true).angle.x(); }},
+       [](double, Runs& runs) { return largest(runs.track(), 1); }},
+      {"threshold_roll", "", "rad/s", "threshold of roll", [](double, Runs&) { return usual_thresholds().rate[0]; }},
+      {"threshold_pitch", "", "rad/s", "threshold of pitch", [](double, Runs&) { return usual_thresholds().rate[1]; }},
+      {"threshold_yaw", "", "rad/s", "threshold of yaw", [](double, Runs&) { return usual_thresholds().rate[2]; }},
+      {"threshold_surge", "", "m/s^2", "threshold of surge", [](double, Runs&) { return usual_thresholds().force[0]; }},
+      {"threshold_sway", "", "m/s^2", "threshold of sway", [](double, Runs&) { return usual_thresholds().force[1]; }},
+      {"threshold_heave", "", "m/s^2", "threshold of heave", [](double, Runs&) { return usual_thresholds().force[2]; }},
+      {"shoarai_surge", "1", "m", "shoarai/washout, surge at step",
+       [](double x, Runs&) { return golden(x, true).shift.x(); }},
+      {"shoarai_heave", "1", "m", "shoarai/washout, heave at step",
+       [](double x, Runs&) { return golden(x, true).shift.z(); }},
+      {"shoarai_roll", "1", "rad", "shoarai/washout, roll at step",
+       [](double x, Runs&) { return golden(x, true).angle.x(); }},
       {"shoarai_heave_mended", "1", "m", "the same with gravity from the start, heave at step",
-       [](double x) { return golden(x, false).shift.z(); }},
-      {"surge_gain", "rad/s", "1", "gain of surge at", [](double x) { return response(Cue::kSurge, x).gain; }},
-      {"surge_phase", "rad/s", "rad", "phase of surge at", [](double x) { return response(Cue::kSurge, x).phase; }},
-      {"heave_gain", "rad/s", "1", "gain of heave at", [](double x) { return response(Cue::kHeave, x).gain; }},
-      {"pitch_gain", "rad/s", "1", "gain of pitch at", [](double x) { return response(Cue::kPitch, x).gain; }},
-      {"pitch_phase", "rad/s", "rad", "phase of pitch at", [](double x) { return response(Cue::kPitch, x).phase; }},
+       [](double x, Runs&) { return golden(x, false).shift.z(); }},
+      {"surge_gain", "rad/s", "1", "gain of surge at", [](double x, Runs&) { return response(Cue::kSurge, x).gain; }},
+      {"surge_phase", "rad/s", "rad", "phase of surge at",
+       [](double x, Runs&) { return response(Cue::kSurge, x).phase; }},
+      {"heave_gain", "rad/s", "1", "gain of heave at", [](double x, Runs&) { return response(Cue::kHeave, x).gain; }},
+      {"pitch_gain", "rad/s", "1", "gain of pitch at", [](double x, Runs&) { return response(Cue::kPitch, x).gain; }},
+      {"pitch_phase", "rad/s", "rad", "phase of pitch at",
+       [](double x, Runs&) { return response(Cue::kPitch, x).phase; }},
   };
   return all;
 }
@@ -122,7 +146,7 @@ Unit unit_of(const StudyTable& table, const char* si) {
   return blank == std::string::npos ? parse_unit(si) : parse_unit_like(text.substr(blank + 1), parse_unit(si));
 }
 
-ReproducedFigure read_figure(const StudyTable& table) {
+ReproducedFigure read_figure(const StudyTable& table, Runs& runs) {
   const Quantity& q = quantity_of(table);
   static const std::vector<std::string> kOrigins = {"printed", "derived", "computed"};
   const Unit unit = unit_of(table, q.unit);
@@ -137,7 +161,7 @@ ReproducedFigure read_figure(const StudyTable& table) {
   }
   f.published = unit.from_si(table.number("value", q.unit));
   f.within = table.positive("within", q.unit) / unit.scale;
-  f.ours = unit.from_si(q.value(at));
+  f.ours = unit.from_si(q.value(at, runs));
   return f;
 }
 
@@ -157,15 +181,16 @@ CueingReproduction reproduce_cueing(const StudyTable& root, Progress& progress) 
   progress.stage(r.title);
   const std::vector<std::string> pictures = {"none", "ramp_pitch", "ramp_roll", "level_track"};
   const std::string picture = root.choice_or("curves", pictures, "none");
+  Runs runs;
   for (const StudyTable& table : root.tables("figure")) {
     r.interrupted = progress.interrupted();
     if (r.interrupted) return r;
-    r.figures.push_back(read_figure(table));
+    r.figures.push_back(read_figure(table, runs));
   }
   if (picture == "none") return r;
-  const Experiment e = picture == "level_track"
-                           ? level_track()
-                           : ramp(picture == "ramp_roll" ? PlatformAxis::kRoll : PlatformAxis::kPitch);
+  const Experiment& e = picture == "level_track"
+                            ? runs.track()
+                            : runs.ramp_about(picture == "ramp_roll" ? PlatformAxis::kRoll : PlatformAxis::kPitch);
   r.time = e.time;
   for (const Experiment::Curve& curve : e.curves) {
     r.curves.push_back({curve.name, "deg", curve.values});
