@@ -19,9 +19,8 @@ const std::string kSubject = "[subject]\nmodel = \"arm\"\n";
 
 StudyTasks study_tasks(const std::string& text, const std::filesystem::path& folder = {}) {
   const Study source = Study::parse(kSubject + text, "s.toml", folder);
-  MuscleStudy subject;
   Progress progress;
-  internal::read_subject(source.root().table("subject"), subject, progress);
+  const MuscleSubject subject = internal::read_subject(source.root(), progress);
   const std::vector<MuscleOutput> outputs{{MuscleOutputKind::kValue, 1, 1e-3}};
   StudyTasks tasks = read_tasks(source.root(), subject, outputs);
   source.root().finish();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "veridyn/core/enum_array.hpp"
@@ -23,53 +24,53 @@ MuscleMethod read_method(const StudyTable& motion) {
   return static_cast<MuscleMethod>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// Beginning, duration, and the motion of a file where there is one.
-void read_times(const StudyTable& motion, MuscleStudy& study) {
-  const bool file = study.method != MuscleMethod::kForward && motion.has("file");
-  if (file) {
-    const std::filesystem::path path = motion.file("file");
-    MotionOptions options;
-    if (motion.has("low_pass")) options.low_pass_Hz = motion.positive("low_pass", "1/s");
-    const SignalTable table = read_signals(path);
-    study.motion = make_motion(table, study.system->model(), options);
-    study.inputs.push_back(path);
-    for (const std::string& name : study.motion.beyond_range)
-      study.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
-    for (const int c : study.system->reduction().driven()) {
-      if (study.method == MuscleMethod::kComputedMuscleControl && study.motion.coordinate[at(c)])
-        study.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
-                                             study.system->model().coordinates[at(c)].name));
-    }
+/// The motion of `file`.
+internal::ReadFromFiles<Motion> read_motion_file(const StudyTable& motion, const MuscleStudy& study) {
+  internal::ReadFromFiles<Motion> read{.value = {}, .inputs = {motion.file("file")}};
+  MotionOptions options;
+  if (motion.has("low_pass")) options.low_pass_Hz = motion.positive("low_pass", "1/s");
+  read.value = make_motion(read_signals(read.inputs.front()), study.system->model(), options);
+  for (const std::string& name : read.value.beyond_range)
+    read.warnings.push_back(fmt::format("the desired '{}' leaves its range", name));
+  for (const int c : study.system->reduction().driven()) {
+    if (study.method == MuscleMethod::kComputedMuscleControl && read.value.coordinate[at(c)])
+      read.warnings.push_back(fmt::format("'{}' is locked: it is held where the motion has it at the beginning",
+                                          study.system->model().coordinates[at(c)].name));
   }
-  study.begin = motion.number_or("begin", "s", file ? study.motion.begin : 0.0);
-  study.end = study.begin + motion.positive_or("duration", "s", file ? study.motion.end - study.begin : 1.0);
-  if (file && !(study.end > study.begin)) {
-    motion.fail("begin",
-                fmt::format("{:g} s is at or after the end of the motion, {:g} s", study.begin, study.motion.end));
-  }
-  const double slack = 1e-9 * (1.0 + std::abs(study.end));
-  if (file && (study.begin < study.motion.begin - slack || study.end > study.motion.end + slack)) {
-    motion.fail(motion.has("duration") ? "duration" : "begin",
-                fmt::format("needs {:g} .. {:g} s, the file has {:g} .. {:g} s", study.begin, study.end,
-                            study.motion.begin, study.motion.end));
-  }
-  if (study.end - study.begin > 3600.0)
-    motion.fail("duration", fmt::format("{:g} s is more than an hour", study.end - study.begin));
-  study.rate_Hz = motion.positive_or("rate", "1/s", study.rate_Hz);
-  if (!(study.rate_Hz * (study.end - study.begin) <= 1e7)) {
-    motion.fail("rate", fmt::format("{:g} Hz makes more than 10 million rows", study.rate_Hz));
-  }
-  study.accuracy = motion.positive_or("accuracy", "1", study.accuracy);
-  if (!(study.accuracy >= 1e-13 && study.accuracy <= 0.1))
-    motion.fail("accuracy", fmt::format("{:g} must be from 1e-13 to 0.1", study.accuracy));
-  study.reserve_force = motion.number_or("reserve_force", "N m", study.reserve_force);
-  if (!(study.reserve_force >= 0.0))
-    motion.fail("reserve_force", fmt::format("{:g} must be >= 0", study.reserve_force));
+  return read;
 }
 
-void read_control(const StudyTable& table, MuscleStudy& study) {
-  ControlOptions& o = study.control;
-  o = internal::read_control_options(table);
+struct Times {
+  double begin = 0.0, end = 1.0;  ///< [s]
+};
+
+/// Beginning and duration; those of a motion's file, where there is one, unless the study says otherwise.
+Times read_times(const StudyTable& motion, const Motion* file) {
+  Times times;
+  times.begin = motion.number_or("begin", "s", file != nullptr ? file->begin : 0.0);
+  times.end = times.begin + motion.positive_or("duration", "s", file != nullptr ? file->end - times.begin : 1.0);
+  if (file != nullptr && !(times.end > times.begin))
+    motion.fail("begin", fmt::format("{:g} s is at or after the end of the motion, {:g} s", times.begin, file->end));
+  const double slack = 1e-9 * (1.0 + std::abs(times.end));
+  if (file != nullptr && (times.begin < file->begin - slack || times.end > file->end + slack)) {
+    motion.fail(motion.has("duration") ? "duration" : "begin",
+                fmt::format("needs {:g} .. {:g} s, the file has {:g} .. {:g} s", times.begin, times.end, file->begin,
+                            file->end));
+  }
+  if (times.end - times.begin > 3600.0)
+    motion.fail("duration", fmt::format("{:g} s is more than an hour", times.end - times.begin));
+  return times;
+}
+
+double read_rate(const StudyTable& motion, const MuscleStudy& study) {
+  const double rate_Hz = motion.positive_or("rate", "1/s", study.rate_Hz);
+  if (!(rate_Hz * (study.end - study.begin) <= 1e7))
+    motion.fail("rate", fmt::format("{:g} Hz makes more than 10 million rows", rate_Hz));
+  return rate_Hz;
+}
+
+ControlOptions read_control(const StudyTable& table, const MuscleStudy& study) {
+  ControlOptions o = internal::read_control_options(table);
   if (study.method == MuscleMethod::kComputedMuscleControl && !(o.window <= study.end - study.begin)) {
     table.fail("window", fmt::format("{:g} s is longer than the motion, {:g} s", o.window, study.end - study.begin));
   }
@@ -78,10 +79,11 @@ void read_control(const StudyTable& table, MuscleStudy& study) {
   o.reserve_force = study.reserve_force;
   o.accuracy = study.accuracy;
   o.rate_Hz = study.rate_Hz;
+  return o;
 }
 
-void read_static(const StudyTable& table, MuscleStudy& study) {
-  StaticOptimizationOptions& o = study.static_optimization;
+StaticOptimizationOptions read_static(const StudyTable& table, const MuscleStudy& study) {
+  StaticOptimizationOptions o;
   o.exponent = table.number_or("exponent", "1", o.exponent);
   if (!(o.exponent > 1.0 && o.exponent <= 100.0))
     table.fail("exponent", fmt::format("{:g} must be above 1, at most 100", o.exponent));
@@ -90,6 +92,7 @@ void read_static(const StudyTable& table, MuscleStudy& study) {
                                                      {"without physiology", StaticForce::kIsometric}}};
   o.force = internal::word_or_first(table, "formulation", kForces);
   if (study.reserve_force > 0.0) o.reserve.assign(study.system->coordinates(), study.reserve_force);
+  return o;
 }
 
 /// Keys of other methods: files and ramps were meant to matter, so say that they do not. Tables of excitations and
@@ -127,6 +130,19 @@ ControlOptions internal::read_control_options(const StudyTable& table) {
   return o;
 }
 
+double internal::read_accuracy(const StudyTable& table, double otherwise) {
+  const double accuracy = table.positive_or("accuracy", "1", otherwise);
+  if (!(accuracy >= 1e-13 && accuracy <= 0.1))
+    table.fail("accuracy", fmt::format("{:g} must be from 1e-13 to 0.1", accuracy));
+  return accuracy;
+}
+
+double internal::read_reserve_force(const StudyTable& table, double otherwise) {
+  const double force = table.number_or("reserve_force", "N m", otherwise);
+  if (!(force >= 0.0)) table.fail("reserve_force", fmt::format("{:g} must be >= 0", force));
+  return force;
+}
+
 std::string_view method_name(MuscleMethod method) { return kMethodNames[method]; }
 
 bool is_muscle_study(const StudyTable& root) {
@@ -135,26 +151,33 @@ bool is_muscle_study(const StudyTable& root) {
 
 MuscleStudy read_study(const Study& source, Progress& progress) {
   const StudyTable& root = source.root();
-  MuscleStudy study;
-  study.title = root.text_or("title", "");
   static_cast<void>(root.integer_or("seed", 1));  // nothing here is random, but `--seed` sets it
   const StudyTable motion = root.table("motion");
-  study.method = read_method(motion);
-  refuse_other_methods(motion, study.method);
-  internal::read_subject(root.table("subject"), study, progress);
+  const MuscleMethod method = read_method(motion);
+  refuse_other_methods(motion, method);
+  MuscleStudy study{internal::read_subject(root, progress)};
+  study.method = method;
   study.motion.coordinate.resize(study.system->model().coordinates.size());
-  read_times(motion, study);
-  internal::read_start(motion, study);
-  internal::read_excitations(motion, study);
-  if (study.method == MuscleMethod::kForward) {
-    internal::read_start_file(motion, study);
+  const bool file = method != MuscleMethod::kForward && motion.has("file");
+  if (file) study.motion = internal::remembered(read_motion_file(motion, study), study);
+  const Times times = read_times(motion, file ? &study.motion : nullptr);
+  study.begin = times.begin;
+  study.end = times.end;
+  study.rate_Hz = read_rate(motion, study);
+  study.accuracy = internal::read_accuracy(motion, study.accuracy);
+  study.reserve_force = internal::read_reserve_force(motion, study.reserve_force);
+  study.start = internal::read_start(motion, study);
+  study.controls = internal::remembered(internal::read_excitations(motion, study), study);
+  if (method == MuscleMethod::kForward) {
+    study.start = internal::remembered(internal::read_start_file(motion, study), study);
   } else {
-    internal::read_desired_motion(motion, study);
+    internal::DesiredMotion desired = internal::read_desired_motion(motion, study);
+    study.motion = std::move(desired.motion);
+    study.desired_coordinates = std::move(desired.coordinates);
   }
   // Read in any case, so that a study can keep them while its method changes.
-  read_control(motion.table_or_empty("control"), study);
-  read_static(motion.table_or_empty("static_optimization"), study);
-  if (study.title.empty()) study.title = study.system->model().name;
+  study.control = read_control(motion.table_or_empty("control"), study);
+  study.static_optimization = read_static(motion.table_or_empty("static_optimization"), study);
   // Tables of `read_task_study`: one study may say what is simulated and what is estimated.
   const std::vector<std::string> keys = root.keys();
   for (const char* key : {"tasks", "task", "parameter", "output", "person", "identify", "sensitivity"})

@@ -36,31 +36,33 @@ struct ParameterChange {
   double after = 0.0;
 };
 
-/// A study of a musculoskeletal model, read and checked: the prepared model, and what is to be computed.
-struct MuscleStudy {
-  std::string title;
+/// The musculoskeletal model of a study, read, changed as the study says and prepared.
+struct MuscleSubject {
+  std::string title;             ///< of the study; the model's name when left out
   std::string model_name;        ///< as the study names it
-  std::optional<OsimFile> file;  ///< as read; always set by `read_study`
+  std::optional<OsimFile> file;  ///< as read; always set where a study was read
   Model written;                 ///< the file's model with the study's parameters: what is written back
   std::vector<HeldLoad> loads;   ///< in the system's masses, not in `written`
   std::vector<ParameterChange> changes;
   std::unique_ptr<MusculoskeletalSystem> system;
+  std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> inputs;  ///< files read
+};
 
+/// A study of a musculoskeletal model, read and checked: the prepared model, and what is to be computed.
+struct MuscleStudy : MuscleSubject {
   MuscleMethod method = MuscleMethod::kForward;
   double begin = 0.0, end = 1.0;  ///< [s]
   double rate_Hz = 200.0;
   double accuracy = 1e-5;
   double reserve_force = 1.0;  ///< of the actuator that helps each free coordinate [N m or N]; 0: none
 
-  StartState start;                               ///< forward
-  MuscleControls controls;                        ///< forward
-  Motion motion;                                  ///< otherwise: every free and driven coordinate
-  std::vector<std::string> desired_coordinates;   ///< coordinates whose motion the study gives; the others rest
-  ControlOptions control;                         ///< computed muscle control, begin to rate set from above
-  StaticOptimizationOptions static_optimization;  ///< reserves set from above
-
-  std::vector<std::string> warnings;
-  std::vector<std::filesystem::path> inputs;  ///< files read
+  StartState start = {};                               ///< forward
+  MuscleControls controls = {};                        ///< forward
+  Motion motion = {};                                  ///< otherwise: every free and driven coordinate
+  std::vector<std::string> desired_coordinates = {};   ///< coordinates whose motion the study gives; the others rest
+  ControlOptions control = {};                         ///< computed muscle control, begin to rate set from above
+  StaticOptimizationOptions static_optimization = {};  ///< reserves set from above
 };
 
 /// A muscle study is one whose `[subject]` names a `model`.

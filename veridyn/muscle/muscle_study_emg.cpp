@@ -93,7 +93,7 @@ std::vector<ControlSignals> read_envelopes(const SignalTable& table, const EmgSe
 }
 
 /// Coordinates that move muscles have to be in the file, or the study says where they rest.
-void check_coordinates(const StudyTable& task, const MuscleStudy& subject, const Motion& angles,
+void check_coordinates(const StudyTable& task, const MuscleSubject& subject, const Motion& angles,
                        std::span<const char> given) {
   const MusculoskeletalSystem& system = *subject.system;
   for (std::size_t c = 0; c < system.coordinates(); ++c) {
@@ -110,8 +110,8 @@ void check_coordinates(const StudyTable& task, const MuscleStudy& subject, const
 }
 
 /// Moments that no muscle makes, or far beyond what all of them make.
-void check_capacity(const SignalTable& table, const MuscleStudy& subject, std::span<const MuscleOutput> outputs,
-                    const EmgRecording& recording, const estimation::RowMatrix& measured) {
+void check_capacity(const SignalTable& table, const MuscleSubject& subject, std::span<const MuscleOutput> outputs,
+                    const EmgRecording& recording) {
   const MusculoskeletalSystem& system = *subject.system;
   std::vector<double> some;
   for (std::size_t k = 0; k < recording.time.size(); k += std::max<std::size_t>(1, recording.time.size() / 20))
@@ -129,8 +129,8 @@ void check_capacity(const SignalTable& table, const MuscleStudy& subject, std::s
       capacity = std::max(capacity, sum);
     }
     bool any = false;
-    for (Eigen::Index k = 0; k < measured.rows(); ++k) {
-      const double value = std::abs(measured(k, signed_index(o)));
+    for (Eigen::Index k = 0; k < recording.measured.rows(); ++k) {
+      const double value = std::abs(recording.measured(k, signed_index(o)));
       any = any || !std::isnan(value);
       if (value > peak) peak = value;
     }
@@ -147,9 +147,16 @@ void check_capacity(const SignalTable& table, const MuscleStudy& subject, std::s
   }
 }
 
+/// Outputs at the times that are compared.
+struct ComparedOutputs {
+  std::vector<double> time;
+  estimation::RowMatrix values;
+};
+
 /// Rows of the outputs inside the times that angles and EMG share, no denser than needed, without limit forces.
-void take_outputs(const MeasuredMotion& measured, const MuscleStudy& subject, const EmgSettings& settings,
-                  std::span<const MuscleOutput> outputs, double end, EmgRecording& recording) {
+ComparedOutputs outputs_within(const MeasuredMotion& measured, const MuscleSubject& subject,
+                               const EmgSettings& settings, std::span<const MuscleOutput> outputs,
+                               const EmgRecording& recording, double end) {
   std::vector<Eigen::Index> rows;
   std::size_t inside = 0;
   double last = -kInfinity;
@@ -169,22 +176,24 @@ void take_outputs(const MeasuredMotion& measured, const MuscleStudy& subject, co
                     "clock, and {} common samples after the first {:g} s",
                     measured.time.front(), measured.time.back(), recording.begin, end, kFewest, settings.settle_s));
   const Model& model = subject.system->model();
-  recording.measured.resize(signed_index(rows.size()), signed_index(outputs.size()));
+  ComparedOutputs compared;
+  compared.values.resize(signed_index(rows.size()), signed_index(outputs.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    recording.time.push_back(measured.time[at(rows[k])]);
-    recording.measured.row(signed_index(k)) = measured.values.row(rows[k]);
+    compared.time.push_back(measured.time[at(rows[k])]);
+    compared.values.row(signed_index(k)) = measured.values.row(rows[k]);
     Eigen::VectorXd q = recording.rest, qdot = Eigen::VectorXd::Zero(q.size()), limit = qdot;
     for (std::size_t c = 0; c < recording.angles.coordinate.size(); ++c) {
       if (!recording.angles.coordinate[c]) continue;
-      const auto value = recording.angles.coordinate[c]->evaluate(recording.time.back());
+      const auto value = recording.angles.coordinate[c]->evaluate(compared.time.back());
       q(signed_index(c)) = value.value;
       qdot(signed_index(c)) = value.slope;
     }
     add_limit_forces<double>(model.limit_forces, q.data(), qdot.data(), limit.data());
     for (std::size_t o = 0; o < outputs.size(); ++o)
       if (outputs[o].kind == MuscleOutputKind::kMoment)
-        recording.measured(signed_index(k), signed_index(o)) -= limit(outputs[o].index);
+        compared.values(signed_index(k), signed_index(o)) -= limit(outputs[o].index);
   }
+  return compared;
 }
 
 }  // namespace
@@ -236,15 +245,16 @@ EmgSettings read_emg(const StudyTable& table, const Model& model) {
   return s;
 }
 
-void read_emg_recording(const StudyTable& task, const MuscleStudy& subject, const EmgSettings& settings,
-                        std::span<const MuscleOutput> outputs, const Eigen::VectorXd& rest, std::span<const char> given,
-                        Task& out, std::vector<std::filesystem::path>& inputs, std::vector<std::string>& notes) {
+EmgTask read_emg_recording(const StudyTable& task, const MuscleSubject& subject, const EmgSettings& settings,
+                           std::span<const MuscleOutput> outputs, const Eigen::VectorXd& rest,
+                           std::span<const char> given) {
+  EmgTask read;
   const Model& model = subject.system->model();
   for (const char* key : {"angles", "moments", "emg"}) {
     if (!task.has(key)) task.fail(key, "is missing: a recorded task has angles, moments and emg");
-    inputs.push_back(task.file(key));
+    read.inputs.push_back(task.file(key));
   }
-  EmgRecording recording;
+  EmgRecording& recording = read.recording;
   recording.rest = rest;
   recording.angles = at_key(task, "angles", [&] {
     const SignalTable table = read_signals(task.file("angles"));
@@ -254,7 +264,7 @@ void read_emg_recording(const StudyTable& task, const MuscleStudy& subject, cons
   });
   check_coordinates(task, subject, recording.angles, given);
   for (const std::string& name : recording.angles.beyond_range)
-    notes.push_back(fmt::format("{}: '{}' leaves the model's range", out.name, name));
+    read.notes.push_back(fmt::format("{}: '{}' leaves the model's range", task.text("name"), name));
   recording.emg = at_key(task, "emg", [&] { return read_envelopes(read_signals(task.file("emg")), settings, model); });
   recording.begin = std::max(recording.angles.begin, recording.emg.front().times().front());
   const double end = std::min(recording.angles.end, recording.emg.front().times().back());
@@ -265,17 +275,18 @@ void read_emg_recording(const StudyTable& task, const MuscleStudy& subject, cons
   at_key(task, "moments", [&] {
     const SignalTable table = read_signals(task.file("moments"));
     const MeasuredMotion measured = read_measured_motion(table, model, outputs);
-    take_outputs(measured, subject, settings, outputs, end, recording);
-    check_capacity(table, subject, outputs, recording, recording.measured);
+    ComparedOutputs compared = outputs_within(measured, subject, settings, outputs, recording, end);
+    recording.time = std::move(compared.time);
+    recording.measured = std::move(compared.values);
+    check_capacity(table, subject, outputs, recording);
   });
   const double knots = (end - recording.begin) / settings.error.spacing();
   constexpr double kMostErrors = 3000.0;
   if (settings.error.any() && knots * static_cast<double>(settings.signals.size()) > kMostErrors)
     task.fail("emg", fmt::format("is of {:.3g} s, whose errors are more than {:g} numbers: cut it into several tasks",
                                  end - recording.begin, kMostErrors));
-  out.begin = recording.begin;
-  out.end = end;
-  out.recording = std::move(recording);
+  read.end = end;
+  return read;
 }
 
 }  // namespace veridyn::muscle

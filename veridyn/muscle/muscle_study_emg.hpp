@@ -40,8 +40,16 @@ struct EmgSettings {
 /// @throws InputError with file, line and key: muscles and columns that are not known, with the nearest name.
 [[nodiscard]] EmgSettings read_emg(const StudyTable& emg, const Model& model);
 
-/// A recorded task (`[[task]]` with `angles`, `moments` and `emg`): sets its recording, begin and end. The model's
-/// limit forces are subtracted from the moments, which are those of inverse dynamics: what is left is the muscles'.
+/// What a recorded task is of.
+struct EmgTask {
+  EmgRecording recording;
+  double end = 0.0;  ///< of what angles and EMG share [s]; they begin with the recording
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> notes;
+};
+
+/// A recorded task (`[[task]]` with `angles`, `moments` and `emg`). The model's limit forces are subtracted from the
+/// moments, which are those of inverse dynamics: what is left is the muscles'.
 ///
 ///     angles = "curl_ik.mot"         # coordinates
 ///     moments = "curl_id.sto"        # outputs: COORDINATE_moment, MUSCLE_fiber_length, ...
@@ -52,8 +60,8 @@ struct EmgSettings {
 /// degrees taken for radians, gaps, cells without a number, a raw signal or one in volts in place of an envelope,
 /// muscles without a column (with the nearest name), moments that the muscles could never make (N mm), files whose
 /// times do not overlap.
-void read_emg_recording(const StudyTable& task, const MuscleStudy& subject, const EmgSettings& settings,
-                        std::span<const MuscleOutput> outputs, const Eigen::VectorXd& rest, std::span<const char> given,
-                        Task& out, std::vector<std::filesystem::path>& inputs, std::vector<std::string>& notes);
+[[nodiscard]] EmgTask read_emg_recording(const StudyTable& task, const MuscleSubject& subject,
+                                         const EmgSettings& settings, std::span<const MuscleOutput> outputs,
+                                         const Eigen::VectorXd& rest, std::span<const char> given);
 
 }  // namespace veridyn::muscle

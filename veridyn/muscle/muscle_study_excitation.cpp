@@ -60,7 +60,7 @@ MuscleControls controls_of(const SignalTable& signals, const MusculoskeletalSyst
           read_reserves(signals, system, reserve_force, interpolation)};
 }
 
-void read_excitations(const StudyTable& motion, MuscleStudy& study) {
+ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MuscleStudy& study) {
   const Model& model = study.system->model();
   const StudyTable table = motion.table_or_empty("excitation");
   std::vector<double> now(model.muscles.size(), table.has("default") ? excitation(table, "default") : 0.05);
@@ -72,10 +72,9 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
   if (motion.has("excitation_file")) {
     if (!steps.empty()) motion.fail("excitation_step", "and motion.excitation_file exclude each other");
     const std::filesystem::path path = motion.file("excitation_file");
-    study.inputs.push_back(path);
-    study.controls =
-        controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force);
-    return;
+    return {
+        .value = controls_of(read_signals(path), *study.system, now, read_interpolation(motion), study.reserve_force),
+        .inputs = {path}};
   }
   std::vector<double> times{study.begin}, values = now;
   for (const StudyTable& step : steps) {
@@ -91,7 +90,8 @@ void read_excitations(const StudyTable& motion, MuscleStudy& study) {
     times.push_back(time);
     values.insert(values.end(), now.begin(), now.end());
   }
-  study.controls.excitation = {std::move(times), std::move(values), now.size(), Interpolation::kHold};
+  return {
+      .value = {.excitation = {std::move(times), std::move(values), now.size(), Interpolation::kHold}, .reserve = {}}};
 }
 
 }  // namespace veridyn::muscle::internal

@@ -12,7 +12,8 @@ namespace {
 constexpr Words<RampShape, 3> kShapes{
     {{"minimum jerk", RampShape::kMinimumJerk}, {"half sine", RampShape::kHalfSine}, {"linear", RampShape::kLinear}}};
 
-void read_ramps(const StudyTable& motion, MuscleStudy& study) {
+/// By coordinate.
+std::vector<std::vector<Ramp>> read_ramps(const StudyTable& motion, const MuscleStudy& study) {
   const Model& model = study.system->model();
   const StudyTable pose = motion.table_or_empty("start");
   std::vector<std::vector<Ramp>> ramps(model.coordinates.size());
@@ -34,9 +35,7 @@ void read_ramps(const StudyTable& motion, MuscleStudy& study) {
                             .begin = study.begin};
     ramps[c].push_back(read_ramp(table, coordinate, origin));
   }
-  for (std::size_t c = 0; c < ramps.size(); ++c) {
-    if (!ramps[c].empty()) study.motion.coordinate[c] = ramp_spline(ramps[c]);
-  }
+  return ramps;
 }
 
 }  // namespace
@@ -65,24 +64,28 @@ Ramp read_ramp(const StudyTable& table, const Coordinate& coordinate, const Ramp
   return ramp;
 }
 
-void read_desired_motion(const StudyTable& motion, MuscleStudy& study) {
+DesiredMotion read_desired_motion(const StudyTable& motion, const MuscleStudy& study) {
   const Model& model = study.system->model();
-  read_ramps(motion, study);
+  DesiredMotion desired{.motion = study.motion, .coordinates = {}};
+  const std::vector<std::vector<Ramp>> ramps = read_ramps(motion, study);
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
+    std::optional<numerics::PiecewisePolynomial>& own = desired.motion.coordinate[c];
+    if (!ramps[c].empty()) own = ramp_spline(ramps[c]);
     if (study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) continue;
-    if (study.motion.coordinate[c]) {
-      study.desired_coordinates.push_back(model.coordinates[c].name);
+    if (own) {
+      desired.coordinates.push_back(model.coordinates[c].name);
     } else {
-      study.motion.coordinate[c] = resting_spline(study.start.q(static_cast<Eigen::Index>(c)));
+      own = resting_spline(study.start.q(static_cast<Eigen::Index>(c)));
     }
   }
-  if (study.desired_coordinates.empty()) {
+  if (desired.coordinates.empty()) {
     motion.fail("", fmt::format("method = \"{}\" needs a motion: file = \"x.mot\" or [[motion.ramp]]",
                                 method_name(study.method)));
   }
-  study.motion.missing.clear();
-  study.motion.begin = std::min(study.motion.begin, study.begin);
-  study.motion.end = std::max(study.motion.end, study.end);
+  desired.motion.missing.clear();
+  desired.motion.begin = std::min(desired.motion.begin, study.begin);
+  desired.motion.end = std::max(desired.motion.end, study.end);
+  return desired;
 }
 
 }  // namespace veridyn::muscle::internal

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "veridyn/muscle/model/ramp.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
 
 /// The parts that `read_study` reads one after the other, and what they share. Each throws InputError with file, line
-/// and key.
+/// and key. A part that takes a study looks at what was read of it before.
 namespace veridyn::muscle::internal {
 
 /// Index of a muscle or a coordinate that the key of a table names.
@@ -20,7 +22,7 @@ namespace veridyn::muscle::internal {
 [[nodiscard]] double coordinate_value(const StudyTable& table, const std::string& key, const Coordinate& coordinate);
 /// Refuses a coordinate that follows another one.
 void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t coordinate,
-                       const MuscleStudy& study);
+                       const MuscleSubject& subject);
 
 /// What a study's words for an enumeration mean.
 template <typename Value, std::size_t kWords>
@@ -38,11 +40,31 @@ template <typename Value, std::size_t kWords>
   return words.front().second;
 }
 
-/// `[subject]`: the model, its parameters, loads and paths, as a system.
-void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress);
+/// A value, and what to remember of the files that it was read from.
+template <typename Value>
+struct ReadFromFiles {
+  Value value;
+  std::vector<std::filesystem::path> inputs = {};
+  std::vector<std::string> warnings = {};
+};
+
+/// The value, where `subject` remembers the rest.
+template <typename Value>
+[[nodiscard]] Value remembered(ReadFromFiles<Value> read, MuscleSubject& subject) {
+  subject.inputs.insert(subject.inputs.end(), read.inputs.begin(), read.inputs.end());
+  subject.warnings.insert(subject.warnings.end(), read.warnings.begin(), read.warnings.end());
+  return std::move(read.value);
+}
+
+/// Title and `[subject]` of a study: the model, its parameters, loads and paths, as a system.
+[[nodiscard]] MuscleSubject read_subject(const StudyTable& root, Progress& progress);
+/// `accuracy` of simulations, from 1e-13 to 0.1.
+[[nodiscard]] double read_accuracy(const StudyTable& table, double otherwise);
+/// `reserve_force`, of an actuator that helps each free coordinate [N m or N].
+[[nodiscard]] double read_reserve_force(const StudyTable& table, double otherwise);
 /// A load as `[[subject.load]]` has it.
 [[nodiscard]] HeldLoad read_load(const StudyTable& table, const Model& model);
-/// Where the next ramp of a coordinate begins.
+/// Where the next ramp of a coordinate begins; view of the ramp before it.
 struct RampOrigin {
   const Ramp* before = nullptr;  ///< of the same coordinate
   double rest = 0.0;             ///< without one: where the coordinate is [rad] or [m]
@@ -61,12 +83,17 @@ struct RampOrigin {
 /// Options of computed muscle control as `[motion.control]` has them: window, gains, least and greatest control.
 [[nodiscard]] ControlOptions read_control_options(const StudyTable& table);
 /// `[motion.start]`, `[motion.start_speed]`.
-void read_start(const StudyTable& motion, MuscleStudy& study);
-/// `start_file`: states as `simulate` and OpenSim write them.
-void read_start_file(const StudyTable& motion, MuscleStudy& study);
+[[nodiscard]] StartState read_start(const StudyTable& motion, const MuscleStudy& study);
+/// `start_file`: states as `simulate` and OpenSim write them; the study's start where it has none.
+[[nodiscard]] ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MuscleStudy& study);
 /// `[motion.excitation]`, `[[motion.excitation_step]]`, `excitation_file`.
-void read_excitations(const StudyTable& motion, MuscleStudy& study);
-/// The motion to follow: `file` (read before), `[[motion.ramp]]`, and rest for all other coordinates.
-void read_desired_motion(const StudyTable& motion, MuscleStudy& study);
+[[nodiscard]] ReadFromFiles<MuscleControls> read_excitations(const StudyTable& motion, const MuscleStudy& study);
+/// A motion to follow, and the coordinates whose motion the study gives.
+struct DesiredMotion {
+  Motion motion;
+  std::vector<std::string> coordinates;
+};
+/// The motion to follow: `file` (the study's, read before), `[[motion.ramp]]`, and rest for all other coordinates.
+[[nodiscard]] DesiredMotion read_desired_motion(const StudyTable& motion, const MuscleStudy& study);
 
 }  // namespace veridyn::muscle::internal

@@ -47,10 +47,10 @@ SensitivityStudyOptions read_options(const StudyTable& table, std::uint64_t seed
 SensitivityStudy read_sensitivity_study(const Study& source, Progress& progress) {
   const StudyTable& root = source.root();
   SensitivityStudy study;
-  study.title = root.text_or("title", "");
   study.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
   study.options = read_options(root.table_or_empty("sensitivity"), study.seed);
-  internal::read_subject(root.table("subject"), study.subject, progress);
+  study.subject = internal::read_subject(root, progress);
+  study.title = study.subject.title;
   const Model& model = study.subject.system->model();
   if (study.subject.system->path_source() == PathSource::kAsOpenSim)
     root.table("subject").fail("paths", "= \"opensim\" is for comparisons only; take \"exact\" or \"fitted\"");
@@ -67,7 +67,6 @@ SensitivityStudy read_sensitivity_study(const Study& source, Progress& progress)
   study.inputs = study.subject.inputs;
   study.inputs.insert(study.inputs.end(), read.inputs.begin(), read.inputs.end());
   for (const char* other : {"motion", "identify", "person", "validate", "emg"}) root.accept(other);
-  if (study.title.empty()) study.title = model.name;
   root.finish();
   return study;
 }

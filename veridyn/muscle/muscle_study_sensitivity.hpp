@@ -16,7 +16,7 @@ namespace veridyn::muscle {
 /// A study of which muscle moves which task, read and checked.
 struct SensitivityStudy {
   std::string title;
-  MuscleStudy subject;  ///< its system; without a motion
+  MuscleSubject subject;
   std::vector<Task> tasks;
   SensitivityStudyOptions options;
   std::uint64_t seed = 1;

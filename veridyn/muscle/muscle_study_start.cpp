@@ -36,14 +36,14 @@ int state_column(const SignalTable& table, std::string_view name, std::string_vi
 
 }  // namespace
 
-void read_start(const StudyTable& motion, MuscleStudy& study) {
+StartState read_start(const StudyTable& motion, const MuscleStudy& study) {
   const Model& model = study.system->model();
-  study.start = default_start(model);
+  StartState start = default_start(model);
   const StudyTable pose = motion.table_or_empty("start");
   for (const std::string& key : pose.keys()) {
     const std::size_t c = coordinate_of(pose, key, key, model);
     check_not_coupled(pose, key, c, study);
-    study.start.q(static_cast<Eigen::Index>(c)) = coordinate_value(pose, key, model.coordinates[c]);
+    start.q(static_cast<Eigen::Index>(c)) = coordinate_value(pose, key, model.coordinates[c]);
     if (study.method != MuscleMethod::kForward && study.motion.coordinate[c])
       pose.fail(key, "and motion.file both say where it is");
   }
@@ -52,16 +52,19 @@ void read_start(const StudyTable& motion, MuscleStudy& study) {
     const std::size_t c = coordinate_of(speed, key, key, model);
     check_not_coupled(speed, key, c, study);
     const double value = speed.number(key, model.coordinates[c].unit() + "/s");
-    if (study.method == MuscleMethod::kForward) study.start.qdot(static_cast<Eigen::Index>(c)) = value;
+    if (study.method == MuscleMethod::kForward) start.qdot(static_cast<Eigen::Index>(c)) = value;
   }
+  return start;
 }
 
-void read_start_file(const StudyTable& motion, MuscleStudy& study) {
-  if (!motion.has("start_file")) return;
+ReadFromFiles<StartState> read_start_file(const StudyTable& motion, const MuscleStudy& study) {
+  ReadFromFiles<StartState> read{.value = study.start};
+  if (!motion.has("start_file")) return read;
   const Model& model = study.system->model();
   const std::filesystem::path path = motion.file("start_file");
   const SignalTable table = read_signals(path);
-  study.inputs.push_back(path);
+  read.inputs.push_back(path);
+  StartState& start = read.value;
   const double slack = 1e-9 * (1.0 + std::abs(study.begin));
   if (study.begin < table.time.front() - slack || study.begin > table.time.back() + slack) {
     motion.fail("start_file", fmt::format("has no state at {:g} s, only from {:g} to {:g} s", study.begin,
@@ -79,8 +82,8 @@ void read_start_file(const StudyTable& motion, MuscleStudy& study) {
     const bool degrees = table.rotations_in_degrees && coordinate.motion == CoordinateMotion::kRotational;
     const double unit = degrees ? kDegree : 1.0;
     any = any || state_column(table, coordinate.name, "value") >= 0;
-    study.start.q(i) = unit * value(coordinate.name, "value", study.start.q(i) / unit);
-    study.start.qdot(i) = unit * value(coordinate.name, "speed", study.start.qdot(i) / unit);
+    start.q(i) = unit * value(coordinate.name, "value", start.q(i) / unit);
+    start.qdot(i) = unit * value(coordinate.name, "speed", start.qdot(i) / unit);
   }
   if (!any) motion.fail("start_file", fmt::format("{} has no column of a coordinate's value", path.string()));
   Eigen::VectorXd activation(muscles), fiber(muscles);
@@ -97,12 +100,13 @@ void read_start_file(const StudyTable& motion, MuscleStudy& study) {
     all = all && !std::isnan(activation(m)) && !std::isnan(fiber(m));
   }
   if (all) {
-    study.start.activation = activation;
-    study.start.fiber_length = fiber;
+    start.activation = activation;
+    start.fiber_length = fiber;
   } else {
-    study.warnings.push_back(fmt::format(
+    read.warnings.push_back(fmt::format(
         "{} does not have activation and fibre length of every muscle: muscles start at rest", path.string()));
   }
+  return read;
 }
 
 }  // namespace veridyn::muscle::internal

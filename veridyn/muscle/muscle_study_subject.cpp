@@ -80,38 +80,44 @@ OsimFile read_model(const StudyTable& subject, const std::string& key, std::vect
   return load_model(name);
 }
 
-/// L0 and LS of the muscles from those of a reference with the same names; what has no match keeps its own and is
-/// named.
-void match_to_reference(const StudyTable& subject, MuscleStudy& study, Progress& progress) {
+/// L0 and LS of a model's muscles from those of a reference with the same names.
+struct MatchedLengths {
+  Model model;
+  std::vector<ParameterChange> changes;
+};
+
+/// What has no match keeps its own lengths and is named.
+ReadFromFiles<MatchedLengths> matched_to_reference(const StudyTable& subject, const Model& model, Progress& progress) {
   constexpr double kPoorMatch = 0.05;
   const std::string key = "fiber_lengths_from";
-  const OsimFile file = read_model(subject, key, study.inputs);
+  ReadFromFiles<MatchedLengths> read{.value = {.model = model, .changes = {}}};
+  const OsimFile file = read_model(subject, key, read.inputs);
   progress.stage("matching normalised fibre lengths to the reference");
   const SystemOptions paths_only{.without_unsupported = true};
-  const MusculoskeletalSystem reference(file.model(), paths_only), own(study.written, paths_only);
-  std::size_t matched = 0;
+  const MusculoskeletalSystem reference(file.model(), paths_only), own(model, paths_only);
   for (const MatchedFiber& fiber : match_fiber_lengths(reference, own)) {
     const std::string& name = own.model().muscles[at(fiber.muscle)].name();
     if (!fiber.usable()) {
-      study.warnings.push_back(fmt::format("{} keeps its own fibre and tendon lengths: {}", name, fiber.obstacle));
+      read.warnings.push_back(fmt::format("{} keeps its own fibre and tendon lengths: {}", name, fiber.obstacle));
       continue;
     }
-    ++matched;
     if (fiber.error > kPoorMatch)
-      study.warnings.push_back(
+      read.warnings.push_back(
           fmt::format("{}: normalised fibre lengths still differ from the reference's by {:.2g} (root mean square): "
                       "another path, or other curves",
                       name, fiber.error));
-    MusculotendonParameters<double>& start_values =
-        study.written.muscles[at(study.written.muscle(name))].parameters.musculotendon;
+    MusculotendonParameters<double>& lengths =
+        read.value.model.muscles[at(model.muscle(name))].parameters.musculotendon;
     const auto set = [&](const char* parameter, double& target, double value) {
-      study.changes.push_back({name, parameter, target, value});
+      read.value.changes.push_back({name, parameter, target, value});
       target = value;
     };
-    set("optimal_fiber_length", start_values.optimal_fiber_length, fiber.optimal_fiber_length);
-    set("tendon_slack_length", start_values.tendon_slack_length, fiber.tendon_slack_length);
+    set("optimal_fiber_length", lengths.optimal_fiber_length, fiber.optimal_fiber_length);
+    set("tendon_slack_length", lengths.tendon_slack_length, fiber.tendon_slack_length);
   }
-  if (matched == 0) subject.fail(key, fmt::format("has no muscle that matches one of '{}'", study.model_name));
+  if (read.value.changes.empty())
+    subject.fail(key, fmt::format("has no muscle that matches one of '{}'", subject.text("model")));
+  return read;
 }
 
 }  // namespace
@@ -154,40 +160,49 @@ double coordinate_value(const StudyTable& table, const std::string& key, const C
   return value;
 }
 
-void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t c, const MuscleStudy& study) {
-  if (study.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) {
+void check_not_coupled(const StudyTable& table, const std::string& key, std::size_t c, const MuscleSubject& subject) {
+  if (subject.system->reduction().role(static_cast<int>(c)) == CoordinateRole::kCoupled) {
     table.fail(key, fmt::format("'{}' follows another coordinate through a coupler; set that one",
-                                study.system->model().coordinates[c].name));
+                                subject.system->model().coordinates[c].name));
   }
 }
 
-void read_subject(const StudyTable& subject, MuscleStudy& study, Progress& progress) {
-  study.model_name = subject.text("model");
-  study.file.emplace(read_model(subject, "model", study.inputs));
-  study.written = study.file->model();
-  if (subject.has("fiber_lengths_from")) match_to_reference(subject, study, progress);
-  read_parameters(subject.table_or_empty("parameters"), study.written, study.changes);
-  Model model = study.written;
-  for (const StudyTable& table : subject.tables("load")) {
-    study.loads.push_back(read_load(table, model));
-    const HeldLoad& load = study.loads.back();
+MuscleSubject read_subject(const StudyTable& root, Progress& progress) {
+  const StudyTable table = root.table("subject");
+  MuscleSubject subject;
+  subject.title = root.text_or("title", "");
+  subject.model_name = table.text("model");
+  subject.file.emplace(read_model(table, "model", subject.inputs));
+  subject.written = subject.file->model();
+  if (table.has("fiber_lengths_from")) {
+    MatchedLengths matched = remembered(matched_to_reference(table, subject.written, progress), subject);
+    subject.written = std::move(matched.model);
+    subject.changes = std::move(matched.changes);
+  }
+  read_parameters(table.table_or_empty("parameters"), subject.written, subject.changes);
+  Model model = subject.written;
+  for (const StudyTable& of : table.tables("load")) {
+    subject.loads.push_back(read_load(of, model));
+    const HeldLoad& load = subject.loads.back();
     add_load(model, load.body, load.mass, load.location);
   }
   SystemOptions options;
   constexpr Words<PathSource, 3> kSources{
       {{"exact", PathSource::kExact}, {"fitted", PathSource::kFitted}, {"opensim", PathSource::kAsOpenSim}}};
-  options.paths = word_or_first(subject, "paths", kSources);
-  options.locked = coordinate_list(subject, "locked", model);
-  options.unlocked = coordinate_list(subject, "unlocked", model);
+  options.paths = word_or_first(table, "paths", kSources);
+  options.locked = coordinate_list(table, "locked", model);
+  options.unlocked = coordinate_list(table, "unlocked", model);
   for (const std::string& name : options.unlocked) {
     if (std::find(options.locked.begin(), options.locked.end(), name) != options.locked.end())
-      subject.fail("unlocked", fmt::format("names '{}', which subject.locked names too", name));
+      table.fail("unlocked", fmt::format("names '{}', which subject.locked names too", name));
   }
-  options.without_unsupported = subject.flag_or("without_unsupported", false);
+  options.without_unsupported = table.flag_or("without_unsupported", false);
   if (options.paths == PathSource::kFitted) progress.stage("fitting polynomials to the muscle paths");
-  study.system = std::make_unique<MusculoskeletalSystem>(std::move(model), options);
-  if (study.system->reduction().free().empty())
-    subject.fail("locked", "leaves no coordinate that could move: all are locked or coupled");
+  subject.system = std::make_unique<MusculoskeletalSystem>(std::move(model), options);
+  if (subject.system->reduction().free().empty())
+    table.fail("locked", "leaves no coordinate that could move: all are locked or coupled");
+  if (subject.title.empty()) subject.title = subject.system->model().name;
+  return subject;
 }
 
 }  // namespace veridyn::muscle::internal

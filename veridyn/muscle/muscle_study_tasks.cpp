@@ -18,10 +18,11 @@ namespace {
 /// What [tasks] says for all of them.
 struct SharedSettings {
   ElbowTaskOptions elbow;
+  double accuracy = StudyTasks{}.accuracy;
   double reserve_force = 1.0;
 };
 
-SharedSettings read_shared(const StudyTable& table, const MuscleStudy& subject, StudyTasks& out) {
+SharedSettings read_shared(const StudyTable& table, const MuscleSubject& subject) {
   SharedSettings s;
   s.elbow.elbow = table.text_or("elbow", "");
   s.elbow.shoulder = table.text_or("shoulder", "");
@@ -46,14 +47,11 @@ SharedSettings read_shared(const StudyTable& table, const MuscleStudy& subject, 
     table.fail("rate", fmt::format("{:g} Hz makes more than a million samples", s.elbow.rate_Hz));
   if (s.elbow.rate_Hz * (s.elbow.start + s.elbow.duration) < 2.0)
     table.fail("rate", fmt::format("{:g} Hz leaves fewer than two samples", s.elbow.rate_Hz));
-  out.accuracy = table.positive_or("accuracy", "1", out.accuracy);
-  if (!(out.accuracy >= 1e-13 && out.accuracy <= 0.1))
-    table.fail("accuracy", fmt::format("{:g} must be from 1e-13 to 0.1", out.accuracy));
-  s.reserve_force = table.number_or("reserve_force", "N m", s.reserve_force);
-  if (!(s.reserve_force >= 0.0)) table.fail("reserve_force", fmt::format("{:g} must be >= 0", s.reserve_force));
+  s.accuracy = internal::read_accuracy(table, s.accuracy);
+  s.reserve_force = internal::read_reserve_force(table, s.reserve_force);
   s.elbow.control = internal::read_control_options(table.table_or_empty("control"));
   s.elbow.control.reserve_force = s.reserve_force;
-  s.elbow.control.accuracy = out.accuracy;
+  s.elbow.control.accuracy = s.accuracy;
   return s;
 }
 
@@ -71,16 +69,22 @@ std::vector<int> numbers_of(const StudyTable& table, const char* key) {
   return numbers;
 }
 
-void add_elbow_tasks(const StudyTable& table, SharedSettings settings, const MuscleStudy& subject, StudyTasks& out) {
-  const Model& model = subject.system->model();
-  const bool any = table.has("numbers") || table.has("hold_out");
-  if (!any) return;
+/// Elbow tasks that `[tasks]` names, and which of all it leaves out.
+struct ElbowTasks {
+  std::vector<Task> tasks;
+  std::vector<std::string> notes;
+};
+
+ElbowTasks read_elbow_tasks(const StudyTable& table, const ElbowTaskOptions& stated, const Model& model) {
+  if (!table.has("numbers") && !table.has("hold_out")) return {};
+  ElbowTaskOptions options;
   try {
-    settings.elbow = resolved(model, settings.elbow);
+    options = resolved(model, stated);
   } catch (const InputError& error) {
     const std::string what = error.what();
     table.fail(error.place(), what.substr(std::min(what.size(), error.place().size() + 2)));
   }
+  ElbowTasks read;
   const bool all = table.is_text("numbers");
   if (all && table.text("numbers") != "all") table.fail("numbers", "must be numbers of tasks or \"all\"");
   const std::vector<int> held_out = table.has("hold_out") ? numbers_of(table, "hold_out") : std::vector<int>();
@@ -90,59 +94,69 @@ void add_elbow_tasks(const StudyTable& table, SharedSettings settings, const Mus
     if (is_held_out(n)) table.fail("hold_out", fmt::format("has task {}, which numbers has too", n));
   }
   for (int n = 1; all && n <= kElbowTasks; ++n) {
-    const std::string why = obstacle(model, settings.elbow, n);
-    if (!why.empty()) out.notes.push_back(fmt::format("left out: {}: {}", elbow_task_name(n), why));
+    const std::string why = obstacle(model, options, n);
+    if (!why.empty()) read.notes.push_back(fmt::format("left out: {}: {}", elbow_task_name(n), why));
     if (why.empty() && !is_held_out(n)) used.push_back(n);
   }
   const auto add = [&](const char* key, const std::vector<int>& numbers, bool hold_out) {
     for (const int n : numbers) {
-      if (const std::string why = obstacle(model, settings.elbow, n); !why.empty())
+      if (const std::string why = obstacle(model, options, n); !why.empty())
         table.fail(key, fmt::format("{}: {}", elbow_task_name(n), why));
-      out.tasks.push_back(make_elbow_task(model, settings.elbow, n));
-      out.tasks.back().hold_out = hold_out;
+      read.tasks.push_back(make_elbow_task(model, options, n));
+      read.tasks.back().hold_out = hold_out;
     }
   };
   add("numbers", used, false);
   add("hold_out", held_out, true);
+  return read;
 }
 
-/// The desired motion of a file, as far as the table names one.
-void read_desired_file(const StudyTable& table, const Model& model, Task& task, StudyTasks& out) {
-  if (!table.has("file")) return;
+/// The desired motion of `file`; without it one that leaves every coordinate open.
+internal::ReadFromFiles<Motion> read_desired_file(const StudyTable& table, const Model& model) {
+  internal::ReadFromFiles<Motion> read{.value = {}};
+  read.value.coordinate.resize(model.coordinates.size());
+  if (!table.has("file")) return read;
   MotionOptions options;
   if (table.has("low_pass")) options.low_pass_Hz = table.positive("low_pass", "1/s");
-  const std::filesystem::path path = table.file("file");
-  const SignalTable signals = read_signals(path);
-  task.desired = make_motion(signals, model, options);
+  read.inputs.push_back(table.file("file"));
+  const SignalTable signals = read_signals(read.inputs.front());
+  read.value = make_motion(signals, model, options);
   refuse_degrees(signals, model);
-  task.begin = task.desired.begin;
-  task.end = task.desired.end;
-  out.inputs.push_back(path);
+  return read;
 }
 
-void read_held(const StudyTable& table, const MuscleStudy& subject, Task& task) {
+/// Poses of single coordinates: `[task.held]`, `[task.start]`.
+std::vector<HeldCoordinate> read_pose(const StudyTable& table, const MuscleSubject& subject) {
   const Model& model = subject.system->model();
+  std::vector<HeldCoordinate> pose;
   for (const std::string& key : table.keys()) {
     const std::size_t c = internal::coordinate_of(table, key, key, model);
     internal::check_not_coupled(table, key, c, subject);
-    const double value = internal::coordinate_value(table, key, model.coordinates[c]);
-    task.held.push_back({static_cast<int>(c), value});
-    task.desired.coordinate[c] = resting_spline(value);
+    pose.push_back({static_cast<int>(c), internal::coordinate_value(table, key, model.coordinates[c])});
   }
+  return pose;
 }
 
-/// Ramps, and rest for what neither moves nor is held. Whether anything moves.
-bool read_task_ramps(const StudyTable& table, const MuscleStudy& subject, Task& task) {
+bool is_held(std::span<const HeldCoordinate> held, std::size_t c) {
+  return std::any_of(held.begin(), held.end(), [&](const HeldCoordinate& h) { return at(h.coordinate) == c; });
+}
+
+/// How a task moves: what it began with, its ramps, and rest for all other coordinates.
+struct TaskMotion {
+  Motion desired;
+  double end = 0.0;    ///< of its last ramp, or of what it began with [s]
+  bool moves = false;  ///< any coordinate
+};
+
+/// @param task with the motion of its file, and with what it holds
+TaskMotion read_task_ramps(const StudyTable& table, const MuscleSubject& subject, const Task& task) {
   const Model& model = subject.system->model();
   const Eigen::VectorXd rest = model.default_pose();
   const StudyTable pose = table.table_or_empty("start");
   std::vector<std::vector<Ramp>> ramps(model.coordinates.size());
   std::vector<double> at_rest(rest.begin(), rest.end());
-  for (const std::string& key : pose.keys()) {
-    const std::size_t c = internal::coordinate_of(pose, key, key, model);
-    internal::check_not_coupled(pose, key, c, subject);
-    at_rest[c] = internal::coordinate_value(pose, key, model.coordinates[c]);
-  }
+  for (const HeldCoordinate& start : read_pose(pose, subject)) at_rest[at(start.coordinate)] = start.value;
+  TaskMotion motion{.desired = task.desired, .end = task.end};
   for (const StudyTable& ramp : table.tables("ramp")) {
     const std::string name = ramp.text("coordinate");
     const std::size_t c = internal::coordinate_of(ramp, "coordinate", name, model);
@@ -157,49 +171,48 @@ bool read_task_ramps(const StudyTable& table, const MuscleStudy& subject, Task& 
                                             .rest_is_given = pose.has(name),
                                             .rest_key = pose.path(),
                                             .begin = task.begin}));
-    task.end = std::max(task.end, ramps[c].back().start + ramps[c].back().duration);
+    motion.end = std::max(motion.end, ramps[c].back().start + ramps[c].back().duration);
   }
-  bool moves = false;
   for (std::size_t c = 0; c < model.coordinates.size(); ++c) {
-    const bool held =
-        std::any_of(task.held.begin(), task.held.end(), [&](const auto& h) { return at(h.coordinate) == c; });
-    moves = moves || !ramps[c].empty() || (task.desired.coordinate[c] && !held);
-    if (!ramps[c].empty()) task.desired.coordinate[c] = ramp_spline(ramps[c]);
-    if (!task.desired.coordinate[c] &&
-        subject.system->reduction().role(static_cast<int>(c)) != CoordinateRole::kCoupled)
-      task.desired.coordinate[c] = resting_spline(at_rest[c]);
+    std::optional<numerics::PiecewisePolynomial>& own = motion.desired.coordinate[c];
+    motion.moves = motion.moves || !ramps[c].empty() || (own && !is_held(task.held, c));
+    if (!ramps[c].empty()) own = ramp_spline(ramps[c]);
+    if (!own && subject.system->reduction().role(static_cast<int>(c)) != CoordinateRole::kCoupled)
+      own = resting_spline(at_rest[c]);
   }
-  return moves;
+  return motion;
 }
 
-/// `measured` and `excitation_file`.
-void read_recording(const StudyTable& table, const MuscleStudy& subject, const SharedSettings& settings,
-                    std::span<const MuscleOutput> outputs, Task& task, StudyTasks& out) {
-  const Model& model = subject.system->model();
-  if (table.has("excitation_file")) {
-    const std::filesystem::path path = table.file("excitation_file");
-    const SignalTable signals = read_signals(path);
-    const std::vector<double> least(model.muscles.size(), settings.elbow.control.min_control);
-    task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table),
-                                          settings.reserve_force);
-    if (!table.has("measured") && !table.has("file") && !table.has("duration")) {
-      task.begin = signals.time.front();
-      task.end = signals.time.back();
-    }
-    const double slack = 0.05 * (task.end - task.begin);
-    if (!table.has("measured") && (signals.time.front() > task.begin + slack || signals.time.back() < task.end - slack))
-      table.fail("excitation_file", fmt::format("has {:g} .. {:g} s, the task {:g} .. {:g} s", signals.time.front(),
-                                                signals.time.back(), task.begin, task.end));
-    out.inputs.push_back(path);
+/// The task with the controls of its `excitation_file`, and their times where nothing else says how long it is.
+internal::ReadFromFiles<Task> with_controls(const StudyTable& table, const MuscleSubject& subject,
+                                            const SharedSettings& settings, Task task) {
+  if (!table.has("excitation_file")) return {.value = std::move(task)};
+  const std::filesystem::path path = table.file("excitation_file");
+  const SignalTable signals = read_signals(path);
+  const std::vector<double> least(subject.system->model().muscles.size(), settings.elbow.control.min_control);
+  task.controls = internal::controls_of(signals, *subject.system, least, internal::read_interpolation(table),
+                                        settings.reserve_force);
+  if (!table.has("measured") && !table.has("file") && !table.has("duration")) {
+    task.begin = signals.time.front();
+    task.end = signals.time.back();
   }
-  if (!table.has("measured")) return;
+  const double slack = 0.05 * (task.end - task.begin);
+  if (!table.has("measured") && (signals.time.front() > task.begin + slack || signals.time.back() < task.end - slack))
+    table.fail("excitation_file", fmt::format("has {:g} .. {:g} s, the task {:g} .. {:g} s", signals.time.front(),
+                                              signals.time.back(), task.begin, task.end));
+  return {.value = std::move(task), .inputs = {path}};
+}
+
+/// The task with what was `measured` of it, at those times.
+internal::ReadFromFiles<Task> with_measured(const StudyTable& table, const MuscleSubject& subject,
+                                            std::span<const MuscleOutput> outputs, Task task) {
+  if (!table.has("measured")) return {.value = std::move(task)};
   if (!task.controls)
     table.fail("measured",
                "needs excitation_file, the controls with which it was performed: those computed for the "
                "standard model are not this person's");
   const std::filesystem::path path = table.file("measured");
-  task.measured = read_measured_motion(read_signals(path), model, outputs);
-  out.inputs.push_back(path);
+  task.measured = read_measured_motion(read_signals(path), subject.system->model(), outputs);
   const std::vector<double>& time = task.measured->time;
   task.begin = time.front();
   task.end = time.back();
@@ -208,23 +221,21 @@ void read_recording(const StudyTable& table, const MuscleStudy& subject, const S
     const double first = task.measured->values(0, signed_index(j));
     const auto c = at(outputs[j].index);
     if (outputs[j].kind != MuscleOutputKind::kValue || !std::isfinite(first)) continue;
-    const bool held =
-        std::any_of(task.held.begin(), task.held.end(), [&](const auto& h) { return at(h.coordinate) == c; });
-    if (!held) task.desired.coordinate[c] = resting_spline(first);
+    if (!is_held(task.held, c)) task.desired.coordinate[c] = resting_spline(first);
   }
   const auto covers = task.controls->excitation.times();
   const double step = time.size() > 1 ? time[1] - time[0] : 0.0;
   if (!covers.empty() && covers.size() > 1 && (covers.front() > time.front() + step || covers.back() < time.front()))
     table.fail("measured", fmt::format("begins at {:g} s, its controls are from {:g} to {:g} s: they need one clock",
                                        time.front(), covers.front(), covers.back()));
+  return {.value = std::move(task), .inputs = {path}};
 }
 
-/// A task recorded with EMG, or nothing where the study's person performs it.
-bool read_recorded(const StudyTable& table, const MuscleStudy& subject, std::span<const MuscleOutput> outputs,
-                   const EmgSettings* emg, Task& task, StudyTasks& out) {
+/// Whether a task is one recorded with EMG; else the study's person performs it, or it is simulated forward.
+bool is_recorded(const StudyTable& table, bool emg) {
   const char* const keys[] = {"angles", "moments", "emg"};
   const bool any = std::any_of(std::begin(keys), std::end(keys), [&](const char* key) { return table.has(key); });
-  if (emg == nullptr) {
+  if (!emg) {
     for (const char* key : keys)
       if (table.has(key))
         table.fail(key,
@@ -236,49 +247,79 @@ bool read_recorded(const StudyTable& table, const MuscleStudy& subject, std::spa
       table.fail(key,
                  "is of motions that are simulated forward; with [emg] a recorded task has angles, moments and emg");
   }
-  if (!any) return false;
   for (const char* key : {"file", "ramp", "duration", "load"})
-    if (table.has(key)) table.fail(key, "and angles exclude each other: the recording says how the task moves");
-  read_held(table.table_or_empty("held"), subject, task);
-  const Model& model = subject.system->model();
-  Eigen::VectorXd rest = model.default_pose();
-  std::vector<char> given(model.coordinates.size(), 0);
-  for (const HeldCoordinate& held : task.held) {
-    rest(held.coordinate) = held.value;
-    given[at(held.coordinate)] = 1;
-  }
-  const StudyTable pose = table.table_or_empty("start");
-  for (const std::string& key : pose.keys()) {
-    const std::size_t c = internal::coordinate_of(pose, key, key, model);
-    internal::check_not_coupled(pose, key, c, subject);
-    rest(signed_index(c)) = internal::coordinate_value(pose, key, model.coordinates[c]);
-    given[c] = 1;
-  }
-  read_emg_recording(table, subject, *emg, outputs, rest, given, task, out.inputs, out.notes);
-  return true;
+    if (any && table.has(key)) table.fail(key, "and angles exclude each other: the recording says how the task moves");
+  return any;
 }
 
-Task read_task(const StudyTable& table, const MuscleStudy& subject, const SharedSettings& settings,
-               std::span<const MuscleOutput> outputs, const EmgSettings* emg, StudyTasks& out) {
-  Task task{.name = table.text("name")};
-  task.hold_out = table.flag_or("hold_out", false);
-  task.begin = task.end = 0.0;
-  task.rate_Hz = settings.elbow.rate_Hz;
-  task.control = settings.elbow.control;
+/// What all tasks have: name, whether it is held out, settings.
+Task started_task(const StudyTable& table, const ElbowTaskOptions& shared) {
+  return {.name = table.text("name"),
+          .begin = 0.0,
+          .end = 0.0,
+          .rate_Hz = shared.rate_Hz,
+          .control = shared.control,
+          .hold_out = table.flag_or("hold_out", false)};
+}
+
+/// Motion in which what is held rests.
+Motion holding(Motion motion, std::span<const HeldCoordinate> held) {
+  for (const HeldCoordinate& h : held) motion.coordinate[at(h.coordinate)] = resting_spline(h.value);
+  return motion;
+}
+
+/// A task recorded with EMG.
+internal::ReadFromFiles<Task> read_recorded_task(const StudyTable& table, const MuscleSubject& subject,
+                                                 const ElbowTaskOptions& shared, std::span<const MuscleOutput> outputs,
+                                                 const EmgSettings& emg) {
+  Task task = started_task(table, shared);
   const Model& model = subject.system->model();
+  task.held = read_pose(table.table_or_empty("held"), subject);
   task.desired.coordinate.resize(model.coordinates.size());
-  if (read_recorded(table, subject, outputs, emg, task, out)) return task;
-  read_desired_file(table, model, task, out);
-  read_held(table.table_or_empty("held"), subject, task);
+  task.desired = holding(std::move(task.desired), task.held);
+  Eigen::VectorXd rest = model.default_pose();
+  std::vector<char> given(model.coordinates.size(), 0);
+  for (const auto& pose : {task.held, read_pose(table.table_or_empty("start"), subject)}) {
+    for (const HeldCoordinate& at_rest : pose) {
+      rest(at_rest.coordinate) = at_rest.value;
+      given[at(at_rest.coordinate)] = 1;
+    }
+  }
+  EmgTask read = read_emg_recording(table, subject, emg, outputs, rest, given);
+  task.begin = read.recording.begin;
+  task.end = read.end;
+  task.recording = std::move(read.recording);
+  return {.value = std::move(task), .inputs = std::move(read.inputs), .warnings = std::move(read.notes)};
+}
+
+/// A task that is simulated forward.
+internal::ReadFromFiles<Task> read_simulated_task(const StudyTable& table, const MuscleSubject& subject,
+                                                  const SharedSettings& settings,
+                                                  std::span<const MuscleOutput> outputs) {
+  Task task = started_task(table, settings.elbow);
+  const Model& model = subject.system->model();
+  internal::ReadFromFiles<Motion> file = read_desired_file(table, model);
+  task.begin = file.value.begin;
+  task.end = file.value.end;
+  task.held = read_pose(table.table_or_empty("held"), subject);
+  task.desired = holding(std::move(file.value), task.held);
   if (!task.held.empty()) {
     std::vector<int> free(subject.system->reduction().free().begin(), subject.system->reduction().free().end());
     for (const HeldCoordinate& held : task.held) std::erase(free, held.coordinate);
     if (free.empty()) table.fail("held", "holds every coordinate that could move");
   }
   for (const StudyTable& load : table.tables("load")) task.loads.push_back(internal::read_load(load, model));
-  const bool moves = read_task_ramps(table, subject, task);
-  read_recording(table, subject, settings, outputs, task, out);
-  if (!moves && !task.controls)
+  TaskMotion motion = read_task_ramps(table, subject, task);
+  task.desired = std::move(motion.desired);
+  task.end = motion.end;
+  std::vector<std::filesystem::path> inputs = std::move(file.inputs);
+  const auto taken = [&](internal::ReadFromFiles<Task> read) {
+    inputs.insert(inputs.end(), read.inputs.begin(), read.inputs.end());
+    return std::move(read.value);
+  };
+  task = taken(with_controls(table, subject, settings, std::move(task)));
+  task = taken(with_measured(table, subject, outputs, std::move(task)));
+  if (!motion.moves && !task.controls)
     table.fail("name",
                fmt::format("= '{}' has no motion: it needs [[task.ramp]], a file or an excitation_file", task.name));
   if (table.has("duration") && !task.measured) task.end = task.begin + table.positive("duration", "s");
@@ -290,28 +331,35 @@ Task read_task(const StudyTable& table, const MuscleStudy& subject, const Shared
   task.desired.missing.clear();
   task.desired.begin = std::min(task.desired.begin, task.begin);
   task.desired.end = std::max(task.desired.end, task.end);
-  return task;
+  return {.value = std::move(task), .inputs = std::move(inputs)};
 }
 
 }  // namespace
 
-StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject, std::span<const MuscleOutput> outputs,
+StudyTasks read_tasks(const StudyTable& root, const MuscleSubject& subject, std::span<const MuscleOutput> outputs,
                       const EmgSettings* emg) {
   StudyTasks out;
   const StudyTable table = root.table_or_empty("tasks");
-  const SharedSettings settings = read_shared(table, subject, out);
+  const SharedSettings settings = read_shared(table, subject);
+  out.accuracy = settings.accuracy;
   try {
     out.elbow = resolved(subject.system->model(), settings.elbow);
   } catch (const InputError& error) {
     out.no_elbow = error.what();
   }
-  add_elbow_tasks(table, settings, subject, out);
+  ElbowTasks elbow = read_elbow_tasks(table, settings.elbow, subject.system->model());
+  out.tasks = std::move(elbow.tasks);
+  out.notes = std::move(elbow.notes);
   for (const StudyTable& own : root.tables("task")) {
-    Task task = read_task(own, subject, settings, outputs, emg, out);
+    internal::ReadFromFiles<Task> read = is_recorded(own, emg != nullptr)
+                                             ? read_recorded_task(own, subject, settings.elbow, outputs, *emg)
+                                             : read_simulated_task(own, subject, settings, outputs);
     for (const Task& other : out.tasks) {
-      if (other.name == task.name) own.fail("name", fmt::format("= '{}' is another task's too", task.name));
+      if (other.name == read.value.name) own.fail("name", fmt::format("= '{}' is another task's too", read.value.name));
     }
-    out.tasks.push_back(std::move(task));
+    out.tasks.push_back(std::move(read.value));
+    out.inputs.insert(out.inputs.end(), read.inputs.begin(), read.inputs.end());
+    out.notes.insert(out.notes.end(), read.warnings.begin(), read.warnings.end());
   }
   const bool any = std::any_of(out.tasks.begin(), out.tasks.end(), [](const Task& t) { return !t.hold_out; });
   if (!any)

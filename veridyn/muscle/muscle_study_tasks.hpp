@@ -62,7 +62,7 @@ struct StudyTasks {
 /// @throws InputError with file, line and key: unknown names (with the nearest), every coordinate held, two tasks of
 /// one name, a recording with gaps, without motion, shorter than two samples, beyond the controls, in degrees where
 /// radians are said; no tasks at all.
-[[nodiscard]] StudyTasks read_tasks(const StudyTable& root, const MuscleStudy& subject,
+[[nodiscard]] StudyTasks read_tasks(const StudyTable& root, const MuscleSubject& subject,
                                     std::span<const MuscleOutput> outputs, const EmgSettings* emg = nullptr);
 
 }  // namespace veridyn::muscle

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
@@ -63,32 +65,32 @@ std::vector<MuscleUnknown> unknowns_of(const StudyTable& root, const Model& mode
   return unknowns;
 }
 
-/// Leaves out the outputs of coordinates that every task holds, or that no recording has.
-void drop_resting_outputs(TaskStudy& study) {
-  std::vector<Eigen::Index> kept;
-  for (std::size_t j = 0; j < study.outputs.size(); ++j) {
-    const bool moves = std::any_of(study.tasks.begin(), study.tasks.end(), [&](const Task& task) {
+/// Indices of the outputs of coordinates that some task moves, or that some recording has.
+std::vector<Eigen::Index> moving_outputs(std::span<const Task> tasks, std::span<const MuscleOutput> outputs) {
+  std::vector<Eigen::Index> moving;
+  for (std::size_t j = 0; j < outputs.size(); ++j) {
+    const bool moves = std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
       if (task.recording) return !task.recording->measured.col(signed_index(j)).array().isNaN().all();
       return std::none_of(task.held.begin(), task.held.end(),
-                          [&](const HeldCoordinate& h) { return h.coordinate == study.outputs[j].index; });
+                          [&](const HeldCoordinate& h) { return h.coordinate == outputs[j].index; });
     });
-    if (moves) kept.push_back(signed_index(j));
+    if (moves) moving.push_back(signed_index(j));
   }
-  std::vector<MuscleOutput> outputs;
-  for (const Eigen::Index j : kept) outputs.push_back(study.outputs[at(j)]);
-  study.outputs = outputs;
-  for (Task& task : study.tasks) {
-    if (task.measured) task.measured->values = estimation::RowMatrix(task.measured->values(Eigen::all, kept));
-    if (task.recording) task.recording->measured = estimation::RowMatrix(task.recording->measured(Eigen::all, kept));
-  }
+  return moving;
+}
+
+/// The task with these columns of what was measured.
+Task with_columns(Task task, const std::vector<Eigen::Index>& columns) {
+  if (task.measured) task.measured->values = estimation::RowMatrix(task.measured->values(Eigen::all, columns));
+  if (task.recording) task.recording->measured = estimation::RowMatrix(task.recording->measured(Eigen::all, columns));
+  return task;
 }
 
 /// The model of a person who is built otherwise than the study says, prepared as the study's.
-std::shared_ptr<const MusculoskeletalSystem> read_body(const StudyTable& table, TaskStudy& study) {
+std::shared_ptr<const MusculoskeletalSystem> read_body(const StudyTable& table, const TaskStudy& study) {
   if (study.emg) table.fail("model", "is for tasks that are simulated forward, not with [emg]");
   const MusculoskeletalSystem& own = *study.subject.system;
-  study.inputs.push_back(table.file("model"));
-  Model model = OsimFile::load(study.inputs.back()).model();
+  Model model = OsimFile::load(table.file("model")).model();
   const auto names_of = [](const Model& of) {
     std::vector<std::string> names;
     for (const Coordinate& c : of.coordinates) names.push_back(c.name);
@@ -106,7 +108,7 @@ std::shared_ptr<const MusculoskeletalSystem> read_body(const StudyTable& table, 
   return std::make_shared<const MusculoskeletalSystem>(std::move(model), options);
 }
 
-SimulatedPerson read_person(const StudyTable& table, TaskStudy& study) {
+SimulatedPerson read_person(const StudyTable& table, const TaskStudy& study) {
   SimulatedPerson person;
   person.spread = table.number_or("spread", "1", person.spread);
   if (!(person.spread >= 0.0 && person.spread < 1.0))
@@ -156,7 +158,11 @@ std::vector<std::string> free_unknowns(const std::vector<MuscleUnknown>& unknown
   return free;
 }
 
-void read_published_route(const StudyTable& table, TaskStudy& study) {
+/// `route`; nothing where it is the gradient's.
+std::optional<PublishedRouteOptions> read_route(const StudyTable& table, const TaskStudy& study) {
+  const std::vector<std::string> routes = {"gradient", "published"};
+  if (table.choice_or("route", routes, "gradient") != "published") return std::nullopt;
+  if (study.emg) table.fail("route", "= \"published\" simulates tasks forward; with [emg] it is \"gradient\"");
   PublishedRouteOptions route{.tolerance = table.positive_or("tolerance", "1", 0.01)};
   route.swarm.seed = route.pattern.seed = study.seed;
   const long long most = table.integer_or("evaluations", 20000);
@@ -166,7 +172,7 @@ void read_published_route(const StudyTable& table, TaskStudy& study) {
   if (study.estimate_start)
     table.fail("route",
                "= \"published\" does not find where motions begin: estimate_start = false, or the gradient route");
-  study.published = std::move(route);
+  return route;
 }
 
 /// `posterior = true`, or a table with options.
@@ -190,32 +196,38 @@ std::optional<estimation::EnsembleOptions> read_posterior(const StudyTable& tabl
   return options;
 }
 
-void read_search(const StudyTable& table, const std::string& no_elbow, TaskStudy& study) {
-  study.search.starts = static_cast<int>(std::clamp(table.integer_or("starts", study.search.starts), 0LL, 1000000LL));
-  study.search.screened = static_cast<int>(
-      std::clamp(table.integer_or("screened", std::max(study.search.screened, study.search.starts)), 0LL, 1000000LL));
+/// `starts`, `screened`.
+TaskEstimateOptions read_search(const StudyTable& table, std::uint64_t seed) {
+  TaskEstimateOptions search;
+  search.starts = static_cast<int>(std::clamp(table.integer_or("starts", search.starts), 0LL, 1000000LL));
+  search.screened = static_cast<int>(
+      std::clamp(table.integer_or("screened", std::max(search.screened, search.starts)), 0LL, 1000000LL));
   try {
-    study.search.validate();
+    search.validate();
   } catch (const InputError& error) {
     const std::string what = error.what();
     table.fail(what.starts_with("identify.starts") ? "starts" : "screened",
                what.substr(std::min(what.size(), error.place().size() + 2)));
   }
-  study.search.seed = study.seed;
-  study.estimate_start = table.flag_or("estimate_start", !study.person && !study.emg);
-  if (study.estimate_start && study.emg)
+  search.seed = seed;
+  return search;
+}
+
+bool read_estimate_start(const StudyTable& table, const TaskStudy& study) {
+  const bool estimate = table.flag_or("estimate_start", !study.person && !study.emg);
+  if (estimate && study.emg)
     table.fail("estimate_start", "has no meaning with [emg]: the angles are those of the recording from the beginning");
-  study.profiles = estimation::read_profiles(table, free_unknowns(study.unknowns));
-  study.posterior = read_posterior(table, study);
+  return estimate;
+}
+
+/// @param no_elbow why the model has no elbow tasks
+bool read_advice(const StudyTable& table, const TaskStudy& study, const std::string& no_elbow) {
   const bool recorded = std::any_of(study.tasks.begin(), study.tasks.end(), [](const Task& t) { return !!t.controls; });
-  study.advice = table.flag_or("advice", study.elbow && !recorded && !study.emg);
-  if (study.advice && study.emg)
+  const bool advice = table.flag_or("advice", study.elbow && !recorded && !study.emg);
+  if (advice && study.emg)
     table.fail("advice", "has no meaning with [emg]: the EMG of a task that was not performed is not known");
-  if (study.advice && !study.elbow) table.fail("advice", fmt::format("needs the elbow tasks: {}", no_elbow));
-  const std::vector<std::string> routes = {"gradient", "published"};
-  if (table.choice_or("route", routes, "gradient") != "published") return;
-  if (study.emg) table.fail("route", "= \"published\" simulates tasks forward; with [emg] it is \"gradient\"");
-  read_published_route(table, study);
+  if (advice && !study.elbow) table.fail("advice", fmt::format("needs the elbow tasks: {}", no_elbow));
+  return advice;
 }
 
 void check_emg_outputs(const StudyTable& root, const Model& model, const std::vector<MuscleOutput>& outputs) {
@@ -238,15 +250,13 @@ bool has_tasks(const StudyTable& root) {
 TaskStudy read_task_study(const Study& source, Progress& progress) {
   const StudyTable& root = source.root();
   TaskStudy study;
-  study.subject.title = root.text_or("title", "");
   study.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
   if (!has_tasks(root))
     root.fail("tasks", "is missing: muscles are estimated from tasks; `veridyn simulate` runs a [motion]");
-  internal::read_subject(root.table("subject"), study.subject, progress);
+  study.subject = internal::read_subject(root, progress);
   const MusculoskeletalSystem& system = *study.subject.system;
   if (system.path_source() == PathSource::kAsOpenSim)
     root.table("subject").fail("paths", "= \"opensim\" has no derivatives; take \"exact\" or \"fitted\"");
-  if (study.subject.title.empty()) study.subject.title = system.model().name;
   if (root.is_table("emg")) study.emg = read_emg(root.table("emg"), system.model());
   study.unknowns = with_bound_priors(unknowns_of(root, system.model(), study.emg));
   if (std::all_of(study.unknowns.begin(), study.unknowns.end(), [](const MuscleUnknown& u) { return u.fixed; }))
@@ -262,9 +272,17 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
   study.elbow = tasks.elbow;
   study.inputs = study.subject.inputs;
   study.inputs.insert(study.inputs.end(), tasks.inputs.begin(), tasks.inputs.end());
-  if (!chosen) drop_resting_outputs(study);
+  if (!chosen) {
+    const std::vector<Eigen::Index> moving = moving_outputs(study.tasks, study.outputs);
+    std::vector<MuscleOutput> outputs;
+    for (const Eigen::Index j : moving) outputs.push_back(study.outputs[at(j)]);
+    study.outputs = std::move(outputs);
+    for (Task& task : study.tasks) task = with_columns(std::move(task), moving);
+  }
   if (root.is_table("person")) {
-    study.person = read_person(root.table("person"), study);
+    const StudyTable person = root.table("person");
+    study.person = read_person(person, study);
+    if (person.has("model")) study.inputs.push_back(person.file("model"));
     for (MuscleOutput& output : study.outputs)
       if ((!chosen || study.emg) && output.noise_sd == 0.0)
         output.noise_sd = study.emg ? study.person->moment_noise : study.person->noise;
@@ -274,7 +292,13 @@ TaskStudy read_task_study(const Study& source, Progress& progress) {
       root.fail("task", fmt::format("'{}' has no recording ({}), and there is no [person] to simulate one", task.name,
                                     study.emg ? "angles, moments and emg" : "measured = \"trial.mot\""));
   }
-  read_search(root.table_or_empty("identify"), tasks.no_elbow, study);
+  const StudyTable identify = root.table_or_empty("identify");
+  study.search = read_search(identify, study.seed);
+  study.estimate_start = read_estimate_start(identify, study);
+  study.profiles = estimation::read_profiles(identify, free_unknowns(study.unknowns));
+  study.posterior = read_posterior(identify, study);
+  study.advice = read_advice(identify, study, tasks.no_elbow);
+  study.published = read_route(identify, study);
   for (const char* other : {"motion", "sensitivity"})
     if (root.is_table(other)) root.accept(other);
   root.finish();

@@ -33,7 +33,7 @@ struct SimulatedPerson {
 
 /// A study that estimates a person's muscles from tasks, read and checked.
 struct TaskStudy {
-  MuscleStudy subject;  ///< title, model, loads, system; without a motion
+  MuscleSubject subject;
   std::vector<Task> tasks;
   double accuracy = 1e-6;
   std::vector<MuscleUnknown> unknowns;  ///< each with a prior: its own, or that of its bounds

@@ -87,7 +87,6 @@ void check_forecast(int seed) {
 }
 
 TEST(TaskAdvice, ATaskLessensTheWidestIntervalByWhatWasForetold) { check_forecast(1); }
-TEST(TaskAdvice, ItDoesSoOfAnotherPerson) { check_forecast(2); }
 
 TEST(TaskAdvice, IsForTheModelsTasksAndWithheldWhereTheModelIsWrong) {
   EXPECT_TRUE(advice_study(1, "[8]", kFourUnknowns).advice);
