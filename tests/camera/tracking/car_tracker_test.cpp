@@ -33,12 +33,12 @@ struct Coverage {
 };
 
 /// Bands of the frame's own pose and of the filtered one, over rendered drives with all disturbances, each seen by a
-/// camera that was calibrated on its own noisy points.
-TEST(CarTracker, BandsHoldOnRenderedVideoWithAllDisturbances) {
+/// camera that was calibrated on its own noisy points: shares of frames that hold the truth.
+void expect_bands_hold(std::uint64_t drives, double low, double high) {
   Coverage measured[3], filtered[3], hidden[3];
   int wrong = 0, lost = 0, measured_frames = 0, frames = 0;
   double squares = 0.0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= drives; ++seed) {
     const TrackCamera truth = testing::half_size_camera();
     const Calibration calibration = fit_camera(testing::grid_points(truth, 0.2, 0.15, seed));
     OverheadScene scene = testing::disturbed_scene(truth, 960, 540);
@@ -70,23 +70,29 @@ TEST(CarTracker, BandsHoldOnRenderedVideoWithAllDisturbances) {
   }
   const char* names[] = {"x", "y", "heading"};
   for (int i = 0; i < 3; ++i) {
-    EXPECT_GE(measured[i].share(), 0.90) << names[i];
-    EXPECT_LE(measured[i].share(), 0.98) << names[i];
+    EXPECT_GE(measured[i].share(), low) << names[i];
+    EXPECT_LE(measured[i].share(), high) << names[i];
     // Hidden frames are few independent draws: they count with the others.
     filtered[i].held += hidden[i].held;
     filtered[i].count += hidden[i].count;
-    EXPECT_GE(hidden[i].share(), 0.90) << names[i];
-    EXPECT_GE(filtered[i].share(), 0.90) << names[i];
-    EXPECT_LE(filtered[i].share(), 0.98) << names[i];
-    RecordProperty(std::string(names[i]) + "_bands",
-                   fmt::format("{:.3f} measured, {:.3f} filtered, {:.3f} hidden", measured[i].share(),
-                               filtered[i].share(), hidden[i].share()));
+    EXPECT_GE(hidden[i].share(), low) << names[i];
+    EXPECT_GE(filtered[i].share(), low) << names[i];
+    EXPECT_LE(filtered[i].share(), high) << names[i];
+    ::testing::Test::RecordProperty(std::string(names[i]) + "_bands",
+                                    fmt::format("{:.3f} measured, {:.3f} filtered, {:.3f} hidden", measured[i].share(),
+                                                filtered[i].share(), hidden[i].share()));
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_LT(lost, 12 * 4) << "the car is found at the start and again when the bridge ends";
-  RecordProperty("frames", fmt::format("{}, {} measured, {} lost, rms {:.3f} mm", frames, measured_frames, lost,
-                                       1e3 * std::sqrt(squares / measured_frames)));
+  EXPECT_LT(lost, static_cast<int>(drives) * 4) << "the car is found at the start and again when the bridge ends";
+  ::testing::Test::RecordProperty("frames",
+                                  fmt::format("{}, {} measured, {} lost, rms {:.3f} mm", frames, measured_frames, lost,
+                                              1e3 * std::sqrt(squares / measured_frames)));
 }
+
+// Errors of a camera's calibration are common to its frames: three drives scatter more than twelve.
+TEST(CarTracker, BandsHoldOnRenderedVideoWithAllDisturbances) { expect_bands_hold(3, 0.88, 0.99); }
+
+TEST(CarTrackerSoak, BandsHoldOnTwelveRenderedDrives) { expect_bands_hold(12, 0.90, 0.98); }
 
 /// Spots where the markers of a car at a pose are, without noise.
 std::vector<Blob> markers_at(const TrackCamera& camera, const Eigen::Vector3d& pose, const MarkerLayout& layout) {
