@@ -158,25 +158,33 @@ DriverForesight read_driver_foresight(const StudyTable& root, const StudyTable& 
   return DriverForesight(vehicle::read_vehicle(table, vehicle::VehicleNeeds::kFourWheel));
 }
 
-/// Gives the algorithms that plan ahead what they foresee from.
-void read_foresight(const StudyTable& root, const StudyTable& cue, CueingStudy& study) {
+/// What algorithms that plan ahead foresee from; neither: they let forces fade.
+struct StudyForesight {
+  std::optional<DrivenMotion> lap_drive;  ///< of `[cue.lap]`, also where the choice is another one
+  std::optional<LapForesight> lap;
+  std::optional<DriverForesight> driver;
+
+  void give_to(WashoutDesign& design) const {
+    if (lap) design.foresee_from(*lap);
+    if (driver) design.foresee_from(*driver);
+  }
+};
+
+StudyForesight read_foresight(const StudyTable& root, const StudyTable& cue, const CueingStudy& study) {
   const std::vector<std::string> choices = {"fade", "lap", "driver"};
   const std::string usual = cue.has("lap") ? "lap" : cue.has("vehicle") ? "driver" : "fade";
   const std::string choice = cue.choice_or("foresee", choices, usual);
   if (choice == "lap" && !cue.has("lap")) cue.fail("foresee", "= 'lap' needs a lap of the same track: [cue.lap]");
   // What is there is read, also where the choice is another one.
-  std::optional<LapForesight> lap;
+  StudyForesight foresight;
   if (cue.has("lap")) {
-    const DrivenMotion driven = read_lap(cue, study);
-    account_for(driven, study);
-    lap = foresight_of(cue, driven);
+    foresight.lap_drive = read_lap(cue, study);
+    foresight.lap = foresight_of(cue, *foresight.lap_drive);
   }
-  std::optional<DriverForesight> driver;
-  if (cue.has("vehicle") || choice == "driver") driver = read_driver_foresight(root, cue, study);
-  for (const StudyAlgorithm& a : study.algorithms) {
-    if (choice == "lap") a.design->foresee_from(*lap);
-    if (choice == "driver") a.design->foresee_from(*driver);
-  }
+  if (cue.has("vehicle") || choice == "driver") foresight.driver = read_driver_foresight(root, cue, study);
+  if (choice != "lap") foresight.lap.reset();
+  if (choice != "driver") foresight.driver.reset();
+  return foresight;
 }
 
 Cue read_cue(const StudyTable& table) {
@@ -296,7 +304,9 @@ CueingStudy read_study(const Study& study, Progress& progress) {
   account_for(drive, s);
   s.drive = std::move(drive.name);
   s.vehicle = std::move(drive.samples);
-  read_foresight(root, cue, s);
+  const StudyForesight foresight = read_foresight(root, cue, s);
+  if (foresight.lap_drive) account_for(*foresight.lap_drive, s);
+  for (const StudyAlgorithm& a : s.algorithms) foresight.give_to(*a.design);
   return s;
 }
 
