@@ -1,11 +1,23 @@
 #include "veridyn/estimation/output_error/logged_model.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/batches/fingerprint.hpp"
 
 namespace veridyn::estimation {
+namespace {
+
+/// As the log keeps them.
+std::vector<double> kept_values(const ModelResponse& response) {
+  std::vector<double> values(response.output.data(), response.output.data() + response.output.size());
+  values.insert(values.end(), response.sensitivity.data(), response.sensitivity.data() + response.sensitivity.size());
+  return values;
+}
+
+}  // namespace
+
 LoggedModel::LoggedModel(const ParametricModel& model, std::string name, Misfit misfit, numerics::ValueLog* log)
     : model_(&model), name_(std::move(name)), misfit_(std::move(misfit)), log_(log) {}
 
@@ -26,43 +38,31 @@ std::uint64_t LoggedModel::key_of(std::size_t segment, const Eigen::VectorXd& th
 bool LoggedModel::respond(std::size_t segment, const Eigen::VectorXd& theta, std::span<const Eigen::Index> active,
                           ModelResponse& response) const {
   const auto begun = std::chrono::steady_clock::now();
-  const std::uint64_t key = key_of(segment, theta, active);
-  bool finished = false;
+  const Eigen::Index rows = samples(segment), columns = signed_index(outputs().size());
+  const Eigen::Index output = rows * columns, sensitivity = output * signed_index(active.size());
+  // One that did not finish is kept without values.
+  const auto fits = [&](std::size_t count) { return count == 0 || signed_index(count) == output + sensitivity; };
+  bool computed = false, finished = false;
   double seconds = 0.0;
-  if (log_ == nullptr || !from_log(key, segment, active.size(), response, finished)) {
+  const auto compute = [&] {
+    computed = true;
     finished = model_->respond(segment, theta, active, response);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    if (log_ != nullptr) keep(key, finished, response);
+    return finished ? kept_values(response) : std::vector<double>();
+  };
+  const std::vector<double> values =
+      numerics::kept_or_computed(log_, key_of(segment, theta, active), segment, fits, compute);
+  if (!computed) {
+    finished = !values.empty();
+    if (finished) {
+      response.output = Eigen::Map<const RowMatrix>(values.data(), rows, columns);
+      response.sensitivity = Eigen::Map<const RowMatrix>(values.data() + output, output, signed_index(active.size()));
+    }
+    const std::lock_guard lock(mutex_);
+    ++resumed_;
   }
   note(segment, theta, !active.empty(), finished, seconds, response);
   return finished;
-}
-
-bool LoggedModel::from_log(std::uint64_t key, std::size_t segment, std::size_t active, ModelResponse& response,
-                           bool& finished) const {
-  std::vector<double> values;
-  if (!log_->find(key, values, segment)) return false;
-  const Eigen::Index rows = samples(segment), columns = signed_index(outputs().size());
-  const Eigen::Index output = rows * columns, sensitivity = output * signed_index(active);
-  // One that did not finish is kept without values.
-  finished = !values.empty();
-  if (finished && signed_index(values.size()) != output + sensitivity) return false;
-  if (finished) {
-    response.output = Eigen::Map<const RowMatrix>(values.data(), rows, columns);
-    response.sensitivity = Eigen::Map<const RowMatrix>(values.data() + output, output, signed_index(active));
-  }
-  const std::lock_guard lock(mutex_);
-  ++resumed_;
-  return true;
-}
-
-void LoggedModel::keep(std::uint64_t key, bool finished, const ModelResponse& response) const {
-  std::vector<double> values;
-  if (finished) {
-    values.assign(response.output.data(), response.output.data() + response.output.size());
-    values.insert(values.end(), response.sensitivity.data(), response.sensitivity.data() + response.sensitivity.size());
-  }
-  log_->append(key, values);
 }
 
 void LoggedModel::note(std::size_t segment, const Eigen::VectorXd& theta, bool derivatives, bool finished,

@@ -57,9 +57,6 @@ class LoggedModel final : public ParametricModel {
  private:
   [[nodiscard]] std::uint64_t key_of(std::size_t segment, const Eigen::VectorXd& theta,
                                      std::span<const Eigen::Index> active) const;
-  [[nodiscard]] bool from_log(std::uint64_t key, std::size_t segment, std::size_t active, ModelResponse& response,
-                              bool& finished) const;
-  void keep(std::uint64_t key, bool finished, const ModelResponse& response) const;
   void note(std::size_t segment, const Eigen::VectorXd& theta, bool derivatives, bool finished, double seconds,
             const ModelResponse& response) const;
 

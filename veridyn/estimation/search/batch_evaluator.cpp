@@ -66,20 +66,22 @@ bool BatchEvaluator::take_from_log(std::span<const Eigen::VectorXd> points) {
 }
 
 SearchEvaluation BatchEvaluator::evaluated(std::size_t item, const Eigen::VectorXd& x) const {
+  const std::size_t constraints = problem_.constraint_names.size();
+  const auto fits = [&](std::size_t count) { return count == 2 + constraints; };
+  const auto compute = [&] {
+    SearchEvaluation e;
+    const auto begun = std::chrono::steady_clock::now();
+    e.values = problem_.evaluate(x);
+    e.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    VERIDYN_ASSERT(e.values.constraints.size() == constraints);
+    return kept_of(e);
+  };
+  const std::uint64_t key = shared_ == nullptr ? 0 : fingerprint_of(problem_, x);
+  const std::vector<double> kept = numerics::kept_or_computed(shared_, key, item, fits, compute);
   SearchEvaluation e;
   e.x = x;
-  std::vector<double> kept;
-  const std::uint64_t key = shared_ == nullptr ? 0 : fingerprint_of(problem_, x);
-  if (shared_ != nullptr && shared_->find(key, kept, item) && kept.size() == 2 + problem_.constraint_names.size()) {
-    e.seconds = kept[0];
-    e.values = {.objective = kept[1], .constraints = {kept.begin() + 2, kept.end()}};
-    return e;
-  }
-  const auto begun = std::chrono::steady_clock::now();
-  e.values = problem_.evaluate(x);
-  e.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  VERIDYN_ASSERT(e.values.constraints.size() == problem_.constraint_names.size());
-  if (shared_ != nullptr) shared_->append(key, kept_of(e));
+  e.seconds = kept[0];
+  e.values = {.objective = kept[1], .constraints = {kept.begin() + 2, kept.end()}};
   return e;
 }
 

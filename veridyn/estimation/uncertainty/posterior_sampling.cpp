@@ -146,15 +146,12 @@ class Posterior {
 
 /// Answered from the log where it is there; a density takes a simulation of every segment.
 double kept_density(const Posterior& posterior, const Eigen::VectorXd& x, std::size_t item, numerics::ValueLog* log) {
-  if (log == nullptr) return posterior.log_density(x);
   numerics::Fingerprint key;
   key.add("posterior");
   for (const double value : x) key.add(value);
-  std::vector<double> values;
-  if (log->find(key.value(), values, item) && values.size() == 1) return values.front();
-  const double density = posterior.log_density(x);
-  log->append(key.value(), std::span(&density, 1));
-  return density;
+  const auto fits = [](std::size_t count) { return count == 1; };
+  const auto compute = [&] { return std::vector<double>{posterior.log_density(x)}; };
+  return numerics::kept_or_computed(log, key.value(), item, fits, compute).front();
 }
 
 /// Of all points, of which a shared log leaves some to other processes.

@@ -98,6 +98,20 @@ class ValueLog {
   std::unique_ptr<FileLock> lock_;
 };
 
+/// The values under a key: those of the log where it has them, else computed, and kept there.
+/// @param log  nullptr: nothing is kept
+/// @param fits  whether values of the log can be those of the function, by their number; those that cannot are computed
+/// @param compute  the values, `std::vector<double>`; called at most once
+template <typename Fits, typename Compute>
+[[nodiscard]] std::vector<double> kept_or_computed(ValueLog* log, std::uint64_t key, std::size_t item, const Fits& fits,
+                                                   const Compute& compute) {
+  std::vector<double> values;
+  if (log != nullptr && log->find(key, values, item) && fits(values.size())) return values;
+  values = compute();
+  if (log != nullptr) log->append(key, values);
+  return values;
+}
+
 /// Of a log, or of work that keeps none and is not shared.
 [[nodiscard]] inline ProcessShare share_of(const ValueLog* log) {
   return log == nullptr ? ProcessShare() : log->share();
