@@ -6,8 +6,8 @@ seconds=${1:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 build=${2:?usage: fuzz/run.sh SECONDS BUILD_DIR [FORMAT...]}
 shift 2
 if [ $# -eq 0 ]; then
-  set -- dataflash dataflash_text ulog csv mat npy npz packet storage osim tir crg telemetry live_file teleoperation wheel
-  if [ -x "$build/bin/fuzz_camera" ]; then set -- "$@" camera; fi
+  # shellcheck disable=SC2046
+  set -- $(cat "$build/fuzz-formats.txt")
 fi
 "$build/bin/fuzz_seeds" "$build/fuzz-corpus"
 mkdir -p "$build/fuzz-corpus/osim"
