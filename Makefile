@@ -21,7 +21,7 @@ demo: build ## a complete run on a built-in aircraft; report in out/demo
 	$(BUILD)/bin/veridyn demo --out out/demo
 
 # So many tests that wait (tests/waiting_tests.txt) run next to JOBS tests that compute.
-WAITING ?= 3
+WAITING ?= 2
 
 test: setup format-check ## build and run the whole test suite
 	cmake --preset release -DVERIDYN_TESTS=ON --log-level=WARNING

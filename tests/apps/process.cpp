@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -32,8 +31,6 @@ Process::Process(const std::vector<std::string>& arguments, const std::filesyste
     ::close(keys[0]);
     return;
   }
-  // Where it may: it runs by the clock, and shares the machine with tests that compute.
-  [[maybe_unused]] const int refused = ::setpriority(PRIO_PROCESS, 0, -10);
   const int file = ::open(says_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
   ::dup2(keys[0], STDIN_FILENO);
   ::dup2(file, STDOUT_FILENO);
