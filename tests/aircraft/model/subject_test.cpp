@@ -35,16 +35,6 @@ TEST(Subject, EveryBuiltInOneReadsBackEqualFromItsFile) {
   }
 }
 
-// Worked out from the tables: X8 0.104, 0.170, 2.005 kg m^2; Thor 0.0692, 0.0864, 0.1560 kg m^2, a quarter of a percent
-// beyond the rule.
-TEST(Subject, SaysThatThePublishedInertiaOfX8AndThorIsImpossible) {
-  for (const std::string& name : builtin_subject_names()) {
-    EXPECT_EQ(builtin_subject(name).warnings.size(), name == "x8" || name == "thor" ? 1u : 0u) << name;
-  }
-  EXPECT_THAT(builtin_subject("x8").warnings[0],
-              HasSubstr("0.1045, 0.1702, 2.005 kg m^2: the largest exceeds the sum of the others"));
-}
-
 TEST(Subject, OverridesValuesOfABuiltInOne) {
   const Subject s = parsed_subject(
       "[subject]\nbuiltin = \"unatrap\"\nname = \"mine\"\nmass = \"27.8 lb\"\n[subject.model]\nCm = [\"1\", "
