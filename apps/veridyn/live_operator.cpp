@@ -96,7 +96,7 @@ class SignWatch {
   std::string missing_;
 };
 
-/// What goes wrong beside the rig, each said once: records that are lost, a sender's clock that drifts, a loop that
+/// What goes wrong around the rig, each said once: records that are lost, a sender's clock that drifts, a loop that
 /// stands still.
 class TroubleWatch {
  public:
