@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "tests/estimation/search/search_problems.hpp"
-#include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/estimation/search/particle_swarm.hpp"
 #include "veridyn/estimation/search/pattern_search.hpp"
@@ -15,20 +14,6 @@
 
 namespace veridyn::estimation {
 namespace {
-
-/// Swarm, then pattern search from its best: the way of the published route.
-SearchResult both(BatchEvaluator& evaluator) {
-  const SearchResult start = particle_swarm(evaluator, {.particles = 12, .iterations = 15});
-  if (start.termination == SearchTermination::kInterrupted) return start;
-  return pattern_search(evaluator, start.x, {.tolerance = 1e-4});
-}
-
-std::filesystem::path empty_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 /// Points and values of all evaluations, without their times.
 std::vector<double> numbers(const BatchEvaluator& evaluator) {
@@ -38,17 +23,6 @@ std::vector<double> numbers(const BatchEvaluator& evaluator) {
     for (const double v : {e.values.objective, e.values.constraints[0]}) all.push_back(v == v ? v : -1e300);
   }
   return all;
-}
-
-std::string refusal_of(const BlackBoxProblem& problem, const std::filesystem::path& log) {
-  Progress progress;
-  try {
-    BatchEvaluator evaluator(problem, {.log = log}, progress);
-    (void)both(evaluator);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 TEST(BatchEvaluator, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -153,68 +127,6 @@ TEST(BatchEvaluator, StopsBeforeABatchThatIsTooMuch) {
   const SearchResult r = particle_swarm(evaluator, {.particles = 12});
   EXPECT_EQ(r.termination, SearchTermination::kEvaluations);
   EXPECT_EQ(evaluator.evaluations().size(), 24U);
-}
-
-TEST(SearchLog, RefusesTheLogOfAnotherSearchSayingWhatDiffers) {
-  const std::filesystem::path log = empty_folder("search_log_refused") / "log.csv";
-  BlackBoxProblem p = disc();
-  p.identity = {{"tasks", "1 5"}};
-  ASSERT_EQ(refusal_of(p, log), "");
-  BlackBoxProblem other = p;
-  other.identity[0].second = "1 6";
-  EXPECT_NE(refusal_of(other, log).find("tasks is '1 5' there and '1 6' here"), std::string::npos);
-  other = p;
-  other.low(1) = -1.5;
-  EXPECT_NE(refusal_of(other, log).find("parameter 2 is 'x2 from -2 to 2' there and 'x2 from -1.5 to 2' here"),
-            std::string::npos);
-  other = p;
-  other.identity.clear();
-  EXPECT_NE(refusal_of(other, log).find("tasks"), std::string::npos);
-  const std::string text = read_file(log);
-  std::string changed = text;
-  changed.replace(changed.find("format 1"), 8, "format 9");
-  write_file(log, changed);
-  EXPECT_NE(refusal_of(p, log).find("has format 9"), std::string::npos);
-  write_file(log, "time,x\n1,2\n");
-  EXPECT_NE(refusal_of(p, log).find("no log of a search"), std::string::npos);
-  // A digit of an early evaluation: damage, not a cut end.
-  changed = text;
-  const std::size_t row = changed.find("\n3,");
-  changed[changed.find('.', row) + 3] ^= 1;
-  write_file(log, changed);
-  EXPECT_NE(refusal_of(p, log).find("is damaged after evaluation 0"), std::string::npos) << refusal_of(p, log);
-}
-
-TEST(SearchLog, RefusesPointsThatTheSearchDoesNotComeTo) {
-  const std::filesystem::path log = empty_folder("search_log_points") / "log.csv";
-  Progress progress;
-  {
-    BatchEvaluator evaluator(disc(), {.log = log}, progress);
-    (void)particle_swarm(evaluator, {.particles = 12, .iterations = 3, .seed = 2});
-  }
-  EXPECT_NE(refusal_of(disc(), log).find("evaluation 1 is at another point"), std::string::npos);
-}
-
-TEST(BlackBoxProblem, RefusesBoundsThatCross) {
-  Progress progress;
-  BlackBoxProblem p = disc();
-  p.high(1) = -2.0;
-  EXPECT_THROW(BatchEvaluator(p, {}, progress), InputError);
-  p.high(1) = std::nan("");
-  EXPECT_THROW(BatchEvaluator(p, {}, progress), InputError);
-}
-
-TEST(SearchValues, AreOrderedByFeasibilityFirst) {
-  const double nan = std::nan("");
-  const SearchValues low{.objective = 1.0, .constraints = {-1.0}}, high{.objective = 2.0, .constraints = {0.0}};
-  const SearchValues out{.objective = 0.0, .constraints = {0.1}}, far{.objective = -9.0, .constraints = {0.2}};
-  const SearchValues failed{.objective = nan, .constraints = {-1.0}}, tiny{.objective = 0.0, .constraints = {1e-300}};
-  EXPECT_TRUE(better(low, high));
-  EXPECT_TRUE(better(high, out));
-  EXPECT_TRUE(better(out, far));
-  EXPECT_TRUE(better(far, failed));
-  EXPECT_FALSE(better(failed, failed));
-  EXPECT_FALSE(low.feasible() && tiny.feasible());
 }
 
 }  // namespace

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <limits>
 #include <string>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/search/batch_evaluator.hpp"
+#include "veridyn/estimation/search/particle_swarm.hpp"
+#include "veridyn/estimation/search/pattern_search.hpp"
 
 /// Problems with known answers for the searches.
 namespace veridyn::estimation {
@@ -69,5 +74,19 @@ class CountingProgress : public Progress {
   int threads_;
   mutable long looks_;
 };
+
+/// Swarm, then pattern search from its best: the way of the published route.
+inline SearchResult both(BatchEvaluator& evaluator) {
+  const SearchResult start = particle_swarm(evaluator, {.particles = 12, .iterations = 15});
+  if (start.termination == SearchTermination::kInterrupted) return start;
+  return pattern_search(evaluator, start.x, {.tolerance = 1e-4});
+}
+
+inline std::filesystem::path empty_folder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
 
 }  // namespace veridyn::estimation
