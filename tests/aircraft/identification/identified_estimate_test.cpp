@@ -73,11 +73,16 @@ TEST(IdentifiedSubject, HasTheIdentifiedValuesAndNoOthers) {
 TEST(IdentifiedSubject, TakesNeitherWhatIsPerUnitInertiaNorWhatWasRejected) {
   IdentifiedFlight flight;
   flight.results[0].per_unit_inertia = true;
+  const auto first_value = [&flight] {
+    return identified_subject(flight.subject, flight.results).model.find(Coefficient::kCm)->values[0];
+  };
   EXPECT_TRUE(identified_coefficients(flight.results).empty());
+  EXPECT_TRUE(std::isnan(first_value()));
   flight.results[0].per_unit_inertia = false;
+  EXPECT_FALSE(std::isnan(first_value()));
   flight.results[0].verdict = estimation::GroupVerdict::kRejected;
   EXPECT_TRUE(identified_coefficients(flight.results).empty());
-  EXPECT_TRUE(std::isnan(identified_subject(flight.subject, flight.results).model.find(Coefficient::kCm)->values[0]));
+  EXPECT_TRUE(std::isnan(first_value()));
 }
 
 }  // namespace

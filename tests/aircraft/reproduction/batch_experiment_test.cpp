@@ -52,20 +52,17 @@ TEST(BatchExperiment, ShowsTheBiasOfLeastSquares) {
   EXPECT_LT(worst(1), 0.3 * worst(0));
 }
 
-/// Runs on `count` threads and stops the work at once where `stops`.
-class Told : public Progress {
+class OnThreads : public Progress {
  public:
-  Told(int count, bool stops) : count_(count), stops_(stops) {}
+  explicit OnThreads(int count) : count_(count) {}
   [[nodiscard]] int threads() const override { return count_; }
-  [[nodiscard]] bool update(double) override { return !stops_; }
 
  private:
   int count_;
-  bool stops_;
 };
 
 TEST(BatchExperiment, IsTheSameOnAnyNumberOfThreads) {
-  Told one(1, false), three(3, false);
+  OnThreads one(1), three(3);
   const std::string text = "[experiment]\ncoefficient = \"CL\"\nseeds = 7\nrate = 20\nsnr = 20\n";
   const BatchExperiment a = run(text, one), b = run(text, three);
   EXPECT_EQ(a.methods[1].mean, b.methods[1].mean);
