@@ -9,16 +9,18 @@
 #include <map>
 #include <sstream>
 
+#include "tests/muscle/path/posed_arm.hpp"
 #include "tests/support/folders.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/muscle/model/simulation_jet.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 #include "veridyn/muscle/path/path_workspace.hpp"
 
 namespace veridyn::muscle {
 namespace {
+
+using test::PosedArm;
 
 #define SKIP_WITHOUT_PATH_REFERENCE()                                                 \
   if (!std::filesystem::exists(veridyn::test::shared_folder() / "reference/opensim")) \
@@ -37,32 +39,10 @@ std::vector<std::vector<std::string>> csv(const std::filesystem::path& file) {
   return rows;
 }
 
-struct Arm {
-  explicit Arm(Model m, WrapMode mode = WrapMode::kTaut)
-      : model(std::move(m)), mechanism(model), paths(model, mechanism, mode), workspace(paths), kinematics(mechanism) {}
-  void pose(const Eigen::VectorXd& at) {
-    q = at;
-    update_positions(mechanism, q.data(), kinematics);
-    paths.evaluate(kinematics, q.data(), workspace);
-  }
-  void pose_deg(double shoulder, double elbow) { pose(Eigen::Vector2d(shoulder * kDegree, elbow * kDegree)); }
-  [[nodiscard]] double moment_arm(int muscle, int coordinate) const {
-    for (std::size_t k = paths.first_pair(muscle); k < paths.end_pair(muscle); ++k)
-      if (paths.pairs()[k].coordinate == coordinate) return -workspace.gradient[k];
-    return 0.0;
-  }
-  Model model;
-  Mechanism mechanism;
-  MusclePaths paths;
-  PathWorkspace<double> workspace;
-  Kinematics<double> kinematics;
-  Eigen::VectorXd q;
-};
-
 Model arm26() { return read_osim(veridyn::test::shared_folder() / "data/opensim/arm26.osim"); }
 
 /// Largest difference between dL/dq and central differences over the poses.
-void expect_differences(Arm& arm, const std::vector<Eigen::VectorXd>& poses, double tolerance) {
+void expect_differences(PosedArm& arm, const std::vector<Eigen::VectorXd>& poses, double tolerance) {
   for (const Eigen::VectorXd& q : poses) {
     arm.pose(q);
     const std::vector<double> gradient = arm.workspace.gradient;
@@ -101,7 +81,7 @@ bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
 
 TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
   SKIP_WITHOUT_PATH_REFERENCE();
-  Arm arm(arm26());
+  PosedArm arm(arm26());
   const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   int compared = 0, left_out = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -130,7 +110,7 @@ TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
 
 TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
   SKIP_WITHOUT_PATH_REFERENCE();
-  Arm arm(arm26());
+  PosedArm arm(arm26());
   // The trapezoidal rule with dL/dq at both ends of a step leaves a jump whole, and of a kink at most a quarter of the
   // change of dL/dq times the step: 2.8e-5 m here.
   constexpr double kStepDeg = 0.125, kJump = 5e-5;
@@ -158,7 +138,7 @@ TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
 
 TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
   SKIP_WITHOUT_PATH_REFERENCE();
-  Arm arm(arm26());
+  PosedArm arm(arm26());
   std::vector<Eigen::VectorXd> poses;
   for (double s = -90.0; s < 180.0; s += 3.1)
     for (const double e : {5.0, 50.0, 110.0}) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
@@ -167,7 +147,7 @@ TEST(MusclePaths, MomentArmsOfArm26AreTheDerivativesOfItsLengths) {
 
 TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
   SKIP_WITHOUT_PATH_REFERENCE();
-  Arm arm(arm26(), WrapMode::kAsOpenSim);
+  PosedArm arm(arm26(), WrapMode::kAsOpenSim);
   const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto& row = rows[i];
@@ -186,7 +166,7 @@ TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
 }
 
 void compare_random_poses(const std::string& file, const std::string& prefix) {
-  Arm arm(read_osim(veridyn::test::shared_folder() / "data/opensim" / file));
+  PosedArm arm(read_osim(veridyn::test::shared_folder() / "data/opensim" / file));
   const auto poses = csv(veridyn::test::shared_folder() / "reference/opensim" / (prefix + "_poses.csv"));
   std::map<int, Eigen::VectorXd> at;
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -232,89 +212,11 @@ TEST(MusclePaths, OfTheGaitModelAreOpenSims) {
 }
 
 TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {
-  Arm arm(load_model("arm").model());
+  PosedArm arm(load_model("arm").model());
   std::vector<Eigen::VectorXd> poses;
   for (double s = -60.0; s < 130.0; s += 13.7)
     for (double e = 3.0; e < 130.0; e += 17.3) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
   expect_differences(arm, poses, 3e-7);
-}
-
-TEST(MusclePaths, JetsCarryTheDerivativesOfTheMomentArms) {
-  Arm arm(load_model("arm").model());
-  using Jet = SimulationJet;
-  PathWorkspace<Jet> workspace(arm.paths);
-  Kinematics<Jet> kinematics(arm.mechanism);
-  for (const double s : {-30.0, 15.0, 70.0}) {
-    for (const double e : {20.0, 75.0, 120.0}) {
-      const Eigen::Vector2d q(s * kDegree, e * kDegree);
-      const Jet qj[2] = {Jet(q[0], 0), Jet(q[1], 1)};
-      update_positions(arm.mechanism, qj, kinematics);
-      arm.paths.evaluate(kinematics, qj, workspace);
-      arm.pose(q);
-      for (std::size_t k = 0; k < arm.paths.pairs().size(); ++k) {
-        const auto pair = arm.paths.pairs()[k];
-        EXPECT_NEAR(workspace.length[static_cast<std::size_t>(pair.muscle)].v[pair.coordinate],
-                    arm.workspace.gradient[k], 3e-7);
-      }
-      for (int c = 0; c < 2; ++c) {
-        const double h = 1e-5;
-        Eigen::VectorXd up = q, down = q;
-        up[c] += h;
-        down[c] -= h;
-        arm.pose(up);
-        const std::vector<double> more = arm.workspace.gradient;
-        arm.pose(down);
-        for (std::size_t k = 0; k < more.size(); ++k)
-          EXPECT_NEAR(workspace.gradient[k].v[c], (more[k] - arm.workspace.gradient[k]) / (2.0 * h), 2e-5) << k;
-      }
-    }
-  }
-}
-
-TEST(MusclePaths, SpeedsAreTheRatesOfTheLengths) {
-  Arm arm(load_model("arm").model());
-  const Eigen::VectorXd q = Eigen::Vector2d(0.3, 1.1), qdot = Eigen::Vector2d(0.7, -2.0);
-  std::vector<double> speeds(6);
-  arm.pose(q);
-  arm.paths.speeds(arm.workspace, qdot.data(), speeds.data());
-  arm.pose(q + 1e-6 * qdot);
-  const std::vector<double> after = arm.workspace.length;
-  arm.pose(q - 1e-6 * qdot);
-  for (std::size_t m = 0; m < 6; ++m) EXPECT_NEAR(speeds[m], (after[m] - arm.workspace.length[m]) / 2e-6, 1e-6);
-}
-
-TEST(MusclePaths, PolylinesHaveTheLengthOfTheirPathAndStayOnTheObjects) {
-  Arm arm(load_model("arm").model());
-  for (const double e : {10.0, 60.0, 110.0}) {
-    arm.pose_deg(20.0, e);
-    for (int m = 0; m < arm.paths.muscles(); ++m) {
-      const auto line = arm.paths.polyline(arm.kinematics, arm.q.data(), m, 40);
-      double length = 0.0;
-      for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
-      EXPECT_NEAR(length, arm.workspace.length[static_cast<std::size_t>(m)], 2e-4) << m;
-    }
-  }
-}
-
-TEST(MusclePaths, PointInsideAWrapObjectIsNamedAndThePathStaysFinite) {
-  Model model = load_model("arm").model();
-  Muscle* wrapped = nullptr;
-  for (Muscle& muscle : model.muscles)
-    if (!muscle.wraps.empty()) wrapped = &muscle;
-  ASSERT_NE(wrapped, nullptr);
-  const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(wrapped->wraps[0].object)];
-  PathPoint& point = wrapped->points[static_cast<std::size_t>(wrapped->wraps[0].first_point)];
-  point.body = object.body;
-  point.location = object.placement.translation;
-  Arm arm(model);
-  arm.pose(model.default_pose());
-  const auto lines = arm.paths.points_inside(arm.kinematics, arm.q.data());
-  ASSERT_FALSE(lines.empty());
-  EXPECT_THAT(lines, ::testing::Contains(::testing::AllOf(::testing::HasSubstr("muscle " + wrapped->name()),
-                                                          ::testing::HasSubstr("point " + point.name),
-                                                          ::testing::HasSubstr(object.name))));
-  for (const double length : arm.workspace.length) EXPECT_TRUE(std::isfinite(length));
-  for (const double slope : arm.workspace.gradient) EXPECT_TRUE(std::isfinite(slope));
 }
 
 TEST(MusclePaths, RefuseWhatIsNotAPath) {

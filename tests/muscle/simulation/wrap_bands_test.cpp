@@ -7,7 +7,6 @@
 
 #include "tests/support/folders.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/muscle/identification/task_warnings.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/osim/osim_reader.hpp"
 
@@ -43,35 +42,6 @@ TEST(WrapBands, AreNamedWithMuscleAndPose) {
   // Where none is, none is named.
   const estimation::RowMatrix rest = system.model().default_pose().transpose();
   EXPECT_TRUE(wrap_band_visits(system, std::vector<double>{0.0}, rest).empty());
-}
-
-TEST(WrapBands, OfATaskAreInItsWarnings) {
-  const auto file = veridyn::test::shared_folder() / "data/opensim/arm26.osim";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the OpenSim models of ../shared/data are not here";
-  const MusculoskeletalSystem system(read_osim(file), {.locked = {"r_shoulder_elev"}});
-  std::vector<double> time;
-  for (int i = 0; i <= 10; ++i) time.push_back(0.01 * i);
-  const auto task = [&](double shoulder_deg, const char* name) {
-    MotionSegment segment;
-    segment.start = default_start(system.model());
-    segment.start.q << shoulder_deg * kDegree, 0.5;
-    segment.controls = {ControlSignals(std::vector<double>(6, 0.05)), {}};
-    segment.time = time;
-    segment.name = name;
-    return segment;
-  };
-  // Of every tenth of a degree about the jump, one is in the band.
-  std::vector<MotionSegment> segments;
-  for (int i = 0; i <= 40; ++i) segments.push_back(task(20.0 + 0.5 * i, "near the jump"));
-  segments.push_back(task(0.0, "far from it"));
-  const MuscleParametricModel model(system, std::vector<MuscleUnknown>{}, segments, {});
-  std::size_t near = 0, far = 0;
-  for (const std::string& warning : task_warnings(model, Eigen::VectorXd())) {
-    near += warning.find("near the jump: muscle 'BIClong'") == 0 ? 1 : 0;
-    far += warning.find("far from it") == 0 ? 1 : 0;
-  }
-  EXPECT_GT(near, 0u);
-  EXPECT_EQ(far, 0u);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// What a path looks like at one pose.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/muscle/path/posed_arm.hpp"
+#include "veridyn/muscle/osim/builtin_models.hpp"
+
+namespace veridyn::muscle {
+namespace {
+
+using test::PosedArm;
+
+TEST(MusclePaths, PolylinesHaveTheLengthOfTheirPathAndStayOnTheObjects) {
+  PosedArm arm(load_model("arm").model());
+  for (const double e : {10.0, 60.0, 110.0}) {
+    arm.pose_deg(20.0, e);
+    for (int m = 0; m < arm.paths.muscles(); ++m) {
+      const auto line = arm.paths.polyline(arm.kinematics, arm.q.data(), m, 40);
+      double length = 0.0;
+      for (std::size_t i = 0; i + 1 < line.size(); ++i) length += (line[i + 1] - line[i]).norm();
+      EXPECT_NEAR(length, arm.workspace.length[static_cast<std::size_t>(m)], 2e-4) << m;
+    }
+  }
+}
+
+TEST(MusclePaths, PointInsideAWrapObjectIsNamedAndThePathStaysFinite) {
+  Model model = load_model("arm").model();
+  Muscle* wrapped = nullptr;
+  for (Muscle& muscle : model.muscles)
+    if (!muscle.wraps.empty()) wrapped = &muscle;
+  ASSERT_NE(wrapped, nullptr);
+  const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(wrapped->wraps[0].object)];
+  PathPoint& point = wrapped->points[static_cast<std::size_t>(wrapped->wraps[0].first_point)];
+  point.body = object.body;
+  point.location = object.placement.translation;
+  PosedArm arm(model);
+  arm.pose(model.default_pose());
+  const auto lines = arm.paths.points_inside(arm.kinematics, arm.q.data());
+  ASSERT_FALSE(lines.empty());
+  EXPECT_THAT(lines, ::testing::Contains(::testing::AllOf(::testing::HasSubstr("muscle " + wrapped->name()),
+                                                          ::testing::HasSubstr("point " + point.name),
+                                                          ::testing::HasSubstr(object.name))));
+  for (const double length : arm.workspace.length) EXPECT_TRUE(std::isfinite(length));
+  for (const double slope : arm.workspace.gradient) EXPECT_TRUE(std::isfinite(slope));
+}
+
+}  // namespace
+}  // namespace veridyn::muscle
