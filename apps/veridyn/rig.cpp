@@ -10,6 +10,7 @@
 #include "veridyn/live/virtual/virtual_platform.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_socket.hpp"
+#include "veridyn/live/threads/timely_thread.hpp"
 #endif
 
 namespace veridyn::app {
@@ -52,6 +53,7 @@ int rig_platform(const Arguments& arguments) {
   const UntilOver until(arguments, clock.now());
   print_line(options,
              fmt::format("platform {} takes orders at {}", study.cueing.platform.name, to_string(study.platform)));
+  static_cast<void>(make_thread_timely());  // a device does not wait for other work on the machine
   std::string commander;
   std::uint64_t refused = 0;
   while (!until.over(clock.now())) {
@@ -113,6 +115,7 @@ int rig_vehicle(const Arguments& arguments) {
   const Nanoseconds start = clock.now();
   const UntilOver until(arguments, start);
   print_line(options, fmt::format("{} drives, packets to {}", drive.drive, to_string(study.telemetry)));
+  static_cast<void>(make_thread_timely());  // a vehicle does not wait for other work on the machine
   std::uint64_t not_sent = 0;
   while (!until.over(clock.now())) {
     clock.sleep_until(start + vehicle.due());

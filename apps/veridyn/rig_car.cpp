@@ -22,6 +22,7 @@
 #include "veridyn/live/virtual/virtual_car.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_socket.hpp"
+#include "veridyn/live/threads/timely_thread.hpp"
 #endif
 
 namespace veridyn::app {
@@ -139,6 +140,7 @@ int rig_car(const Arguments& arguments) {
   CarLine line(settings.line, settings.baud);
   print_line(options, fmt::format("car {} waits at {}{}", vehicle.name, settings.line.string(),
                                   line.is_terminal() ? ", a pseudo-terminal" : ""));
+  static_cast<void>(make_thread_timely());  // a car does not wait for other work on the machine
   RealClock clock;
   const Nanoseconds start = clock.now();
   const double length = arguments.number("--seconds");

@@ -26,6 +26,7 @@
 #include "veridyn/live/time/fixed_rate.hpp"
 #ifdef VERIDYN_HAS_SOCKETS
 #include "veridyn/live/link/udp_socket.hpp"
+#include "veridyn/live/threads/timely_thread.hpp"
 #endif
 
 namespace veridyn::app {
@@ -120,6 +121,7 @@ class PlatformByHand {
 /// One axis under one signal, then home. Answers that are missing are the last ones.
 ToldAndReached play(PlatformByHand& platform, PlatformAxis axis, const TestSignalOptions& signal,
                     const LiveStudy& study, double duration, const Interruption& interruption) {
+  static_cast<void>(make_thread_timely());  // what is late of an order would be taken for the platform's
   ToldAndReached motion;
   motion.step = 1.0 / study.options.rate;
   const std::uint32_t first = platform.sequence() + 1;

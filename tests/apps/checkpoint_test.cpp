@@ -245,13 +245,13 @@ class IdentifyCheckpoint : public CheckpointProgram {
   }
   [[nodiscard]] std::string kept() const { return " --checkpoint " + checkpoint() + " "; }
 
-  /// Killed at six random moments of its first seconds, and resumed: the files of a run that nothing disturbed.
+  /// Killed at four random moments of its first seconds, and resumed: the files of a run that nothing disturbed.
   void expect_resumes(const std::string& more, double seconds, const std::vector<std::string>& files) {
     ASSERT_EQ(run(identify(more, "whole")).exit_code, 0);
     std::mt19937 random(std::random_device{}());
     std::uniform_real_distribution<double> when(0.1 * seconds, seconds);
     int killed = 0;
-    for (int attempt = 0; attempt < 6; ++attempt) {
+    for (int attempt = 0; attempt < 4; ++attempt) {
       const Outcome outcome =
           run_under("timeout -s KILL " + std::to_string(when(random)), identify(more + kept(), "killed"));
       ASSERT_TRUE(outcome.exit_code == kKilled || outcome.exit_code == 0) << outcome.exit_code << outcome.text;

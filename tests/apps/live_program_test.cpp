@@ -29,9 +29,6 @@ class LiveProgramTest : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    // Where it may, with the processes that it starts: they run by the clock, next to tests that compute.
-    constexpr int kBeforeOthers = -10;
-    [[maybe_unused]] const int refused = ::setpriority(PRIO_PROCESS, 0, kBeforeOthers);
     const int base = 20000 + 6 * (static_cast<int>(::getpid()) % 6000);
     base_ = base;
     study_ = (test::source_folder() / "examples/studies/cueing/live.toml").string();

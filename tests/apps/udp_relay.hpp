@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "veridyn/live/link/udp_socket.hpp"
+#include "veridyn/live/threads/timely_thread.hpp"
 
 namespace veridyn {
 
@@ -30,6 +31,7 @@ class UdpRelay {
   static constexpr std::uint32_t kLoopbackOfRelay = 0x7f000001;
 
   void pass_on() {
+    static_cast<void>(live::make_thread_timely());
     live::RealClock clock;
     live::Sender last;
     while (!ended_) {
