@@ -210,14 +210,6 @@ TEST(OsimReader, BadModelsGetOneLineThatNamesFileLineAndElement) {
   EXPECT_THAT(reading_error(scapula), AllOf(HasSubstr("ScapulothoracicJoint 'elbow'"), HasSubstr("not understood")));
 }
 
-TEST(OsimReader, JointsThatGoRoundInACircleAreRefused) {
-  // The humerus hangs on the forearm and the forearm on the humerus.
-  const std::string text = replaced(arm_text(), "<socket_parent>/ground<", "<socket_parent>/bodyset/forearm<");
-  EXPECT_THAT(reading_error(text), HasSubstr("go round in a circle"));
-  const std::string frames = replaced(arm_text(), "<socket_parent>/ground<", "<socket_parent>shoulder_in_ground<");
-  EXPECT_THAT(reading_error(frames), HasSubstr("circle"));
-}
-
 TEST(OsimReader, TenThousandDamagedFilesAreReadOrRefusedInOneLine) {
   const std::string arm = arm_text();
   numerics::RandomStream random(20261121, "damaged models");
