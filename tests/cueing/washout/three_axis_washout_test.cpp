@@ -28,7 +28,7 @@ TEST(ThreeAxisWashout, EndsInTheTiltOfALastingForce) {
   EXPECT_NEAR(after(30.0, pushed(1.0), design).angle.y(), std::asin(f / kGravity), 1e-5);
 }
 
-// What distinguishes it from the classical algorithm: a share of the force is there in the first tenths of a second already.
+// What distinguishes it from the classical algorithm: a share of the force is there in the first tenths of a second.
 TEST(ThreeAxisWashout, BeginsAForceByATiltOfItsOwn) {
   ThreeAxisDesign without;
   without.instant = 0.0;
