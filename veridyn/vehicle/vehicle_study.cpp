@@ -17,6 +17,8 @@ namespace {
 
 /// Cornering stiffness over static load of common tyres [1/rad].
 constexpr double kStiffnessPerLoad = 20.0;
+/// Height of the centre of gravity of common cars over their wheelbase.
+constexpr double kHeightPerWheelbase = 0.21;
 
 VehicleStudy read_tables(const Study& study) {
   const StudyTable& root = study.root();
@@ -37,6 +39,7 @@ VehicleStudy read_tables(const Study& study) {
   if (!known && !subject.has("C_r")) p.C_r = kStiffnessPerLoad * load[kRearLeft];
   out.segments = DriveSegmentOptions::read(root.table_or_empty("segments"));
   out.identify = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+  if (!known && !subject.has("cg_height")) p.cg_height = kHeightPerWheelbase * p.wheelbase();
   out.identify.model.gravity = out.signals.gravity;
   out.track = DriveTrackOptions::read(root.table_or_empty("track"));
   const std::vector<std::string> choices{"all", "holdout"};
@@ -81,11 +84,15 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   const double L = p.wheelbase();
   take("a", p.a);
   p.b = L - p.a;
-  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature,
-                               DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale, DriveUnknown::kSteerDelay,
-                               DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+  for (const DriveUnknown u :
+       {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature, DriveUnknown::kRollGradient,
+        DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping, DriveUnknown::kRollArm,
+        DriveUnknown::kRelaxationLength, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
+        DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
     take(kDriveUnknownNames[u], given.options.start[u]);
   }
+  if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;
+  if (estimate.find("relaxation_length") != nullptr) given.options.structure = DriveStructure::kRelaxation;
   if (estimate.find("mu") != nullptr) given.options.tyre = DriveTyre::kMagicFormula;
   return given;
 }

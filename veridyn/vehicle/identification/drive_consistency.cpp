@@ -171,7 +171,7 @@ void Relations::compare_accel_y() {
   // v' of the sideslip, which follows the yaw rate: first order in the frequency, then second.
   std::vector<GridSeries> others{yaw_acceleration_, derivative(yaw_acceleration_)};
   if (speed_varies_) others.push_back(product(yaw_acceleration_, product(speed_, speed_)));
-  add(DriveSuspect::kAccelY, "lateral acceleration against turning", "yaw_rate x speed",
+  add(DriveSuspect::kAccelY, kLateralAcceleration.data(), "yaw_rate x speed",
       gain({.reading = accel.value, .truth = turning, .others = std::move(others)}), kLeastAcceleration,
       powers(0, -1, -1, 1, 0), {.low = 0.95, .high = 1.05, .lowest = 0.75, .highest = 1.5});
 }

@@ -26,6 +26,9 @@ using PerDriveSuspect = EnumArray<DriveSuspect, T, kDriveSuspects>;
 inline constexpr PerDriveSuspect<std::string_view> kDriveSuspectNames{"steer", "speed", "yaw_rate", "accel_y",
                                                                       "accel_x"};
 
+/// The relation of the lateral accelerometer.
+inline constexpr std::string_view kLateralAcceleration = "lateral acceleration against turning";
+
 /// What one sensor reads over what others imply; 1 where all are right.
 struct DriveRelation {
   DriveSuspect sensor = DriveSuspect::kYawRate;  ///< the sensor that is compared

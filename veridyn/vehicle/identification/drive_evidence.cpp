@@ -191,12 +191,13 @@ std::optional<Evidence> frozen_steering(const DriveSignals& signals, std::span<c
                   .advice = "leave that stretch out: segments.identification and holdout_spans"};
 }
 
+/// Tyres build up their force over half a metre of travel, which is up to 0.05 s late; a rolling body in the
+/// accelerometer makes it seem up to 0.04 s early. The search scatters by 0.01 s.
+constexpr double kEarly_s = 0.07;
+constexpr Tolerance kLate{.low = -kEarly_s, .high = 0.07, .lowest = -kInfinity, .highest = 0.4};
+
 std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                 const Progress& progress) {
-  /// Tyres build up their force over half a metre of travel, which is up to 0.05 s late; a rolling body in the
-  /// accelerometer makes it seem up to 0.04 s early. The search scatters by 0.01 s.
-  constexpr double kEarly_s = 0.07;
-  constexpr Tolerance kLate{.low = -kEarly_s, .high = 0.07, .lowest = -kInfinity, .highest = 0.4};
   if (!signals[DriveSignal::kSteer].available()) return {};
   const recording::DelayReport report = steering_delay(signals, spans, progress);
   const recording::TimeOrder order{.early_s = kEarly_s, .is_control = true};
@@ -208,7 +209,7 @@ std::vector<Evidence> time_rows(const DriveSignals& signals, std::span<const Tim
                     -1000.0 * report.delay_s);
     return {std::move(early)};
   }
-  Evidence row{.name = "order in time",
+  Evidence row{.name = std::string(kOrderInTime),
                .about = "steer, yaw_rate",
                .outcome = determined ? outcome_of(report.delay_s, 0.0, kLate) : Outcome::kNotVerified,
                .value = determined ? report.delay_s : kNaN,
@@ -253,6 +254,39 @@ std::vector<Evidence> relation_rows(std::span<const DriveRelation> relations, bo
   for (const DriveRelation& relation : relations)
     rows.push_back(relation_row(relation, suspects, gravity_removed, gravity));
   return rows;
+}
+
+Evidence explained_by_roll(Evidence row, const estimation::Parameter* roll_gradient, double gravity) {
+  if (roll_gradient == nullptr || row.name != kLateralAcceleration || row.outcome == Outcome::kFailed) return row;
+  if (row.passed()) return row;
+  const double lean = gravity * roll_gradient->value;
+  // What the sideslip's approximation leaves of the ratio.
+  constexpr double kModelError = 0.05;
+  if (!(std::abs(row.value - 1.0 - lean) < kModelError)) return row;
+  row.outcome = Outcome::kPassed;
+  row.text = fmt::format(
+      "accel_y reads {:.3g} times what yaw_rate x speed says, as that of a body does which leans by "
+      "{:.1f} deg/g",
+      row.value, lean / kDegree);
+  row.advice.clear();
+  return row;
+}
+
+Evidence in_time_of_model(Evidence row, const estimation::Parameter* steer_delay) {
+  if (steer_delay == nullptr || row.name != kOrderInTime || !std::isfinite(steer_delay->sigma)) return row;
+  row.about = "steer, yaw_rate";
+  row.value = steer_delay->value;
+  row.limit = kLate.high;
+  row.scale = "s";
+  row.outcome = outcome_of(steer_delay->value, steer_delay->sigma, kLate);
+  row.text =
+      fmt::format("the identified vehicle answers the steering {:.3f} +- {:.3f} s {} than its model",
+                  std::abs(steer_delay->value), steer_delay->sigma, steer_delay->value < 0.0 ? "earlier" : "later");
+  row.advice = row.passed()
+                   ? ""
+                   : "check the stamps of yaw_rate and steer; data.map takes a delay: yaw_rate = { ..., delay = "
+                     "\"50 ms\" }";
+  return row;
 }
 
 recording::DelayReport steering_delay(const DriveSignals& signals, std::span<const TimeSpan> spans,

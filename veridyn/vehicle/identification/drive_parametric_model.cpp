@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/core/nearest.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
+#include "veridyn/numerics/linear_systems/lyapunov.hpp"
+#include "veridyn/numerics/linear_systems/riccati.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
+#include "veridyn/numerics/signal_band.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
@@ -24,9 +29,14 @@ constexpr double kLargestYawRate = 50.0;
 /// How far delays reach beyond a segment [s].
 constexpr double kReach_s = 0.5;
 
-/// Cut-off of the smoothing [Hz], and the noise of the steering over its rms from which it is needed.
-constexpr double kSmoothing_Hz = 4.0;
+/// How far roll, roll rate and lagging slips may be from those of steady cornering where a segment begins [rad, rad/s].
+constexpr double kInitialRoll = 0.01, kInitialRollRate = 0.05, kInitialSlip = 0.005;
+
+/// Noise of the steering over its rms below which nothing is taken off.
 constexpr double kNoNoise = 1e-4;
+
+/// Speeds at which the whitening filter is computed.
+constexpr int kFilterSpeeds = 9;
 
 double value_of(double x) { return x; }
 template <int kN>
@@ -50,16 +60,14 @@ Scalar between(const std::vector<Value>& samples, const Scalar& position) {
   return y1 + 0.5 * s * (y2 - y0 + s * (2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3 + s * (3.0 * (y1 - y2) + y3 - y0)));
 }
 
-/// The cut-off of the smoothing that the noise of a steering signal needs [Hz]; 0: none.
-double smoothing_for(const GridSignal& steer, double rate_Hz) {
+double rms_of(const std::vector<double>& x) {
   double power = 0.0, count = 0.0;
-  for (const double v : steer.value) {
+  for (const double v : x) {
     if (!std::isfinite(v)) continue;
     power += v * v;
     count += 1.0;
   }
-  const bool noisy = steer.sigma * steer.sigma * count > kNoNoise * kNoNoise * power;
-  return noisy ? std::min(kSmoothing_Hz, 0.1 * rate_Hz) : 0.0;
+  return std::sqrt(power / std::max(1.0, count));
 }
 
 std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz, double cutoff_Hz) {
@@ -82,6 +90,16 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
       return {0.8, 2.5};
     case DriveUnknown::kCurvature:
       return {-10.0, 1.0};
+    case DriveUnknown::kRollGradient:
+      return {0.0, 0.1};
+    case DriveUnknown::kRollFrequency:
+      return {0.4 * start, 2.5 * start};
+    case DriveUnknown::kRollDamping:
+      return {0.05, 1.2};
+    case DriveUnknown::kRollArm:
+      return {0.0, wheelbase};
+    case DriveUnknown::kRelaxationLength:
+      return {0.04 * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
     case DriveUnknown::kAccelYScale:
       return {-0.9, kInfinity};
@@ -92,6 +110,12 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     default:
       return {-kInfinity, kInfinity};
   }
+}
+
+/// Gain of the steady Kalman predictor of x_next = F x + G w, y = C x + e, which is the dual of a regulator's.
+Eigen::MatrixXd steady_gain(const Eigen::MatrixXd& F, const Eigen::VectorXd& G, const Eigen::MatrixXd& C,
+                            const Eigen::MatrixXd& R) {
+  return numerics::discrete_linear_quadratic(F.transpose(), C.transpose(), G * G.transpose(), R).K.transpose();
 }
 
 estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
@@ -129,96 +153,45 @@ Scalar SampledInput::at(const Scalar& position) const {
 template double SampledInput::at(const double&) const;
 template ceres::Jet<double, 8> SampledInput::at(const ceres::Jet<double, 8>&) const;
 
-DriveModelOptions::DriveModelOptions() {
-  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
-                               DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
-    free[u] = true;
-  start.fill(0.0);
-  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kA})
-    start[u] = kNaN;
-  start[DriveUnknown::kMu] = 1.0;
-  start[DriveUnknown::kShape] = 1.3;
-  prior.fill(kInfinity);
-  prior[DriveUnknown::kSteerBias] = kDegree;
-  prior[DriveUnknown::kYawRateBias] = kDegree;
-  prior[DriveUnknown::kAccelYBias] = 0.5;
-  prior[DriveUnknown::kSteerScale] = 0.1;
-  prior[DriveUnknown::kAccelYScale] = 0.1;
-  for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
-    prior[u] = 0.1;
-  prior[DriveUnknown::kShape] = 0.2;
-  prior[DriveUnknown::kCurvature] = 0.5;
-}
-
-void DriveModelOptions::read_keys(const StudyTable& table) {
-  const std::vector<std::string> tyres{"linear", "magic formula"};
-  tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
-  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
-  if (tyre == DriveTyre::kMagicFormula) {
-    free[DriveUnknown::kMu] = true;
-    free[DriveUnknown::kShape] = true;
-  }
-  if (table.has("estimate")) {
-    free.fill(false);
-    for (const std::string& name : table.texts("estimate")) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      if (at == names.end())
-        table.fail("estimate", fmt::format("'{}' is not an unknown of the drive model{}", name,
-                                           suggestion(name, names, names.size())));
-      free[static_cast<std::size_t>(at - names.begin())] = true;
-    }
-  }
-  if (tyre == DriveTyre::kLinear) {
-    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
-      if (free[u])
-        table.fail("estimate", fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")",
-                                           kDriveUnknownNames[u]));
-    }
-  }
-  if (table.has("smoothing")) {
-    smoothing_Hz = table.number("smoothing", "Hz");
-    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
-  }
-  const StudyTable starts = table.table_or_empty("start");
-  const StudyTable priors = table.table_or_empty("prior");
-  for (const DriveUnknown u : kAllDriveUnknowns) {
-    const std::string_view name = kDriveUnknownNames[u], unit = kDriveUnknownUnits[u];
-    if (starts.has(name)) start[u] = starts.number(name, unit);
-    if (!priors.has(name)) continue;
-    if (priors.is_text(name) && priors.text(name) == "none")
-      prior[u] = kInfinity;
-    else
-      prior[u] = priors.positive(name, unit);
-  }
-}
-
 DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                            const VehicleParameters<double>& start, const DriveModelOptions& options)
-    : grid_(signals.grid), accel_position_(signals.accel_position), start_(start), options_(options) {
+    : grid_(signals.grid),
+      accel_position_(signals.accel_position),
+      gravity_removed_(signals.gravity_removed),
+      removed_gradient_(signals.roll_gradient),
+      steer_sigma_(signals[DriveSignal::kSteer].sigma),
+      start_(start),
+      options_(with_geometry(options, start, signals.roll_gradient)) {
   for (const DriveSignal s : {DriveSignal::kSteer, DriveSignal::kSpeed, DriveSignal::kYawRate}) {
     if (!signals[s].available()) {
       throw InputError(signals.source, fmt::format("has no {}, which output error is driven by or compared with",
                                                    kDriveSignalNames[s]));
     }
   }
-  accel_ = signals[DriveSignal::kAccelY].available();
-  lateral_velocity_ = signals[DriveSignal::kLateralVelocity].available();
-  outputs_ = {{"yaw_rate", "rad/s"}};
-  if (accel_) outputs_.push_back({"accel_y", "m/s^2"});
-  if (lateral_velocity_) outputs_.push_back({"lateral_velocity", "m/s"});
-
-  smoothing_Hz_ =
-      options.smoothing_Hz < 0.0 ? smoothing_for(signals[DriveSignal::kSteer], grid_.rate_Hz()) : options.smoothing_Hz;
-  steer_ = smoothed(signals[DriveSignal::kSteer].value, grid_.rate_Hz(), smoothing_Hz_);
-  speed_ = smoothed(signals[DriveSignal::kSpeed].value, grid_.rate_Hz(), smoothing_Hz_);
-  yaw_rate_ = smoothed(signals[DriveSignal::kYawRate].value, grid_.rate_Hz(), smoothing_Hz_);
-  accel_y_ = smoothed(signals[DriveSignal::kAccelY].value, grid_.rate_Hz(), smoothing_Hz_);
-  lateral_velocity_meas_ = smoothed(signals[DriveSignal::kLateralVelocity].value, grid_.rate_Hz(), smoothing_Hz_);
-
-  const std::array<double, 4> of_the_vehicle{start.C_f, start.C_r, start.I_z, start.a};
-  for (std::size_t i = 0; i < of_the_vehicle.size(); ++i) {
-    if (!std::isfinite(options_.start[i])) options_.start[i] = of_the_vehicle[i];
+  smoothing_Hz_ = std::max(0.0, options.smoothing_Hz);
+  const GridSignal& steer = signals[DriveSignal::kSteer];
+  if (options.smoothing_Hz < 0.0) {
+    numerics::BandLimited limited =
+        numerics::band_limited(steer.value, grid_.rate_Hz(), kNoNoise * rms_of(steer.value));
+    steer_ = std::move(limited.value);
+    steer_error_share_ = limited.band_Hz > 0.0 ? limited.noise_share : 0.0;
+  } else {
+    steer_ = smoothed(steer.value, grid_.rate_Hz(), smoothing_Hz_);
   }
+  speed_ = smoothed(signals[DriveSignal::kSpeed].value, grid_.rate_Hz(), smoothing_Hz_);
+  const auto compare = [&](DriveSignal signal) {
+    if (!signals[signal].available()) return;
+    outputs_.push_back({std::string(kDriveSignalNames[signal]), std::string(kDriveSignalUnits[signal])});
+    compared_.push_back({.signal = signal,
+                         .value = smoothed(signals[signal].value, grid_.rate_Hz(), smoothing_Hz_),
+                         .sigma = signals[signal].sigma});
+  };
+  for (const DriveSignal s : {DriveSignal::kYawRate, DriveSignal::kAccelY, DriveSignal::kLateralVelocity}) compare(s);
+  if (has_roll(options_.structure))
+    for (const DriveSignal s : {DriveSignal::kRoll, DriveSignal::kRollRate}) compare(s);
+  for (const auto& [signal, bias] : {std::pair{DriveSignal::kRoll, DriveUnknown::kRollBias},
+                                     std::pair{DriveSignal::kRollRate, DriveUnknown::kRollRateBias}})
+    options_.free[bias] = options_.free[bias] && has_roll(options_.structure) && signals[signal].available();
   for (const DriveUnknown u : kAllDriveUnknowns) parameters_.push_back(model_parameter(u, options_, start.wheelbase()));
   for (const TimeSpan& span : spans) {
     const auto [begin, end] = signals.indices(span);
@@ -227,7 +200,8 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
 }
 
 DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t begin, std::size_t end) const {
-  const double C_f = options_.start[0], C_r = options_.start[1], I_z = options_.start[2];
+  const double C_f = options_.start[DriveUnknown::kCf], C_r = options_.start[DriveUnknown::kCr];
+  const double I_z = options_.start[DriveUnknown::kIz];
   const double slowest = *std::min_element(speed_.begin() + static_cast<std::ptrdiff_t>(begin),
                                            speed_.begin() + static_cast<std::ptrdiff_t>(end));
   const double rate =
@@ -242,11 +216,19 @@ DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t beg
   // Steady cornering at the measured yaw rate, averaged over a tenth of a second.
   const std::size_t few = std::min(end - begin, static_cast<std::size_t>(std::max(1.0, 0.1 / step)));
   double r0 = 0.0;
-  for (std::size_t k = 0; k < few; ++k) r0 += yaw_rate_[begin + k] / static_cast<double>(few);
+  for (std::size_t k = 0; k < few; ++k) r0 += compared_.front().value[begin + k] / static_cast<double>(few);
   const double u0 = speed_[begin];
   const double v0 = r0 * (start_.b - start_.a * start_.mass * u0 * u0 / (2.0 * C_r * start_.wheelbase()));
   out.initial = {{.name = "lateral_velocity", .unit = "m/s", .start = v0},
                  {.name = "yaw_rate", .unit = "rad/s", .start = r0}};
+  if (has_roll(options_.structure)) {
+    out.initial.push_back({.name = "roll", .unit = "rad", .prior_sigma = kInitialRoll});
+    out.initial.push_back({.name = "roll_rate", .unit = "rad/s", .prior_sigma = kInitialRollRate});
+  }
+  if (has_relaxation(options_.structure)) {
+    out.initial.push_back({.name = "slip_front", .unit = "rad", .prior_sigma = kInitialSlip});
+    out.initial.push_back({.name = "slip_rear", .unit = "rad", .prior_sigma = kInitialSlip});
+  }
   return out;
 }
 
@@ -263,26 +245,113 @@ std::string DriveParametricModel::segment_name(std::size_t segment) const {
 std::vector<estimation::RowMatrix> DriveParametricModel::measured() const {
   std::vector<estimation::RowMatrix> all;
   for (const Segment& s : segments_) {
-    estimation::RowMatrix m(s.samples, static_cast<Eigen::Index>(outputs_.size()));
-    for (Eigen::Index k = 0; k < s.samples; ++k) {
-      const std::size_t at = s.begin + static_cast<std::size_t>(k);
-      Eigen::Index column = 0;
-      m(k, column++) = yaw_rate_[at];
-      if (accel_) m(k, column++) = accel_y_[at];
-      if (lateral_velocity_) m(k, column++) = lateral_velocity_meas_[at];
-    }
+    estimation::RowMatrix m(s.samples, signed_index(compared_.size()));
+    for (Eigen::Index k = 0; k < s.samples; ++k)
+      for (std::size_t j = 0; j < compared_.size(); ++j)
+        m(k, signed_index(j)) = compared_[j].value[s.begin + static_cast<std::size_t>(k)];
+    if (!whitening_.empty()) whiten(s, m);
     all.push_back(std::move(m));
   }
   return all;
 }
 
-template <typename Scalar, typename Tyre>
-bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scalar, Tyre>& model,
-                                 const Parameters<Scalar>& theta, Outputs<Scalar>& output) const {
+DriveParametricModel DriveParametricModel::weighed(DriveWhitening whitening) const {
+  DriveParametricModel out = *this;
+  out.whitening_ = std::move(whitening);
+  return out;
+}
+
+DriveWhitening::Filter DriveWhitening::at(double u) const {
+  const auto above = static_cast<std::size_t>(std::upper_bound(speed.begin(), speed.end(), u) - speed.begin());
+  if (above == 0) return filter.front();
+  if (above == speed.size()) return filter.back();
+  const double share = (u - speed[above - 1]) / (speed[above] - speed[above - 1]);
+  const auto between = [&](Eigen::MatrixXd Filter::*matrix) -> Eigen::MatrixXd {
+    return (1.0 - share) * (filter[above - 1].*matrix) + share * (filter[above].*matrix);
+  };
+  return {between(&Filter::transition), between(&Filter::gain), between(&Filter::output)};
+}
+
+template <typename Scalar>
+void DriveParametricModel::whiten(const Segment& segment, Outputs<Scalar>& output) const {
+  const Eigen::Index states = whitening_.filter.front().transition.rows();
+  Eigen::Matrix<Scalar, Eigen::Dynamic, 1> s(states), next(states), white(output.cols());
+  s.setConstant(Scalar(0.0));
+  for (Eigen::Index k = 0; k < output.rows(); ++k) {
+    const std::size_t sample = segment.begin + static_cast<std::size_t>(k);
+    const DriveWhitening::Filter f = whitening_.at(speed_[sample]);
+    for (Eigen::Index j = 0; j < output.cols(); ++j) {
+      white(j) = output(k, j);
+      for (Eigen::Index i = 0; i < states; ++i) white(j) -= f.output(j, i) * s(i);
+      output(k, j) = white(j);
+      if (!std::isfinite(compared_[at(j)].value[sample])) white(j) = Scalar(0.0);
+    }
+    for (Eigen::Index i = 0; i < states; ++i) {
+      next(i) = Scalar(0.0);
+      for (Eigen::Index j = 0; j < states; ++j) next(i) += f.transition(i, j) * s(j);
+      for (Eigen::Index j = 0; j < output.cols(); ++j) next(i) += f.gain(i, j) * white(j);
+    }
+    s.swap(next);
+  }
+}
+
+bool DriveParametricModel::delays_outputs(double yaw_rate_delay, double accel_delay) const {
+  return yaw_rate_delay != 0.0 || accel_delay != 0.0 || options_.free[DriveUnknown::kYawRateDelay] ||
+         options_.free[DriveUnknown::kAccelYDelay];
+}
+
+template <int kStates, typename Scalar>
+Scalar DriveParametricModel::true_output(DriveSignal signal, const Eigen::Matrix<Scalar, kStates, 1>& state,
+                                         const RollingBicycleRates<Scalar, kStates>& rates) const {
+  const auto [x, y, z] = accel_position_;
+  switch (signal) {
+    case DriveSignal::kAccelY: {
+      const Scalar turning = rates.lateral_acceleration + x * rates.derivative(1) - y * state(1) * state(1);
+      if constexpr (kStates > 2) {
+        const Scalar at_sensor = turning - z * rates.derivative(3);
+        if (gravity_removed_ && removed_gradient_ == 0.0) return at_sensor;
+        return (at_sensor + options_.gravity * state(2)) / (1.0 + options_.gravity * removed_gradient_);
+      }
+      return turning;
+    }
+    case DriveSignal::kLateralVelocity:
+      return state(0);
+    case DriveSignal::kRoll:
+      if constexpr (kStates > 2) return state(2);
+      return Scalar(0.0);
+    case DriveSignal::kRollRate:
+      if constexpr (kStates > 2) return state(3);
+      return Scalar(0.0);
+    default:
+      return state(1);
+  }
+}
+
+template <typename Scalar>
+Scalar DriveParametricModel::recorded(DriveSignal signal, const Scalar& shown, const Parameters<Scalar>& theta) const {
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
-  const std::vector<double>& steer_all = steer_;
-  const std::vector<double>& speed_all = speed_;
-  const std::size_t n = static_cast<std::size_t>(segment.samples);
+  switch (signal) {
+    case DriveSignal::kYawRate:
+      return shown + unknown(DriveUnknown::kYawRateBias);
+    case DriveSignal::kAccelY:
+      return (1.0 + unknown(DriveUnknown::kAccelYScale)) * shown + unknown(DriveUnknown::kAccelYBias);
+    case DriveSignal::kRoll:
+      return shown + unknown(DriveUnknown::kRollBias);
+    case DriveSignal::kRollRate:
+      return shown + unknown(DriveUnknown::kRollRateBias);
+    default:
+      return shown;
+  }
+}
+
+template <int kStates, typename Scalar, typename Tyre>
+bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Scalar, Tyre>& model,
+                                 const Parameters<Scalar>& theta, Outputs<Scalar>& output) const {
+  using State = Eigen::Matrix<Scalar, kStates, 1>;
+  using Rates = RollingBicycleRates<Scalar, kStates>;
+  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
+  const auto n = static_cast<std::size_t>(segment.samples);
+  const std::span<const double> steer_all(steer_), speed_all(speed_);
   const double step = grid_.step;
   // The steering before and after the segment, as far as it is there, for its delay.
   const auto reach = static_cast<std::size_t>(kReach_s / step);
@@ -304,36 +373,29 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
     const Scalar at = steer_lead + position;
     return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain, Scalar(speed.at(position))};
   };
-  const bool delayed = !(unknown(DriveUnknown::kYawRateDelay) == Scalar(0.0)) ||
-                       !(unknown(DriveUnknown::kAccelYDelay) == Scalar(0.0)) ||
-                       options_.free[DriveUnknown::kYawRateDelay] || options_.free[DriveUnknown::kAccelYDelay];
-  std::vector<Scalar> yaw_rate(delayed ? n : 0), accel(delayed && accel_ ? n : 0);
+  const bool delayed =
+      delays_outputs(value_of(unknown(DriveUnknown::kYawRateDelay)), value_of(unknown(DriveUnknown::kAccelYDelay)));
+  std::vector<std::vector<Scalar>> shown(delayed ? compared_.size() : 0, std::vector<Scalar>(n));
 
-  const auto [x, y, z] = accel_position_;
-  static_cast<void>(z);
   const double h = step / segment.substeps;
-  const auto first = static_cast<Eigen::Index>(parameters_.size());
-  Scalar v = theta(first), r = theta(first + 1);
-  using State = Eigen::Matrix<Scalar, 2, 1>;
+  const auto first = signed_index(parameters_.size());
   Input now = input(0.0);
+  State x = model.template steady<kStates>(theta(first), theta(first + 1), now.delta, now.u);
+  for (Eigen::Index i = 2; i < kStates; ++i) x(i) += theta(first + i);
   for (std::size_t k = 0; k < n; ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const bool plausible = v < 2.0 * now.u && -v < 2.0 * now.u && r < kLargestYawRate && -r < kLargestYawRate;
+    const auto row = signed_index(k);
+    const bool plausible =
+        x(0) < 2.0 * now.u && -x(0) < 2.0 * now.u && x(1) < kLargestYawRate && -x(1) < kLargestYawRate;
     if (!plausible) return false;
     for (int i = 0; i < segment.substeps; ++i) {
-      const BicycleRates<Scalar> k1 = model.rates(v, r, now.delta, now.u);
+      const Rates k1 = model.rates(x, now.delta, now.u);
       if (i == 0) {
-        const Scalar at_sensor = k1.lateral_acceleration + x * k1.dr - y * r * r;
-        Eigen::Index column = 0;
-        if (delayed) {
-          yaw_rate[k] = r;
-          if (accel_) accel[k] = at_sensor;
+        for (std::size_t j = 0; j < compared_.size(); ++j) {
+          const auto column = signed_index(j);
+          const Scalar true_value = true_output<kStates>(compared_[j].signal, x, k1);
+          if (delayed) shown[j][k] = true_value;
+          output(row, column) = recorded(compared_[j].signal, true_value, theta);
         }
-        output(row, column++) = r + unknown(DriveUnknown::kYawRateBias);
-        if (accel_)
-          output(row, column++) =
-              (1.0 + unknown(DriveUnknown::kAccelYScale)) * at_sensor + unknown(DriveUnknown::kAccelYBias);
-        if (lateral_velocity_) output(row, column++) = v;
         if (k + 1 == n) break;
       }
       const double at = static_cast<double>(k) + static_cast<double>(i) / segment.substeps;
@@ -341,37 +403,27 @@ bool DriveParametricModel::drive(const Segment& segment, const BicycleModel<Scal
       const Input next = input(at + 1.0 / segment.substeps);
       const auto rate = [&](numerics::RungeKuttaMoment moment, const State& stage) -> State {
         const Input& there = moment == numerics::RungeKuttaMoment::kMiddle ? middle : next;
-        const BicycleRates<Scalar> rates = model.rates(stage(0), stage(1), there.delta, there.u);
-        return {rates.dv, rates.dr};
+        return model.rates(stage, there.delta, there.u).derivative;
       };
-      const State moved = numerics::runge_kutta_4_from(State(k1.dv, k1.dr), rate, State(v, r), h);
-      v = moved(0);
-      r = moved(1);
+      x = numerics::runge_kutta_4_from(k1.derivative, rate, x, h);
       now = next;
     }
   }
-  if (delayed) delay_outputs(theta, yaw_rate, accel, output);
+  if (!delayed) return true;
+  for (std::size_t j = 0; j < compared_.size(); ++j) {
+    const DriveSignal signal = compared_[j].signal;
+    if (signal != DriveSignal::kYawRate && signal != DriveSignal::kAccelY) continue;
+    const Scalar delay =
+        unknown(signal == DriveSignal::kYawRate ? DriveUnknown::kYawRateDelay : DriveUnknown::kAccelYDelay) / step;
+    for (std::size_t k = 0; k < n; ++k)
+      output(signed_index(k), signed_index(j)) =
+          recorded(signal, between(shown[j], Scalar(static_cast<double>(k) - delay)), theta);
+  }
   return true;
 }
 
-template <typename Scalar>
-void DriveParametricModel::delay_outputs(const Parameters<Scalar>& theta, const std::vector<Scalar>& yaw_rate,
-                                         const std::vector<Scalar>& accel, Outputs<Scalar>& output) const {
-  const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
-  for (std::size_t k = 0; k < yaw_rate.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const Scalar at_r = static_cast<double>(k) - unknown(DriveUnknown::kYawRateDelay) / grid_.step;
-    output(row, 0) = between(yaw_rate, at_r) + unknown(DriveUnknown::kYawRateBias);
-    if (!accel_) continue;
-    const Scalar at_a = static_cast<double>(k) - unknown(DriveUnknown::kAccelYDelay) / grid_.step;
-    output(row, 1) =
-        (1.0 + unknown(DriveUnknown::kAccelYScale)) * between(accel, at_a) + unknown(DriveUnknown::kAccelYBias);
-  }
-}
-
-template <typename Scalar>
-bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar>& theta,
-                                    Outputs<Scalar>& output) const {
+template <typename Scalar, typename Work>
+auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Work& work) const {
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
   VehicleParameters<Scalar> p = start_.cast<Scalar>();
   p.C_f = unknown(DriveUnknown::kCf);
@@ -379,11 +431,27 @@ bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar
   p.I_z = unknown(DriveUnknown::kIz);
   p.a = unknown(DriveUnknown::kA);
   p.b = start_.wheelbase() - p.a;
-  if (options_.tyre == DriveTyre::kLinear) {
-    const BicycleModel<Scalar, LinearTyre<Scalar>> model{
-        .parameters = p, .front = {.stiffness = p.C_f}, .rear = {.stiffness = p.C_r}, .gravity = options_.gravity};
-    return drive(segments_[segment], model, theta, output);
-  }
+  const auto with_tyres = [&]<typename Tyre>(const Tyre& front, const Tyre& rear) {
+    const RollingBicycle<Scalar, Tyre> model{
+        .bicycle = {.parameters = p, .front = front, .rear = rear, .gravity = options_.gravity},
+        .roll = {.gradient = unknown(DriveUnknown::kRollGradient),
+                 .frequency = unknown(DriveUnknown::kRollFrequency),
+                 .damping = unknown(DriveUnknown::kRollDamping),
+                 .arm = unknown(DriveUnknown::kRollArm)},
+        .relaxation_length = unknown(DriveUnknown::kRelaxationLength)};
+    switch (options_.structure) {
+      case DriveStructure::kRoll:
+        return work(model, std::integral_constant<int, 4>());
+      case DriveStructure::kRelaxation:
+        return work(model, std::integral_constant<int, 6>());
+      case DriveStructure::kBicycle:
+      case DriveStructure::kScaledAccel:
+        break;
+    }
+    return work(model, std::integral_constant<int, 2>());
+  };
+  if (options_.tyre == DriveTyre::kLinear)
+    return with_tyres(LinearTyre<Scalar>{.stiffness = p.C_f}, LinearTyre<Scalar>{.stiffness = p.C_r});
   const PerWheel<Scalar> load = static_loads(p, options_.gravity);
   const auto tyre = [&](const Scalar& stiffness, const Scalar& nominal) {
     SimpleMagicFormulaTyre<Scalar> t;
@@ -394,15 +462,114 @@ bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar
     t.nominal_load = nominal;
     return t;
   };
-  const BicycleModel<Scalar, SimpleMagicFormulaTyre<Scalar>> model{.parameters = p,
-                                                                   .front = tyre(p.C_f, load[kFrontLeft]),
-                                                                   .rear = tyre(p.C_r, load[kRearLeft]),
-                                                                   .gravity = options_.gravity};
-  return drive(segments_[segment], model, theta, output);
+  return with_tyres(tyre(p.C_f, load[kFrontLeft]), tyre(p.C_r, load[kRearLeft]));
+}
+
+template <typename Scalar>
+bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar>& theta,
+                                    Outputs<Scalar>& output) const {
+  return with_model(theta, [&](const auto& model, auto states) {
+    const bool drives = drive<decltype(states)::value>(segments_[segment], model, theta, output);
+    if (drives && !whitening_.empty()) whiten(segments_[segment], output);
+    return drives;
+  });
 }
 
 template bool DriveParametricModel::simulate(std::size_t, const Parameters<double>&, Outputs<double>&) const;
 template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres::Jet<double, 8>>&,
                                              Outputs<ceres::Jet<double, 8>>&) const;
+
+template <int kStates, typename Tyre>
+DriveParametricModel::NoiseModel DriveParametricModel::noise_model(double u, const RollingBicycle<double, Tyre>& model,
+                                                                   const Eigen::VectorXd& theta) const {
+  using State = Eigen::Matrix<double, kStates, 1>;
+  const auto outputs = signed_index(compared_.size());
+  // About straight driving everything is odd in the state: a small step's difference is the derivative.
+  constexpr double kSmall = 1e-6;
+  Eigen::MatrixXd AB(kStates, kStates + 1), CD(outputs, kStates + 1);  // the last column is of the steering
+  for (Eigen::Index i = 0; i <= kStates; ++i) {
+    State x = State::Zero();
+    if (i < kStates) x(i) = kSmall;
+    const RollingBicycleRates<double, kStates> rates = model.rates(x, i < kStates ? 0.0 : kSmall, u);
+    Eigen::VectorXd y(outputs);
+    for (Eigen::Index j = 0; j < outputs; ++j) {
+      const DriveSignal signal = compared_[at(j)].signal;
+      const double scale =
+          signal == DriveSignal::kAccelY ? 1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYScale)) : 1.0;
+      y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
+    }
+    AB.col(i) = rates.derivative / kSmall;
+    CD.col(i) = y;
+  }
+  // The error of the steering is the noise in its band: white noise through two poles
+  // of that bandwidth, whose two states follow those of the vehicle.
+  constexpr Eigen::Index kNoise = 2;
+  constexpr double kButterworth = 0.5 * kPi / std::numbers::sqrt2;  // noise bandwidth over the corner frequency
+  const double corner = 2.0 * kPi * 0.5 * grid_.rate_Hz() * steer_error_share_ / kButterworth;
+  const double gain = 1.0 / (1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)));
+  const Eigen::Index n = kStates + kNoise;
+  Eigen::MatrixXd dynamics = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  dynamics.topLeftCorner(kStates, kStates) = AB.leftCols(kStates);
+  dynamics.block(0, kStates, kStates, 1) = gain * AB.col(kStates);
+  dynamics(kStates, kStates + 1) = 1.0;
+  dynamics(kStates + 1, kStates) = -corner * corner;
+  dynamics(kStates + 1, kStates + 1) = -std::numbers::sqrt2 * corner;
+  dynamics(kStates + 1, n) = corner * corner;
+  const Eigen::MatrixXd over_step = numerics::matrix_exponential(Eigen::MatrixXd(dynamics * grid_.step));
+  const Eigen::MatrixXd F = over_step.topLeftCorner(n, n);
+  const Eigen::VectorXd G = over_step.topRightCorner(n, 1) * steer_sigma_;
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(outputs, n);
+  C.leftCols(kStates) = CD.leftCols(kStates);
+  C.col(kStates) = gain * CD.col(kStates);
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(outputs, outputs);
+  for (Eigen::Index j = 0; j < outputs; ++j) R(j, j) = std::pow(compared_[at(j)].sigma, 2);
+  return {F, C, R, G};
+}
+
+DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) const {
+  const auto unknown = [&](DriveUnknown u) { return theta(static_cast<Eigen::Index>(u)); };
+  const bool all_noisy = std::ranges::all_of(compared_, [](const Compared& c) { return c.sigma > 0.0; });
+  if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty() ||
+      delays_outputs(unknown(DriveUnknown::kYawRateDelay), unknown(DriveUnknown::kAccelYDelay)))
+    return {};
+  const auto [slowest, fastest] = speeds();
+  DriveWhitening out;
+  const Parameters<double> shared = theta;
+  with_model(shared, [&](const auto& model, auto states) {
+    for (int i = 0; i < kFilterSpeeds; ++i) {
+      out.speed.push_back(slowest + (fastest - slowest) * i / (kFilterSpeeds - 1));
+      const NoiseModel noise = noise_model<decltype(states)::value>(out.speed.back(), model, theta);
+      out.filter.push_back({noise.F, steady_gain(noise.F, noise.G, noise.C, noise.R), noise.C});
+    }
+    return true;
+  });
+  return out;
+}
+
+Eigen::VectorXd DriveParametricModel::expected_residual(const Eigen::VectorXd& theta) const {
+  const auto [slowest, fastest] = speeds();
+  const double u = 0.5 * (slowest + fastest);
+  const Parameters<double> shared = theta;
+  const NoiseModel noise = with_model(
+      shared, [&](const auto& model, auto states) { return noise_model<decltype(states)::value>(u, model, theta); });
+  Eigen::MatrixXd covariance = noise.R;
+  if (steer_error_share_ > 0.0) {
+    const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
+    covariance += noise.C * P * noise.C.transpose();
+  }
+  return covariance.diagonal().cwiseSqrt();
+}
+
+std::pair<double, double> DriveParametricModel::speeds() const {
+  double slowest = kInfinity, fastest = 0.0;
+  for (const Segment& segment : segments_) {
+    for (Eigen::Index k = 0; k < segment.samples; ++k) {
+      const double u = speed_[segment.begin + static_cast<std::size_t>(k)];
+      slowest = std::min(slowest, u);
+      fastest = std::max(fastest, u);
+    }
+  }
+  return {slowest, fastest};
+}
 
 }  // namespace veridyn::vehicle

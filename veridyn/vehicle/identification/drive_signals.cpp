@@ -292,6 +292,7 @@ DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, con
     LateralAcceleration lateral = lateral_acceleration(*accel, mapped, out.grid, options);
     out[DriveSignal::kAccelY] = std::move(lateral.signal);
     out.gravity_removed = lateral.gravity_removed;
+    if (find_channel(mapped, "roll") == nullptr) out.roll_gradient = options.roll_gradient;
   } else {
     out.notes.emplace_back("without accel_y, the stiffnesses are distinguishable by the yaw rate only in transients");
   }
@@ -302,6 +303,12 @@ DriveSignals prepare_drive_signals(const recording::MappedRecording& mapped, con
   if (x != nullptr && y != nullptr) {
     out[DriveSignal::kX] = as(DriveSignal::kX, *x);
     out[DriveSignal::kY] = as(DriveSignal::kY, *y);
+  }
+  if (const Channel* roll = find_channel(mapped, "roll")) out[DriveSignal::kRoll] = as(DriveSignal::kRoll, *roll);
+  for (const char* name : {"roll_rate", "gyro_x"}) {
+    const Channel* rate = find_channel(mapped, name);
+    if (rate != nullptr && !out[DriveSignal::kRollRate].available())
+      out[DriveSignal::kRollRate] = as(DriveSignal::kRollRate, *rate);
   }
   if (const Channel* yaw = find_channel(mapped, "yaw")) out[DriveSignal::kYaw] = heading(*yaw, out.grid, options);
   if (std::optional<std::string> note = check_signs(out)) out.notes.push_back(std::move(*note));

@@ -23,16 +23,19 @@ enum class DriveSignal : std::size_t {
   kLateralVelocity,  ///< v of the centre of gravity [m/s]
   kX,                ///< position on the ground [m]
   kY,
-  kYaw  ///< heading [rad], unwrapped
+  kYaw,      ///< heading [rad], unwrapped
+  kRoll,     ///< of the body, left side up [rad]
+  kRollRate  ///< [rad/s]
 };
 /// How many signals there are.
-inline constexpr std::size_t kDriveSignals = 9;
+inline constexpr std::size_t kDriveSignals = 11;
 /// Their standard names, in the order of the enum.
 inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveSignalNames{
-    "steer", "speed", "yaw_rate", "accel_y", "accel_x", "lateral_velocity", "pos_x", "pos_y", "yaw"};
+    "steer", "speed", "yaw_rate", "accel_y", "accel_x",  "lateral_velocity",
+    "pos_x", "pos_y", "yaw",      "roll",    "roll_rate"};
 /// Their units, in the same order.
 inline constexpr EnumArray<DriveSignal, std::string_view, kDriveSignals> kDriveSignalUnits{
-    "rad", "m/s", "rad/s", "m/s^2", "m/s^2", "m/s", "m", "m", "rad"};
+    "rad", "m/s", "rad/s", "m/s^2", "m/s^2", "m/s", "m", "m", "rad", "rad", "rad/s"};
 
 /// How recorded channels become signals. Study table `[signals]`; every key is optional.
 struct DriveSignalOptions {
@@ -67,6 +70,8 @@ struct DriveSignals : recording::GridSignals<DriveSignal, kDriveSignals> {
   std::string source;
   std::array<double, 3> accel_position{};
   bool gravity_removed = false;  ///< from roll or roll gradient
+  /// By which accel_y was divided through 1 + g times it; 0: not by a gradient [rad/(m/s^2)].
+  double roll_gradient = 0.0;
 };
 
 /// Resamples the mapped channels to one grid and derives what is missing: steering from the hand wheel, speed from the

@@ -190,16 +190,13 @@ std::vector<estimation::PredictedQuantity> quantities_of(std::span<const Predict
   return quantities;
 }
 
-/// theta with lateral velocity and yaw rate at a segment's beginning behind it.
+/// theta with the states at a segment's beginning behind it.
 Eigen::VectorXd with_initial_state(const Eigen::VectorXd& theta, const estimation::OutputErrorEstimate& fitted,
                                    std::size_t segment) {
-  Eigen::VectorXd full(static_cast<Eigen::Index>(kDriveUnknowns + 2));
-  full.head(static_cast<Eigen::Index>(kDriveUnknowns)) = theta;
-  for (const estimation::SegmentParameter& q : fitted.segment_parameters) {
-    if (q.segment == segment)
-      full(static_cast<Eigen::Index>(kDriveUnknowns) + (q.name == "lateral_velocity" ? 0 : 1)) = q.value;
-  }
-  return full;
+  std::vector<double> all(theta.data(), theta.data() + theta.size());
+  for (const estimation::SegmentParameter& q : fitted.segment_parameters)
+    if (q.segment == segment) all.push_back(q.value);
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), signed_index(all.size()));
 }
 
 }  // namespace

@@ -36,8 +36,12 @@ std::optional<PartsAgreement> by_output_error(const VehicleProblem& problem, con
   start.I_z = here.raw.theta(2);
   DriveModelOptions model_options = problem.options.model;
   model_options.gravity = problem.signal_options.gravity;
-  const DriveParametricModel model(problem.signals, problem.segments.holdout, start, model_options);
-  estimation::OutputErrorOptions options;
+  OutputErrorProblem there_problem{
+      DriveParametricModel(problem.signals, problem.segments.holdout, start, model_options), {}};
+  there_problem.weigh(here.whitening);
+  const DriveParametricModel& model = there_problem.model;
+  estimation::OutputErrorOptions& options = there_problem.options;
+  options.search_start = within_bounds(model, here.raw.theta);
   options.significance = problem.options.significance;
   // From where the other part ended: if both are one vehicle, few steps of Gauss-Newton are as good as all (Le Cam's
   // one-step estimator), and if they are not, few show it.

@@ -2,11 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-
-#include "veridyn/core/constants.hpp"
-#include "veridyn/numerics/statistics.hpp"
-
 namespace veridyn::vehicle {
 namespace {
 
@@ -18,6 +13,13 @@ using estimation::ParameterStatus;
 constexpr double kDefaultPass_Hz = 2.0;
 /// Longest correlation of residuals that is looked for.
 constexpr double kLongestLag_s = 2.0;
+/// Rounds of whitening, and the change of parameters [sigma] from which they are settled.
+constexpr int kMostWeighings = 3;
+constexpr double kSettled = 0.2;
+/// Of a search that only compares structures.
+constexpr int kRelaxationsToCompare = 4, kStepsToCompare = 10;
+/// Of a search [sigma]: a fiftieth of what is not known anyway.
+constexpr double kTolerance = 0.02;
 
 constexpr auto row_of(DriveUnknown u) { return static_cast<Eigen::Index>(u); }
 
@@ -305,6 +307,7 @@ OutputErrorProblem output_error_problem(const VehicleProblem& problem, const Equ
   options.significance = problem.options.significance;
   // What is not determined by then crawls along a valley: more relaxations would not help it.
   options.max_relaxations = 12;
+  options.tolerance = kTolerance;
   options.max_lag =
       std::max<Eigen::Index>(20, static_cast<Eigen::Index>(kLongestLag_s * problem.signals.grid.rate_Hz()));
   return {DriveParametricModel(problem.signals, problem.segments.identification,
@@ -312,13 +315,74 @@ OutputErrorProblem output_error_problem(const VehicleProblem& problem, const Equ
           options};
 }
 
-OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                                           Progress& progress) {
-  const OutputErrorProblem given = output_error_problem(problem, equation_error);
+void OutputErrorProblem::weigh(const DriveWhitening& whitening) {
+  if (whitening.empty()) return;
+  model = model.weighed(whitening);
+  // Noise of the steering is in all outputs at once.
+  options.noise = estimation::OutputNoise::kFull;
+}
+
+namespace {
+
+OutputErrorResult fitted(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                         OutputErrorProblem fitted, const Eigen::VectorXd& search_start, Progress& progress) {
+  fitted.options.search_start = within_bounds(fitted.model, search_start);
   OutputErrorResult out;
-  out.raw = estimation::output_error(given.model, given.model.measured(), given.options, progress);
+  out.raw = estimation::output_error(fitted.model, fitted.model.measured(), fitted.options, progress);
   out.estimate = estimate_of(problem, equation_error != nullptr ? equation_error->slopes : GeometrySlopes{}, out.raw);
   return out;
+}
+
+/// The largest change of a parameter in standard errors.
+double largest_change(const estimation::OutputErrorEstimate& before, const estimation::OutputErrorEstimate& after) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < after.theta.size(); ++i) {
+    const double sigma = std::sqrt(after.covariance(i, i));
+    if (std::isfinite(sigma) && sigma > 0.0)
+      largest = std::max(largest, std::abs(after.theta(i) - before.theta(i)) / sigma);
+  }
+  return largest;
+}
+
+}  // namespace
+
+OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
+                                           const Eigen::VectorXd& search_start, SearchEffort effort,
+                                           Progress& progress) {
+  OutputErrorProblem given = output_error_problem(problem, equation_error);
+  if (effort == SearchEffort::kToCompare) {
+    given.options.max_relaxations = kRelaxationsToCompare;
+    given.options.max_steps = kStepsToCompare;
+  }
+  return fitted(problem, equation_error, std::move(given), search_start, progress);
+}
+
+OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
+                          const EquationErrorEstimates* equation_error, Progress& progress) {
+  if (!estimate.raw.usable()) return estimate;
+  const OutputErrorProblem given = output_error_problem(problem, equation_error);
+  if (given.model.whitening(estimate.raw.theta).empty())
+    return estimate_by_output_error(problem, equation_error, estimate.raw.theta, SearchEffort::kToTheEnd, progress);
+  for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
+    OutputErrorProblem weighed = given;
+    DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
+    weighed.weigh(whitening);
+    OutputErrorResult next = fitted(problem, equation_error, std::move(weighed), estimate.raw.theta, progress);
+    if (!next.raw.usable()) break;
+    const double moved = largest_change(estimate.raw, next.raw);
+    estimate = std::move(next);
+    estimate.whitening = std::move(whitening);
+    if (moved < kSettled) break;
+  }
+  return estimate;
+}
+
+Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta) {
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
+    const estimation::ModelParameter& p = model.parameters()[at(i)];
+    theta(i) = p.fixed ? p.start : std::clamp(theta(i), p.low, p.high);
+  }
+  return theta;
 }
 
 VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason) {

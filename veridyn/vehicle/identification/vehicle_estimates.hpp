@@ -28,6 +28,7 @@ struct EquationErrorEstimates {
 struct OutputErrorResult {
   estimation::OutputErrorEstimate raw;
   VehicleEstimate estimate;
+  DriveWhitening whitening = {};  ///< by which its residual was weighed; may be empty
 };
 
 /// The regressions over some spans, with `known` for mass, a and b.
@@ -37,20 +38,37 @@ struct OutputErrorResult {
 /// All regressions over the identification segments; what the uncertainty of mass, a and b adds is in the covariances.
 [[nodiscard]] EquationErrorEstimates estimate_by_equation_error(const VehicleProblem& problem);
 
-/// Starts from the equation error where that is known well enough; `equation_error` may be null.
+/// How far a search goes.
+enum class SearchEffort {
+  kToCompare,  ///< a few steps: enough to tell structures apart
+  kToTheEnd
+};
+
+/// Starts from the equation error where that is known well enough; `equation_error` may be null. `search_start`: of all
+/// DriveUnknowns, where the search begins instead; may be empty.
 [[nodiscard]] OutputErrorResult estimate_by_output_error(const VehicleProblem& problem,
                                                          const EquationErrorEstimates* equation_error,
+                                                         const Eigen::VectorXd& search_start, SearchEffort effort,
                                                          Progress& progress);
+
+/// An estimate followed to the end. Where the steering has noise its residual is whitened, in rounds: the filter is
+/// that of the estimate before.
+[[nodiscard]] OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
+                                        const EquationErrorEstimates* equation_error, Progress& progress);
 
 /// The drive's model, begun where the equation error is known well enough, and how it is fitted.
 struct OutputErrorProblem {
   DriveParametricModel model;
   estimation::OutputErrorOptions options;
+  /// Whitens the residual, whose outputs are correlated then; an empty filter changes nothing.
+  void weigh(const DriveWhitening& whitening);
 };
 /// The output-error problem of a drive; `equation_error` may be null, `search_factor` as of DriveModelOptions.
 [[nodiscard]] OutputErrorProblem output_error_problem(const VehicleProblem& problem,
                                                       const EquationErrorEstimates* equation_error,
                                                       double search_factor = 1e3);
+/// Values at which a search of the model may begin: of what is free those of `theta`, the rest at its start.
+[[nodiscard]] Eigen::VectorXd within_bounds(const DriveParametricModel& model, Eigen::VectorXd theta);
 
 /// The parameters of the start, all of them not excited; `reason` is its message.
 [[nodiscard]] VehicleEstimate unexcited_estimate(const VehicleProblem& problem, std::string reason);

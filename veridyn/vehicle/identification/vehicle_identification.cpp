@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
+#include "veridyn/vehicle/identification/structure_ladder.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/vehicle_judgement.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
@@ -48,28 +50,19 @@ std::vector<VehicleEstimate> marked(std::vector<VehicleEstimate> estimates, cons
   return estimates;
 }
 
-}  // namespace
-
-VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress) {
-  if (problem.segments.identification.empty()) return not_excited(problem);
-  std::optional<EquationErrorEstimates> equation_error;
-  if (problem.options.equation_error && problem.signals[DriveSignal::kAccelY].available()) {
-    progress.stage("equation error");
-    equation_error = estimate_by_equation_error(problem);
-  }
+/// With the structure that the options name; `ladder` has its fit.
+VehicleIdentification identify_structure(const VehicleProblem& problem,
+                                         const std::optional<EquationErrorEstimates>& equation_error,
+                                         const StructureLadder& ladder, Progress& progress) {
   const EquationErrorEstimates* const by_regression = equation_error ? &*equation_error : nullptr;
-  std::optional<OutputErrorResult> output_error;
-  if (problem.options.output_error && !progress.interrupted()) {
-    progress.stage("output error");
-    output_error = estimate_by_output_error(problem, by_regression, progress);
-  }
+  const OutputErrorResult* const output_error = ladder.empty() ? nullptr : &ladder.fit;
   VehicleIdentification out;
   out.identified = problem.start;
   if (equation_error) {
     out.regression = equation_error->regression;
     out.estimates = equation_error->estimates;
   }
-  if (output_error) {
+  if (output_error != nullptr) {
     out.output_error = output_error->raw;
     out.estimates.push_back(output_error->estimate);
   }
@@ -85,14 +78,13 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   }
 
   progress.stage("validating on the hold-out");
-  const std::optional<PartsAgreement> parts =
-      compare_parts(problem, out.chosen, by_regression, output_error ? &*output_error : nullptr, progress);
+  const std::optional<PartsAgreement> parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
   DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, progress);
   const double widening = variance_factor(parts);
   theta.covariance *= widening;
   for (VehicleEstimate& e : out.estimates)
     if (e.method == out.chosen) e = widened(std::move(e), widening, problem.options.significance);
-  if (output_error && !problem.options.profiles.empty()) {
+  if (output_error != nullptr && !problem.options.profiles.empty()) {
     progress.stage(fmt::format("profile likelihood of {} parameters", problem.options.profiles.size()));
     const bool widened_too = out.chosen == VehicleMethod::kOutputError;
     out.profiles = profile_drive(problem, by_regression, *output_error, widened_too ? widening : 1.0, progress);
@@ -106,11 +98,12 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   if (out.interrupted) return out;
   VehicleJudgement judgement = judge_vehicle(problem, {.chosen = *chosen,
                                                        .equation_error = by_regression,
-                                                       .output_error = output_error ? &*output_error : nullptr,
+                                                       .output_error = output_error,
                                                        .fit = out.fit,
                                                        .validation = out.validation,
                                                        .by_noise = by_noise,
-                                                       .parts = parts});
+                                                       .parts = parts,
+                                                       .steer_delay = ladder.steer_delay});
   out.verdict = judgement.verdict;
   out.reason = std::move(judgement.reason);
   out.checks = std::move(judgement.checks);
@@ -122,6 +115,30 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   return out;
 }
 
+}  // namespace
+
+VehicleIdentification identify_parameters(const VehicleProblem& problem, Progress& progress) {
+  if (problem.segments.identification.empty()) return not_excited(problem);
+  std::optional<EquationErrorEstimates> equation_error;
+  if (problem.options.equation_error && problem.signals[DriveSignal::kAccelY].available()) {
+    progress.stage("equation error");
+    equation_error = estimate_by_equation_error(problem);
+  }
+  const EquationErrorEstimates* const by_regression = equation_error ? &*equation_error : nullptr;
+  StructureLadder ladder;
+  if (problem.options.output_error && !progress.interrupted())
+    ladder = climb_structures(problem, by_regression, progress);
+  const VehicleIdentifyOptions options =
+      ladder.empty() ? problem.options : with_structure(problem.options, ladder.tried[ladder.chosen].structure);
+  VehicleIdentification out = identify_structure(
+      {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording},
+      equation_error, ladder, progress);
+  out.structure = options.model.structure;
+  out.tried_structures = std::move(ladder.tried);
+  if (!ladder.reason.empty()) out.structure_reason = std::move(ladder.reason);
+  return out;
+}
+
 const Parameter* VehicleEstimate::find(std::string_view name) const {
   return estimation::find_parameter(parameters, name);
 }
@@ -129,6 +146,40 @@ const Parameter* VehicleEstimate::find(std::string_view name) const {
 const VehicleEstimate* VehicleIdentification::find(VehicleMethod method) const {
   return find_estimate(estimates, method);
 }
+
+namespace {
+
+/// The structures that were tried, in the terms that all domains share.
+std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentification& identification) {
+  constexpr std::array kShown{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
+  std::vector<estimation::StructureTrial> trials;
+  double first = kNaN;
+  for (const TriedStructure& tried : identification.tried_structures) {
+    estimation::StructureTrial& trial = trials.emplace_back();
+    trial.name = to_string(tried.structure);
+    if (!tried.usable) {
+      trial.obstacle = tried.message;
+      continue;
+    }
+    const bool is_first = std::isnan(first);
+    if (is_first) first = tried.negative_log_likelihood;
+    if (tried.at_bound && !is_first) trial.obstacle = "an unknown that it adds is at a bound";
+    trial.taken = tried.structure == identification.structure;
+    trial.log_likelihood_gain = first - tried.negative_log_likelihood;
+    if (!is_first) trial.needed_gain = kLikelier * tried.inflation;
+    trial.holdout_quantity = kDriveSignalNames[DriveSignal::kYawRate];
+    trial.holdout_rmse = tried.holdout_rmse;
+    trial.holdout_unit = kDriveSignalUnits[DriveSignal::kYawRate];
+    for (std::size_t i = 0; i < kShown.size(); ++i)
+      trial.parameters.push_back({.name = std::string(kDriveUnknownNames[kShown[i]]),
+                                  .value = tried.value[i],
+                                  .sigma = tried.sigma[i],
+                                  .unit = std::string(kDriveUnknownUnits[kShown[i]])});
+  }
+  return trials;
+}
+
+}  // namespace
 
 estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification, const std::string& subject) {
   estimation::Estimate out;
@@ -149,6 +200,11 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   }
   for (const estimation::PredictedQuantity& q : identification.validation.quantities)
     out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+  if (!identification.tried_structures.empty()) {
+    out.structure = to_string(identification.structure);
+    out.structure_reason = identification.structure_reason;
+    out.tried_structures = structure_trials(identification);
+  }
   out.verdict = identification.reason;
   out.judgement = identification.judgement;
   out.evidence = identification.checks;

@@ -27,6 +27,9 @@ namespace veridyn::vehicle {
 struct VehicleIdentifyOptions {
   bool equation_error = true;  ///< `equation_error`
   bool output_error = true;    ///< `output_error`
+  /// `structure`: "auto" (nothing) takes the richest that the data ask for, see `drive_structures.hpp`; "bicycle",
+  /// "roll", "roll and relaxation" fixes it.
+  std::optional<DriveStructure> structure = {};
   /// `method`: "auto" (nothing) takes output error where it converged, else the equation error that its comparison
   /// recommends; "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
   std::optional<VehicleMethod> method = {};
@@ -73,6 +76,9 @@ struct VehicleIdentification {
   std::optional<estimation::OutputErrorEstimate> output_error;  ///< as the estimator gave it
   std::vector<VehicleEstimate> estimates;                       ///< one per method, the chosen one among them
   VehicleMethod chosen = VehicleMethod::kNone;                  ///< its method
+  DriveStructure structure = DriveStructure::kBicycle;          ///< of the model of output and filter error
+  std::vector<TriedStructure> tried_structures;                 ///< the simplest first
+  std::string structure_reason;                                 ///< why this one; empty where the study fixes it
   estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
   std::string reason;                        ///< one sentence
   std::vector<estimation::Evidence> checks;  ///< residuals, agreement of methods, of data parts, hold-out

@@ -18,6 +18,14 @@ VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
   const std::string method = table.choice_or("method", methods, "auto");
   if (method != "auto") o.method = vehicle_method(method);
   o.model.read_keys(table);
+  std::vector<std::string> structures{"auto"};
+  structures.insert(structures.end(), kDriveStructureNames.begin(), kDriveStructureNames.end());
+  const std::string structure = table.choice_or("structure", structures, "auto");
+  const auto at = std::ranges::find(kDriveStructureNames, structure);
+  if (at != kDriveStructureNames.end()) {
+    o.structure = static_cast<DriveStructure>(at - kDriveStructureNames.begin());
+    o.model = with_structure(o.model, *o.structure);
+  }
   std::vector<std::string> free;
   for (std::size_t i = 0; i < kDriveUnknowns; ++i)
     if (o.model.free[i]) free.emplace_back(kDriveUnknownNames[i]);

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
+#include "veridyn/vehicle/identification/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/drive_regression.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
@@ -199,7 +200,8 @@ bool of_the_vehicle(const Parameter& p) {
 
 AgreementChecks check_agreement(const VehicleProblem& problem, const VehicleFindings& findings) {
   AgreementChecks checks;
-  if (findings.equation_error == nullptr) return checks;
+  // The regressions are of the bicycle.
+  if (findings.equation_error == nullptr || has_roll(problem.options.model.structure)) return checks;
   const DriveRegressionResult& regression = findings.equation_error->regression;
   const AxleEstimate* axle = regression.find(regression.recommends ? regression.recommended : Method::kGtls);
   if (axle == nullptr || !axle->usable) return checks;
@@ -219,7 +221,10 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   const estimation::PredictedQuantity* here = findings.fit.find("yaw_rate");
   VehicleJudgement out;
   // A contradiction in the recording is the cause of others.
-  out.checks.assign(problem.recording.begin(), problem.recording.end());
+  for (const Evidence& row : problem.recording)
+    out.checks.push_back(
+        in_time_of_model(explained_by_roll(row, findings.chosen.find("roll_gradient"), problem.signal_options.gravity),
+                         findings.steer_delay ? &*findings.steer_delay : nullptr));
   for (Evidence& row : check_residuals(problem, findings)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_simulation(here != nullptr));
   const AgreementChecks agreement = check_agreement(problem, findings);

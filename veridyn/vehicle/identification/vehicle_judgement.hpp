@@ -18,6 +18,7 @@ struct VehicleFindings {
   const DriveValidation& validation;  ///< on the hold-out
   const DriveValidation& by_noise;    ///< see with_noisier_inputs
   std::optional<PartsAgreement> parts = {};
+  std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
 };
 
 /// The verdict on an identified vehicle and what it rests on.

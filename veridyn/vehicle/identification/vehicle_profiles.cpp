@@ -41,8 +41,9 @@ estimation::ProfileResult profile_drive(const VehicleProblem& problem, const Equ
     none.message = "no profile: output error gave no estimate";
     return none;
   }
-  const OutputErrorProblem given =
-      output_error_problem(problem, equation_error, search_factor(problem, equation_error, output_error.raw));
+  const double factor = search_factor(problem, equation_error, output_error.raw);
+  OutputErrorProblem given = output_error_problem(problem, equation_error, factor);
+  given.weigh(output_error.whitening);
   estimation::ProfileOptions options;
   options.output_error = given.options;
   // Statistics to about 1e-3: steps in a valley that gain less are not worth their simulations.

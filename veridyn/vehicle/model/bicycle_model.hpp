@@ -43,20 +43,33 @@ struct BicycleModel {
   /// At lateral velocity v and yaw rate r of the centre of gravity, steer of the road wheels [rad], forward speed u.
   [[nodiscard]] BicycleRates<Scalar> rates(const Scalar& v, const Scalar& r, const Scalar& steer,
                                            const Scalar& u) const {
+    return rates_at_slips(slip_angles(v, r, steer, u), r, steer, u);
+  }
+
+  /// Slip angles of the front and the rear tyre [rad] in steady rolling; v is that of the contact points at the centre
+  /// of gravity.
+  [[nodiscard]] std::array<Scalar, 2> slip_angles(const Scalar& v, const Scalar& r, const Scalar& steer,
+                                                  const Scalar& u) const {
     using std::atan;
+    const Scalar slope_f = (v + parameters.a * r) / u;
+    const Scalar slope_r = (v - parameters.b * r) / u;
+    const bool exact = geometry == BicycleGeometry::kExact;
+    return {exact ? Scalar(steer - atan(slope_f)) : Scalar(steer - slope_f),
+            exact ? Scalar(-atan(slope_r)) : Scalar(-slope_r)};
+  }
+
+  /// The same at given slip angles, of tyres whose slip lags for example.
+  [[nodiscard]] BicycleRates<Scalar> rates_at_slips(const std::array<Scalar, 2>& slip_angle, const Scalar& r,
+                                                    const Scalar& steer, const Scalar& u) const {
     using std::cos;
     const VehicleParameters<Scalar>& p = parameters;
     const PerWheel<Scalar> load = static_loads(p, gravity);
-    const Scalar slope_f = (v + p.a * r) / u;
-    const Scalar slope_r = (v - p.b * r) / u;
-    const bool exact = geometry == BicycleGeometry::kExact;
     BicycleRates<Scalar> out;
-    out.slip_angle = {exact ? Scalar(steer - atan(slope_f)) : Scalar(steer - slope_f),
-                      exact ? Scalar(-atan(slope_r)) : Scalar(-slope_r)};
+    out.slip_angle = slip_angle;
     const Scalar none(0.0);
     out.Fy = {front.forces(load[kFrontLeft], none, out.slip_angle[0], none).Fy,
               rear.forces(load[kRearLeft], none, out.slip_angle[1], none).Fy};
-    const Scalar lateral_f = exact ? Scalar(out.Fy[0] * cos(steer)) : out.Fy[0];
+    const Scalar lateral_f = geometry == BicycleGeometry::kExact ? Scalar(out.Fy[0] * cos(steer)) : out.Fy[0];
     out.lateral_acceleration = 2.0 * (lateral_f + out.Fy[1]) / p.mass;
     out.dv = out.lateral_acceleration - r * u;
     out.dr = 2.0 * (p.a * lateral_f - p.b * out.Fy[1]) / p.I_z;

@@ -1,0 +1,143 @@
+#include "veridyn/vehicle/identification/drive_model_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/error.hpp"
+#include "veridyn/core/nearest.hpp"
+
+namespace veridyn::vehicle {
+namespace {
+
+constexpr std::array kRolls{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping,
+                            DriveUnknown::kRollArm, DriveUnknown::kRelaxationLength};
+constexpr std::array kByGeometry{
+    DriveUnknown::kCf,          DriveUnknown::kCr,           DriveUnknown::kIz,
+    DriveUnknown::kA,           DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
+    DriveUnknown::kRollDamping, DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength};
+
+struct Knowledge {
+  double mean = 0.0, sigma = 0.0;
+};
+
+/// What is known of an unknown by the vehicle's geometry; without a prior where its sigma is infinite.
+Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& vehicle, double roll_gradient) {
+  constexpr double kGradient = 0.0089, kFrequency = 10.0, kWheelbase = 2.6;
+  switch (unknown) {
+    case DriveUnknown::kCf:
+      return {vehicle.C_f, kInfinity};
+    case DriveUnknown::kCr:
+      return {vehicle.C_r, kInfinity};
+    case DriveUnknown::kIz:
+      return {vehicle.I_z, kInfinity};
+    case DriveUnknown::kA:
+      return {vehicle.a, kInfinity};
+    case DriveUnknown::kRollGradient:
+      return roll_gradient > 0.0 ? Knowledge{roll_gradient, 0.2 * roll_gradient}
+                                 : Knowledge{kGradient, 0.5 * kGradient};
+    case DriveUnknown::kRollFrequency: {
+      const double typical = kFrequency * std::sqrt(kWheelbase / vehicle.wheelbase());
+      return {typical, 0.4 * typical};
+    }
+    case DriveUnknown::kRollDamping:
+      return {0.3, 0.2};
+    case DriveUnknown::kRollArm:
+      return {0.85 * vehicle.cg_height, 0.25 * vehicle.cg_height};
+    default:
+      return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
+  }
+}
+
+}  // namespace
+
+DriveModelOptions::DriveModelOptions() {
+  for (const DriveUnknown u : {DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz, DriveUnknown::kSteerBias,
+                               DriveUnknown::kYawRateBias, DriveUnknown::kAccelYBias})
+    free[u] = true;
+  start.fill(0.0);
+  for (const DriveUnknown u : kByGeometry) start[u] = kNaN;
+  start[DriveUnknown::kMu] = 1.0;
+  start[DriveUnknown::kShape] = 1.3;
+  prior.fill(kInfinity);
+  prior[DriveUnknown::kSteerBias] = kDegree;
+  prior[DriveUnknown::kYawRateBias] = kDegree;
+  prior[DriveUnknown::kAccelYBias] = 0.5;
+  prior[DriveUnknown::kSteerScale] = 0.1;
+  prior[DriveUnknown::kAccelYScale] = 0.1;
+  for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
+    prior[u] = 0.1;
+  for (const DriveUnknown u : kRolls) prior[u] = kNaN;
+  prior[DriveUnknown::kRollBias] = prior[DriveUnknown::kRollRateBias] = kDegree;
+  prior[DriveUnknown::kShape] = 0.2;
+  prior[DriveUnknown::kCurvature] = 0.5;
+}
+
+void DriveModelOptions::read_keys(const StudyTable& table) {
+  const std::vector<std::string> tyres{"linear", "magic formula"};
+  tyre = table.choice_or("tyre", tyres, "linear") == "linear" ? DriveTyre::kLinear : DriveTyre::kMagicFormula;
+  const std::vector<std::string> names(kDriveUnknownNames.begin(), kDriveUnknownNames.end());
+  if (tyre == DriveTyre::kMagicFormula) {
+    free[DriveUnknown::kMu] = true;
+    free[DriveUnknown::kShape] = true;
+  }
+  if (table.has("estimate")) {
+    free.fill(false);
+    for (const std::string& name : table.texts("estimate")) {
+      const auto at = std::find(names.begin(), names.end(), name);
+      if (at == names.end())
+        table.fail("estimate", fmt::format("'{}' is not an unknown of the drive model{}", name,
+                                           suggestion(name, names, names.size())));
+      const auto unknown = static_cast<DriveUnknown>(at - names.begin());
+      if (std::ranges::find(kRolls, unknown) != kRolls.end())
+        table.fail("estimate", fmt::format("names {}, which identify.structure frees or not", name));
+      free[unknown] = true;
+    }
+  }
+  if (tyre == DriveTyre::kLinear) {
+    for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature}) {
+      if (free[u])
+        table.fail("estimate", fmt::format("names {}, which linear tyres do not have (tyre = \"magic formula\")",
+                                           kDriveUnknownNames[u]));
+    }
+  }
+  if (table.has("smoothing")) {
+    smoothing_Hz = table.number("smoothing", "Hz");
+    if (!(smoothing_Hz >= 0.0)) table.fail("smoothing", fmt::format("= {:g} Hz must be >= 0 (0: none)", smoothing_Hz));
+  }
+  const StudyTable starts = table.table_or_empty("start");
+  const StudyTable priors = table.table_or_empty("prior");
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    const std::string_view name = kDriveUnknownNames[u], unit = kDriveUnknownUnits[u];
+    if (starts.has(name)) start[u] = starts.number(name, unit);
+    if (!priors.has(name)) continue;
+    if (priors.is_text(name) && priors.text(name) == "none")
+      prior[u] = kInfinity;
+    else
+      prior[u] = priors.positive(name, unit);
+  }
+}
+
+DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
+                                double roll_gradient) {
+  for (const DriveUnknown u : kByGeometry) {
+    const Knowledge known = by_geometry(u, vehicle, roll_gradient);
+    if (!std::isfinite(options.start[u])) options.start[u] = known.mean;
+    if (std::isnan(options.prior[u])) options.prior[u] = known.sigma;
+  }
+  return options;
+}
+
+DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {
+  options.structure = structure;
+  if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
+  for (const DriveUnknown u : kRolls)
+    options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure) : has_roll(structure);
+  return options;
+}
+
+}  // namespace veridyn::vehicle

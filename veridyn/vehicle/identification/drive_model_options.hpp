@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
+#include "veridyn/core/study.hpp"
+#include "veridyn/vehicle/identification/drive_structure.hpp"
+#include "veridyn/vehicle/model/vehicle_parameters.hpp"
+
+namespace veridyn::vehicle {
+
+/// Unknowns of the drive model, in this order.
+enum class DriveUnknown : std::size_t {
+  kCf,                ///< cornering stiffness of one front tyre [N/rad]
+  kCr,                ///< of one rear tyre
+  kIz,                ///< yaw inertia [kg m^2]
+  kA,                 ///< centre of gravity to front axle [m]; the wheelbase stays
+  kMu,                ///< peak friction coefficient D/F_z of the Magic Formula [-]
+  kShape,             ///< its shape factor C [-]
+  kCurvature,         ///< its curvature factor E [-]
+  kRollGradient,      ///< steady roll per lateral acceleration [rad/(m/s^2)]
+  kRollArm,           ///< centre of gravity above the roll axis [m]
+  kRelaxationLength,  ///< travel in which the slip angles follow by 63 % [m]
+  /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
+  /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
+  /// alone has them.
+  kRollFrequency,
+  kRollDamping,
+  kSteerBias,     ///< measured minus true [rad]
+  kSteerScale,    ///< measured over true, less 1: steering ratio, compliance [-]
+  kYawRateBias,   ///< [rad/s]
+  kAccelYBias,    ///< [m/s^2]: sensor and mean bank
+  kAccelYScale,   ///< measured over true, less 1 [-]
+  kRollBias,      ///< where roll is recorded [rad]
+  kRollRateBias,  ///< where the roll rate is recorded [rad/s]
+  kSteerDelay,    ///< how late the front wheels' force answers the recorded steering [s]
+  kYawRateDelay,  ///< how late the yaw rate is recorded [s]
+  kAccelYDelay
+};
+/// How many unknowns there are.
+inline constexpr std::size_t kDriveUnknowns = 22;
+/// All of them, in order.
+inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
+/// A value for each of them.
+template <class T>
+using PerDriveUnknown = EnumArray<DriveUnknown, T, kDriveUnknowns>;
+/// Their names in studies and results, in the order of the enum.
+inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
+                                                                      "C_r",
+                                                                      "I_z",
+                                                                      "a",
+                                                                      "mu",
+                                                                      "C",
+                                                                      "E",
+                                                                      "roll_gradient",
+                                                                      "roll_arm",
+                                                                      "relaxation_length",
+                                                                      "roll_frequency",
+                                                                      "roll_damping",
+                                                                      "steer_bias",
+                                                                      "steer_scale",
+                                                                      "yaw_rate_bias",
+                                                                      "accel_y_bias",
+                                                                      "accel_y_scale",
+                                                                      "roll_bias",
+                                                                      "roll_rate_bias",
+                                                                      "steer_delay",
+                                                                      "yaw_rate_delay",
+                                                                      "accel_y_delay"};
+/// Their units, in the same order.
+inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
+    "N/rad", "N/rad", "kg m^2", "m",     "1",     "1", "1",   "rad s^2/m", "m", "m", "rad/s",
+    "1",     "rad",   "1",      "rad/s", "m/s^2", "1", "rad", "rad/s",     "s", "s", "s"};
+/// Whether it is the vehicle's, and not of its sensors or the day.
+[[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
+
+/// Tyres of the drive model.
+enum class DriveTyre {
+  kLinear,        ///< F = C alpha
+  kMagicFormula,  ///< F = D sin(C atan(B alpha - E (B alpha - atan(B alpha)))), D = mu F_z, B C D = cornering stiffness
+};
+
+/// Study keys of `[identify]`.
+struct DriveModelOptions {
+  DriveTyre tyre = DriveTyre::kLinear;  ///< `tyre = "linear"` or "magic formula"
+  /// What moves; no key of its own: `VehicleIdentifyOptions::structure` chooses. Its unknowns are free.
+  DriveStructure structure = DriveStructure::kBicycle;
+  /// `estimate = ["C_f", "C_r", ...]`: names of what is free besides the structure's unknowns. Default: C_f, C_r, I_z,
+  /// the three biases, and with the Magic Formula mu and C. What is not free stays at its start.
+  PerDriveUnknown<bool> free{};
+  /// `[identify.start] mu = 1`: where the search begins; also the mean of the prior. NaN: by the vehicle's geometry,
+  /// see `with_geometry`.
+  PerDriveUnknown<double> start{};
+  /// `[identify.prior] steer_bias = "1 deg"`: standard deviation of what is known beforehand; infinite: nothing.
+  /// Defaults: steer_bias 1 deg, yaw_rate_bias 1 deg/s, accel_y_bias 0.5 m/s^2 (at one constant speed the three are
+  /// indistinguishable without), steer_scale and accel_y_scale 0.1, delays 0.1 s, C 0.2, E 0.5; NaN: by the geometry.
+  PerDriveUnknown<double> prior{};
+  /// `smoothing`: cut-off of the kernel through which inputs and outputs alike go before the comparison [Hz]. Noise of
+  /// the steering acts on the lateral acceleration at once (2 C_f/m times it), and what it adds to the slip angle's
+  /// power is taken off C_f: 1.3 % for 0.1 deg of white noise at 100 Hz on 0.9 deg rms of slip. 4 Hz leave a tenth of
+  /// that. 0: none; negative (the default): 4 Hz or a tenth of the rate, where the steering's noise is above 1e-4 of
+  /// the steering.
+  double smoothing_Hz = -1.0;
+  /// C_f, C_r and I_z are looked for between their start over this and times it; no key.
+  double search_factor = 1e3;
+  double gravity = kGravity;
+
+  DriveModelOptions();
+  /// @throws InputError naming file, line and key.
+  void read_keys(const StudyTable& table);
+};
+
+/// The options with every start and prior a number. What was NaN is that of the vehicle: C_f, C_r, I_z and a its own;
+/// roll gradient 0.0089 +- 0.0045 rad/(m/s^2) (5 deg/g; where one is given, `roll_gradient` > 0, that within a fifth),
+/// roll frequency 10 rad/s +- 40 % on a wheelbase of 2.6 m (as the root of its inverse), damping ratio 0.3 +- 0.2, the
+/// centre of gravity 0.85 +- 0.25 of its height above the roll axis (roll axes lie up to 0.15 m above the road,
+/// Milliken & Milliken 1995, chapter 17), relaxation length 0.12 +- 0.06 of the wheelbase (0.3 m, Pacejka 2006, chapter
+/// 5).
+[[nodiscard]] DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
+                                              double roll_gradient);
+
+/// The options for a structure, whose unknowns are free.
+[[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);
+
+}  // namespace veridyn::vehicle

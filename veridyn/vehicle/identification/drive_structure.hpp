@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/enum_array.hpp"
+
+namespace veridyn::vehicle {
+
+/// What the identified model has.
+enum class DriveStructure : std::size_t {
+  kBicycle,      ///< lateral velocity and yaw rate
+  kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll has to be told from
+  kRoll,         ///< and the body's roll on its springs
+  kRelaxation    ///< and tyres whose slip follows after a relaxation length
+};
+/// How many there are.
+inline constexpr std::size_t kDriveStructures = 4;
+/// Their names in studies and results, in the order of the enum.
+inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> kDriveStructureNames{
+    "bicycle", "bicycle, accel_y scaled", "roll", "roll and relaxation"};
+/// As study files and estimates name it.
+[[nodiscard]] constexpr std::string_view to_string(DriveStructure structure) { return kDriveStructureNames[structure]; }
+
+[[nodiscard]] constexpr bool has_roll(DriveStructure structure) { return structure >= DriveStructure::kRoll; }
+[[nodiscard]] constexpr bool has_relaxation(DriveStructure structure) {
+  return structure == DriveStructure::kRelaxation;
+}
+
+/// One structure that was fitted to the identification segments and tried on the hold-out.
+struct TriedStructure {
+  DriveStructure structure = DriveStructure::kBicycle;
+  bool usable = false;
+  bool at_bound = false;  ///< one of the unknowns that it adds is at a bound
+  std::string message = {};
+  double negative_log_likelihood = kNaN;  ///< of the identification segments, without a constant
+  double inflation = 1.0;      ///< of variances by the residual's autocorrelation: samples that say what one would
+  double holdout_rmse = kNaN;  ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
+  std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
+};
+
+/// A richer structure is taken where it makes the data likelier by more than this (the log of the likelihoods' ratio,
+/// divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20 is exceeded by chance once in
+/// 2000 times (four unknowns).
+inline constexpr double kLikelier = 10.0;
+/// And predicts the yaw rate of the hold-out no worse than by this factor.
+inline constexpr double kNoWorse = 1.02;
+
+/// Which structure to take: from the simplest upward as long as a later one is likelier by `kLikelier`, predicts no
+/// worse and has none of its own unknowns at a bound. The first where none is usable.
+[[nodiscard]] std::size_t choose_structure(std::span<const TriedStructure> tried);
+
+}  // namespace veridyn::vehicle

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "veridyn/core/progress.hpp"
+#include "veridyn/vehicle/identification/drive_structure.hpp"
+#include "veridyn/vehicle/identification/vehicle_estimates.hpp"
+
+namespace veridyn::vehicle {
+
+/// All structures that were tried, the simplest first, and which of them the data ask for.
+struct StructureLadder {
+  std::vector<TriedStructure> tried;
+  std::size_t chosen = 0;
+  OutputErrorResult fit = {};  ///< of the chosen one, to the end
+  /// How late the recorded steering is where the model with roll is left free to say so.
+  std::optional<estimation::Parameter> steer_delay = {};
+  std::string reason;  ///< one sentence; empty where the study fixes the structure
+  [[nodiscard]] bool empty() const { return tried.empty(); }
+};
+
+/// The largest residual over what sensors and the steering's error leave (normalised chi-square of an output) at which
+/// nothing richer is looked for.
+inline constexpr double kExplained = 1.1;
+
+/// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one leaves
+/// no more residual than the sensors do, and relaxation only where roll is taken.
+[[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
+                                               const EquationErrorEstimates* equation_error, Progress& progress);
+
+/// The options of identification for a structure.
+[[nodiscard]] VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure);
+
+}  // namespace veridyn::vehicle

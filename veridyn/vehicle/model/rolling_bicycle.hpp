@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "veridyn/vehicle/model/bicycle_model.hpp"
+
+namespace veridyn::vehicle {
+
+/// How a body leans on its springs, as motion shows it: roll phi after the lateral acceleration a_y,
+///
+///     phi'' = frequency^2 (gradient a_y - phi) - 2 damping frequency phi'
+///
+/// With the mass m and the arm h of the centre of gravity above the roll axis that is a body of roll stiffness
+/// K = m h/gradient (gravity's tilting moment taken off), roll inertia K/frequency^2 and roll damping
+/// 2 damping K/frequency.
+template <typename Scalar>
+struct BodyRoll {
+  Scalar gradient{0.0};   ///< steady roll per lateral acceleration [rad/(m/s^2)]
+  Scalar frequency{9.0};  ///< undamped natural frequency [rad/s]
+  Scalar damping{0.3};    ///< damping ratio [-]
+  Scalar arm{0.0};        ///< h: centre of gravity above the roll axis, which the contact points move by [m]
+};
+
+/// Rates of a `RollingBicycle` at one moment.
+template <typename Scalar, int kStates>
+struct RollingBicycleRates {
+  Eigen::Matrix<Scalar, kStates, 1> derivative;
+  Scalar lateral_acceleration{0.0};  ///< v' + r u, of the centre of gravity [m/s^2]
+};
+
+/// The bicycle model with as many states as one asks for, in this order (ISO 8855: roll is left side up):
+///
+/// - 2: lateral velocity v and yaw rate r of the centre of gravity, which is `BicycleModel`;
+/// - 4: and roll phi and roll rate: the contact points move sideways by h phi' against the centre of gravity, so that
+///   slip angles are delta - atan((v + h phi' + a r)/u) and -atan((v + h phi' - b r)/u), and the lateral force on the
+///   arm h rolls the body (the linear form: Segel 1956, Proc. IMechE Automobile Division 10(1); here the wheels are
+///   without mass of their own, as in the lateral motion of `FourWheelModel`);
+/// - 6: and the slip angles of front and rear tyres, which follow after `relaxation_length` of travel.
+template <typename Scalar, typename Tyre>
+struct RollingBicycle {
+  BicycleModel<Scalar, Tyre> bicycle;
+  BodyRoll<Scalar> roll = {};
+  Scalar relaxation_length{0.3};  ///< with six states; > 0 [m]
+
+  template <int kStates>
+  [[nodiscard]] RollingBicycleRates<Scalar, kStates> rates(const Eigen::Matrix<Scalar, kStates, 1>& x,
+                                                           const Scalar& steer, const Scalar& u) const {
+    static_assert(kStates == 2 || kStates == 4 || kStates == 6);
+    RollingBicycleRates<Scalar, kStates> out;
+    Scalar contact_velocity = x(0);
+    if constexpr (kStates > 2) contact_velocity += roll.arm * x(3);
+    std::array<Scalar, 2> slip = bicycle.slip_angles(contact_velocity, x(1), steer, u);
+    if constexpr (kStates > 4) {
+      const Scalar per_time = u / relaxation_length;
+      out.derivative(4) = per_time * (slip[0] - x(4));
+      out.derivative(5) = per_time * (slip[1] - x(5));
+      slip = {x(4), x(5)};
+    }
+    const BicycleRates<Scalar> plane = bicycle.rates_at_slips(slip, x(1), steer, u);
+    out.lateral_acceleration = plane.lateral_acceleration;
+    out.derivative(0) = plane.dv;
+    out.derivative(1) = plane.dr;
+    if constexpr (kStates > 2) {
+      out.derivative(2) = x(3);
+      out.derivative(3) = roll.frequency * (roll.frequency * (roll.gradient * plane.lateral_acceleration - x(2)) -
+                                            2.0 * roll.damping * x(3));
+    }
+    return out;
+  }
+
+  /// The states of steady cornering at lateral velocity v and yaw rate r: the body at rest in its roll.
+  template <int kStates>
+  [[nodiscard]] Eigen::Matrix<Scalar, kStates, 1> steady(const Scalar& v, const Scalar& r, const Scalar& steer,
+                                                         const Scalar& u) const {
+    Eigen::Matrix<Scalar, kStates, 1> x;
+    x(0) = v;
+    x(1) = r;
+    const BicycleRates<Scalar> plane = bicycle.rates(v, r, steer, u);
+    if constexpr (kStates > 2) {
+      x(2) = roll.gradient * plane.lateral_acceleration;
+      x(3) = Scalar(0.0);
+    }
+    if constexpr (kStates > 4) {
+      x(4) = plane.slip_angle[0];
+      x(5) = plane.slip_angle[1];
+    }
+    return x;
+  }
+};
+
+}  // namespace veridyn::vehicle
