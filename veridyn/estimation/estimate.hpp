@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/judgement.hpp"
 #include "veridyn/estimation/parameter.hpp"
 
@@ -36,6 +37,19 @@ struct NextMeasurement {
   double share_then = 0.0;
 };
 
+/// A structure of the model that was fitted, and what decides between it and the others.
+struct StructureTrial {
+  std::string name;
+  bool taken = false;
+  std::string obstacle = {};            ///< why it cannot be taken whatever it gains; empty: nothing
+  double log_likelihood_gain = kNaN;    ///< over the first that can be taken
+  double needed_gain = kNaN;            ///< what it has to gain over the one taken before it; NaN for the first
+  std::string holdout_quantity = {};    ///< that was predicted on the hold-out
+  double holdout_rmse = kNaN;           ///< of it
+  std::string holdout_unit = "1";       ///< of that
+  std::vector<Parameter> parameters{};  ///< that all structures have: name, value, sigma, unit
+};
+
 /// What identification delivers, whatever the domain: the content of `estimate.json`.
 struct Estimate {
   std::string subject;
@@ -49,7 +63,10 @@ struct Estimate {
   Judgement judgement;             ///< of the whole; "not judged" where an estimate was read from an older file
   std::vector<Evidence> evidence;  ///< every check behind it
   std::vector<std::string> warnings;
-  std::vector<NextMeasurement> next_measurements;  ///< the best first; empty: not asked for, or none to advise
+  std::string structure = {};                         ///< of the model; empty: its domain has but one
+  std::string structure_reason = {};                  ///< why this one; empty: the study fixes it
+  std::vector<StructureTrial> tried_structures = {};  ///< the simplest first
+  std::vector<NextMeasurement> next_measurements;     ///< the best first; empty: not asked for, or none to advise
 
   [[nodiscard]] const Parameter* find(std::string_view name) const;
 };

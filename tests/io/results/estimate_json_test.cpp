@@ -82,6 +82,53 @@ TEST(EstimateJson, KeepsWhatToMeasureNext) {
   EXPECT_EQ(read.next_measurements[1].share_then, 0.15);
 }
 
+TEST(EstimateJson, KeepsTheStructureAndTheOthersThatWereTried) {
+  estimation::Estimate e = two_parameters();
+  EXPECT_EQ(to_json(e).find("structure"), std::string::npos);
+  e.structure = "roll";
+  e.structure_reason = "likelier";
+  e.tried_structures = {{.name = "bicycle", .obstacle = "did not converge", .needed_gain = 12.5},
+                        {.name = "roll",
+                         .taken = true,
+                         .log_likelihood_gain = 400.0,
+                         .holdout_quantity = "yaw_rate",
+                         .holdout_rmse = 0.002,
+                         .holdout_unit = "rad/s",
+                         .parameters = {{.name = "C_f", .value = 5e4, .sigma = 500.0, .unit = "N/rad"}}}};
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(e);
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", text));
+  EXPECT_EQ(to_json(read), text);
+  EXPECT_EQ(read.structure, "roll");
+  EXPECT_EQ(read.structure_reason, "likelier");
+  ASSERT_EQ(read.tried_structures.size(), 2u);
+  EXPECT_EQ(read.tried_structures[0].obstacle, "did not converge");
+  EXPECT_TRUE(std::isnan(read.tried_structures[0].log_likelihood_gain));
+  EXPECT_EQ(read.tried_structures[0].needed_gain, 12.5);
+  const estimation::StructureTrial& roll = read.tried_structures[1];
+  EXPECT_TRUE(roll.taken);
+  EXPECT_EQ(roll.log_likelihood_gain, 400.0);
+  EXPECT_EQ(roll.holdout_quantity, "yaw_rate");
+  EXPECT_EQ(roll.holdout_rmse, 0.002);
+  EXPECT_EQ(roll.holdout_unit, "rad/s");
+  ASSERT_EQ(roll.parameters.size(), 1u);
+  EXPECT_EQ(roll.parameters[0].name, "C_f");
+  EXPECT_EQ(roll.parameters[0].sigma, 500.0);
+}
+
+TEST(EstimateJson, RefusesAStructureThatIsNeitherTakenNorNot) {
+  estimation::Estimate e = two_parameters();
+  e.structure = "roll";
+  e.tried_structures = {{.name = "roll", .taken = true}};
+  std::string text = to_json(e);
+  const std::string word = "\"taken\": true";
+  text.replace(text.find(word), word.size(), "\"taken\": 1");
+  const testing::TemporaryFolder folder;
+  const auto file = folder.write("estimate.json", text);
+  EXPECT_THAT(message_of([&] { (void)read_estimate(file); }),
+              HasSubstr("tried_structures[0].taken: is neither true nor false"));
+}
+
 TEST(EstimateJson, RefusesAGradeThatIsNone) {
   std::string text = to_json(two_parameters());
   const std::size_t at = text.find("not judged");

@@ -166,6 +166,57 @@ void read_next_measurements(const ordered_json& root, const std::string& file, E
   }
 }
 
+ordered_json trial_of(const estimation::StructureTrial& trial) {
+  ordered_json parameters = ordered_json::array();
+  for (const Parameter& p : trial.parameters)
+    parameters.push_back({{"name", p.name}, {"value", number(p.value)}, {"sigma", number(p.sigma)}, {"unit", p.unit}});
+  return {{"name", trial.name},
+          {"taken", trial.taken},
+          {"obstacle", trial.obstacle},
+          {"log_likelihood_gain", number(trial.log_likelihood_gain)},
+          {"needed_gain", number(trial.needed_gain)},
+          {"holdout_quantity", trial.holdout_quantity},
+          {"holdout_rmse", number(trial.holdout_rmse)},
+          {"holdout_unit", trial.holdout_unit},
+          {"parameters", std::move(parameters)}};
+}
+
+estimation::StructureTrial read_trial(const ordered_json& trial, const std::string& place) {
+  const ordered_json& taken = require(trial, "taken", place);
+  if (!taken.is_boolean()) throw InputError(place + ".taken", "is neither true nor false");
+  estimation::StructureTrial out{
+      .name = read_text(trial, "name", place),
+      .taken = taken.get<bool>(),
+      .obstacle = read_text(trial, "obstacle", place),
+      .log_likelihood_gain = read_number(require(trial, "log_likelihood_gain", place), place + ".log_likelihood_gain"),
+      .needed_gain = read_number(require(trial, "needed_gain", place), place + ".needed_gain"),
+      .holdout_quantity = read_text(trial, "holdout_quantity", place),
+      .holdout_rmse = read_number(require(trial, "holdout_rmse", place), place + ".holdout_rmse"),
+      .holdout_unit = read_text(trial, "holdout_unit", place)};
+  const ordered_json& parameters = require(trial, "parameters", place);
+  if (!parameters.is_array()) throw InputError(place + ".parameters", "is not an array");
+  for (const ordered_json& p : parameters) {
+    const std::string where = fmt::format("{}.parameters[{}]", place, out.parameters.size());
+    out.parameters.push_back({.name = read_text(p, "name", where),
+                              .value = read_number(require(p, "value", where), where + ".value"),
+                              .sigma = read_number(require(p, "sigma", where), where + ".sigma"),
+                              .unit = read_text(p, "unit", where)});
+  }
+  return out;
+}
+
+/// Where an estimate says which structure of its model it is of.
+void read_structure(const ordered_json& root, const std::string& file, Estimate& estimate) {
+  if (!root.contains("structure")) return;
+  estimate.structure = read_text(root, "structure", file);
+  estimate.structure_reason = read_text(root, "structure_reason", file);
+  const ordered_json& trials = require(root, "tried_structures", file);
+  if (!trials.is_array()) throw InputError(file, "'tried_structures' is not an array");
+  for (const ordered_json& trial : trials)
+    estimate.tried_structures.push_back(
+        read_trial(trial, fmt::format("{}: tried_structures[{}]", file, estimate.tried_structures.size())));
+}
+
 }  // namespace
 
 std::string to_json(const Estimate& estimate) {
@@ -216,6 +267,13 @@ std::string to_json(const Estimate& estimate) {
   root["evidence"] = ordered_json::array();
   for (const Evidence& row : estimate.evidence) root["evidence"].push_back(evidence_of(row));
   root["warnings"] = estimate.warnings;
+  if (!estimate.structure.empty()) {
+    root["structure"] = estimate.structure;
+    root["structure_reason"] = estimate.structure_reason;
+    root["tried_structures"] = ordered_json::array();
+    for (const estimation::StructureTrial& trial : estimate.tried_structures)
+      root["tried_structures"].push_back(trial_of(trial));
+  }
   for (const estimation::NextMeasurement& next : estimate.next_measurements) {
     root["next_measurements"].push_back({{"name", next.name},
                                          {"widest_now", next.widest_now},
@@ -287,6 +345,7 @@ Estimate read_estimate(const std::filesystem::path& path) {
       if (warning.is_string()) estimate.warnings.push_back(warning.get<std::string>());
     }
   }
+  read_structure(root, name, estimate);
   read_next_measurements(root, name, estimate);
   return estimate;
 }
