@@ -87,6 +87,11 @@ void print_analysis(const VehicleAnalysis& analysis, const std::filesystem::path
                     const CommonOptions& options) {
   const VehicleIdentification& id = analysis.identification;
   print_judgement(options, analysis.estimate);
+  const estimation::Estimate& estimate = analysis.estimate;
+  if (!estimate.structure_reason.empty())
+    print_line(options, estimate.structure_reason);
+  else if (!estimate.structure.empty())
+    print_line(options, fmt::format("structure: {}, as the study says", estimate.structure));
   if (const VehicleEstimate* best = id.best()) {
     for (const estimation::Parameter& p : best->parameters) {
       print_line(options, fmt::format("  {:<20} {:>12.5g} +- {:<9.2g} {:<12} {}", p.name, p.value, p.sigma, p.unit,

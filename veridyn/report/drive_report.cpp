@@ -12,6 +12,7 @@
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/profile_section.hpp"
 #include "veridyn/report/parts/remarks.hpp"
+#include "veridyn/report/parts/tried_structures_section.hpp"
 #include "veridyn/report/vehicle_report.hpp"
 #include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 #include "veridyn/vehicle/model/bicycle_analysis.hpp"
@@ -38,6 +39,7 @@ std::vector<Fact> facts(const VehicleStudy& study, const VehicleAnalysis& a) {
                          {"Held out", fmt::format("{:.1f} s", recording::total_s(a.segments.holdout))}};
   if (const VehicleEstimate* best = a.identification.best())
     list.push_back({"Method", std::string(to_string(best->method))});
+  if (!a.estimate.structure.empty()) list.push_back({"Structure", a.estimate.structure});
   return list;
 }
 
@@ -287,6 +289,7 @@ Document drive_report(const VehicleStudy& study, const VehicleAnalysis& analysis
       analysis,
       "Stiffnesses are of one tyre. Motion alone shows ratios to the mass; its error is in the error "
       "bars where [identify.uncertainty] gives it."));
+  add(tried_structures_section(analysis.estimate));
   add(profile_section(id.profiles, profiled_parameters(id),
                       "Autocorrelated residuals and parts of the drive that scatter widen profiles as they widen the "
                       "error bars; what [identify.uncertainty] adds is in the error bars only."));

@@ -54,6 +54,17 @@ TEST(ParametersSection, ShowsTheChosenMethodInUnitsForReading) {
   EXPECT_EQ(tables[0].rows[0].cells.size(), tables[0].columns.size());
 }
 
+TEST(ParametersSection, ShowsFrequenciesInHertz) {
+  Analysis analysis = analysis_with(GroupVerdict::kIdentified);
+  analysis.groups[0].parameters = {{.name = "roll_frequency", .value = 4.0 * kPi, .unit = "rad/s"},
+                                   {.name = "yaw_rate_bias", .value = kPi, .unit = "rad/s"}};
+  const auto tables = blocks<Table>(parameters_section(analysis, ""));
+  ASSERT_EQ(tables.size(), 1U);
+  ASSERT_EQ(tables[0].rows.size(), 2U);
+  EXPECT_DOUBLE_EQ(*tables[0].rows[0].cells[1].number, 2.0);
+  EXPECT_DOUBLE_EQ(*tables[0].rows[1].cells[1].number, 180.0);
+}
+
 TEST(ParametersSection, ShowsTheTruthOnlyWhereItIsKnown) {
   Analysis analysis = analysis_with(GroupVerdict::kIdentified);
   analysis.truth["C_f"] = 5.1e4;

@@ -54,7 +54,7 @@ IntervalPlot interval_plot(const Analysis& analysis, const ParameterGroup& group
         row.estimates.push_back({kNaN, kNaN, kNaN});
         continue;
       }
-      const ReadableNumber unit = readable(1.0, p->unit);
+      const ReadableNumber unit = readable(1.0, p->unit, p->name);
       factor = unit.value;
       row.unit = unit.unit;
       row.estimates.push_back({p->value * factor, p->low95 * factor, p->high95 * factor, status_of(p->status)});
@@ -105,7 +105,7 @@ Section parameters_section(const Analysis& analysis, std::string caption) {
   for (const ParameterGroup& group : analysis.groups) {
     if (!has_values(group)) continue;
     for (const Parameter& p : group.parameters) {
-      const ReadableNumber unit = readable(1.0, p.unit);
+      const ReadableNumber unit = readable(1.0, p.unit, p.name);
       Row row = parameter_row(p, unit.value, unit.unit);
       if (!analysis.truth.empty())
         row.cells.push_back(measured_cell(analysis.true_value(p.name) * unit.value, p.sigma * unit.value));
