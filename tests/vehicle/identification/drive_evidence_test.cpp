@@ -194,6 +194,103 @@ TEST(DriveEvidence, FindsHowFarABodyLeans) {
   EXPECT_TRUE(find_row(with.rows, "lateral acceleration against turning")->passed());
 }
 
+/// A parameter of an identified model.
+estimation::Parameter estimated(const char* name, double value, double sigma) {
+  estimation::Parameter p;
+  p.name = name;
+  p.value = value;
+  p.sigma = sigma;
+  return p;
+}
+
+// The car that rolls above, whose model has found how far it leans: the row that asked for it is content. A lean that
+// does not account for what the accelerometer shows, no lean, a failure and other rows leave it as it is.
+TEST(DriveEvidence, TakesTheIdentifiedLeanForAReadingOfTheAccelerometer) {
+  const Recording recording = record_drive(rolling_drive(5), reference_drive_sensors(), 5);
+  const Judged found = judged(recording, testing::road_car());
+  const Evidence* row = find_row(found.rows, kLateralAcceleration);
+  ASSERT_NE(row, nullptr);
+  ASSERT_EQ(row->outcome, Outcome::kCare);
+  const estimation::Parameter lean = estimated("roll_gradient", kRollGradient, 1e-4);
+  const Evidence explained = explained_by_roll(*row, &lean, kGravity);
+  EXPECT_EQ(explained.outcome, Outcome::kPassed);
+  EXPECT_THAT(explained.text, HasSubstr("leans by 5.0 deg/g"));
+  EXPECT_EQ(explained.advice, "");
+  EXPECT_EQ(explained.value, row->value);  // what was measured stays so
+
+  const auto is_left = [&](const Evidence& given, const estimation::Parameter* gradient) {
+    const Evidence after = explained_by_roll(given, gradient, kGravity);
+    return after.outcome == given.outcome && after.text == given.text && after.advice == given.advice;
+  };
+  EXPECT_TRUE(is_left(*row, nullptr));
+  for (const double wrong : {0.0, 0.3 * kRollGradient, 1.8 * kRollGradient, -kRollGradient, kNaN}) {
+    const estimation::Parameter other = estimated("roll_gradient", wrong, 1e-4);
+    EXPECT_TRUE(is_left(*row, &other)) << wrong;
+  }
+  Evidence failed = *row, other = *row, passed = *row, low = *row;
+  failed.outcome = Outcome::kFailed;
+  EXPECT_TRUE(is_left(failed, &lean));
+  other.name = "yaw rate against heading";
+  EXPECT_TRUE(is_left(other, &lean));
+  passed.outcome = Outcome::kNotVerified;
+  EXPECT_TRUE(is_left(passed, &lean));
+  low.value = 2.0 - row->value;  // a body that leans outward never reads less
+  EXPECT_TRUE(is_left(low, &lean));
+}
+
+// A reading that is off by more than the lean by 5 % is none of it; by less, it is.
+TEST(DriveEvidence, AccountsForALeanToFivePercent) {
+  const estimation::Parameter lean = estimated("roll_gradient", 0.01, 1e-4);
+  for (const auto& [off, outcome] : {std::pair{-0.051, Outcome::kCare},
+                                     {-0.049, Outcome::kPassed},
+                                     {0.049, Outcome::kPassed},
+                                     {0.051, Outcome::kCare}}) {
+    const Evidence row{.name = std::string(kLateralAcceleration), .outcome = Outcome::kCare, .value = 1.0981 + off};
+    EXPECT_EQ(explained_by_roll(row, &lean, 9.81).outcome, outcome) << off;
+  }
+}
+
+// Limits are 0.07 s either way, with care, and 0.4 s late, failed; what three standard errors allow is within them.
+TEST(DriveEvidence, JudgesTheOrderInTimeByTheDelayThatTheModelFinds) {
+  const Evidence row{.name = std::string(kOrderInTime),
+                     .about = "steer",
+                     .outcome = Outcome::kCare,
+                     .value = -0.09,
+                     .text = "steer comes after its effect",
+                     .advice = "check the stamps of steer"};
+  const auto judged_by = [&](double value, double sigma) {
+    const estimation::Parameter delay = estimated("steer_delay", value, sigma);
+    return in_time_of_model(row, &delay);
+  };
+  const Evidence in_time = judged_by(0.004, 0.001);
+  EXPECT_EQ(in_time.outcome, Outcome::kPassed);
+  EXPECT_EQ(in_time.value, 0.004);
+  EXPECT_EQ(in_time.advice, "");
+  EXPECT_THAT(in_time.text, HasSubstr("0.004 +- 0.001 s later than its model"));
+  EXPECT_THAT(judged_by(-0.004, 0.001).text, HasSubstr("0.004 +- 0.001 s earlier than its model"));
+  for (const auto& [value, sigma, outcome] :
+       {std::tuple{0.074, 0.001, Outcome::kCare}, std::tuple{0.072, 0.001, Outcome::kPassed},
+        std::tuple{-0.074, 0.001, Outcome::kCare}, std::tuple{-0.072, 0.001, Outcome::kPassed},
+        std::tuple{0.15, 0.05, Outcome::kPassed}, std::tuple{0.404, 0.001, Outcome::kFailed},
+        std::tuple{0.402, 0.001, Outcome::kCare}, std::tuple{-0.5, 0.001, Outcome::kCare}}) {
+    const Evidence by_model = judged_by(value, sigma);
+    EXPECT_EQ(by_model.outcome, outcome) << value << " +- " << sigma;
+    EXPECT_EQ(by_model.advice.empty(), outcome == Outcome::kPassed) << value << " +- " << sigma;
+    EXPECT_EQ(by_model.about, "steer, yaw_rate");
+  }
+  // Of nothing that is known the row stays what it was; so does any other row.
+  EXPECT_EQ(in_time_of_model(row, nullptr).text, row.text);
+  for (const double unknown : {kInfinity, kNaN}) {
+    EXPECT_EQ(judged_by(0.0, unknown).text, row.text);
+    EXPECT_EQ(judged_by(0.0, unknown).outcome, row.outcome);
+  }
+  Evidence other = row;
+  other.name = "gravity";
+  const estimation::Parameter delay = estimated("steer_delay", 0.0, 0.001);
+  EXPECT_EQ(in_time_of_model(other, &delay).text, row.text);
+  EXPECT_EQ(in_time_of_model(other, &delay).outcome, row.outcome);
+}
+
 TEST(DriveEvidence, TakesGravityForTheUnitAndSignOfTheVerticalAxis) {
   for (const auto& [value, outcome, text] :
        {std::tuple{9.8, Outcome::kPassed, "1 g in the mean"}, std::tuple{1.0, Outcome::kFailed, "g taken for m/s^2"},
