@@ -124,6 +124,29 @@ TEST_F(VehicleProgram, RollOfTheBodyIsNotTakenForTheTyres) {
   EXPECT_EQ(nlohmann::json::parse(identified.text)["verdict"], "effective");
 }
 
+TEST_F(VehicleProgram, SaysWhichStructureItTookAndWhatTheOthersMakeOfTheDrive) {
+  const std::string spoken = " --out " + (folder_ / "out").string();
+  const Outcome identified = run("identify " + study("rolling_car") + spoken);
+  ASSERT_EQ(identified.exit_code, 0) << identified.text;
+  EXPECT_THAT(identified.text, HasSubstr("structure: roll, which makes the drive likelier"));
+  const auto estimate = nlohmann::json::parse(read_file(in_out("estimate.json")));
+  EXPECT_EQ(estimate["structure"], "roll");
+  const auto& tried = estimate["tried_structures"];
+  ASSERT_GE(tried.size(), 3U);
+  EXPECT_EQ(tried[0]["name"], "bicycle");
+  EXPECT_EQ(tried[0]["taken"], false);
+  EXPECT_EQ(tried[2]["name"], "roll");
+  EXPECT_EQ(tried[2]["taken"], true);
+  EXPECT_GT(tried[2]["log_likelihood_gain"], tried[2]["needed_gain"]);
+  EXPECT_EQ(tried[2]["parameters"][2]["name"], "I_z");
+  // Three standard errors of this short drive.
+  EXPECT_NEAR(tried[2]["parameters"][2]["value"], 2350.0, 210.0);
+  const Outcome fixed =
+      run("identify " + study("rolling_car") + " --set identify.structure=bicycle --set drive.length=20" + spoken);
+  ASSERT_EQ(fixed.exit_code, 0) << fixed.text;
+  EXPECT_THAT(fixed.text, HasSubstr("structure: bicycle, as the study says"));
+}
+
 TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
   ASSERT_EQ(run("identify " + study("identify_sweep") + out()).exit_code, 0);
   const std::string estimate = file("estimate.json", read_file(in_out("estimate.json")));
