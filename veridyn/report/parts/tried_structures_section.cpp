@@ -61,6 +61,22 @@ Row row_of(const StructureTrial& trial, const StructureTrial& shown) {
   return row;
 }
 
+Table trial_table(const std::vector<StructureTrial>& trials) {
+  const auto fitted = [](const StructureTrial& trial) { return !trial.parameters.empty(); };
+  const auto first = std::ranges::find_if(trials, fitted);
+  const StructureTrial& shown = first != trials.end() ? *first : trials.front();
+  Table table{.title = "Structures that were tried",
+              .caption =
+                  "Each was fitted to the data of the identification, in few steps, to compare. What it gained is over "
+                  "the first; one is taken where it gains more than is needed over the one taken before it, which the "
+                  "autocorrelation of its residual raises, and predicts the hold-out no worse. The one that was taken "
+                  "was then fitted to the end: the table of parameters has its values and intervals.",
+              .columns = columns_of(shown),
+              .sortable = false};
+  for (const StructureTrial& trial : trials) table.rows.push_back(row_of(trial, shown));
+  return table;
+}
+
 }  // namespace
 
 Section tried_structures_section(const Estimate& estimate) {
@@ -70,19 +86,8 @@ Section tried_structures_section(const Estimate& estimate) {
   section.blocks.emplace_back(Paragraph{estimate.structure_reason.empty()
                                             ? fmt::format("The study fixes it: {}.", estimate.structure)
                                             : sentence(estimate.structure_reason)});
-  const auto fitted = [](const StructureTrial& trial) { return !trial.parameters.empty(); };
-  const auto shown = std::ranges::find_if(trials, fitted);
-  Table table{.title = "Structures that were tried",
-              .caption =
-                  "Each was fitted to the data of the identification, in few steps, to compare. What it gained is over "
-                  "the first; one is taken where it gains more than is needed over the one taken before it, which the "
-                  "autocorrelation of its residual raises, and predicts the hold-out no worse. The one that was taken "
-                  "was then fitted to the end: the table of parameters has its values and intervals.",
-              .columns = columns_of(shown != trials.end() ? *shown : trials.front()),
-              .sortable = false};
-  for (const StructureTrial& trial : trials)
-    table.rows.push_back(row_of(trial, shown != trials.end() ? *shown : trials.front()));
-  section.blocks.emplace_back(std::move(table));
+  // One alone compares with nothing.
+  if (trials.size() > 1) section.blocks.emplace_back(trial_table(trials));
   for (const StructureTrial& trial : trials) {
     if (!trial.obstacle.empty())
       section.blocks.emplace_back(Paragraph{fmt::format("{}: {}", trial.name, trial.obstacle), Tone::kNote});
