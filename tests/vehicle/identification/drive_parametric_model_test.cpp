@@ -2,13 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "tests/vehicle/simulated_drive.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/numerics/random.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -257,6 +259,65 @@ TEST(DriveParametricModel, AccelerometersOfLeaningBodiesFeelGravity) {
   ASSERT_GT(roll.cwiseAbs().maxCoeff(), 0.01);
   EXPECT_LT((felt.col(1) - removed.col(1) - kGravity * roll).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_LT((divided.col(1) * (1.0 + 0.01 * kGravity) - felt.col(1)).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+// At x, y, z of the centre of gravity a body that turns and rolls moves by x r' - y r^2 - z phi'' more. Rates from
+// differences of the model's own outputs over 20 ms: of motions below 2 Hz they are right to (2 pi 2 Hz 10 ms)^2/6.
+TEST(DriveParametricModel, AccelerometersElsewhereMoveWithTheBody) {
+  DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const auto outputs = [&](const std::array<double, 3>& position) {
+    signals.accel_position = position;
+    signals.gravity_removed = true;
+    const std::vector<TimeSpan> spans{{4.0, 8.0}};
+    const DriveParametricModel model(signals, spans, family_car(), with_structure({}, DriveStructure::kRoll));
+    EXPECT_EQ(model.outputs()[4].name, "roll_rate");
+    return output_of(model, theta_of(model));
+  };
+  const estimation::RowMatrix at_centre = outputs({});
+  const auto moved = [&](const std::array<double, 3>& position) -> Eigen::VectorXd {
+    return (outputs(position) - at_centre).col(1);
+  };
+  const Eigen::Index inner = at_centre.rows() - 2;
+  const auto rate = [&](Eigen::Index column) -> Eigen::VectorXd {
+    return (at_centre.col(column).tail(inner) - at_centre.col(column).head(inner)) * (0.5 * signals.grid.rate_Hz());
+  };
+  const auto expect_equal = [&](const Eigen::VectorXd& found, const Eigen::VectorXd& expected, const char* what) {
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 5e-3 * expected.cwiseAbs().maxCoeff()) << what;
+  };
+  expect_equal(moved({0.4, 0.0, 0.0}).segment(1, inner), 0.4 * rate(0), "ahead");
+  expect_equal(moved({0.0, 0.4, 0.0}).segment(1, inner), -0.4 * at_centre.col(0).segment(1, inner).cwiseAbs2(), "left");
+  expect_equal(moved({0.0, 0.0, 0.4}).segment(1, inner), -0.4 * rate(4), "above");
+}
+
+// The unknowns of a segment's beginning are what its first sample differs from steady cornering by.
+TEST(DriveParametricModel, SegmentsBeginOffSteadyCorneringByTheirInitialConditions) {
+  const DriveSignals signals = rolling_signals(testing::perfect_sensors());
+  const std::vector<TimeSpan> spans{{4.0, 8.0}};
+  DriveModelOptions options = with_structure({}, DriveStructure::kRelaxation);
+  options.start[DriveUnknown::kRollGradient] = 0.008;
+  const DriveParametricModel model(signals, spans, family_car(), options);
+  ASSERT_EQ(model.initial_conditions(0).size(), 6U);
+  Eigen::VectorXd theta = theta_of(model);
+  const auto first = signed_index(kDriveUnknowns);
+  theta.tail(4).setZero();
+  const Eigen::RowVectorXd steady = output_of(model, theta).row(0);
+  EXPECT_EQ(steady(0), theta(first + 1));
+  EXPECT_EQ(steady(2), theta(first));
+  EXPECT_EQ(steady(4), 0.0);
+  theta.segment(first + 2, 2) << 0.012, -0.034;
+  const Eigen::RowVectorXd rolled = output_of(model, theta).row(0);
+  EXPECT_NEAR(rolled(3) - steady(3), 0.012, 1e-15);
+  EXPECT_EQ(rolled(4), -0.034);
+  // A front slip of 0.01 rad more is 2 C_f 0.01/m of lateral acceleration; the wheels are hardly turned.
+  theta.tail(4) << 0.0, 0.0, 0.01, 0.0;
+  const Eigen::RowVectorXd slipped = output_of(model, theta).row(0);
+  const VehicleParameters<double> car = family_car();
+  const double x = signals.accel_position[0], z = signals.accel_position[2];
+  const double force = 2.0 * 0.01 * car.C_f;
+  const DriveModelOptions with_starts = with_geometry(options, car, 0.0);
+  const double roll_acceleration = std::pow(with_starts.start[DriveUnknown::kRollFrequency], 2) * 0.008 / car.mass;
+  const double per_force = 1.0 / car.mass + x * car.a / car.I_z - z * roll_acceleration;
+  EXPECT_NEAR(slipped(1) - steady(1), force * per_force, 2e-3 * force * per_force);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <type_traits>
 
 #include "tests/vehicle/cars.hpp"
 #include "veridyn/core/constants.hpp"
@@ -106,7 +108,7 @@ TEST(RollingBicycle, CornersSteadilyWithTheBicycleAndLeansByTheGradient) {
     turn -= J.inverse() * rates_at(turn);
   }
   const auto at_rest = [&]<int kStates>(std::integral_constant<int, kStates>) {
-    const RollingState<kStates> x = model.steady<kStates>(turn(0), turn(1), steer, kForwardSpeed);
+    RollingState<kStates> x = model.steady<kStates>(turn(0), turn(1), steer, kForwardSpeed);
     const auto rates = model.rates<kStates>(x, steer, kForwardSpeed);
     // v' and phi'' of several m/s^2 and rad/s^2 cancel to their rounding.
     EXPECT_LT(rates.derivative.cwiseAbs().maxCoeff(), 1e-11) << kStates;
