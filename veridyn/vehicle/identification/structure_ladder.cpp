@@ -80,7 +80,7 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }
 
-std::string reason_of(const StructureLadder& ladder) {
+std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   const TriedStructure& taken = ladder.tried[ladder.chosen];
   std::string reason = fmt::format("structure: {}", to_string(taken.structure));
   if (ladder.chosen > 0) {
@@ -89,6 +89,9 @@ std::string reason_of(const StructureLadder& ladder) {
                           to_string(before.structure), before.negative_log_likelihood - taken.negative_log_likelihood);
   } else if (ladder.tried.size() > 1) {
     reason += ": none richer makes the drive likelier";
+  } else {
+    reason += contradicts ? ": the recording contradicts itself, and nothing richer was tried on it"
+                          : ": it leaves no more than the sensors do";
   }
   return reason;
 }
@@ -105,6 +108,8 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
   StructureLadder ladder;
   std::vector<OutputErrorResult> fits;
   const bool fixed = problem.options.structure.has_value();
+  const bool contradicts = std::ranges::any_of(
+      problem.recording, [](const estimation::Evidence& row) { return row.outcome == estimation::Outcome::kFailed; });
   Eigen::VectorXd search_start;
   for (const DriveStructure structure : enumerators<DriveStructure, kDriveStructures>()) {
     if (progress.interrupted()) break;
@@ -118,7 +123,7 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
         estimate_by_output_error(given, equation_error, search_start, SearchEffort::kToCompare, progress);
     ladder.tried.push_back(tried(given, fit, progress));
     if (fit.raw.usable()) search_start = fit.raw.theta;
-    const bool done = is_explained(given, fit);
+    const bool done = contradicts || is_explained(given, fit);
     fits.push_back(std::move(fit));
     const bool rolls = has_roll(ladder.tried[choose_structure(ladder.tried)].structure);
     if (done || (structure == DriveStructure::kRoll && !rolls)) break;
@@ -131,7 +136,7 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
     ladder.fit = refined(std::move(fits[ladder.chosen]), given, equation_error, progress);
     ladder.steer_delay = steer_delay_of(given, equation_error, ladder.fit, progress);
   }
-  if (!fixed && !ladder.empty()) ladder.reason = reason_of(ladder);
+  if (!fixed && !ladder.empty()) ladder.reason = reason_of(ladder, contradicts);
   return ladder;
 }
 

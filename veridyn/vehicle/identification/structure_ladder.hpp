@@ -24,7 +24,7 @@ struct StructureLadder {
 
 /// The largest residual over what sensors and the steering's error leave (normalised chi-square of an output) at which
 /// nothing richer is looked for.
-inline constexpr double kExplained = 1.1;
+inline constexpr double kExplained = 1.25;
 
 /// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one leaves
 /// no more residual than the sensors do, and relaxation only where roll is taken.

@@ -48,8 +48,9 @@ Eigen::Vector3d understeer_slope(const VehicleParameters<double>& p) {
 std::vector<Parameter> with_unexcited(std::vector<Parameter> parameters, double max_relative_sigma) {
   for (Parameter& p : parameters) {
     const bool physical = p.name == "C_f" || p.name == "C_r" || p.name == "I_z" || p.name == "mu";
-    if (physical && p.status != ParameterStatus::kAtBound && !(p.sigma <= max_relative_sigma * std::abs(p.value)))
-      p.status = ParameterStatus::kNotExcited;
+    // At a bound that the data do not even hold it to, a search ends by chance.
+    const double most = p.status == ParameterStatus::kAtBound ? 1.0 : max_relative_sigma;
+    if (physical && !(p.sigma <= most * std::abs(p.value))) p.status = ParameterStatus::kNotExcited;
   }
   return parameters;
 }
