@@ -93,7 +93,11 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   }
   if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;
   if (estimate.find("relaxation_length") != nullptr) given.options.structure = DriveStructure::kRelaxation;
-  if (estimate.find("mu") != nullptr) given.options.tyre = DriveTyre::kMagicFormula;
+  if (estimate.find("mu") != nullptr) {
+    const bool rolls = estimate.find("roll_gradient") != nullptr && estimate.find("C") == nullptr;
+    if (rolls) given.options.structure = DriveStructure::kSaturation;
+    given.options.tyre = rolls ? DriveTyre::kFiala : DriveTyre::kMagicFormula;
+  }
   return given;
 }
 
@@ -186,7 +190,7 @@ VehicleAnalysis identify(const VehicleStudy& study, Progress& progress) {
   out.interrupted = out.identification.interrupted;
   std::vector<std::string> warnings = warnings_of(study, out.signals);
   if (!out.signals.gravity_removed && out.signals[DriveSignal::kAccelY].available() &&
-      !study.identify.model.free[DriveUnknown::kAccelYScale]) {
+      !study.identify.model.free[DriveUnknown::kAccelYScale] && !has_roll(out.identification.structure)) {
     warnings.emplace_back(
         "accel_y is taken as it is: where the sensor leans with the body it shows g sin(roll) too (5 deg of roll per g "
         "make 8.7 % of it); give signals.roll_gradient, record roll, or estimate accel_y_scale");

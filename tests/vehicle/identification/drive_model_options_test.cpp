@@ -117,6 +117,9 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
   EXPECT_EQ(freed(DriveStructure::kRoll), "roll_gradient roll_arm roll_frequency roll_damping ");
   EXPECT_EQ(freed(DriveStructure::kRelaxation),
             "roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+  EXPECT_EQ(freed(DriveStructure::kSaturation),
+            "mu roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+  EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, DriveTyre::kFiala);
 }
 
 // Down the ladder again nothing of the richer structure stays free.

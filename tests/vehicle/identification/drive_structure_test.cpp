@@ -9,8 +9,10 @@ namespace {
 
 /// A usable fit that predicts as well as any.
 TriedStructure fit(DriveStructure structure, double negative_log_likelihood) {
-  return {
-      .structure = structure, .usable = true, .negative_log_likelihood = negative_log_likelihood, .holdout_rmse = 0.01};
+  return {.structure = structure,
+          .usable = true,
+          .negative_log_likelihood = negative_log_likelihood,
+          .holdout_misfit = -5.0};
 }
 
 /// All structures, each likelier than the one before it by `gain`.
@@ -66,12 +68,12 @@ TEST(DriveStructure, TakesCorrelatedSamplesForFewer) {
 
 TEST(DriveStructure, TakesNothingThatPredictsTheHoldoutWorse) {
   std::vector<TriedStructure> tried = {fit(DriveStructure::kBicycle, 0.0), fit(DriveStructure::kRoll, -1000.0)};
-  tried[1].holdout_rmse = 1.019 * tried[0].holdout_rmse;
+  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.019;
   EXPECT_EQ(choose_structure(tried), 1U);
-  tried[1].holdout_rmse = 1.021 * tried[0].holdout_rmse;
+  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.021;
   EXPECT_EQ(choose_structure(tried), 0U);
   // Without a hold-out the likelihood decides alone.
-  tried[0].holdout_rmse = tried[1].holdout_rmse = kNaN;
+  tried[0].holdout_misfit = tried[1].holdout_misfit = kNaN;
   EXPECT_EQ(choose_structure(tried), 1U);
 }
 

@@ -137,6 +137,12 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
   for (const DriveUnknown u : kRolls)
     options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure) : has_roll(structure);
+  if (structure == DriveStructure::kSaturation && options.tyre == DriveTyre::kLinear) {
+    options.tyre = DriveTyre::kFiala;
+    options.free[DriveUnknown::kMu] = true;
+    // Dry road and gravel: 0.6 to 1.2.
+    if (!std::isfinite(options.prior[DriveUnknown::kMu])) options.prior[DriveUnknown::kMu] = 0.3;
+  }
   return options;
 }
 

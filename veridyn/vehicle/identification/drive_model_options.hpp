@@ -79,6 +79,7 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
 /// Tyres of the drive model.
 enum class DriveTyre {
   kLinear,        ///< F = C alpha
+  kFiala,         ///< a brush tyre, whose slope falls with its force, up to mu F_z
   kMagicFormula,  ///< F = D sin(C atan(B alpha - E (B alpha - atan(B alpha)))), D = mu F_z, B C D = cornering stiffness
 };
 
@@ -120,6 +121,9 @@ struct DriveModelOptions {
 /// 5).
 [[nodiscard]] DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
                                               double roll_gradient);
+
+/// The shortest relaxation length that is looked for, as a share of the wheelbase: a tenth of a metre.
+inline constexpr double kShortestRelaxation = 0.04;
 
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);

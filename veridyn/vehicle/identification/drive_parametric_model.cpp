@@ -15,6 +15,7 @@
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/numerics/signal_band.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
@@ -99,7 +100,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kRollArm:
       return {0.0, wheelbase};
     case DriveUnknown::kRelaxationLength:
-      return {0.04 * wheelbase, wheelbase};
+      return {kShortestRelaxation * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
     case DriveUnknown::kAccelYScale:
       return {-0.9, kInfinity};
@@ -443,6 +444,7 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());
       case DriveStructure::kRelaxation:
+      case DriveStructure::kSaturation:
         return work(model, std::integral_constant<int, 6>());
       case DriveStructure::kBicycle:
       case DriveStructure::kScaledAccel:
@@ -452,6 +454,10 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
   };
   if (options_.tyre == DriveTyre::kLinear)
     return with_tyres(LinearTyre<Scalar>{.stiffness = p.C_f}, LinearTyre<Scalar>{.stiffness = p.C_r});
+  if (options_.tyre == DriveTyre::kFiala) {
+    const Scalar& mu = unknown(DriveUnknown::kMu);
+    return with_tyres(FialaTyre<Scalar>{.stiffness = p.C_f, .mu = mu}, FialaTyre<Scalar>{.stiffness = p.C_r, .mu = mu});
+  }
   const PerWheel<Scalar> load = static_loads(p, options_.gravity);
   const auto tyre = [&](const Scalar& stiffness, const Scalar& nominal) {
     SimpleMagicFormulaTyre<Scalar> t;

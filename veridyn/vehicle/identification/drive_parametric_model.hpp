@@ -51,11 +51,11 @@ struct DriveWhitening {
 /// recorded. Integrated by RK4 with steps of at most 5 ms and a third of the fastest relaxation at the start values.
 /// Delays shift inputs and outputs by cubic interpolation. The mass only scales C_f, C_r and I_z: it is never free.
 ///
-/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore replaced by
-/// its best linear estimate (`numerics::wiener_smoothed`), whose error biases nothing; what that error moves is in the
-/// residual, which is coloured by it. `whitening` gives the filter that takes the colour out, which is held fixed while
-/// the parameters are fitted: any fixed filter leaves them without bias, this one makes intervals as small as the noise
-/// allows. With `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear
+/// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
+/// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
+/// and the residual is coloured by it. `whitening` gives the filter that takes the colour out, which is held fixed
+/// while the parameters are fitted: any fixed filter leaves them without bias, this one makes intervals as small as the
+/// noise allows. With `DriveModelOptions::smoothing_Hz` inputs and outputs are smoothed alike instead: a linear
 /// time-invariant system commutes with that exactly, the bicycle to second order in the kernel's length.
 ///
 /// What the model leaves out shows as autocorrelation of the residual: load transfer, compliance of the steering

@@ -10,7 +10,7 @@ std::size_t choose_structure(std::span<const TriedStructure> tried) {
     if (!tried[i].usable || tried[i].at_bound) continue;
     const double gain = tried[chosen].negative_log_likelihood - tried[i].negative_log_likelihood;
     const bool likelier = gain > kLikelier * tried[i].inflation;
-    const bool worse = tried[i].holdout_rmse > kNoWorse * tried[chosen].holdout_rmse;
+    const bool worse = tried[i].holdout_misfit > tried[chosen].holdout_misfit + kNoWorse;
     if (likelier && !worse) chosen = i;
   }
   return chosen;

@@ -31,8 +31,12 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.inflation = inflation_of(fit.raw);
-  constexpr std::array kAdded{DriveUnknown::kRollGradient, DriveUnknown::kRelaxationLength};
-  out.at_bound = std::ranges::any_of(kAdded, [&](DriveUnknown u) {
+  // A relaxation length at its bound, a tenth of a metre, is of no matter to what tyres saturate at.
+  std::vector<DriveUnknown> added{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
+                                  DriveUnknown::kRollDamping};
+  const DriveStructure structure = problem.options.model.structure;
+  added.push_back(structure == DriveStructure::kSaturation ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength);
+  out.at_bound = std::ranges::any_of(added, [&](DriveUnknown u) {
     return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
   });
   constexpr std::array kShown{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
@@ -45,6 +49,9 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   const DriveValidation there = predict_drive(problem.signals, problem.segments.holdout, problem.start,
                                               problem.options.model, {fit.raw.theta, {}}, progress);
   if (const estimation::PredictedQuantity* yaw_rate = there.find("yaw_rate")) out.holdout_rmse = yaw_rate->fit.rmse;
+  out.holdout_misfit = 0.0;
+  for (const estimation::OutputFit& output : fit.raw.outputs)
+    if (const estimation::PredictedQuantity* q = there.find(output.name)) out.holdout_misfit += std::log(q->fit.rmse);
   return out;
 }
 
@@ -80,11 +87,22 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }
 
+/// The options for a structure, above the structures that were tried. Saturation without a relaxation length that the
+/// data ask for has the shortest one there is, and does not search for it.
+VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, double wheelbase,
+                                      bool relaxes) {
+  options.model = with_structure(options.model, structure);
+  if (structure != DriveStructure::kSaturation || relaxes) return options;
+  options.model.free[DriveUnknown::kRelaxationLength] = false;
+  options.model.start[DriveUnknown::kRelaxationLength] = kShortestRelaxation * wheelbase;
+  return options;
+}
+
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   const TriedStructure& taken = ladder.tried[ladder.chosen];
   std::string reason = fmt::format("structure: {}", to_string(taken.structure));
   if (ladder.chosen > 0) {
-    const TriedStructure& before = ladder.tried[ladder.chosen - 1];
+    const TriedStructure& before = ladder.tried.front();
     reason += fmt::format(", which makes the drive likelier than {} does by a log-likelihood of {:.0f}",
                           to_string(before.structure), before.negative_log_likelihood - taken.negative_log_likelihood);
   } else if (ladder.tried.size() > 1) {
@@ -98,15 +116,11 @@ std::string reason_of(const StructureLadder& ladder, bool contradicts) {
 
 }  // namespace
 
-VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure) {
-  options.model = with_structure(options.model, structure);
-  return options;
-}
-
 StructureLadder climb_structures(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
                                  Progress& progress) {
   StructureLadder ladder;
   std::vector<OutputErrorResult> fits;
+  std::vector<VehicleIdentifyOptions> options;
   const bool fixed = problem.options.structure.has_value();
   const bool contradicts = std::ranges::any_of(
       problem.recording, [](const estimation::Evidence& row) { return row.outcome == estimation::Outcome::kFailed; });
@@ -117,8 +131,10 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
     const bool has_accel = problem.signals[DriveSignal::kAccelY].available();
     if (!fixed && structure == DriveStructure::kScaledAccel && !has_accel) continue;
     progress.stage(fmt::format("output error, structure: {}", to_string(structure)));
-    const VehicleIdentifyOptions options = with_structure(problem.options, structure);
-    const VehicleProblem given = with_options(problem, options);
+    const bool relaxes = fixed || (!ladder.empty() && ladder.tried[choose_structure(ladder.tried)].structure ==
+                                                          DriveStructure::kRelaxation);
+    options.push_back(with_structure(problem.options, structure, problem.start.wheelbase(), relaxes));
+    const VehicleProblem given = with_options(problem, options.back());
     OutputErrorResult fit =
         estimate_by_output_error(given, equation_error, search_start, SearchEffort::kToCompare, progress);
     ladder.tried.push_back(tried(given, fit, progress));
@@ -126,13 +142,13 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
     const bool done = contradicts || is_explained(given, fit);
     fits.push_back(std::move(fit));
     const bool rolls = has_roll(ladder.tried[choose_structure(ladder.tried)].structure);
-    if (done || (structure == DriveStructure::kRoll && !rolls)) break;
+    if (done || (structure >= DriveStructure::kRoll && !rolls)) break;
   }
   ladder.chosen = choose_structure(ladder.tried);
   if (!ladder.empty() && !progress.interrupted()) {
     progress.stage("output error");
-    const VehicleIdentifyOptions options = with_structure(problem.options, ladder.tried[ladder.chosen].structure);
-    const VehicleProblem given = with_options(problem, options);
+    ladder.model = options[ladder.chosen].model;
+    const VehicleProblem given = with_options(problem, options[ladder.chosen]);
     ladder.fit = refined(std::move(fits[ladder.chosen]), given, equation_error, progress);
     ladder.steer_delay = steer_delay_of(given, equation_error, ladder.fit, progress);
   }

@@ -15,7 +15,8 @@ namespace veridyn::vehicle {
 struct StructureLadder {
   std::vector<TriedStructure> tried;
   std::size_t chosen = 0;
-  OutputErrorResult fit = {};  ///< of the chosen one, to the end
+  DriveModelOptions model = {};  ///< of the chosen one
+  OutputErrorResult fit = {};    ///< of it, to the end
   /// How late the recorded steering is where the model with roll is left free to say so.
   std::optional<estimation::Parameter> steer_delay = {};
   std::string reason;  ///< one sentence; empty where the study fixes the structure
@@ -30,8 +31,5 @@ inline constexpr double kExplained = 1.25;
 /// no more residual than the sensors do, and relaxation only where roll is taken.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
-
-/// The options of identification for a structure.
-[[nodiscard]] VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure);
 
 }  // namespace veridyn::vehicle

@@ -128,8 +128,8 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
   StructureLadder ladder;
   if (problem.options.output_error && !progress.interrupted())
     ladder = climb_structures(problem, by_regression, progress);
-  const VehicleIdentifyOptions options =
-      ladder.empty() ? problem.options : with_structure(problem.options, ladder.tried[ladder.chosen].structure);
+  VehicleIdentifyOptions options = problem.options;
+  if (!ladder.empty()) options.model = ladder.model;
   VehicleIdentification out = identify_structure(
       {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording},
       equation_error, ladder, progress);

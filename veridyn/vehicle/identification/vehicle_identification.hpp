@@ -27,8 +27,8 @@ namespace veridyn::vehicle {
 struct VehicleIdentifyOptions {
   bool equation_error = true;  ///< `equation_error`
   bool output_error = true;    ///< `output_error`
-  /// `structure`: "auto" (nothing) takes the richest that the data ask for, see `drive_structures.hpp`; "bicycle",
-  /// "roll", "roll and relaxation" fixes it.
+  /// `structure`: "auto" (nothing) takes the richest that the data ask for, see `structure_ladder.hpp`; a name of
+  /// kDriveStructureNames fixes it.
   std::optional<DriveStructure> structure = {};
   /// `method`: "auto" (nothing) takes output error where it converged, else the equation error that its comparison
   /// recommends; "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.

@@ -60,7 +60,7 @@ VehicleParameters<double> identified_vehicle(const VehicleProblem& problem, cons
   take("I_z", p.I_z);
   take("a", p.a);
   p.b = problem.start.wheelbase() - p.a;
-  if (problem.options.model.tyre == DriveTyre::kMagicFormula) take("mu", p.mu);
+  if (problem.options.model.tyre != DriveTyre::kLinear) take("mu", p.mu);
   return p;
 }
 
