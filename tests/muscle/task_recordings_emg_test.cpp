@@ -1,6 +1,4 @@
 // Recordings with EMG, and what is found of a person from them.
-#include "veridyn/muscle/task_recordings.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +9,7 @@
 #include <fstream>
 
 #include "veridyn/muscle/identify_muscles.hpp"
+#include "veridyn/muscle/task_recordings.hpp"
 
 namespace veridyn::muscle {
 namespace {
