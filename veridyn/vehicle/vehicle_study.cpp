@@ -96,6 +96,7 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   if (estimate.find("mu") != nullptr) {
     const bool rolls = estimate.find("roll_gradient") != nullptr && estimate.find("C") == nullptr;
     if (rolls) given.options.structure = DriveStructure::kSaturation;
+    if (estimate.find("relaxation_length") == nullptr) given.options.start[DriveUnknown::kRelaxationLength] = 0.0;
     given.options.tyre = rolls ? DriveTyre::kFiala : DriveTyre::kMagicFormula;
   }
   return given;

@@ -444,8 +444,10 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());
       case DriveStructure::kRelaxation:
-      case DriveStructure::kSaturation:
         return work(model, std::integral_constant<int, 6>());
+      case DriveStructure::kSaturation:
+        if (value_of(model.relaxation_length) > 0.0) return work(model, std::integral_constant<int, 6>());
+        return work(model, std::integral_constant<int, 4>());
       case DriveStructure::kBicycle:
       case DriveStructure::kScaledAccel:
         break;

@@ -17,7 +17,7 @@ enum class DriveStructure : std::size_t {
   kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll has to be told from
   kRoll,         ///< and the body's roll on its springs
   kRelaxation,   ///< and tyres whose slip follows after a relaxation length
-  kSaturation    ///< and tyres whose stiffness falls with their force (Fiala) up to a friction coefficient
+  kSaturation    ///< and tyres whose stiffness falls with their force (Fiala); relaxation length 0: slip at once
 };
 /// How many there are.
 inline constexpr std::size_t kDriveStructures = 5;

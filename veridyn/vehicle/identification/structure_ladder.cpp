@@ -31,7 +31,6 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.inflation = inflation_of(fit.raw);
-  // A relaxation length at its bound, a tenth of a metre, is of no matter to what tyres saturate at.
   std::vector<DriveUnknown> added{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
                                   DriveUnknown::kRollDamping};
   const DriveStructure structure = problem.options.model.structure;
@@ -87,14 +86,12 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }
 
-/// The options for a structure, above the structures that were tried. Saturation without a relaxation length that the
-/// data ask for has the shortest one there is, and does not search for it.
-VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, double wheelbase,
-                                      bool relaxes) {
+/// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
+VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes) {
   options.model = with_structure(options.model, structure);
   if (structure != DriveStructure::kSaturation || relaxes) return options;
   options.model.free[DriveUnknown::kRelaxationLength] = false;
-  options.model.start[DriveUnknown::kRelaxationLength] = kShortestRelaxation * wheelbase;
+  options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
   return options;
 }
 
@@ -125,24 +122,27 @@ StructureLadder climb_structures(const VehicleProblem& problem, const EquationEr
   const bool contradicts = std::ranges::any_of(
       problem.recording, [](const estimation::Evidence& row) { return row.outcome == estimation::Outcome::kFailed; });
   Eigen::VectorXd search_start;
+  bool explained = false;
   for (const DriveStructure structure : enumerators<DriveStructure, kDriveStructures>()) {
     if (progress.interrupted()) break;
     if (fixed && *problem.options.structure != structure) continue;
     const bool has_accel = problem.signals[DriveSignal::kAccelY].available();
     if (!fixed && structure == DriveStructure::kScaledAccel && !has_accel) continue;
+    if (!fixed && structure == DriveStructure::kRelaxation && explained) continue;
     progress.stage(fmt::format("output error, structure: {}", to_string(structure)));
     const bool relaxes = fixed || (!ladder.empty() && ladder.tried[choose_structure(ladder.tried)].structure ==
                                                           DriveStructure::kRelaxation);
-    options.push_back(with_structure(problem.options, structure, problem.start.wheelbase(), relaxes));
+    options.push_back(with_structure(problem.options, structure, relaxes));
     const VehicleProblem given = with_options(problem, options.back());
     OutputErrorResult fit =
         estimate_by_output_error(given, equation_error, search_start, SearchEffort::kToCompare, progress);
     ladder.tried.push_back(tried(given, fit, progress));
     if (fit.raw.usable()) search_start = fit.raw.theta;
-    const bool done = contradicts || is_explained(given, fit);
+    explained = is_explained(given, fit);
     fits.push_back(std::move(fit));
     const bool rolls = has_roll(ladder.tried[choose_structure(ladder.tried)].structure);
-    if (done || (structure >= DriveStructure::kRoll && !rolls)) break;
+    const bool simple = structure < DriveStructure::kRoll;
+    if (contradicts || (simple ? explained : !rolls)) break;
   }
   ladder.chosen = choose_structure(ladder.tried);
   if (!ladder.empty() && !progress.interrupted()) {

@@ -27,8 +27,11 @@ struct StructureLadder {
 /// nothing richer is looked for.
 inline constexpr double kExplained = 1.25;
 
-/// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one leaves
-/// no more residual than the sensors do, and relaxation only where roll is taken.
+/// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one without
+/// roll leaves no more residual than the sensors do. What comes after roll is tried only where roll is taken,
+/// relaxation only where roll leaves something; saturation always, since what it moves stiffnesses by hides in the
+/// noise. A recording that contradicts itself (a failed row) says nothing of the structure: only the bicycle is fitted
+/// to it.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 
