@@ -362,17 +362,18 @@ OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& prob
                           const EquationErrorEstimates* equation_error, Progress& progress) {
   if (!estimate.raw.usable()) return estimate;
   const OutputErrorProblem given = output_error_problem(problem, equation_error);
-  if (given.model.whitening(estimate.raw.theta).empty())
+  DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
+  if (whitening.empty())
     return estimate_by_output_error(problem, equation_error, estimate.raw.theta, SearchEffort::kToTheEnd, progress);
   for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
+    if (round > 0) whitening = given.model.whitening(estimate.raw.theta);
     OutputErrorProblem weighed = given;
-    DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
     weighed.weigh(whitening);
     OutputErrorResult next = fitted(problem, equation_error, std::move(weighed), estimate.raw.theta, progress);
     if (!next.raw.usable()) break;
     const double moved = largest_change(estimate.raw, next.raw);
     estimate = std::move(next);
-    estimate.whitening = std::move(whitening);
+    estimate.whitening = whitening;
     if (moved < kSettled) break;
   }
   return estimate;
