@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace veridyn::numerics {
 namespace {
@@ -37,6 +38,20 @@ TEST(SingularValues, KeepTheDigitsOfTheSmallestOne) {
   A << 1.0, 1e-12, 1.0, -1e-12;
   const SingularValues svd = singular_values(A, SingularVectors::kNone);
   EXPECT_NEAR(svd.values(1) / (std::sqrt(2.0) * 1e-12), 1.0, 1e-12);
+}
+
+TEST(SingularValues, AreNoneWithoutRowsOrColumns) {
+  for (const auto& [rows, columns] : {std::pair{0, 3}, std::pair{3, 0}, std::pair{0, 0}}) {
+    const Eigen::MatrixXd A(rows, columns);
+    EXPECT_EQ(singular_values(A, SingularVectors::kNone).values.size(), 0) << rows << " x " << columns;
+    const SingularValues full = singular_values(A, SingularVectors::kFullUAndV);
+    EXPECT_TRUE(full.U.rows() == rows && full.U.isIdentity(0.0));
+    EXPECT_TRUE(full.V.rows() == columns && full.V.isIdentity(0.0));
+    const SingularValues thin = singular_values(A, SingularVectors::kThinUAndFullV);
+    EXPECT_EQ(thin.U.rows(), rows);
+    EXPECT_EQ(thin.U.cols(), 0);
+    EXPECT_EQ(thin.V.rows(), columns);
+  }
 }
 
 }  // namespace

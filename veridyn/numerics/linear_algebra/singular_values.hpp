@@ -12,7 +12,8 @@ enum class SingularVectors {
   kFullUAndV,
 };
 
-/// A = U diag(values) V', values descending; min(rows, columns) of them. Vectors that are not requested are empty.
+/// A = U diag(values) V', values descending; min(rows, columns) of them, none of a matrix without rows or columns.
+/// Vectors that are not requested are empty.
 struct SingularValues {
   Eigen::VectorXd values;
   Eigen::MatrixXd U;
