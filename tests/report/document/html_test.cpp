@@ -82,16 +82,6 @@ TEST(ToHtml, LeavesMarkersInTextsAlone) {
   EXPECT_EQ(count(html, "<h1>"), count(to_html({}), "<h1>"));
 }
 
-TEST(ToHtml, NeedsNothingButItself) {
-  const std::string page(internal::page());
-  EXPECT_THAT(page, HasSubstr("Content-Security-Policy"));
-  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
-  EXPECT_THAT(page, Not(HasSubstr("src=\"")));
-  EXPECT_THAT(page, Not(HasSubstr("rel=\"stylesheet\"")));
-  EXPECT_THAT(page, Not(HasSubstr("@import")));
-  EXPECT_THAT(page, Not(HasSubstr("@font-face")));
-}
-
 TEST(ToHtml, EmbedsTheDocumentForTheFrontEnd) {
   if (!internal::page_has_figures()) GTEST_SKIP() << "built without the front end (VERIDYN_WEB=OFF)";
   const std::string html = to_html(sample_document());

@@ -10,8 +10,6 @@
 /// What figures of all domains make their curves of.
 namespace veridyn::report {
 
-/// [rad]
-
 /// Every value times a factor: from SI to the unit shown.
 [[nodiscard]] std::vector<double> scaled(std::span<const double> values, double factor);
 

@@ -124,8 +124,7 @@ std::vector<XYPlot> skeleton_figure(const MuscleStudy& study, const MuscleResult
     for (const auto& stick : poses.sticks()) append(ghosts, stick.points, view, true);
   }
   std::vector<XYPlot> plots;
-  for (const Eigen::Index row : {Eigen::Index{0}, rows - 1}) {
-    if (row == rows - 1 && rows == 1) break;
+  for (const Eigen::Index row : rows_on_the_way(rows, 2)) {
     poses.set(row);
     XYPlot plot{.title = fmt::format("Pose at {:.4g} s", result.trajectory.time[at(row)]),
                 .x = {.label = kAxisNames[at(view.across)], .unit = "m"},
