@@ -307,21 +307,19 @@ Scalar DriveParametricModel::true_output(DriveSignal signal, const Eigen::Matrix
   const auto [x, y, z] = accel_position_;
   switch (signal) {
     case DriveSignal::kAccelY: {
-      const Scalar turning = rates.lateral_acceleration + x * rates.derivative(1) - y * state(1) * state(1);
+      Scalar shown = rates.lateral_acceleration + x * rates.derivative(1) - y * state(1) * state(1);
       if constexpr (kStates > 2) {
-        const Scalar at_sensor = turning - z * rates.derivative(3);
-        if (gravity_removed_ && removed_gradient_ == 0.0) return at_sensor;
-        return (at_sensor + options_.gravity * state(2)) / (1.0 + options_.gravity * removed_gradient_);
+        shown -= z * rates.derivative(3);
+        if (!gravity_removed_ || removed_gradient_ != 0.0)
+          shown = (shown + options_.gravity * state(2)) / (1.0 + options_.gravity * removed_gradient_);
       }
-      return turning;
+      return shown;
     }
     case DriveSignal::kLateralVelocity:
       return state(0);
     case DriveSignal::kRoll:
-      if constexpr (kStates > 2) return state(2);
-      return Scalar(0.0);
     case DriveSignal::kRollRate:
-      if constexpr (kStates > 2) return state(3);
+      if constexpr (kStates > 2) return state(signal == DriveSignal::kRoll ? 2 : 3);
       return Scalar(0.0);
     default:
       return state(1);
@@ -540,12 +538,12 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
   if (!(steer_sigma_ > 0.0) || !(steer_error_share_ > 0.0) || !all_noisy || segments_.empty() ||
       delays_outputs(unknown(DriveUnknown::kYawRateDelay), unknown(DriveUnknown::kAccelYDelay)))
     return {};
-  const auto [slowest, fastest] = speeds();
+  const SpeedRange range = speeds();
   DriveWhitening out;
   const Parameters<double> shared = theta;
   with_model(shared, [&](const auto& model, auto states) {
     for (int i = 0; i < kFilterSpeeds; ++i) {
-      out.speed.push_back(slowest + (fastest - slowest) * i / (kFilterSpeeds - 1));
+      out.speed.push_back(range.slowest + (range.fastest - range.slowest) * i / (kFilterSpeeds - 1));
       const NoiseModel noise = noise_model<decltype(states)::value>(out.speed.back(), model, theta);
       out.filter.push_back({noise.F, steady_gain(noise.F, noise.G, noise.C, noise.R), noise.C});
     }
@@ -555,8 +553,8 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
 }
 
 Eigen::VectorXd DriveParametricModel::expected_residual(const Eigen::VectorXd& theta) const {
-  const auto [slowest, fastest] = speeds();
-  const double u = 0.5 * (slowest + fastest);
+  const SpeedRange range = speeds();
+  const double u = 0.5 * (range.slowest + range.fastest);
   const Parameters<double> shared = theta;
   const NoiseModel noise = with_model(
       shared, [&](const auto& model, auto states) { return noise_model<decltype(states)::value>(u, model, theta); });
@@ -568,7 +566,7 @@ Eigen::VectorXd DriveParametricModel::expected_residual(const Eigen::VectorXd& t
   return covariance.diagonal().cwiseSqrt();
 }
 
-std::pair<double, double> DriveParametricModel::speeds() const {
+DriveParametricModel::SpeedRange DriveParametricModel::speeds() const {
   double slowest = kInfinity, fastest = 0.0;
   for (const Segment& segment : segments_) {
     for (Eigen::Index k = 0; k < segment.samples; ++k) {

@@ -142,8 +142,11 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   template <int kStates, typename Tyre>
   [[nodiscard]] NoiseModel noise_model(double u, const RollingBicycle<double, Tyre>& model,
                                        const Eigen::VectorXd& theta) const;
-  /// Slowest and fastest speed of the segments.
-  [[nodiscard]] std::pair<double, double> speeds() const;
+  struct SpeedRange {
+    double slowest = 0.0, fastest = 0.0;  // [m/s]
+  };
+  /// Over all segments.
+  [[nodiscard]] SpeedRange speeds() const;
   /// Filters the outputs of a segment in place; where nothing was measured the filter is not corrected.
   template <typename Scalar>
   void whiten(const Segment& segment, Outputs<Scalar>& output) const;

@@ -48,9 +48,7 @@ struct RollingBicycle {
                                                            const Scalar& steer, const Scalar& u) const {
     static_assert(kStates == 2 || kStates == 4 || kStates == 6);
     RollingBicycleRates<Scalar, kStates> out;
-    Scalar contact_velocity = x(0);
-    if constexpr (kStates > 2) contact_velocity += roll.arm * x(3);
-    std::array<Scalar, 2> slip = bicycle.slip_angles(contact_velocity, x(1), steer, u);
+    std::array<Scalar, 2> slip = bicycle.slip_angles(contact_velocity(x), x(1), steer, u);
     if constexpr (kStates > 4) {
       const Scalar per_time = u / relaxation_length;
       out.derivative(4) = per_time * (slip[0] - x(4));
@@ -67,6 +65,13 @@ struct RollingBicycle {
                                             2.0 * roll.damping * x(3));
     }
     return out;
+  }
+
+  /// Sideways, of the contact points below the centre of gravity [m/s].
+  template <int kStates>
+  [[nodiscard]] Scalar contact_velocity(const Eigen::Matrix<Scalar, kStates, 1>& x) const {
+    if constexpr (kStates > 2) return x(0) + roll.arm * x(3);
+    return x(0);
   }
 
   /// The states of steady cornering at lateral velocity v and yaw rate r: the body at rest in its roll.
