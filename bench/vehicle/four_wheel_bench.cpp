@@ -7,6 +7,7 @@
 
 #include "tests/support/folders.hpp"
 #include "veridyn/core/progress.hpp"
+#include "veridyn/vehicle/model/four_wheel_models.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"

@@ -14,6 +14,15 @@ LinearCar<Scalar> linear_car(const VehicleParameters<Scalar>& p, const FourWheel
   return {p, {front, front, rear, rear}, options};
 }
 
+/// The same on tyres with a pneumatic trail.
+template <typename Scalar>
+LinearCar<Scalar> trailing_car(const VehicleParameters<Scalar>& p, const FourWheelOptions& options = {}) {
+  const Scalar trail(0.03);
+  const LinearTyre<Scalar> front{.stiffness = p.C_f, .mu = p.mu, .pneumatic_trail = trail};
+  const LinearTyre<Scalar> rear{.stiffness = p.C_r, .mu = p.mu, .pneumatic_trail = trail};
+  return {p, {front, front, rear, rear}, options};
+}
+
 [[nodiscard]] inline FourWheelOptions with_longitudinal(const LongitudinalParameters& longitudinal) {
   FourWheelOptions options;
   options.longitudinal = longitudinal;

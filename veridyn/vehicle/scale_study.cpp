@@ -87,6 +87,9 @@ VehicleTrajectory simulate_scaled(const SimulationStudy& study, const Vehicle& v
   FourWheelOptions options = study.four_wheel;
   options.gravity = gravity;
   options.relaxation_length = vehicle.relaxation_length;
+  options.suspension_f = vehicle.suspension_f;
+  options.suspension_r = vehicle.suspension_r;
+  options.lift = vehicle.lift;
   if (options.longitudinal) options.longitudinal = vehicle.longitudinal;
   ScaledDriver driver(*study.manoeuvre.driver, factors);
   std::optional<ScaledRoad> road;

@@ -17,6 +17,23 @@ VehicleParameters<double> uneven_car() {
   return p;
 }
 
+FourWheelOptions every_option() {
+  FourWheelOptions options;
+  options.suspension_f = {.roll_centre = 0.06,
+                          .roll_steer = -0.05,
+                          .bump_steer = 0.2,
+                          .compliance_steer = -4e-6,
+                          .spring = SpringCurve({-0.08, -0.02, 0.03, 0.08}, {-2000.0, -600.0, 900.0, 4000.0})};
+  options.suspension_r = {.roll_centre = 0.15,
+                          .roll_steer = 0.08,
+                          .bump_steer = -0.1,
+                          .compliance_steer = 2e-6,
+                          .spring = SpringCurve({-0.1, 0.0, 0.05}, {-2500.0, 0.0, 1500.0})};
+  options.lift = {.area_f = 0.2, .area_r = -0.5};
+  options.aligning_moment = true;
+  return options;
+}
+
 Moment any_moment(std::mt19937_64& generator) {
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   Moment m;

@@ -9,6 +9,9 @@ namespace veridyn::vehicle::testing {
 /// Unlike in front and behind in everything, with bars: nothing cancels.
 [[nodiscard]] VehicleParameters<double> uneven_car();
 
+/// Axles of which nothing that can be asked for is left out, unlike in front and behind; lift and aligning moments.
+[[nodiscard]] FourWheelOptions every_option();
+
 /// State, controls and road of a four-wheel car at one moment.
 struct Moment {
   FourWheelState<double> state;

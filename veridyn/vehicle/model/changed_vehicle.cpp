@@ -29,6 +29,9 @@ Vehicle with_parameters(const Vehicle& vehicle, const VehicleParameters<double>&
   const double friction = std::isfinite(from.mu) ? to.mu / from.mu : 1.0;
   Vehicle changed = vehicle;
   changed.parameters = to;
+  // Springs by table follow their rate at rest.
+  changed.suspension_f.spring = vehicle.suspension_f.spring.scaled(1.0, to.K_sf / from.K_sf);
+  changed.suspension_r.spring = vehicle.suspension_r.spring.scaled(1.0, to.K_sr / from.K_sr);
   changed.tyres = std::visit(
       [&]<typename Tyre>(const AxleTyres<Tyre>& t) -> VehicleTyres {
         return AxleTyres<Tyre>{tyre_with(t.front, to.C_f / from.C_f, friction),

@@ -1,106 +1,25 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
-#include <string>
 
-#include "veridyn/core/constants.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/numerics/trigonometry.hpp"
-#include "veridyn/vehicle/model/bicycle_model.hpp"
+#include "veridyn/vehicle/model/compliance_steer.hpp"
 #include "veridyn/vehicle/model/driver.hpp"
-#include "veridyn/vehicle/model/longitudinal.hpp"
+#include "veridyn/vehicle/model/four_wheel_options.hpp"
+#include "veridyn/vehicle/model/four_wheel_state.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
+#include "veridyn/vehicle/model/wheel_guidance.hpp"
+#include "veridyn/vehicle/tyre/aligning_moments.hpp"
 #include "veridyn/vehicle/tyre/four_tyres.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 #include "veridyn/vehicle/tyre/wheel_arrays.hpp"
 #include "veridyn/vehicle/tyre/wheels.hpp"
 
 namespace veridyn::vehicle {
-
-/// Where each state is in a `FourWheelState`. Per-wheel states follow one another in wheel order.
-enum FourWheelIndex : Eigen::Index {
-  kX,                                   ///< centre of gravity, earth axes [m]
-  kY,                                   ///< [m]
-  kYaw,                                 ///< [rad]
-  kU,                                   ///< forward speed [m/s]
-  kV,                                   ///< leftward speed [m/s]
-  kR,                                   ///< yaw rate [rad/s]
-  kHeave,                               ///< of the sprung mass's centre of gravity above its rest [m]
-  kRoll,                                ///< left side up positive [rad]
-  kPitch,                               ///< nose down positive [rad]
-  kHeaveRate,                           ///< [m/s]
-  kRollRate,                            ///< [rad/s]
-  kPitchRate,                           ///< [rad/s]
-  kWheelHeight,                         ///< 4: of the unsprung masses above their rest [m]
-  kWheelHeightRate = kWheelHeight + 4,  ///< 4: [m/s]
-  kDistance = kWheelHeightRate + 4,     ///< travelled by the centre of gravity on its path [m]
-  kWheelSpin,                           ///< 4: [rad/s]; at rest without longitudinal dynamics
-  kLaggedSlip = kWheelSpin + 4,         ///< 4: slip angles [rad]; at rest without relaxation length
-  kFourWheelStates = kLaggedSlip + 4
-};
-/// State vector of the model; `FourWheelIndex` names its entries.
-template <typename Scalar>
-using FourWheelState = Eigen::Matrix<Scalar, kFourWheelStates, 1>;
-
-/// Which equations of motion.
-enum class FourWheelConvention {
-  /// From first principles, the default: the sprung mass moves in heave and gravity tilts it; energy is conserved.
-  kFirstPrinciples,
-  /// The similarity study whose curves `veridyn reproduce vehicle` draws again: the whole mass in heave and four
-  /// unsprung masses in addition; vertical forces are deviations from the static load, so that gravity does not tilt
-  /// the body and tyres may pull; contact points do not move with roll and pitch.
-  kSource
-};
-
-/// Below this speed of a wheel [m/s] the slip angle is what it would be at it: that of a standing wheel has no meaning.
-inline constexpr double kLeastSpeedOfAngle = 1e-6;
-/// The same for the slip ratio [m/s].
-inline constexpr double kLeastSpeedOfRatio = 0.5;
-
-/// What of the four-wheel model can be chosen.
-struct FourWheelOptions {
-  FourWheelConvention convention = FourWheelConvention::kFirstPrinciples;
-  /// kSmallAngles: slip angle delta - V_y/V_x and forces not turned by delta.
-  BicycleGeometry geometry = BicycleGeometry::kExact;
-  double gravity = kGravity;  ///< [m/s^2]
-  /// 0: both front wheels steered equally; 1: Ackermann, their axes meet on the line of the rear axle. Between: linear.
-  double ackermann = 0.0;
-  double camber_per_roll = 0.0;  ///< inclination of the wheels as a share of the body's roll
-  /// Distance rolled in which the slip angle follows by 63 % [m]; 0: at once.
-  double relaxation_length = 0.0;
-  /// Without: u stays as it is, at the cost of `FourWheelRates::holding_force`, and wheels roll freely.
-  std::optional<LongitudinalParameters> longitudinal{};
-
-  /// Throws InputError("vehicle", ...) naming the first option that makes no sense.
-  void validate() const;
-};
-
-/// The controls as they reach the wheels; the same for all derivatives at one time.
-template <typename Scalar>
-struct WheelControls {
-  WheelArray<Scalar> steer;  ///< [rad]
-  WheelArray<Scalar> cos, sin;
-  WheelArray<double> drive, brake;  ///< torques [N m]
-};
-
-/// Rates and forces at one moment.
-template <typename Scalar>
-struct FourWheelRates {
-  FourWheelState<Scalar> derivative;
-  Scalar longitudinal_acceleration{0.0};  ///< u' - r v [m/s^2]
-  Scalar lateral_acceleration{0.0};       ///< v' + r u [m/s^2]
-  /// Constant speed only: the force that keeps u as it is, along the vehicle, at the road [N]; 0 otherwise.
-  Scalar holding_force{0.0};
-  WheelArray<Scalar> slip_angle;  ///< at which the tyre works [rad]
-  WheelArray<Scalar> slip_ratio;
-  WheelArray<Scalar> Fx, Fy;                ///< wheel axes [N]
-  WheelArray<Scalar> Fz;                    ///< normal force, static load included; 0 off the ground [N]
-  WheelArray<Scalar> suspension_travel;     ///< wheel less body corner: bump positive [m]
-  WheelArray<Scalar> suspension_force;      ///< on the body, less its static value [N]
-  WheelArray<Scalar> contact_x, contact_y;  ///< velocity of the contact point, vehicle axes [m/s]
-};
 
 /// The four-wheel model: the body in the plane (x, y, yaw) and in heave, roll and pitch, and four unsprung masses that
 /// move up and down between suspension and tyre. Its derivation is in docs/vehicle.md, "Four-wheel model".
@@ -117,9 +36,10 @@ struct FourWheelRates {
 /// - Suspension: F_i = static + K_s (z_w - z_i) + C_s (z_w' - z_i') + K_b (travel_i - travel_opposite), both ways.
 /// - Tyre: F_z = max(0, static + K_t (z_road - z_w)): it cannot pull.
 /// - Tyre forces act at the road: contact velocities V_x = u - y_i r - c pitch', V_y = v + x_i r + c roll' make slips,
-///   and the same arms make moments: the power of the tyres is force times contact velocity. Aligning moments are
-///   neglected.
+///   and the same arms make moments: the power of the tyres is force times contact velocity.
 /// - At constant speed the force that holds u acts at the road too and pitches the body.
+/// - Where the options ask for it: roll centres, steer by roll, travel and lateral force, springs by table
+///   (`WheelGuidance`), lift by the air, and the tyres' aligning moments in the yaw balance.
 ///
 /// Left and right are treated equally to the last bit: mirrored steering, road and state give mirrored rates.
 /// `tyres[i]` serves wheel i (side-dependent tyres come in mirrored copies). Usable with double and ceres::Jet; the
@@ -129,11 +49,13 @@ class FourWheelModel {
  public:
   using State = FourWheelState<Scalar>;
 
-  /// Throws InputError("vehicle", ...) on inadmissible options; `parameters` must be admissible.
+  /// Throws InputError("vehicle", ...) on inadmissible options, on wheels that would give way to their tyres as fast as
+  /// these push, and on aligning moments of tyres that have none; `parameters` must be admissible.
   FourWheelModel(const VehicleParameters<Scalar>& parameters, const PerWheel<Tyre>& tyres,
                  const FourWheelOptions& options = {});
 
-  /// Upright and at rest in its springs at the origin, driving straight ahead at `speed`, wheels rolling freely.
+  /// Upright and at rest in its springs (in the lift of the air, too) at the origin, driving straight ahead at `speed`,
+  /// wheels rolling freely.
   [[nodiscard]] State steady_start(const Scalar& speed) const;
 
   /// Steer angles and torques of the wheels.
@@ -171,18 +93,31 @@ class FourWheelModel {
     Wheels angle, ratio;
   };
   struct VerticalForces {
-    Wheels lift;  ///< of the suspension on the body, less its share at rest [N]
-    Wheels load;  ///< of the tyres [N]
+    Wheels lift;         ///< of the suspension on the body, less its share at rest [N]
+    Wheels load;         ///< of the tyres [N]
+    Wheels travel_rate;  ///< [m/s]
   };
   struct PlaneForces {
-    Wheels Fx;    ///< in wheel axes [N]
-    Wheels X, Y;  ///< in vehicle axes [N]
+    Wheels Fx;          ///< in wheel axes [N]
+    Wheels X, Y;        ///< in vehicle axes [N]
+    Scalar turns{0.0};  ///< their moments of their own about the vertical [N m]
   };
   /// Each also fills what it knows of `out`.
-  void slips(const State& s, const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
+  void slips(const State& s, const WheelControls<Scalar>& controls, const Wheels& travel_rate,
+             FourWheelRates<Scalar>& out) const;
   VerticalForces vertical_forces(const State& s, const PerWheel<double>& road, FourWheelRates<Scalar>& out) const;
   PlaneForces plane_forces(const Slips& slips, const Wheels& load, const Scalar& camber,
                            const WheelControls<Scalar>& controls, FourWheelRates<Scalar>& out) const;
+  /// Forces of wheels that give way to them: turns `controls`, and the slip follows, at once or lagging.
+  [[gnu::noinline]] void yield(const Slips& slips, const Wheels& load, const Scalar& camber,
+                               WheelControls<Scalar>& controls, Wheels& Fx, Wheels& Fy,
+                               FourWheelRates<Scalar>& out) const;
+  /// Rates of the body from what the suspension and the tyres do.
+  void body_rates(const State& s, const Wheels& lift, const PlaneForces& plane, FourWheelRates<Scalar>& out) const;
+  /// What the air lifts at the axles [N].
+  [[nodiscard]] std::array<Scalar, 2> air_lift(const Scalar& speed) const;
+  /// Heave, pitch and wheels at rest in it.
+  void rest_in_air(State& state) const;
   /// Rates of the wheels' spins from what turns them.
   void spin_up(const State& s, const WheelControls<Scalar>& controls, const Wheels& Fx, const Wheels& load,
                FourWheelRates<Scalar>& out) const;
@@ -190,6 +125,7 @@ class FourWheelModel {
   VehicleParameters<Scalar> p_;
   FourTyres<Tyre> tyres_;
   FourWheelOptions options_;
+  WheelGuidance<Scalar> guidance_;
   // What does not change, worked out once. In the source's convention `tilting_` and `contact_height_` are 0.
   WheelArray<Scalar> x_, y_;                          ///< places of the wheels [m]
   WheelArray<Scalar> arm_;                            ///< x from the sprung mass's centre of gravity [m]
@@ -235,6 +171,15 @@ FourWheelModel<Scalar, Tyre>::FourWheelModel(const VehicleParameters<Scalar>& pa
   per_I_x_ = 1.0 / p_.I_x;
   per_I_y_ = 1.0 / p_.I_y;
   per_I_z_ = 1.0 / p_.I_z;
+  Wheels stiffness;
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const auto w = static_cast<Eigen::Index>(i);
+    stiffness[w] = tyres[i].cornering_stiffness(rest_[w]);
+  }
+  guidance_ = WheelGuidance<Scalar>(p_, options.suspension_f, options.suspension_r, stiffness,
+                                    rest_ - Scalar(p_.unsprung_mass * gravity));
+  if (options.aligning_moment && !HasAligningMoment<Tyre, Scalar>)
+    throw InputError("vehicle", "aligning_moment needs a tyre that has one");
 }
 
 template <typename Scalar, typename Tyre>
@@ -244,7 +189,39 @@ FourWheelState<Scalar> FourWheelModel<Scalar, Tyre>::steady_start(const Scalar& 
   if (options_.longitudinal) {
     for (Eigen::Index i = 0; i < 4; ++i) state(kWheelSpin + i) = speed / options_.longitudinal->wheel_radius;
   }
+  if (options_.lift.acts()) rest_in_air(state);
   return state;
+}
+
+template <typename Scalar, typename Tyre>
+void FourWheelModel<Scalar, Tyre>::rest_in_air(State& state) const {
+  // Both axles carry less by what the air lifts. Gravity tilts the pitching body on, which moves some of that between
+  // the axles: a few hundredths of what the springs resist, so that the iteration converges.
+  const std::array<Scalar, 2> air = air_lift(state(kU));
+  const std::array<Scalar, 2> arm{arm_[0], arm_[2]};
+  const Scalar length = arm[0] - arm[1];
+  const Scalar tilting = tilting_ - contact_height_ * (air[0] + air[1]);
+  std::array<Scalar, 2> height{}, corner{};
+  Scalar pitch(0.0);
+  for (int round = 0; round < 30; ++round) {
+    for (std::size_t axle = 0; axle < 2; ++axle) {
+      const auto left = static_cast<Eigen::Index>(2 * axle);
+      const Scalar moved = (axle == 0 ? 1.0 : -1.0) * tilting * pitch / length;
+      const Scalar spring = 0.5 * (moved - air[axle]);
+      height[axle] = -spring / tyre_[left];
+      corner[axle] = height[axle] - guidance_.travel_at(left, spring_[left], spring);
+    }
+    pitch = (corner[1] - corner[0]) / length;
+  }
+  state(kPitch) = pitch;
+  state(kHeave) = corner[0] + arm[0] * pitch - 0.5 * contact_height_ * pitch * pitch;
+  for (Eigen::Index i = 0; i < 4; ++i) state(kWheelHeight + i) = height[i < 2 ? 0 : 1];
+}
+
+template <typename Scalar, typename Tyre>
+std::array<Scalar, 2> FourWheelModel<Scalar, Tyre>::air_lift(const Scalar& speed) const {
+  const Scalar pressure = 0.5 * options_.lift.air_density * speed * speed;
+  return {options_.lift.area_f * pressure, options_.lift.area_r * pressure};
 }
 
 template <typename Scalar, typename Tyre>
@@ -285,10 +262,11 @@ template <typename Scalar, typename Tyre>
 
 template <typename Scalar, typename Tyre>
 void FourWheelModel<Scalar, Tyre>::slips(const State& s, const WheelControls<Scalar>& controls,
-                                         FourWheelRates<Scalar>& out) const {
+                                         const Wheels& travel_rate, FourWheelRates<Scalar>& out) const {
   // The velocity of the contact points in vehicle axes, then in wheel axes.
   const Wheels contact_x = (s(kU) - contact_height_ * s(kPitchRate)) - s(kR) * y_;
-  const Wheels contact_y = (s(kV) + contact_height_ * s(kRollRate)) + s(kR) * x_;
+  Wheels contact_y = (s(kV) + contact_height_ * s(kRollRate)) + s(kR) * x_;
+  if (guidance_.has_roll_centres()) contact_y += guidance_.scrub() * travel_rate;
   out.contact_x = contact_x;
   out.contact_y = contact_y;
   const Wheels along = controls.cos * contact_x + controls.sin * contact_y;
@@ -325,11 +303,18 @@ auto FourWheelModel<Scalar, Tyre>::vertical_forces(const State& s, const PerWhee
   const Wheels height_rate = s.template segment<4>(kWheelHeightRate).array();
   const Scalar body = s(kHeave) + 0.5 * contact_height_ * (roll * roll + pitch * pitch);
   const Scalar body_rate = s(kHeaveRate) + contact_height_ * (roll * roll_rate + pitch * pitch_rate);
-  const Wheels travel = height - ((body - pitch * arm_) + roll * y_);
+  Wheels travel = height - ((body - pitch * arm_) + roll * y_);
+  Wheels travel_rate = height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_);
+  if (guidance_.has_roll_centres()) {
+    // The body rolls about these, not about the ground: so much less a corner rises to second order.
+    travel += (0.5 * roll * roll) * guidance_.roll_centre();
+    travel_rate += (roll * roll_rate) * guidance_.roll_centre();
+  }
   const Scalar bar_f = bar_[0] * (travel[0] - travel[1]), bar_r = bar_[1] * (travel[2] - travel[3]);
   const Wheels bars(bar_f, -bar_f, bar_r, -bar_r);
-  const Wheels lift =
-      spring_ * travel + damper_ * (height_rate - ((body_rate - pitch_rate * arm_) + roll_rate * y_)) + bars;
+  Wheels springs = spring_ * travel;
+  if (guidance_.has_curves()) guidance_.replace_springs(travel, springs);
+  const Wheels lift = springs + damper_ * travel_rate + bars;
   const Wheels ground{{Scalar(road[0]), Scalar(road[1]), Scalar(road[2]), Scalar(road[3])}};
   Wheels normal = tyre_ * (ground - height);
   if (options_.convention == FourWheelConvention::kFirstPrinciples) normal = normal.max(-rest_);
@@ -339,7 +324,7 @@ auto FourWheelModel<Scalar, Tyre>::vertical_forces(const State& s, const PerWhee
   out.Fz = load;
   out.derivative.template segment<4>(kWheelHeight) = height_rate.matrix();
   out.derivative.template segment<4>(kWheelHeightRate) = ((normal - lift) * per_unsprung_mass_).matrix();
-  return {lift, load};
+  return {lift, load, travel_rate};
 }
 
 template <typename Scalar, typename Tyre>
@@ -347,10 +332,50 @@ auto FourWheelModel<Scalar, Tyre>::plane_forces(const Slips& slips, const Wheels
                                                 const WheelControls<Scalar>& controls,
                                                 FourWheelRates<Scalar>& out) const -> PlaneForces {
   Wheels Fx, Fy;
-  tyres_.forces(load, slips.ratio, slips.angle, camber, Fx, Fy);
+  WheelControls<Scalar> yielded;
+  const WheelControls<Scalar>* wheels = &controls;
+  if (guidance_.yields()) {
+    yielded = controls;
+    wheels = &yielded;
+    yield(slips, load, camber, yielded, Fx, Fy, out);
+  } else {
+    tyres_.forces(load, slips.ratio, slips.angle, camber, Fx, Fy);
+  }
   out.Fx = Fx;
   out.Fy = Fy;
-  return {Fx, controls.cos * Fx - controls.sin * Fy, controls.sin * Fx + controls.cos * Fy};
+  PlaneForces plane{Fx, wheels->cos * Fx - wheels->sin * Fy, wheels->sin * Fx + wheels->cos * Fy};
+  if (options_.aligning_moment) {
+    out.aligning_moment = aligning_moments(tyres_.tyres(), load, slips.ratio, out.slip_angle, camber);
+    plane.turns = sum_of_wheels<Scalar>(out.aligning_moment);
+  }
+  return plane;
+}
+
+template <typename Scalar, typename Tyre>
+void FourWheelModel<Scalar, Tyre>::yield(const Slips& slips, const Wheels& load, const Scalar& camber,
+                                         WheelControls<Scalar>& controls, Wheels& Fx, Wheels& Fy,
+                                         FourWheelRates<Scalar>& out) const {
+  // Turned by x, a wheel has its slip angle larger by x where it rolls forward, smaller where backward.
+  const Wheels along = controls.cos * out.contact_x + controls.sin * out.contact_y;
+  Wheels forward;
+  for (Eigen::Index i = 0; i < 4; ++i) forward[i] = Scalar(along[i] < 0.0 ? -1.0 : 1.0);
+  Wheels steer;
+  if (options_.relaxation_length > 0.0) {
+    // The force is that of the lagging slip, which moves towards the larger one.
+    tyres_.forces(load, slips.ratio, slips.angle, camber, Fx, Fy);
+    steer = guidance_.compliance() * Fy;
+    const Wheels rate = along.abs().max(Scalar(kLeastSpeedOfAngle)) / Scalar(options_.relaxation_length);
+    out.derivative.template segment<4>(kLaggedSlip) += (forward * steer * rate).matrix();
+  } else {
+    const auto force_at = [&](const Wheels& turned, Wheels& force) {
+      tyres_.forces(load, slips.ratio, Wheels(slips.angle + forward * turned), camber, Fx, Fy);
+      force = Fy;
+    };
+    steer = compliance_steer<Scalar>(guidance_.compliance(), Wheels(forward * guidance_.yielding()), force_at);
+    out.slip_angle = slips.angle + forward * steer;
+  }
+  out.suspension_steer += steer;
+  controls.turn(steer, options_.geometry == BicycleGeometry::kExact);
 }
 
 template <typename Scalar, typename Tyre>
@@ -386,20 +411,44 @@ template <typename ChangeSlips>
                                                                    const PerWheel<double>& road,
                                                                    const ChangeSlips& change,
                                                                    FourWheelRates<Scalar>& out) const {
+  const VerticalForces vertical = vertical_forces(s, road, out);
+  WheelControls<Scalar> steered;
+  const WheelControls<Scalar>* wheels = &controls;
+  if (guidance_.steers()) {
+    steered = controls;
+    wheels = &steered;
+    out.suspension_steer = guidance_.steer(out.suspension_travel);
+    steered.turn(out.suspension_steer, options_.geometry == BicycleGeometry::kExact);
+  } else if (guidance_.yields()) {
+    out.suspension_steer.setConstant(Scalar(0.0));
+  }
+  slips(s, *wheels, vertical.travel_rate, out);
+  change(out);
+  const Slips slip{out.slip_angle, out.slip_ratio};
+  const PlaneForces plane =
+      plane_forces(slip, vertical.load, Scalar(options_.camber_per_roll * s(kRoll)), *wheels, out);
+  spin_up(s, *wheels, plane.Fx, vertical.load, out);
+  if (guidance_.has_roll_centres()) {
+    // Links push wheel and body apart where the path of a contact point is not square to its force.
+    const Wheels links = guidance_.scrub() * plane.Y;
+    out.derivative.template segment<4>(kWheelHeightRate) += (links * per_unsprung_mass_).matrix();
+    body_rates(s, vertical.lift - links, plane, out);
+  } else {
+    body_rates(s, vertical.lift, plane, out);
+  }
+}
+
+template <typename Scalar, typename Tyre>
+[[gnu::flatten]] void FourWheelModel<Scalar, Tyre>::body_rates(const State& s, const Wheels& lift,
+                                                               const PlaneForces& plane,
+                                                               FourWheelRates<Scalar>& out) const {
   using std::sqrt;
   const bool ours = options_.convention == FourWheelConvention::kFirstPrinciples;
   State& d = out.derivative;
   const Scalar u = s(kU), v = s(kV), r = s(kR), roll = s(kRoll), pitch = s(kPitch);
-  slips(s, controls, out);
-  change(out);
-  const Slips slip{out.slip_angle, out.slip_ratio};
-  const VerticalForces vertical = vertical_forces(s, road, out);
-  const Wheels& lift = vertical.lift;
   const Scalar sum_lift = sum_of_wheels<Scalar>(lift);
   const Scalar lift_rolls = sum_of_wheels<Scalar>(y_ * lift), lift_pitches = sum_of_wheels<Scalar>(arm_ * lift);
-  const auto [Fx, X, Y] = plane_forces(slip, vertical.load, Scalar(options_.camber_per_roll * roll), controls, out);
-  const Scalar sum_X = sum_of_wheels<Scalar>(X), sum_Y = sum_of_wheels<Scalar>(Y);
-  spin_up(s, controls, Fx, vertical.load, out);
+  const Scalar sum_X = sum_of_wheels<Scalar>(plane.X), sum_Y = sum_of_wheels<Scalar>(plane.Y);
 
   // The body in the plane.
   Scalar longitudinal_acceleration, holding_force(0.0), pitching_force = sum_X, u_rate(0.0);
@@ -421,19 +470,28 @@ template <typename ChangeSlips>
 
   // The body on its springs; the static corner forces add up to m_s g and have no moment but that of tilting.
   const Scalar tilting = tilting_ + contact_height_ * sum_lift;
-  const Scalar roll_moment = lift_rolls + tilting * roll + p_.cg_height * sum_Y;
-  const Scalar pitch_moment = tilting * pitch - lift_pitches - p_.cg_height * pitching_force;
+  Scalar roll_moment = lift_rolls + tilting * roll + p_.cg_height * sum_Y;
+  Scalar pitch_moment = tilting * pitch - lift_pitches - p_.cg_height * pitching_force;
+  Scalar heaving_force = sum_lift, yaw_moment = sum_of_wheels<Scalar>(x_ * plane.Y - y_ * plane.X);
+  if (guidance_.has_roll_centres())
+    roll_moment -= (guidance_.tilting() + sum_of_wheels<Scalar>(guidance_.roll_centre() * lift)) * roll;
+  if (options_.lift.acts()) {
+    const std::array<Scalar, 2> air = air_lift(u);
+    heaving_force += air[0] + air[1];
+    pitch_moment -= arm_[0] * air[0] + arm_[2] * air[1];
+  }
+  if (options_.aligning_moment) yaw_moment += plane.turns;
 
   d(kX) = u * yaw.cos - v * yaw.sin;
   d(kY) = u * yaw.sin + v * yaw.cos;
   d(kYaw) = r;
   d(kU) = u_rate;
   d(kV) = lateral_acceleration - r * u;
-  d(kR) = sum_of_wheels<Scalar>(x_ * Y - y_ * X) * per_I_z_;
+  d(kR) = yaw_moment * per_I_z_;
   d(kHeave) = s(kHeaveRate);
   d(kRoll) = s(kRollRate);
   d(kPitch) = s(kPitchRate);
-  d(kHeaveRate) = sum_lift * per_heaving_mass_;
+  d(kHeaveRate) = heaving_force * per_heaving_mass_;
   d(kRollRate) = roll_moment * per_I_x_;
   d(kPitchRate) = pitch_moment * per_I_y_;
   d(kDistance) = sqrt(u * u + v * v);

@@ -11,6 +11,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/vehicle/model/builtin_vehicles.hpp"
+#include "veridyn/vehicle/model/suspension_study.hpp"
 #include "veridyn/vehicle/tyre/tir_reader.hpp"
 
 namespace veridyn::vehicle {
@@ -102,6 +103,42 @@ LongitudinalParameters read_longitudinal(const StudyTable& table) {
   return l;
 }
 
+/// With the axles of `[subject.suspension]`: the rate of a spring by table at rest is K_s, for all that asks for it.
+KnownVehicle with_suspension(const StudyTable& subject, KnownVehicle known) {
+  if (!subject.has("suspension")) return known;
+  const StudyTable table = subject.table("suspension");
+  for (const char suffix : {'f', 'r'}) {
+    AxleSuspension& axle = suffix == 'f' ? known.vehicle.suspension_f : known.vehicle.suspension_r;
+    axle = read_axle_suspension(table, suffix);
+    if (axle.spring.empty()) continue;
+    const std::string rate = fmt::format("K_s{}", suffix);
+    if (subject.has(rate))
+      table.fail(fmt::format("force_{}", suffix), fmt::format("takes the place of {}: give one", rate));
+    field_of(known.vehicle.parameters, index_of(rate)) = axle.spring.rate(0.0);
+    known.given[index_of(rate)] = true;
+  }
+  return known;
+}
+
+/// With the air of `[subject.aerodynamics]`, whose drag and density are also those of longitudinal dynamics.
+Vehicle with_air(const StudyTable& subject, Vehicle vehicle) {
+  if (!subject.has("aerodynamics")) return vehicle;
+  const StudyTable table = subject.table("aerodynamics"), other = subject.table_or_empty("longitudinal");
+  for (const char* key : {"drag_area", "air_density"}) {
+    if (table.has(key) && other.has(key)) table.fail(key, "is also in [subject.longitudinal]: give one of them");
+  }
+  LongitudinalParameters& l = vehicle.longitudinal;
+  l.drag_area = table.number_or("drag_area", "m^2", l.drag_area);
+  l.air_density = table.number_or("air_density", "kg/m^3", l.air_density);
+  vehicle.lift = {.area_f = table.number_or("lift_area_f", "m^2", 0.0),
+                  .area_r = table.number_or("lift_area_r", "m^2", 0.0),
+                  .air_density = l.air_density};
+  for (const std::string& why : {inadmissible(vehicle.lift), inadmissible(l)}) {
+    if (!why.empty()) throw InputError(table.place(why.substr(0, why.find(' '))), why);
+  }
+  return vehicle;
+}
+
 void check(const StudyTable& subject, const VehicleParameters<double>& p) {
   const std::string why = inadmissible(p);
   if (!why.empty()) throw InputError(subject.place(why.substr(0, why.find(' '))), why);
@@ -164,16 +201,20 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
   const VehicleParameters<double>& p = vehicle.parameters;
   const StudyTable details = subject.table_or_empty("tyres");
   const auto slip = [&](double C) { return details.positive_or("slip_stiffness", "N", 1.3 * C); };
+  const double trail = details.number_or("pneumatic_trail", "m", 0.0);
+  if (!(std::abs(trail) < 1.0)) details.fail("pneumatic_trail", fmt::format("is {:g} m; must be below 1 m", trail));
   const bool limited = std::isfinite(p.mu);
   if (vehicle.tyre_text == "linear") {
-    return AxleTyres<LinearTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
-                                         {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
+    return AxleTyres<LinearTyre<double>>{
+        {.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu, .pneumatic_trail = trail},
+        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu, .pneumatic_trail = trail}};
   }
   if (!limited)
     subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
   if (vehicle.tyre_text == "fiala") {
-    return AxleTyres<FialaTyre<double>>{{.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu},
-                                        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu}};
+    return AxleTyres<FialaTyre<double>>{
+        {.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu, .pneumatic_trail = trail},
+        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu, .pneumatic_trail = trail}};
   }
   const PerWheel<double> load = static_loads(p, kGravity);
   const auto axle = [&](double C, double nominal) {
@@ -181,6 +222,7 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
     t.stiffness = C;
     t.slip_stiffness = slip(C);
     t.mu = p.mu;
+    t.pneumatic_trail = trail;
     t.nominal_load = nominal;
     t.C = details.number_or("C", "1", t.C);
     t.E = details.number_or("E", "1", t.E);
@@ -194,6 +236,18 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
   return AxleTyres<SimpleMagicFormulaTyre<double>>{axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
 }
 
+/// Of the front tyres [m]; of a file's, what stands for it there.
+double pneumatic_trail(const VehicleTyres& tyres) {
+  return std::visit(
+      []<typename Tyre>(const AxleTyres<Tyre>& t) {
+        if constexpr (requires { t.front.pneumatic_trail; })
+          return t.front.pneumatic_trail;
+        else
+          return t.front.coefficients.QDZ1 * t.front.coefficients.UNLOADED_RADIUS;
+      },
+      tyres);
+}
+
 }  // namespace
 
 FourWheelOptions four_wheel_options(const Vehicle& vehicle) {
@@ -201,6 +255,10 @@ FourWheelOptions four_wheel_options(const Vehicle& vehicle) {
   options.ackermann = vehicle.ackermann;
   options.camber_per_roll = vehicle.camber_per_roll;
   options.relaxation_length = vehicle.relaxation_length;
+  options.suspension_f = vehicle.suspension_f;
+  options.suspension_r = vehicle.suspension_r;
+  options.lift = vehicle.lift;
+  options.aligning_moment = vehicle.aligning_moment;
   options.longitudinal = vehicle.longitudinal;
   return options;
 }
@@ -236,7 +294,7 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
     if (!(field_of(p, i) > 0.0))
       subject.fail(name, fmt::format("is {:g} {}; must be > 0", field_of(p, i), kVehicleFields[i].unit));
   }
-  known = with_tyres(subject, std::move(known));
+  known = with_suspension(subject, with_tyres(subject, std::move(known)));
   for (const std::string_view name : needed(needs)) {
     const std::size_t i = index_of(name);
     if (!known.given[i]) static_cast<void>(subject.number(name, kVehicleFields[i].unit));
@@ -253,6 +311,10 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
   vehicle.ackermann = subject.number_or("ackermann", "1", 0.0);
   vehicle.camber_per_roll = subject.number_or("camber_per_roll", "1", 0.0);
   vehicle.relaxation_length = subject.number_or("relaxation_length", "m", 0.0);
+  vehicle = with_air(subject, std::move(vehicle));
+  vehicle.aligning_moment = subject.flag_or("aligning_moment", false);
+  if (vehicle.aligning_moment && pneumatic_trail(vehicle.tyres) == 0.0)
+    subject.fail("aligning_moment", "needs the tyres' pneumatic_trail in [subject.tyres], or tyre files with QDZ1");
   if (needs != VehicleNeeds::kGeometry) {
     if (std::string warning = estimation::grades_warning(subject); !warning.empty())
       vehicle.warnings.push_back(std::move(warning));
@@ -284,11 +346,14 @@ std::string write_vehicle_toml(const Vehicle& vehicle) {
   if (!vehicle.description.empty()) text += "description = " + quoted(vehicle.description) + "\n";
   for (std::size_t i = 0; i < kVehicleFields.size(); ++i) {
     const double value = field_of(vehicle.parameters, i);
-    if (std::isfinite(value)) {
+    const bool by_table = (i == index_of("K_sf") && !vehicle.suspension_f.spring.empty()) ||
+                          (i == index_of("K_sr") && !vehicle.suspension_r.spring.empty());
+    if (std::isfinite(value) && !by_table) {
       text += fmt::format("{} = {}  # {}, {}\n", kVehicleFields[i].name, value, kVehicleFields[i].unit,
                           kVehicleFields[i].meaning);
     }
   }
+  if (vehicle.aligning_moment) text += "aligning_moment = true\n";
   if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) {
     if (!vehicle.inputs.empty()) {
       text += "[subject.tyres]\n";
@@ -297,8 +362,10 @@ std::string write_vehicle_toml(const Vehicle& vehicle) {
     }
   } else {
     text += "tyre = " + quoted(vehicle.tyre_text) + "\n";
+    if (const double trail = pneumatic_trail(vehicle.tyres); trail != 0.0)
+      text += fmt::format("[subject.tyres]\npneumatic_trail = {}\n", trail);
   }
-  return text;
+  return text + write_suspension_toml(vehicle.suspension_f, vehicle.suspension_r, vehicle.lift);
 }
 
 }  // namespace veridyn::vehicle

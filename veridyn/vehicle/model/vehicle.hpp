@@ -36,7 +36,10 @@ struct Vehicle {
   double ackermann = 0.0;          ///< 0: front wheels steered equally, 1: Ackermann
   double camber_per_roll = 0.0;    ///< inclination of the wheels as a share of the body's roll
   double relaxation_length = 0.0;  ///< of the tyres [m]; 0: forces follow at once
-  std::optional<double> speed;     ///< of a built-in vehicle's published drive [m/s]
+  bool aligning_moment = false;    ///< whether the tyres' moments turn the vehicle
+  AxleSuspension suspension_f, suspension_r;
+  AerodynamicLift lift;
+  std::optional<double> speed;  ///< of a built-in vehicle's published drive [m/s]
   /// Numbers that the study does not give and nothing here depends on; "track_f = 1.35 m (0.6 L)".
   std::vector<std::string> assumed;
   std::vector<std::string> warnings;
@@ -68,6 +71,7 @@ enum class VehicleNeeds {
 ///     ackermann = 0.0                # share of Ackermann geometry
 ///     camber_per_roll = 0.0
 ///     relaxation_length = "0.3 m"
+///     aligning_moment = false        # true: the tyres' aligning moments turn the vehicle
 ///     [subject.tyres]                # details, each optional
 ///     front = "front.tir"            # tyre files of the axles, instead of `tyre`
 ///     rear = "rear.tir"
@@ -76,6 +80,13 @@ enum class VehicleNeeds {
 ///     E = 0.0                        # curvature
 ///     mu_load = 0.0                  # dependence on load
 ///     stiffness_saturation = 0.0
+///     pneumatic_trail = "30 mm"      # linear, fiala, magic formula: what an aligning moment needs
+///     [subject.suspension]           # see AxleSuspension; _f of the front axle, _r of the rear
+///     roll_centre_f = "60 mm"        # and roll_steer [rad/rad], bump_steer [rad/m], compliance_steer [rad/N]
+///     travel_f = [-0.08, 0, 0.08]    # of a spring by table, in place of K_s: travel [m] and force [N], both growing
+///     force_f = [-1600, 0, 2400]
+///     [subject.aerodynamics]         # areas of coefficients: see AerodynamicLift
+///     lift_area_f = 0.1              # [m^2], and lift_area_r, drag_area (that of [subject.longitudinal]), air_density
 ///     [subject.longitudinal]         # see LongitudinalParameters; names as there
 ///
 /// Numbers that `needs` does not ask for are assumed where they are missing, and listed. Where more than geometry is

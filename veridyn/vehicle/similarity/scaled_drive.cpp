@@ -44,6 +44,9 @@ Vehicle scaled(const Vehicle& vehicle, const ScaleFactors& factors) {
   // The air is the same: the area makes up for it.
   l.drag_area *= factors.of("kg/m");
   model.relaxation_length *= length;
+  model.suspension_f = scaled(vehicle.suspension_f, factors);
+  model.suspension_r = scaled(vehicle.suspension_r, factors);
+  model.lift = scaled(vehicle.lift, factors);
   if (model.speed) model.speed = *model.speed * factors.speed;
   return model;
 }

@@ -13,13 +13,15 @@ namespace veridyn::vehicle {
 /// The tyre of the scaled vehicle.
 template <typename Scalar>
 [[nodiscard]] LinearTyre<Scalar> scaled(const LinearTyre<Scalar>& tyre, const ScaleFactors& factors) {
-  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
+  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu,
+          tyre.pneumatic_trail * factors.length};
 }
 
 /// The tyre of the scaled vehicle.
 template <typename Scalar>
 [[nodiscard]] FialaTyre<Scalar> scaled(const FialaTyre<Scalar>& tyre, const ScaleFactors& factors) {
-  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu};
+  return {tyre.stiffness * factors.force(), tyre.slip_stiffness * factors.force(), tyre.mu,
+          tyre.pneumatic_trail * factors.length};
 }
 
 /// The tyre of the scaled vehicle.
@@ -28,6 +30,7 @@ template <typename Scalar>
   tyre.stiffness *= factors.force();
   tyre.slip_stiffness *= factors.force();
   tyre.nominal_load *= factors.force();
+  tyre.pneumatic_trail *= factors.length;
   return tyre;
 }
 
@@ -41,10 +44,29 @@ template <typename Scalar>
   return tyre;
 }
 
+/// The axle of the scaled vehicle.
+[[nodiscard]] inline AxleSuspension scaled(AxleSuspension axle, const ScaleFactors& factors) {
+  axle.roll_centre *= factors.length;
+  axle.bump_steer /= factors.length;
+  axle.compliance_steer /= factors.force();
+  axle.spring = axle.spring.scaled(factors.length, factors.force());
+  return axle;
+}
+
+/// The air is the same: the areas make up for it.
+[[nodiscard]] inline AerodynamicLift scaled(AerodynamicLift lift, const ScaleFactors& factors) {
+  lift.area_f *= factors.of("kg/m");
+  lift.area_r *= factors.of("kg/m");
+  return lift;
+}
+
 /// Gravity scales as an acceleration: put the real one back to see what an unscaled weight does.
 [[nodiscard]] inline FourWheelOptions scaled(FourWheelOptions options, const ScaleFactors& factors) {
   options.gravity *= factors.acceleration();
   options.relaxation_length *= factors.length;
+  options.suspension_f = scaled(options.suspension_f, factors);
+  options.suspension_r = scaled(options.suspension_r, factors);
+  options.lift = scaled(options.lift, factors);
   if (options.longitudinal) {
     LongitudinalParameters& l = *options.longitudinal;
     l.wheel_radius *= factors.length;

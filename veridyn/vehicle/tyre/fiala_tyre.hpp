@@ -20,6 +20,7 @@ struct FialaTyre {
   Scalar stiffness{60000.0};        ///< C [N/rad]
   Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
   Scalar mu{1.0};                   ///< may be infinite: then the linear tyre
+  Scalar pneumatic_trail{0.0};      ///< at small slip [m]; a sixth of the contact's length, with the brush model
 
   [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
                                           const Scalar& /*camber*/) const {
@@ -40,8 +41,30 @@ struct FialaTyre {
 
   template <typename Other>
   [[nodiscard]] FialaTyre<Other> cast() const {
-    return {Other(stiffness), Other(slip_stiffness), Other(mu)};
+    return {Other(stiffness), Other(slip_stiffness), Other(mu), Other(pneumatic_trail)};
   }
 };
+
+/// The share of its pneumatic trail that a brush tyre has left where the force along its slip would be S = 3 s N
+/// without friction's limit N: (1 - s)^3/(1 - s + s^2/3), 0 from s = 1 on (Pacejka 2006, section 3.2).
+template <typename Scalar>
+[[nodiscard]] Scalar brush_trail(const Scalar& s) {
+  if (!(s < 1.0)) return Scalar(0.0);
+  const Scalar rest = 1.0 - s;
+  return rest * rest * rest / (1.0 - s + s * s / 3.0);
+}
+
+/// -t F_y with the trail of the brush model [N m].
+template <typename Scalar>
+[[nodiscard]] Scalar aligning_moment(const FialaTyre<Scalar>& tyre, const Scalar& load, const Scalar& slip_ratio,
+                                     const Scalar& slip_angle, const Scalar& camber) {
+  using std::sqrt;
+  if (!(load > 0.0)) return Scalar(0.0);
+  const Scalar moment = -tyre.pneumatic_trail * tyre.forces(load, slip_ratio, slip_angle, camber).Fy;
+  const Scalar Fx = tyre.slip_stiffness * slip_ratio, Fy = tyre.stiffness * slip_angle;
+  const Scalar squared = Fx * Fx + Fy * Fy;
+  if (!(squared > 0.0) || !(tyre.mu < kInfinity)) return moment;
+  return brush_trail(Scalar(sqrt(squared) / (3.0 * tyre.mu * load))) * moment;
+}
 
 }  // namespace veridyn::vehicle

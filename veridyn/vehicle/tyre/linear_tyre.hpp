@@ -15,6 +15,7 @@ struct LinearTyre {
   Scalar stiffness{60000.0};        ///< C [N/rad]
   Scalar slip_stiffness{100000.0};  ///< C_x [N per unit of slip ratio]
   Scalar mu{kInfinity};
+  Scalar pneumatic_trail{0.0};  ///< how far behind the wheel's middle the lateral force acts [m]
 
   [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
                                           const Scalar& /*camber*/) const {
@@ -31,5 +32,12 @@ struct LinearTyre {
 
   [[nodiscard]] Scalar cornering_stiffness(const Scalar& /*load*/) const { return stiffness; }
 };
+
+/// -t F_y [N m], whatever the slip.
+template <typename Scalar>
+[[nodiscard]] Scalar aligning_moment(const LinearTyre<Scalar>& tyre, const Scalar& load, const Scalar& slip_ratio,
+                                     const Scalar& slip_angle, const Scalar& camber) {
+  return -tyre.pneumatic_trail * tyre.forces(load, slip_ratio, slip_angle, camber).Fy;
+}
 
 }  // namespace veridyn::vehicle

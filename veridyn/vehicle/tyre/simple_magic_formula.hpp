@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/magic_formula.hpp"
 #include "veridyn/vehicle/tyre/tyre.hpp"
 
@@ -30,6 +31,7 @@ struct SimpleMagicFormulaTyre {
   Scalar nominal_load{4000.0};      ///< F_z0 [N]
   Scalar stiffness_saturation{0.0};
   Scalar mu_load{0.0};
+  Scalar pneumatic_trail{0.0};  ///< at small slip and the nominal load [m]
 
   [[nodiscard]] TyreForces<Scalar> forces(const Scalar& load, const Scalar& slip_ratio, const Scalar& slip_angle,
                                           const Scalar& /*camber*/) const {
@@ -56,15 +58,38 @@ struct SimpleMagicFormulaTyre {
 
   template <typename Other>
   [[nodiscard]] SimpleMagicFormulaTyre<Other> cast() const {
-    return {Other(stiffness),    Other(slip_stiffness),       Other(mu),     Other(C), Other(E),
-            Other(nominal_load), Other(stiffness_saturation), Other(mu_load)};
+    return {Other(stiffness),
+            Other(slip_stiffness),
+            Other(mu),
+            Other(C),
+            Other(E),
+            Other(nominal_load),
+            Other(stiffness_saturation),
+            Other(mu_load),
+            Other(pneumatic_trail)};
   }
 
- private:
+  /// K over its value at the nominal load; x = F_z/F_z0.
   [[nodiscard]] Scalar load_gain(const Scalar& x) const {
     const Scalar q = stiffness_saturation * stiffness_saturation;
     return x * (1.0 + q) / (1.0 + q * x * x);
   }
 };
+
+/// -t F_y [N m]: the trail in proportion to the load, as that of the full formula, and falling with slip as that of a
+/// brush tyre of the same stiffness and friction (`brush_trail`).
+template <typename Scalar>
+[[nodiscard]] Scalar aligning_moment(const SimpleMagicFormulaTyre<Scalar>& tyre, const Scalar& load,
+                                     const Scalar& slip_ratio, const Scalar& slip_angle, const Scalar& camber) {
+  using std::sqrt;
+  if (!(load > 0.0)) return Scalar(0.0);
+  const Scalar x = load / tyre.nominal_load;
+  const Scalar moment = -tyre.pneumatic_trail * x * tyre.forces(load, slip_ratio, slip_angle, camber).Fy;
+  const Scalar Fx = tyre.slip_stiffness * slip_ratio, Fy = tyre.stiffness * slip_angle;
+  const Scalar squared = Fx * Fx + Fy * Fy;
+  if (!(squared > 0.0)) return moment;
+  const Scalar limit = tyre.mu * load / (1.0 + tyre.mu_load * (x - 1.0));
+  return brush_trail(Scalar(tyre.load_gain(x) * sqrt(squared) / (3.0 * limit))) * moment;
+}
 
 }  // namespace veridyn::vehicle

@@ -1,6 +1,8 @@
-#include "veridyn/vehicle/model/four_wheel_model.hpp"
+#include "veridyn/vehicle/model/four_wheel_options.hpp"
 
 #include <fmt/format.h>
+
+#include <string>
 
 #include "veridyn/core/error.hpp"
 
@@ -16,6 +18,18 @@ void FourWheelOptions::validate() const {
   require(camber_per_roll >= -10.0 && camber_per_roll <= 10.0, "camber_per_roll", camber_per_roll,
           "between -10 and 10");
   require(relaxation_length >= 0.0 && relaxation_length < kMost, "relaxation_length", relaxation_length, ">= 0");
+  for (const std::string& why :
+       {inadmissible(suspension_f, 'f'), inadmissible(suspension_r, 'r'), inadmissible(lift)}) {
+    if (!why.empty()) throw InputError("vehicle", why);
+  }
+  if (convention == FourWheelConvention::kSource) {
+    const auto plain = [](const AxleSuspension& axle) { return axle.roll_centre == 0.0 && !axle.steers(); };
+    if (!plain(suspension_f) || !plain(suspension_r) || lift.acts() || aligning_moment) {
+      throw InputError("vehicle",
+                       "the source's convention has no roll centres, no steer by the suspension, no lift and no "
+                       "aligning moments; they need convention = \"first principles\"");
+    }
+  }
   if (!longitudinal) return;
   if (const std::string why = inadmissible(*longitudinal); !why.empty()) throw InputError("vehicle", why);
 }

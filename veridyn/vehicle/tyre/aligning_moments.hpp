@@ -1,0 +1,37 @@
+#pragma once
+
+#include <concepts>
+
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/tyre/magic_formula_moment.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+#include "veridyn/vehicle/tyre/wheel_arrays.hpp"
+
+namespace veridyn::vehicle {
+
+/// A tyre with `aligning_moment(tyre, load, slip_ratio, slip_angle, camber)`: the moment of the road on it about the
+/// vertical axis through the contact point, to the left positive [N m]. It turns a rolling wheel back.
+template <typename Tyre, typename Scalar>
+concept HasAligningMoment = requires(const Tyre& tyre, const Scalar& number) {
+  { aligning_moment(tyre, number, number, number, number) } -> std::convertible_to<Scalar>;
+};
+
+/// Those of the four wheels [N m]; 0 off the ground, and of tyres that have none. @param camber of all wheels [rad]
+template <typename Tyre, typename Scalar>
+[[nodiscard, gnu::noinline]] WheelArray<Scalar> aligning_moments(const PerWheel<Tyre>& tyres,
+                                                                 const WheelArray<Scalar>& load,
+                                                                 const WheelArray<Scalar>& slip_ratio,
+                                                                 const WheelArray<Scalar>& slip_angle,
+                                                                 const Scalar& camber) {
+  WheelArray<Scalar> moment = WheelArray<Scalar>::Constant(Scalar(0.0));
+  if constexpr (HasAligningMoment<Tyre, Scalar>) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      const auto w = static_cast<Eigen::Index>(i);
+      if (load[w] > 0.0) moment[w] = aligning_moment(tyres[i], load[w], slip_ratio[w], slip_angle[w], camber);
+    }
+  }
+  return moment;
+}
+
+}  // namespace veridyn::vehicle
