@@ -4,26 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
-#include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
-#include "veridyn/numerics/linear_systems/lyapunov.hpp"
-#include "veridyn/numerics/linear_systems/riccati.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/numerics/ode.hpp"
 #include "veridyn/numerics/signal_band.hpp"
+#include "veridyn/vehicle/identification/sampled_input.hpp"
 #include "veridyn/vehicle/tyre/fiala_tyre.hpp"
 #include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-constexpr double kLongestStep_s = 5e-3;
-/// Step times the fastest decay rate of the bicycle: RK4 then errs by less than 1e-5 of a transient.
-constexpr double kStepTimesRate = 0.25;
+constexpr double kLongestStep_s = 10e-3;
+/// Step times the fastest decay rate of the bicycle: RK4 then errs by less than 3e-4 of that rate.
+constexpr double kStepTimesRate = 0.4;
 constexpr int kMostSubsteps = 40;
 /// Beyond it a yaw rate is not that of a vehicle [rad/s].
 constexpr double kLargestYawRate = 50.0;
@@ -38,28 +35,6 @@ constexpr double kNoNoise = 1e-4;
 
 /// Speeds at which the whitening filter is computed.
 constexpr int kFilterSpeeds = 9;
-
-double value_of(double x) { return x; }
-template <int kN>
-double value_of(const ceres::Jet<double, kN>& x) {
-  return x.a;
-}
-
-/// Between `samples` at `position`, cubic.
-template <typename Value, typename Scalar>
-Scalar between(const std::vector<Value>& samples, const Scalar& position) {
-  const auto last = static_cast<double>(samples.size() - 1);
-  const double p = std::clamp(value_of(position), 0.0, last);
-  const auto i = static_cast<std::size_t>(std::min(std::floor(p), std::max(0.0, last - 1.0)));
-  if (samples.size() == 1) return Scalar(samples[0]);
-  const Value& y1 = samples[i];
-  const Value& y2 = samples[i + 1];
-  const Value y0 = i > 0 ? samples[i - 1] : Value(2.0 * y1 - y2);
-  const Value y3 = i + 2 < samples.size() ? samples[i + 2] : Value(2.0 * y2 - y1);
-  Scalar s = position - static_cast<double>(i);
-  if (value_of(position) < 0.0 || value_of(position) > last) s = Scalar(p - static_cast<double>(i));
-  return y1 + 0.5 * s * (y2 - y0 + s * (2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3 + s * (3.0 * (y1 - y2) + y3 - y0)));
-}
 
 double rms_of(const std::vector<double>& x) {
   double power = 0.0, count = 0.0;
@@ -113,12 +88,6 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
   }
 }
 
-/// Gain of the steady Kalman predictor of x_next = F x + G w, y = C x + e, which is the dual of a regulator's.
-Eigen::MatrixXd steady_gain(const Eigen::MatrixXd& F, const Eigen::VectorXd& G, const Eigen::MatrixXd& C,
-                            const Eigen::MatrixXd& R) {
-  return numerics::discrete_linear_quadratic(F.transpose(), C.transpose(), G * G.transpose(), R).K.transpose();
-}
-
 estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
   estimation::ModelParameter p;
   p.name = std::string(kDriveUnknownNames[unknown]);
@@ -134,25 +103,6 @@ estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveMode
 }
 
 }  // namespace
-
-template <typename Scalar>
-Scalar SampledInput::at(const Scalar& position) const {
-  const auto n = value.size();
-  const double p = std::clamp(value_of(position), 0.0, static_cast<double>(n - 1));
-  if (n == 1) return Scalar(value[0]);
-  const auto i = std::min(static_cast<std::size_t>(p), n - 2);
-  const double s = p - static_cast<double>(i);
-  const double y1 = value[i], y2 = value[i + 1];
-  const double y0 = i > 0 ? value[i - 1] : 2.0 * y1 - y2;
-  const double y3 = i + 2 < n ? value[i + 2] : 2.0 * y2 - y1;
-  const double c1 = y2 - y0, c2 = 2.0 * y0 - 5.0 * y1 + 4.0 * y2 - y3, c3 = 3.0 * (y1 - y2) + y3 - y0;
-  const double y = y1 + 0.5 * s * (c1 + s * (c2 + s * c3));
-  if (p != value_of(position)) return Scalar(y);
-  const double slope = 0.5 * (c1 + s * (2.0 * c2 + 3.0 * s * c3));
-  return Scalar(y) + slope * (position - p);
-}
-template double SampledInput::at(const double&) const;
-template ceres::Jet<double, 8> SampledInput::at(const ceres::Jet<double, 8>&) const;
 
 DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::span<const TimeSpan> spans,
                                            const VehicleParameters<double>& start, const DriveModelOptions& options)
@@ -262,25 +212,15 @@ DriveParametricModel DriveParametricModel::weighed(DriveWhitening whitening) con
   return out;
 }
 
-DriveWhitening::Filter DriveWhitening::at(double u) const {
-  const auto above = static_cast<std::size_t>(std::upper_bound(speed.begin(), speed.end(), u) - speed.begin());
-  if (above == 0) return filter.front();
-  if (above == speed.size()) return filter.back();
-  const double share = (u - speed[above - 1]) / (speed[above] - speed[above - 1]);
-  const auto between = [&](Eigen::MatrixXd Filter::*matrix) -> Eigen::MatrixXd {
-    return (1.0 - share) * (filter[above - 1].*matrix) + share * (filter[above].*matrix);
-  };
-  return {between(&Filter::transition), between(&Filter::gain), between(&Filter::output)};
-}
-
 template <typename Scalar>
 void DriveParametricModel::whiten(const Segment& segment, Outputs<Scalar>& output) const {
   const Eigen::Index states = whitening_.filter.front().transition.rows();
   Eigen::Matrix<Scalar, Eigen::Dynamic, 1> s(states), next(states), white(output.cols());
   s.setConstant(Scalar(0.0));
+  DriveWhitening::Filter f;
   for (Eigen::Index k = 0; k < output.rows(); ++k) {
     const std::size_t sample = segment.begin + static_cast<std::size_t>(k);
-    const DriveWhitening::Filter f = whitening_.at(speed_[sample]);
+    whitening_.at(speed_[sample], f);
     for (Eigen::Index j = 0; j < output.cols(); ++j) {
       white(j) = output(k, j);
       for (Eigen::Index i = 0; i < states; ++i) white(j) -= f.output(j, i) * s(i);
@@ -372,8 +312,8 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
     const Scalar at = steer_lead + position;
     return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain, Scalar(speed.at(position))};
   };
-  const bool delayed =
-      delays_outputs(value_of(unknown(DriveUnknown::kYawRateDelay)), value_of(unknown(DriveUnknown::kAccelYDelay)));
+  const bool delayed = delays_outputs(sampled_value(unknown(DriveUnknown::kYawRateDelay)),
+                                      sampled_value(unknown(DriveUnknown::kAccelYDelay)));
   std::vector<std::vector<Scalar>> shown(delayed ? compared_.size() : 0, std::vector<Scalar>(n));
 
   const double h = step / segment.substeps;
@@ -444,7 +384,7 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
       case DriveStructure::kRelaxation:
         return work(model, std::integral_constant<int, 6>());
       case DriveStructure::kSaturation:
-        if (value_of(model.relaxation_length) > 0.0) return work(model, std::integral_constant<int, 6>());
+        if (sampled_value(model.relaxation_length) > 0.0) return work(model, std::integral_constant<int, 6>());
         return work(model, std::integral_constant<int, 4>());
       case DriveStructure::kBicycle:
       case DriveStructure::kScaledAccel:
@@ -485,51 +425,49 @@ template bool DriveParametricModel::simulate(std::size_t, const Parameters<doubl
 template bool DriveParametricModel::simulate(std::size_t, const Parameters<ceres::Jet<double, 8>>&,
                                              Outputs<ceres::Jet<double, 8>>&) const;
 
-template <int kStates, typename Tyre>
-DriveParametricModel::NoiseModel DriveParametricModel::noise_model(double u, const RollingBicycle<double, Tyre>& model,
-                                                                   const Eigen::VectorXd& theta) const {
-  using State = Eigen::Matrix<double, kStates, 1>;
+LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& theta) const {
   const auto outputs = signed_index(compared_.size());
-  // About straight driving everything is odd in the state: a small step's difference is the derivative.
-  constexpr double kSmall = 1e-6;
-  Eigen::MatrixXd AB(kStates, kStates + 1), CD(outputs, kStates + 1);  // the last column is of the steering
-  for (Eigen::Index i = 0; i <= kStates; ++i) {
-    State x = State::Zero();
-    if (i < kStates) x(i) = kSmall;
-    const RollingBicycleRates<double, kStates> rates = model.rates(x, i < kStates ? 0.0 : kSmall, u);
-    Eigen::VectorXd y(outputs);
-    for (Eigen::Index j = 0; j < outputs; ++j) {
-      const DriveSignal signal = compared_[at(j)].signal;
-      const double scale =
-          signal == DriveSignal::kAccelY ? 1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYScale)) : 1.0;
-      y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
-    }
-    AB.col(i) = rates.derivative / kSmall;
-    CD.col(i) = y;
-  }
-  // The error of the steering is the noise in its band: white noise through two poles
-  // of that bandwidth, whose two states follow those of the vehicle.
-  constexpr Eigen::Index kNoise = 2;
-  constexpr double kButterworth = 0.5 * kPi / std::numbers::sqrt2;  // noise bandwidth over the corner frequency
-  const double corner = 2.0 * kPi * 0.5 * grid_.rate_Hz() * steer_error_share_ / kButterworth;
   const double gain = 1.0 / (1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)));
-  const Eigen::Index n = kStates + kNoise;
-  Eigen::MatrixXd dynamics = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  dynamics.topLeftCorner(kStates, kStates) = AB.leftCols(kStates);
-  dynamics.block(0, kStates, kStates, 1) = gain * AB.col(kStates);
-  dynamics(kStates, kStates + 1) = 1.0;
-  dynamics(kStates + 1, kStates) = -corner * corner;
-  dynamics(kStates + 1, kStates + 1) = -std::numbers::sqrt2 * corner;
-  dynamics(kStates + 1, n) = corner * corner;
-  const Eigen::MatrixXd over_step = numerics::matrix_exponential(Eigen::MatrixXd(dynamics * grid_.step));
-  const Eigen::MatrixXd F = over_step.topLeftCorner(n, n);
-  const Eigen::VectorXd G = over_step.topRightCorner(n, 1) * steer_sigma_;
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(outputs, n);
-  C.leftCols(kStates) = CD.leftCols(kStates);
-  C.col(kStates) = gain * CD.col(kStates);
-  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(outputs, outputs);
-  for (Eigen::Index j = 0; j < outputs; ++j) R(j, j) = std::pow(compared_[at(j)].sigma, 2);
-  return {F, C, R, G};
+  const double accel_scale = 1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYScale));
+  const Parameters<double> shared = theta;
+  return with_model(shared, [&](const auto& model, auto states) -> LinearDrive {
+    constexpr int kStates = decltype(states)::value;
+    using State = Eigen::Matrix<double, kStates, 1>;
+    // There everything is odd in the state: a small step's difference is the derivative.
+    constexpr double kSmall = 1e-6;
+    LinearDrive out{.A = Eigen::MatrixXd(kStates, kStates),
+                    .C = Eigen::MatrixXd(outputs, kStates),
+                    .B = Eigen::VectorXd(kStates),
+                    .D = Eigen::VectorXd(outputs)};
+    for (Eigen::Index i = 0; i <= kStates; ++i) {
+      State x = State::Zero();
+      if (i < kStates) x(i) = kSmall;
+      const RollingBicycleRates<double, kStates> rates = model.rates(x, i < kStates ? 0.0 : gain * kSmall, u);
+      Eigen::VectorXd y(outputs);
+      for (Eigen::Index j = 0; j < outputs; ++j) {
+        const DriveSignal signal = compared_[at(j)].signal;
+        const double scale = signal == DriveSignal::kAccelY ? accel_scale : 1.0;
+        y(j) = scale * true_output<kStates>(signal, x, rates) / kSmall;
+      }
+      if (i < kStates) {
+        out.A.col(i) = rates.derivative / kSmall;
+        out.C.col(i) = y;
+      } else {
+        out.B = rates.derivative / kSmall;
+        out.D = y;
+      }
+    }
+    return out;
+  });
+}
+
+DriveNoise DriveParametricModel::noise_at(double u, const Eigen::VectorXd& theta) const {
+  Eigen::VectorXd sigma(signed_index(compared_.size()));
+  for (Eigen::Index j = 0; j < sigma.size(); ++j) sigma(j) = compared_[at(j)].sigma;
+  return drive_noise(
+      linearized(u, theta),
+      {.sigma = steer_error_share_ > 0.0 ? steer_sigma_ : 0.0, .band_share = steer_error_share_, .step = grid_.step},
+      sigma);
 }
 
 DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) const {
@@ -540,30 +478,16 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
     return {};
   const SpeedRange range = speeds();
   DriveWhitening out;
-  const Parameters<double> shared = theta;
-  with_model(shared, [&](const auto& model, auto states) {
-    for (int i = 0; i < kFilterSpeeds; ++i) {
-      out.speed.push_back(range.slowest + (range.fastest - range.slowest) * i / (kFilterSpeeds - 1));
-      const NoiseModel noise = noise_model<decltype(states)::value>(out.speed.back(), model, theta);
-      out.filter.push_back({noise.F, steady_gain(noise.F, noise.G, noise.C, noise.R), noise.C});
-    }
-    return true;
-  });
+  for (int i = 0; i < kFilterSpeeds; ++i) {
+    out.speed.push_back(range.slowest + (range.fastest - range.slowest) * i / (kFilterSpeeds - 1));
+    out.filter.push_back(whitening_filter(noise_at(out.speed.back(), theta)));
+  }
   return out;
 }
 
 Eigen::VectorXd DriveParametricModel::expected_residual(const Eigen::VectorXd& theta) const {
   const SpeedRange range = speeds();
-  const double u = 0.5 * (range.slowest + range.fastest);
-  const Parameters<double> shared = theta;
-  const NoiseModel noise = with_model(
-      shared, [&](const auto& model, auto states) { return noise_model<decltype(states)::value>(u, model, theta); });
-  Eigen::MatrixXd covariance = noise.R;
-  if (steer_error_share_ > 0.0) {
-    const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
-    covariance += noise.C * P * noise.C.transpose();
-  }
-  return covariance.diagonal().cwiseSqrt();
+  return output_deviation(noise_at(0.5 * (range.slowest + range.fastest), theta));
 }
 
 DriveParametricModel::SpeedRange DriveParametricModel::speeds() const {

@@ -9,37 +9,12 @@
 #include "veridyn/estimation/output_error/parametric_model.hpp"
 #include "veridyn/vehicle/identification/drive_model_options.hpp"
 #include "veridyn/vehicle/identification/drive_signals.hpp"
+#include "veridyn/vehicle/identification/drive_whitening.hpp"
 #include "veridyn/vehicle/model/rolling_bicycle.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
 
 namespace veridyn::vehicle {
-
-/// A sampled input between its samples: cubic through the four neighbours (Catmull-Rom), so that shifts in time have a
-/// derivative.
-struct SampledInput {
-  std::span<const double> value;
-  double step = 0.01;
-
-  /// At `position` [samples from the first]; the end values hold outside.
-  template <typename Scalar>
-  [[nodiscard]] Scalar at(const Scalar& position) const;
-};
-
-/// A linear filter that whitens the residual of a drive: of an output's residual e and the filter's state s
-///
-///     e_white = e - output s,     s_next = transition s + gain e_white     (transition before the correction)
-///
-/// The innovations of a steady Kalman filter about driving straight ahead, by speed, on the straight line between.
-struct DriveWhitening {
-  struct Filter {
-    Eigen::MatrixXd transition, gain, output;
-  };
-  std::vector<double> speed;  ///< [m/s], ascending; empty: no filter
-  std::vector<Filter> filter;
-  [[nodiscard]] bool empty() const { return speed.empty(); }
-  [[nodiscard]] Filter at(double u) const;
-};
 
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of
@@ -48,8 +23,9 @@ struct DriveWhitening {
 ///
 /// Outputs: yaw_rate; accel_y at the sensor's place, a_y + x r' - y r^2 - z phi'', with g phi where the body rolls and
 /// gravity's share was not taken off; lateral_velocity; and of a body that rolls roll and roll_rate; each where it is
-/// recorded. Integrated by RK4 with steps of at most 5 ms and a third of the fastest relaxation at the start values.
-/// Delays shift inputs and outputs by cubic interpolation. The mass only scales C_f, C_r and I_z: it is never free.
+/// recorded. Integrated by RK4 with steps of at most 10 ms and two fifths of the bicycle's fastest time constant at the
+/// start. Delays shift inputs and outputs by cubic interpolation. The mass only scales C_f, C_r and I_z: it is never
+/// free.
 ///
 /// Noise of the recorded steering would take some of every gain away. By default the steering is therefore low-passed
 /// to its own band (`numerics::band_limited`), and the outputs are not; the noise left in that band moves the model,
@@ -133,15 +109,9 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// The same as it is recorded, delays apart.
   template <typename Scalar>
   [[nodiscard]] Scalar recorded(DriveSignal signal, const Scalar& shown, const Parameters<Scalar>& theta) const;
-  /// The linear system, over a step of the grid, by which white noise of the steering and of the sensors comes to the
-  /// outputs: x_next = F x + G w, y = C x + e with covariance R of e.
-  struct NoiseModel {
-    Eigen::MatrixXd F, C, R;
-    Eigen::VectorXd G;
-  };
-  template <int kStates, typename Tyre>
-  [[nodiscard]] NoiseModel noise_model(double u, const RollingBicycle<double, Tyre>& model,
-                                       const Eigen::VectorXd& theta) const;
+  /// About straight driving at speed u.
+  [[nodiscard]] LinearDrive linearized(double u, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] DriveNoise noise_at(double u, const Eigen::VectorXd& theta) const;
   struct SpeedRange {
     double slowest = 0.0, fastest = 0.0;  // [m/s]
   };

@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
@@ -38,11 +40,24 @@ struct TriedStructure {
   bool usable = false;
   bool at_bound = false;  ///< one of the unknowns that it adds is at a bound
   std::string message = {};
-  double negative_log_likelihood = kNaN;  ///< of the identification segments, without a constant
+  /// Of the identification segments, without a constant. From roll on the residual is whitened: what a structure gains
+  /// there over roll is counted from what roll has without.
+  double negative_log_likelihood = kNaN;
+  /// What priors and the widths of the posterior add to the logarithm of the evidence (Laplace's approximation),
+  /// without a constant: only differences between structures count.
+  double log_prior_volume = 0.0;
   double inflation = 1.0;        ///< of variances by the residual's autocorrelation: samples that say what one would
   double holdout_misfit = kNaN;  ///< sum of the logarithms of the rms of all outputs' residuals on the hold-out
   double holdout_rmse = kNaN;    ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
+};
+
+/// A structure that the data neither ask for nor exclude, beside the one that is taken.
+struct StructureDoubt {
+  DriveStructure structure = DriveStructure::kRelaxation;
+  double probability = 0.0;  ///< against the one that is taken
+  /// By how much it would move the parameters that both have; by name, each in its unit.
+  std::vector<std::pair<std::string, double>> difference = {};
 };
 
 /// A richer structure is taken where it makes the data likelier by more than this (the log of the likelihoods' ratio,

@@ -8,11 +8,16 @@
 #include <vector>
 
 #include "veridyn/core/index.hpp"
+#include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
 
 namespace veridyn::vehicle {
 namespace {
+
+/// Probability below which a structure leaves no doubt.
+constexpr double kExcluded = 1e-3;
 
 /// Median over the parameters of the corrected variance over the white one.
 double inflation_of(const estimation::OutputErrorEstimate& fit) {
@@ -24,12 +29,32 @@ double inflation_of(const estimation::OutputErrorEstimate& fit) {
   return ratios.empty() ? 1.0 : std::max(1.0, numerics::median(ratios));
 }
 
+/// What priors and the posterior's width say of a fit: minus half of the priors' chi-square, and the logarithm of the
+/// ratio of the volumes that the unknowns have after and before the data.
+double log_prior_volume(const VehicleProblem& problem, const OutputErrorResult& fit) {
+  const DriveModelOptions model = with_geometry(problem.options.model, problem.start, problem.signals.roll_gradient);
+  std::vector<Eigen::Index> known;
+  double sum = 0.0;
+  for (const DriveUnknown u : kAllDriveUnknowns) {
+    const auto i = static_cast<Eigen::Index>(u);
+    const double variance = fit.raw.covariance(i, i);
+    if (!model.free[u] || !(variance > 0.0) || !std::isfinite(variance)) continue;
+    known.push_back(i);
+    if (!std::isfinite(model.prior[u])) continue;
+    sum -= std::log(model.prior[u]) + 0.5 * std::pow((fit.raw.theta(i) - model.start[u]) / model.prior[u], 2);
+  }
+  if (known.empty()) return sum;
+  const Eigen::MatrixXd L = numerics::Cholesky(fit.raw.covariance(known, known)).L();
+  return sum + L.diagonal().array().log().sum();
+}
+
 /// How a fit does, on its own data and on the hold-out.
 TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit, Progress& progress) {
   TriedStructure out{
       .structure = problem.options.model.structure, .usable = fit.raw.usable(), .message = fit.raw.message};
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
+  out.log_prior_volume = log_prior_volume(problem, fit);
   out.inflation = inflation_of(fit.raw);
   std::vector<DriveUnknown> added{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
                                   DriveUnknown::kRollDamping};
@@ -81,7 +106,7 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   VehicleIdentifyOptions options = problem.options;
   options.model.free[DriveUnknown::kSteerDelay] = true;
   const OutputErrorResult delayed = estimate_by_output_error(with_options(problem, options), equation_error,
-                                                             fit.raw.theta, SearchEffort::kToCompare, progress);
+                                                             fit.raw.theta, {}, SearchEffort::kToCompare, progress);
   if (!delayed.raw.usable()) return std::nullopt;
   return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }
@@ -94,6 +119,107 @@ VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStruc
   options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
   return options;
 }
+
+/// View of a problem that climbs from structure to structure.
+class Climb {
+ public:
+  Climb(const VehicleProblem& problem, const EquationErrorEstimates* equation_error, Progress& progress)
+      : problem_(problem), equation_error_(equation_error), progress_(progress) {}
+
+  StructureLadder run() {
+    if (problem_.options.structure) {
+      fit(*problem_.options.structure, true);
+    } else {
+      climb_to_roll();
+      if (takes_roll()) climb_beyond_roll();
+    }
+    finish();
+    return std::move(ladder_);
+  }
+
+  /// A recording that contradicts itself says nothing of the structure.
+  [[nodiscard]] bool contradicts() const {
+    return std::ranges::any_of(problem_.recording, [](const estimation::Evidence& row) {
+      return row.outcome == estimation::Outcome::kFailed;
+    });
+  }
+
+ private:
+  [[nodiscard]] VehicleProblem given(std::size_t rung) const { return with_options(problem_, options_[rung]); }
+  [[nodiscard]] const TriedStructure& taken() const { return ladder_.tried[choose_structure(ladder_.tried)]; }
+  [[nodiscard]] bool takes_roll() const {
+    return !ladder_.empty() && has_roll(taken().structure) && !contradicts() && !progress_.interrupted();
+  }
+
+  /// Fits one more structure, from where the last one ended.
+  void fit(DriveStructure structure, bool relaxes) {
+    progress_.stage(fmt::format("output error, structure: {}", to_string(structure)));
+    options_.push_back(with_structure(problem_.options, structure, relaxes));
+    const VehicleProblem problem = with_options(problem_, options_.back());
+    fits_.push_back(estimate_by_output_error(problem, equation_error_, search_start_, weighing_,
+                                             SearchEffort::kToCompare, progress_));
+    ladder_.tried.push_back(tried(problem, fits_.back(), progress_));
+    if (fits_.back().raw.usable()) search_start_ = fits_.back().raw.theta;
+  }
+
+  /// As long as one leaves more than the sensors do.
+  void climb_to_roll() {
+    for (const DriveStructure structure :
+         {DriveStructure::kBicycle, DriveStructure::kScaledAccel, DriveStructure::kRoll}) {
+      if (progress_.interrupted()) return;
+      if (structure == DriveStructure::kScaledAccel && !problem_.signals[DriveSignal::kAccelY].available()) continue;
+      fit(structure, false);
+      if (contradicts() || is_explained(with_options(problem_, options_.back()), fits_.back())) return;
+    }
+  }
+
+  /// What tyres do beside rolling, all under the filter of the roll's fit, so that likelihoods compare.
+  void climb_beyond_roll() {
+    const std::size_t roll = ladder_.tried.size() - 1;
+    progress_.stage("output error, structure: roll, weighed");
+    fits_[roll] = refined(std::move(fits_[roll]), given(roll), equation_error_, progress_);
+    if (!fits_[roll].raw.usable()) return;
+    weighing_ = fits_[roll].whitening;
+    const double unweighed = ladder_.tried[roll].negative_log_likelihood;
+    const double weighed = fits_[roll].raw.negative_log_likelihood;
+    for (const DriveStructure structure : {DriveStructure::kRelaxation, DriveStructure::kSaturation}) {
+      if (progress_.interrupted()) return;
+      search_start_ = fits_[choose_structure(ladder_.tried)].raw.theta;
+      fit(structure, taken().structure == DriveStructure::kRelaxation);
+      ladder_.tried.back().negative_log_likelihood += unweighed - weighed;
+    }
+    ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
+    const std::size_t chosen = choose_structure(ladder_.tried);
+    for (std::size_t other = roll; other < fits_.size(); ++other) {
+      if (other == chosen) continue;
+      const double probability = probability_against(ladder_.tried[other], ladder_.tried[chosen]);
+      if (probability > kExcluded)
+        ladder_.doubts.push_back(structure_doubt(ladder_.tried[other].structure, probability, fits_[other].estimate,
+                                                 fits_[chosen].estimate));
+    }
+  }
+
+  void finish() {
+    ladder_.chosen = choose_structure(ladder_.tried);
+    if (ladder_.empty() || progress_.interrupted()) return;
+    progress_.stage("output error");
+    ladder_.model = options_[ladder_.chosen].model;
+    ladder_.fit = std::move(fits_[ladder_.chosen]);
+    const bool to_the_end =
+        ladder_.tried[ladder_.chosen].structure == DriveStructure::kRoll && takes_roll() && !problem_.options.structure;
+    if (!to_the_end) ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
+    ladder_.steer_delay = steer_delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
+  }
+
+  const VehicleProblem& problem_;
+  const EquationErrorEstimates* equation_error_;
+  Progress& progress_;
+  StructureLadder ladder_;
+  std::vector<OutputErrorResult> fits_;
+  std::vector<VehicleIdentifyOptions> options_;
+  Eigen::VectorXd search_start_;
+  DriveWhitening weighing_;  // empty below roll
+};
 
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   const TriedStructure& taken = ladder.tried[ladder.chosen];
@@ -115,44 +241,9 @@ std::string reason_of(const StructureLadder& ladder, bool contradicts) {
 
 StructureLadder climb_structures(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
                                  Progress& progress) {
-  StructureLadder ladder;
-  std::vector<OutputErrorResult> fits;
-  std::vector<VehicleIdentifyOptions> options;
-  const bool fixed = problem.options.structure.has_value();
-  const bool contradicts = std::ranges::any_of(
-      problem.recording, [](const estimation::Evidence& row) { return row.outcome == estimation::Outcome::kFailed; });
-  Eigen::VectorXd search_start;
-  bool explained = false;
-  for (const DriveStructure structure : enumerators<DriveStructure, kDriveStructures>()) {
-    if (progress.interrupted()) break;
-    if (fixed && *problem.options.structure != structure) continue;
-    const bool has_accel = problem.signals[DriveSignal::kAccelY].available();
-    if (!fixed && structure == DriveStructure::kScaledAccel && !has_accel) continue;
-    if (!fixed && structure == DriveStructure::kRelaxation && explained) continue;
-    progress.stage(fmt::format("output error, structure: {}", to_string(structure)));
-    const bool relaxes = fixed || (!ladder.empty() && ladder.tried[choose_structure(ladder.tried)].structure ==
-                                                          DriveStructure::kRelaxation);
-    options.push_back(with_structure(problem.options, structure, relaxes));
-    const VehicleProblem given = with_options(problem, options.back());
-    OutputErrorResult fit =
-        estimate_by_output_error(given, equation_error, search_start, SearchEffort::kToCompare, progress);
-    ladder.tried.push_back(tried(given, fit, progress));
-    if (fit.raw.usable()) search_start = fit.raw.theta;
-    explained = is_explained(given, fit);
-    fits.push_back(std::move(fit));
-    const bool rolls = has_roll(ladder.tried[choose_structure(ladder.tried)].structure);
-    const bool simple = structure < DriveStructure::kRoll;
-    if (contradicts || (simple ? explained : !rolls)) break;
-  }
-  ladder.chosen = choose_structure(ladder.tried);
-  if (!ladder.empty() && !progress.interrupted()) {
-    progress.stage("output error");
-    ladder.model = options[ladder.chosen].model;
-    const VehicleProblem given = with_options(problem, options[ladder.chosen]);
-    ladder.fit = refined(std::move(fits[ladder.chosen]), given, equation_error, progress);
-    ladder.steer_delay = steer_delay_of(given, equation_error, ladder.fit, progress);
-  }
-  if (!fixed && !ladder.empty()) ladder.reason = reason_of(ladder, contradicts);
+  Climb climb(problem, equation_error, progress);
+  StructureLadder ladder = climb.run();
+  if (!problem.options.structure && !ladder.empty()) ladder.reason = reason_of(ladder, climb.contradicts());
   return ladder;
 }
 

@@ -19,7 +19,8 @@ struct StructureLadder {
   OutputErrorResult fit = {};    ///< of it, to the end
   /// How late the recorded steering is where the model with roll is left free to say so.
   std::optional<estimation::Parameter> steer_delay = {};
-  std::string reason;  ///< one sentence; empty where the study fixes the structure
+  std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
+  std::string reason;                  ///< one sentence; empty where the study fixes the structure
   [[nodiscard]] bool empty() const { return tried.empty(); }
 };
 
@@ -28,10 +29,10 @@ struct StructureLadder {
 inline constexpr double kExplained = 1.25;
 
 /// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one without
-/// roll leaves no more residual than the sensors do. What comes after roll is tried only where roll is taken,
-/// relaxation only where roll leaves something; saturation always, since what it moves stiffnesses by hides in the
-/// noise. A recording that contradicts itself (a failed row) says nothing of the structure: only the bicycle is fitted
-/// to it.
+/// roll leaves no more residual than the sensors do. Relaxation and saturation are tried wherever roll is taken, since
+/// what they move stiffnesses by hides in the noise of a gentle drive; there all residuals are weighed by the filter of
+/// the roll's fit, and one that is not taken leaves a doubt, by its probability. A recording that contradicts itself (a
+/// failed row) says nothing of the structure: only the bicycle is fitted to it.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 

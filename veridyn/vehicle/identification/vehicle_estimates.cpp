@@ -348,14 +348,17 @@ double largest_change(const estimation::OutputErrorEstimate& before, const estim
 }  // namespace
 
 OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const EquationErrorEstimates* equation_error,
-                                           const Eigen::VectorXd& search_start, SearchEffort effort,
-                                           Progress& progress) {
+                                           const Eigen::VectorXd& search_start, const DriveWhitening& weighing,
+                                           SearchEffort effort, Progress& progress) {
   OutputErrorProblem given = output_error_problem(problem, equation_error);
+  given.weigh(weighing);
   if (effort == SearchEffort::kToCompare) {
     given.options.max_relaxations = kRelaxationsToCompare;
     given.options.max_steps = kStepsToCompare;
   }
-  return fitted(problem, equation_error, std::move(given), search_start, progress);
+  OutputErrorResult out = fitted(problem, equation_error, std::move(given), search_start, progress);
+  out.whitening = weighing;
+  return out;
 }
 
 OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& problem,
@@ -364,7 +367,7 @@ OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& prob
   const OutputErrorProblem given = output_error_problem(problem, equation_error);
   DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
   if (whitening.empty())
-    return estimate_by_output_error(problem, equation_error, estimate.raw.theta, SearchEffort::kToTheEnd, progress);
+    return estimate_by_output_error(problem, equation_error, estimate.raw.theta, {}, SearchEffort::kToTheEnd, progress);
   for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
     if (round > 0) whitening = given.model.whitening(estimate.raw.theta);
     OutputErrorProblem weighed = given;

@@ -45,10 +45,11 @@ enum class SearchEffort {
 };
 
 /// Starts from the equation error where that is known well enough; `equation_error` may be null. `search_start`: of all
-/// DriveUnknowns, where the search begins instead; may be empty.
+/// DriveUnknowns, where the search begins instead; may be empty, as may be the filter that weighs the residual.
 [[nodiscard]] OutputErrorResult estimate_by_output_error(const VehicleProblem& problem,
                                                          const EquationErrorEstimates* equation_error,
-                                                         const Eigen::VectorXd& search_start, SearchEffort effort,
+                                                         const Eigen::VectorXd& search_start,
+                                                         const DriveWhitening& weighing, SearchEffort effort,
                                                          Progress& progress);
 
 /// An estimate followed to the end. Where the steering has noise its residual is whitened, in rounds: the filter is

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/structure_ladder.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 #include "veridyn/vehicle/identification/vehicle_judgement.hpp"
@@ -84,6 +85,9 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   theta.covariance *= widening;
   for (VehicleEstimate& e : out.estimates)
     if (e.method == out.chosen) e = widened(std::move(e), widening, problem.options.significance);
+  if (out.chosen == VehicleMethod::kOutputError) out.structure_doubts = ladder.doubts;
+  for (VehicleEstimate& e : out.estimates)
+    if (e.method == out.chosen) e = with_doubt(std::move(e), out.structure_doubts, problem.options.significance);
   if (output_error != nullptr && !problem.options.profiles.empty()) {
     progress.stage(fmt::format("profile likelihood of {} parameters", problem.options.profiles.size()));
     const bool widened_too = out.chosen == VehicleMethod::kOutputError;
@@ -103,7 +107,8 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .validation = out.validation,
                                                        .by_noise = by_noise,
                                                        .parts = parts,
-                                                       .steer_delay = ladder.steer_delay});
+                                                       .steer_delay = ladder.steer_delay,
+                                                       .structure_doubts = out.structure_doubts});
   out.verdict = judgement.verdict;
   out.reason = std::move(judgement.reason);
   out.checks = std::move(judgement.checks);
@@ -193,6 +198,9 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
     if (e.method == identification.chosen || !e.usable) continue;
     for (const Parameter& p : e.parameters) out.other_methods.push_back({std::string(to_string(e.method)), p});
   }
+  if (!identification.structure_doubts.empty())
+    for (const Parameter& p : out.parameters)
+      out.fit[p.name + ".structure_doubt"] = doubt_of(identification.structure_doubts, p.name);
   for (const estimation::PredictedQuantity& q : identification.fit.quantities) {
     out.fit[q.name + ".r2"] = q.fit.r2;
     out.fit[q.name + ".rmse"] = q.fit.rmse;

@@ -78,6 +78,7 @@ struct VehicleIdentification {
   VehicleMethod chosen = VehicleMethod::kNone;                  ///< its method
   DriveStructure structure = DriveStructure::kBicycle;          ///< of the model of output and filter error
   std::vector<TriedStructure> tried_structures;                 ///< the simplest first
+  std::vector<StructureDoubt> structure_doubts;                 ///< others that are left open; in the intervals
   std::string structure_reason;                                 ///< why this one; empty where the study fixes it
   estimation::GroupVerdict verdict = estimation::GroupVerdict::kRejected;
   std::string reason;                        ///< one sentence

@@ -10,6 +10,7 @@
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/vehicle/identification/drive_evidence.hpp"
 #include "veridyn/vehicle/identification/drive_regression.hpp"
+#include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/vehicle_plausibility.hpp"
 
 namespace veridyn::vehicle {
@@ -61,11 +62,11 @@ ResidualFinding check_residual(const estimation::PredictedQuantity& q, double se
   } else {
     row.text = fmt::format(
         "the residual of {} is {:.2g} times what sensors and noisy steering leave (rms {:.3g} {} against {:.3g}, "
-        "autocorrelation at one sample {:.2f}): something that moves this vehicle is not in the bicycle model",
+        "autocorrelation at one sample {:.2f}): something that moves this vehicle is not in the model",
         q.name, times, q.fit.rmse, q.unit, sigma, q.lag1);
     row.advice =
-        "if the body rolls: record roll or give signals.roll_gradient, and a lower signals.pass_band; the values still "
-        "predict what the hold-out says";
+        "where identify.structure fixes the model, leave it to the data; if the body rolls, record roll or give "
+        "signals.roll_gradient; the values still predict what the hold-out says";
   }
   return {std::move(row), std::max(0.0, 1.0 - q.fit.r2) * beyond};
 }
@@ -231,6 +232,8 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   for (const auto& check : {agreement.consistency, agreement.methods})
     if (check) out.checks.push_back(*check);
   if (findings.parts) out.checks.push_back(parts_row(*findings.parts, problem.options.contradiction_level));
+  if (std::optional<Evidence> row = doubt_row(findings.structure_doubts, findings.chosen))
+    out.checks.push_back(std::move(*row));
   for (Evidence& row : plausibility(findings.chosen.parameters, problem.start)) out.checks.push_back(std::move(row));
   for (Evidence& row : bound_rows(findings.chosen.parameters)) out.checks.push_back(std::move(row));
   out.checks.push_back(check_prediction(there, problem.options.min_holdout_r2));

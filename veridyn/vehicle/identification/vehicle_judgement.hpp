@@ -19,6 +19,7 @@ struct VehicleFindings {
   const DriveValidation& by_noise;    ///< see with_noisier_inputs
   std::optional<PartsAgreement> parts = {};
   std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
+  std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
 };
 
 /// The verdict on an identified vehicle and what it rests on.

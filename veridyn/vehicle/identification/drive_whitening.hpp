@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace veridyn::vehicle {
+
+/// A linear filter that whitens the residual of a drive: of an output's residual e and the filter's state s
+///
+///     e_white = e - output s,     s_next = transition s + gain e_white     (transition before the correction)
+///
+/// The innovations of a steady Kalman filter about driving straight ahead, by speed, on the straight line between.
+struct DriveWhitening {
+  struct Filter {
+    Eigen::MatrixXd transition, gain, output;
+  };
+  std::vector<double> speed;  ///< [m/s], ascending; empty: no filter
+  std::vector<Filter> filter;
+  [[nodiscard]] bool empty() const { return speed.empty(); }
+  [[nodiscard]] Filter at(double u) const;
+  /// The same into `out`, without allocating where that has the sizes already.
+  void at(double u, Filter& out) const;
+};
+
+/// A drive about going straight ahead at one speed: x' = A x + B delta, y = C x + D delta.
+struct LinearDrive {
+  Eigen::MatrixXd A, C;
+  Eigen::VectorXd B, D;
+};
+
+/// White noise of the recorded steering of which a share of the band is left, over a step of the grid.
+struct SteeringNoise {
+  double sigma = 0.0;       ///< of the recorded steering [rad]
+  double band_share = 0.0;  ///< of the frequencies up to half of the rate; 0: nothing is left of it
+  double step = 0.01;       ///< [s]
+};
+
+/// By which noise of the steering and of the sensors comes to the outputs: x_next = F x + G w, y = C x + e with white w
+/// of variance one and covariance R of e. The noise of the steering that is left is white noise through two poles of
+/// its bandwidth (Butterworth), whose states follow those of the vehicle.
+struct DriveNoise {
+  Eigen::MatrixXd F, C, R;
+  Eigen::VectorXd G;
+};
+/// `output_sigma`: of each output's own white noise.
+[[nodiscard]] DriveNoise drive_noise(const LinearDrive& drive, const SteeringNoise& steering,
+                                     const Eigen::VectorXd& output_sigma);
+
+/// The steady Kalman predictor of such outputs.
+[[nodiscard]] DriveWhitening::Filter whitening_filter(const DriveNoise& noise);
+
+/// Standard deviation of each output.
+[[nodiscard]] Eigen::VectorXd output_deviation(const DriveNoise& noise);
+
+}  // namespace veridyn::vehicle
