@@ -83,6 +83,11 @@ TEST(Bootstrapped, IntervalsHoldTheTruthAboutNinetyFiveTimesInAHundred) {
   EXPECT_LE(held, 199);
 }
 
+TEST(BlockStatistics, OfNoSignalsHaveNoFigures) {
+  const BlockStatistics::Figures f = BlockStatistics().figures();
+  for (const double figure : {f.rmse, f.pearson, f.lag, f.at_lag, f.above}) EXPECT_TRUE(std::isnan(figure));
+}
+
 TEST(Bootstrapped, SaysNoIntervalOfAFewBlocks) {
   const Signals s = signals(1000, 0, 0.5, 1.0, 1);
   const BlockStatistics blocks(s.x, s.y, 0.02, 1.0);

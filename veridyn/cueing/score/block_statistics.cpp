@@ -59,6 +59,7 @@ double BlockStatistics::correlation(const Sums& s) {
 BlockStatistics::Figures BlockStatistics::figures() const { return figures(std::vector<double>(blocks_, 1.0)); }
 
 BlockStatistics::Figures BlockStatistics::figures(std::span<const double> weights) const {
+  if (blocks_ == 0) return {.rmse = kNaN, .pearson = kNaN, .lag = kNaN, .at_lag = kNaN, .above = kNaN};
   double squares = 0.0, above = 0.0, samples = 0.0;
   for (std::size_t b = 0; b < blocks_; ++b) {
     squares += weights[b] * squares_[b];

@@ -20,7 +20,7 @@ class BlockStatistics {
   static constexpr double kFirstLag = -0.5, kLastLag = 3.0;  ///< that are tried [s]
   static constexpr std::size_t kFewestBlocks = 4;            ///< for an interval
 
-  /// Of no signals: no blocks.
+  /// Of no signals: no blocks, and figures that are NaN.
   BlockStatistics() = default;
   /// @param x what is to be rendered @param y what was @param step of the grid [s]
   /// @param noticed a deviation above it is counted
