@@ -51,11 +51,13 @@ Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   }
   const BicycleCharacteristics<double>& c = run.characteristics;
   const double K = c.understeer_gradient;
-  v.lines.push_back(std::isfinite(c.critical_speed)
-                        ? fmt::format("Oversteering: {:.3g} deg/g; unstable above {:.4g} m/s.", K * kGravity / kDegree,
-                                      c.critical_speed)
-                        : fmt::format("Understeering: {:.3g} deg/g; characteristic speed {:.4g} m/s.",
-                                      K * kGravity / kDegree, c.characteristic_speed));
+  const double per_g = K * kGravity / kDegree;
+  v.lines.push_back(
+      std::isfinite(c.critical_speed)
+          ? fmt::format("Oversteering: {:.3g} deg/g; unstable above {:.4g} m/s.", per_g, c.critical_speed)
+      : std::isfinite(c.characteristic_speed)
+          ? fmt::format("Understeering: {:.3g} deg/g; characteristic speed {:.4g} m/s.", per_g, c.characteristic_speed)
+          : std::string("Neutral steering: neither a characteristic nor a critical speed."));
   if (!study.vehicle.assumed.empty())
     v.lines.push_back(
         fmt::format("{} numbers that this model does not need were assumed.", study.vehicle.assumed.size()));

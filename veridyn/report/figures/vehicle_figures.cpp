@@ -151,6 +151,9 @@ TimeSeries tyre_figure(std::span<const ShownDrive> drives) {
 
 TimeSeries ride_figure(std::span<const ShownDrive> drives, std::span<const PerWheel<double>> static_loads) {
   using T = VehicleTrajectory;
+  // A bicycle's trajectory has normal forces too, those at rest.
+  if (std::none_of(drives.begin(), drives.end(), [](const ShownDrive& d) { return !d.trajectory->heave.empty(); }))
+    return {};
   Panels panels(drives);
   panels.add("roll", "deg", &T::roll, 1.0 / kDegree);
   panels.add("pitch", "deg", &T::pitch, 1.0 / kDegree);

@@ -1,0 +1,120 @@
+#include "veridyn/report/parts/aircraft_sensors.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/report/shown.hpp"
+#include "veridyn/core/constants.hpp"
+
+namespace veridyn::report {
+namespace {
+
+using aircraft::FlightAnalysis;
+using aircraft::FlightStudy;
+using aircraft::Observability;
+using testing::ElementsAre;
+
+std::vector<std::string> table_titles(const Section& section) {
+  std::vector<std::string> titles;
+  for (const Table& table : test::blocks_of<Table>(section.blocks)) titles.push_back(table.title);
+  return titles;
+}
+
+TEST(SensorsSection, LeavesOutWhatThisFlightDoesNotHave) {
+  const Section section = sensors_section({}, {});
+  check({.sections = {section}});
+  EXPECT_THAT(table_titles(section), ElementsAre("Channels", "Innovations", "What the sensors determine"));
+  EXPECT_EQ(test::fact_of(test::blocks_of<FactList>(section.blocks).at(0).facts, "Guard"), "");
+}
+
+TEST(SensorsSection, SaysWhereEachChannelIsFromAndByHowMuchItIsLate) {
+  FlightStudy study;
+  study.mapped.origins.resize(1);
+  study.mapped.origins[0].channel = "airspeed";
+  study.mapped.origins[0].source = "ARSP.Airspeed";
+  study.mapped.origins[0].rate_Hz = 10.0;
+  study.mapped.origins[0].note = "zero taken off";
+  FlightAnalysis analysis;
+  analysis.delays = {{.group = "attitude",
+                      .reference = "gyro",
+                      .delay_s = 0.0204,
+                      .sigma_s = 0.001,
+                      .correlation = 0.98,
+                      .text = "applied"}};
+  const Section section = sensors_section(study, analysis);
+  check({.sections = {section}});
+  const Table channels = test::table_of(section.blocks, "Channels");
+  EXPECT_THAT(test::shown_row(channels, 0), ElementsAre("airspeed", "ARSP.Airspeed", "10.0", "zero taken off"));
+  const Table delays = test::table_of(section.blocks, "Delays");
+  EXPECT_THAT(test::shown_row(delays, 0), ElementsAre("attitude", "gyro", "20.4", "1.0", "0.98", "applied"));
+}
+
+TEST(SensorsSection, ShowsAnglesInDegrees) {
+  FlightAnalysis analysis;
+  aircraft::Reconstruction& rec = analysis.reconstruction;
+  rec.sensors = {{.channel = "alpha",
+                  .unit = "rad",
+                  .sigma = 0.5 * kDegree,
+                  .rate_Hz = 50.0,
+                  .innovations = {.count = 1000, .rejected = 7, .nis = 1.5, .lag1 = 0.1}}};
+  rec.quantities = {{.quantity = "beta",
+                     .unit = "rad",
+                     .prior_sigma = 4.0 * kDegree,
+                     .sigma = 1.0 * kDegree,
+                     .observability = Observability::kWeak,
+                     .statement = "beta is weak"}};
+  const Section section = sensors_section({}, analysis);
+  check({.sections = {section}});
+  const Table innovations = test::table_of(section.blocks, "Innovations");
+  EXPECT_THAT(test::shown_row(innovations, 0), ElementsAre("alpha", "0.500", "deg", "1000", "7", "1.50", "0.10"));
+  const Table quantities = test::table_of(section.blocks, "What the sensors determine");
+  EXPECT_THAT(test::shown_row(quantities, 0),
+              ElementsAre("beta", "1.00", "4.00", "deg", "weakly observable", "beta is weak"));
+  EXPECT_EQ(quantities.rows[0].cells[4].status, Status::kCaution);
+}
+
+TEST(SensorsSection, SaysHowMuchOfASensorsErrorTheFlightDetermines) {
+  FlightAnalysis analysis;
+  aircraft::SensorErrorReport bias, scale;
+  bias.name = "alpha_bias";
+  bias.unit = "rad";
+  bias.value = -1.0 * kDegree;
+  bias.prior_sigma = 2.0 * kDegree;
+  bias.sigma = 0.5 * kDegree;
+  bias.information = 0.9375;
+  bias.correlation = -0.97;
+  bias.correlated_with = "accel_bias_z";
+  bias.observability = Observability::kObservable;
+  scale.name = "pitot_scale";
+  scale.unit = "1";
+  analysis.reconstruction.sensor_errors = {bias, scale};
+  const Section section = sensors_section({}, analysis);
+  check({.sections = {section}});
+  const Table table = test::table_of(section.blocks, "Errors of the sensors and of the model");
+  EXPECT_THAT(test::shown_row(table, 0),
+              ElementsAre("alpha_bias", "−1.00", "0.50", "2.00", "deg", "93.8", "accel_bias_z", "−0.97", "observable"));
+  EXPECT_EQ(test::shown_in(table, table.rows[1], "Unit"), "");
+  EXPECT_EQ(table.rows[1].cells.back().status, Status::kBad);
+}
+
+TEST(SensorsSection, ComparesFiltersOnlyWhereThereAreNumbers) {
+  FlightAnalysis analysis;
+  aircraft::FilterError e;
+  e.quantity = "alpha";
+  e.unit = "rad";
+  e.signal_sd = 2.0 * kDegree;
+  e.model_free.filter_rms = 0.8 * kDegree;
+  e.model_free.smoother_rms = 0.4 * kDegree;
+  e.model_based.filter_rms = 0.6 * kDegree;
+  e.model_based.smoother_rms = 0.2 * kDegree;
+  analysis.reconstruction.comparison = {e};
+  const Section section = sensors_section({}, analysis);
+  check({.sections = {section}});
+  const Table table = test::table_of(section.blocks, "Model-free against model-based filter");
+  // Shares of the variance: (0.4 / 2)^2 and (0.2 / 2)^2. There is no bound.
+  EXPECT_THAT(test::shown_row(table, 0),
+              ElementsAre("alpha", "deg", "0.800", "0.400", "0.600", "0.200", "–", "–", "4.00", "1.00"));
+}
+
+}  // namespace
+}  // namespace veridyn::report
