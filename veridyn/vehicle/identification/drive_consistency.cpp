@@ -139,7 +139,8 @@ std::pair<GridSeries, GridSeries> Relations::by_position() const {
 void Relations::compare_yaw_rate() {
   GridSeries angle;
   std::string against = "the rate of the heading";
-  if (s_[DriveSignal::kYaw].available()) {
+  const bool is_heading = s_[DriveSignal::kYaw].available();
+  if (is_heading) {
     angle = s_[DriveSignal::kYaw].value;
   } else if (const Channel* course = mapped_.recording.find("course"); course != nullptr && course->size() > 1) {
     angle = recording::angle_on_grid(*course, s_.grid);
@@ -150,9 +151,11 @@ void Relations::compare_yaw_rate() {
   }
   if (angle.empty()) return;
   const GridSeries rate = derivative(angle);
-  // A delay or the sideslip's share is in the derivative.
+  // A delay is in the derivative; sideslip, which a course has, in that and the next (its two poles).
+  std::vector<GridSeries> others{derivative(rate)};
+  if (!is_heading) others.push_back(derivative(others.front()));
   add(DriveSuspect::kYawRate, "yaw rate against heading", std::move(against),
-      gain({.reading = yaw_rate_, .truth = rate, .others = {derivative(rate)}}), kLeastYawRate, powers(0, 0, 1, 0, 0),
+      gain({.reading = yaw_rate_, .truth = rate, .others = std::move(others)}), kLeastYawRate, powers(0, 0, 1, 0, 0),
       Tolerance::about(1.0, 0.03, 0.15));
 }
 
