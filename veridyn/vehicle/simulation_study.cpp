@@ -168,7 +168,9 @@ SimulationRun run_simulation_study(const SimulationStudy& study, Progress& progr
     std::visit(
         [&]<typename Tyre>(const AxleTyres<Tyre>& t) {
           const FourWheelModel<double, Tyre> model(p, mounted(t), study.four_wheel);
-          run.vehicle_modes = modes(linearise(model, study.simulation.speed));
+          const LinearFourWheel linear = linearise(model, study.simulation.speed);
+          run.vehicle_modes = modes(linear);
+          run.cornering = steady_cornering(linear, p.wheelbase());
         },
         study.vehicle.tyres);
   }

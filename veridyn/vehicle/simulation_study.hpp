@@ -95,6 +95,7 @@ struct SimulationRun {
   BicycleCharacteristics<double> characteristics;
   std::vector<Mode> modes;                   ///< of the bicycle
   std::vector<FourWheelMode> vehicle_modes;  ///< of the four-wheel model, where it was driven
+  std::optional<SteadyCornering> cornering;  ///< of the same
 };
 
 /// Drives; the study's driver begins again. @throws InputError for a step too long or controls out of range.

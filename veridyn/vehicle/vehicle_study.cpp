@@ -94,10 +94,11 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;
   if (estimate.find("relaxation_length") != nullptr) given.options.structure = DriveStructure::kRelaxation;
   if (estimate.find("mu") != nullptr) {
-    const bool rolls = estimate.find("roll_gradient") != nullptr && estimate.find("C") == nullptr;
-    if (rolls) given.options.structure = DriveStructure::kSaturation;
+    const bool has_shape = estimate.find("C") != nullptr;
+    if (estimate.find("roll_gradient") != nullptr)
+      given.options.structure = has_shape ? DriveStructure::kMagicFormula : DriveStructure::kSaturation;
     if (estimate.find("relaxation_length") == nullptr) given.options.start[DriveUnknown::kRelaxationLength] = 0.0;
-    given.options.tyre = rolls ? DriveTyre::kFiala : DriveTyre::kMagicFormula;
+    given.options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
   }
   return given;
 }

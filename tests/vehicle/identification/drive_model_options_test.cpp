@@ -120,6 +120,9 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
   EXPECT_EQ(freed(DriveStructure::kSaturation),
             "mu roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
   EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, DriveTyre::kFiala);
+  EXPECT_EQ(freed(DriveStructure::kMagicFormula),
+            "mu C E roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+  EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, DriveTyre::kMagicFormula);
 }
 
 // Down the ladder again nothing of the richer structure stays free.

@@ -137,9 +137,11 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
   for (const DriveUnknown u : kRolls)
     options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure) : has_roll(structure);
-  if (structure == DriveStructure::kSaturation && options.tyre == DriveTyre::kLinear) {
-    options.tyre = DriveTyre::kFiala;
+  if (saturates(structure) && options.tyre == DriveTyre::kLinear) {
+    const bool has_shape = structure == DriveStructure::kMagicFormula;
+    options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
     options.free[DriveUnknown::kMu] = true;
+    options.free[DriveUnknown::kShape] = options.free[DriveUnknown::kCurvature] = has_shape;
     // Dry road and gravel: 0.6 to 1.2.
     if (!std::isfinite(options.prior[DriveUnknown::kMu])) options.prior[DriveUnknown::kMu] = 0.3;
   }

@@ -384,6 +384,7 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
       case DriveStructure::kRelaxation:
         return work(model, std::integral_constant<int, 6>());
       case DriveStructure::kSaturation:
+      case DriveStructure::kMagicFormula:
         if (sampled_value(model.relaxation_length) > 0.0) return work(model, std::integral_constant<int, 6>());
         return work(model, std::integral_constant<int, 4>());
       case DriveStructure::kBicycle:
@@ -483,11 +484,6 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
     out.filter.push_back(whitening_filter(noise_at(out.speed.back(), theta)));
   }
   return out;
-}
-
-Eigen::VectorXd DriveParametricModel::expected_residual(const Eigen::VectorXd& theta) const {
-  const SpeedRange range = speeds();
-  return output_deviation(noise_at(0.5 * (range.slowest + range.fastest), theta));
 }
 
 DriveParametricModel::SpeedRange DriveParametricModel::speeds() const {

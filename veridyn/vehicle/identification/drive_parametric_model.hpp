@@ -70,9 +70,6 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// it is of the signals, which acts on the outputs of its sample too, and white noise of the outputs. Empty where
   /// outputs are delayed, smoothed, or the steering has no noise.
   [[nodiscard]] DriveWhitening whitening(const Eigen::VectorXd& theta) const;
-  /// Standard deviation of each output's residual that the sensors leave at `theta` and the mean speed: their own noise
-  /// and what the steering's error moves.
-  [[nodiscard]] Eigen::VectorXd expected_residual(const Eigen::VectorXd& theta) const;
   /// The model whose outputs, and what is compared with them, go through a filter.
   [[nodiscard]] DriveParametricModel weighed(DriveWhitening whitening) const;
 

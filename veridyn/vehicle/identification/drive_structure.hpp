@@ -19,13 +19,19 @@ enum class DriveStructure : std::size_t {
   kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll has to be told from
   kRoll,         ///< and the body's roll on its springs
   kRelaxation,   ///< and tyres whose slip follows after a relaxation length
-  kSaturation    ///< and tyres whose stiffness falls with their force (Fiala); relaxation length 0: slip at once
+  kSaturation,   ///< and tyres whose stiffness falls with their force (Fiala); relaxation length 0: slip at once
+  kMagicFormula  ///< the same with the reduced Magic Formula, whose stiffness falls later and more
 };
 /// How many there are.
-inline constexpr std::size_t kDriveStructures = 5;
+inline constexpr std::size_t kDriveStructures = 6;
 /// Their names in studies and results, in the order of the enum.
 inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> kDriveStructureNames{
-    "bicycle", "bicycle, accel_y scaled", "roll", "roll and relaxation", "roll, relaxation and saturation"};
+    "bicycle",
+    "bicycle, accel_y scaled",
+    "roll",
+    "roll and relaxation",
+    "roll, relaxation and saturation",
+    "roll, relaxation and Magic Formula"};
 /// As study files and estimates name it.
 [[nodiscard]] constexpr std::string_view to_string(DriveStructure structure) { return kDriveStructureNames[structure]; }
 
@@ -51,6 +57,9 @@ struct TriedStructure {
   double holdout_rmse = kNaN;    ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
 };
+
+/// Whether its tyres have a friction limit.
+[[nodiscard]] constexpr bool saturates(DriveStructure structure) { return structure >= DriveStructure::kSaturation; }
 
 /// A structure that the data neither ask for nor exclude, beside the one that is taken.
 struct StructureDoubt {

@@ -6,7 +6,6 @@
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/numerics/linear_algebra/matrix_exponential.hpp"
-#include "veridyn/numerics/linear_systems/lyapunov.hpp"
 #include "veridyn/numerics/linear_systems/riccati.hpp"
 
 namespace veridyn::vehicle {
@@ -56,15 +55,6 @@ DriveWhitening::Filter whitening_filter(const DriveNoise& noise) {
   const auto regulator = numerics::discrete_linear_quadratic(noise.F.transpose(), noise.C.transpose(),
                                                              noise.G * noise.G.transpose(), noise.R);
   return {noise.F, regulator.K.transpose(), noise.C};
-}
-
-Eigen::VectorXd output_deviation(const DriveNoise& noise) {
-  Eigen::MatrixXd covariance = noise.R;
-  if (noise.G.squaredNorm() > 0.0) {
-    const Eigen::MatrixXd P = numerics::discrete_lyapunov(noise.F, noise.G * noise.G.transpose()).X;
-    covariance += noise.C * P * noise.C.transpose();
-  }
-  return covariance.diagonal().cwiseSqrt();
 }
 
 }  // namespace veridyn::vehicle

@@ -50,7 +50,4 @@ struct DriveNoise {
 /// The steady Kalman predictor of such outputs.
 [[nodiscard]] DriveWhitening::Filter whitening_filter(const DriveNoise& noise);
 
-/// Standard deviation of each output.
-[[nodiscard]] Eigen::VectorXd output_deviation(const DriveNoise& noise);
-
 }  // namespace veridyn::vehicle

@@ -59,7 +59,7 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   std::vector<DriveUnknown> added{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
                                   DriveUnknown::kRollDamping};
   const DriveStructure structure = problem.options.model.structure;
-  added.push_back(structure == DriveStructure::kSaturation ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength);
+  added.push_back(saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength);
   out.at_bound = std::ranges::any_of(added, [&](DriveUnknown u) {
     return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
   });
@@ -79,19 +79,12 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   return out;
 }
 
-/// Whether an output error leaves no more than the sensors do, or than rounding of a model does.
-bool is_explained(const VehicleProblem& problem, const OutputErrorResult& fit) {
-  if (!fit.raw.usable()) return false;
+/// Whether a fit leaves no more than rounding does: there is nothing to tell structures by.
+bool is_exact(const OutputErrorResult& fit) {
   constexpr double kRounding = 1e-3;  // of an output's standard deviation
-  const OutputErrorProblem given = output_error_problem(problem, nullptr);
-  const Eigen::VectorXd expected = given.model.expected_residual(fit.raw.theta);
-  for (std::size_t i = 0; i < fit.raw.outputs.size(); ++i) {
-    const estimation::OutputFit& output = fit.raw.outputs[i];
-    const double sigma = expected(signed_index(i)), left = output.fit.rmse;
-    const double rounding = left * left / std::max(1e-300, 1.0 - output.fit.r2) * kRounding * kRounding;
-    if (!(left * left <= kExplained * sigma * sigma + rounding)) return false;
-  }
-  return true;
+  return fit.raw.usable() && std::ranges::all_of(fit.raw.outputs, [](const estimation::OutputFit& output) {
+           return 1.0 - output.fit.r2 <= kRounding * kRounding;
+         });
 }
 
 VehicleProblem with_options(const VehicleProblem& problem, const VehicleIdentifyOptions& options) {
@@ -114,7 +107,7 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
 VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes) {
   options.model = with_structure(options.model, structure);
-  if (structure != DriveStructure::kSaturation || relaxes) return options;
+  if (!saturates(structure) || relaxes) return options;
   options.model.free[DriveUnknown::kRelaxationLength] = false;
   options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
   return options;
@@ -132,6 +125,7 @@ class Climb {
     } else {
       climb_to_roll();
       if (takes_roll()) climb_beyond_roll();
+      if (!progress_.interrupted()) doubt();
     }
     finish();
     return std::move(ladder_);
@@ -162,14 +156,13 @@ class Climb {
     if (fits_.back().raw.usable()) search_start_ = fits_.back().raw.theta;
   }
 
-  /// As long as one leaves more than the sensors do.
   void climb_to_roll() {
     for (const DriveStructure structure :
          {DriveStructure::kBicycle, DriveStructure::kScaledAccel, DriveStructure::kRoll}) {
       if (progress_.interrupted()) return;
       if (structure == DriveStructure::kScaledAccel && !problem_.signals[DriveSignal::kAccelY].available()) continue;
       fit(structure, false);
-      if (contradicts() || is_explained(with_options(problem_, options_.back()), fits_.back())) return;
+      if (contradicts() || is_exact(fits_.back())) return;
     }
   }
 
@@ -182,16 +175,31 @@ class Climb {
     weighing_ = fits_[roll].whitening;
     const double unweighed = ladder_.tried[roll].negative_log_likelihood;
     const double weighed = fits_[roll].raw.negative_log_likelihood;
-    for (const DriveStructure structure : {DriveStructure::kRelaxation, DriveStructure::kSaturation}) {
+    bool relaxes = false;
+    for (const DriveStructure structure :
+         {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
-      search_start_ = fits_[choose_structure(ladder_.tried)].raw.theta;
-      fit(structure, taken().structure == DriveStructure::kRelaxation);
+      // A study that names its tyre has it in all structures.
+      if (structure == DriveStructure::kMagicFormula && problem_.options.model.tyre != DriveTyre::kLinear) continue;
+      if (saturates(structure)) search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
+      fit(structure, relaxes);
       ladder_.tried.back().negative_log_likelihood += unweighed - weighed;
+      relaxes = relaxes || taken().structure == DriveStructure::kRelaxation;
     }
     ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
+  }
+
+  /// What others that compare with the chosen one leave in doubt.
+  void doubt() {
     const std::size_t chosen = choose_structure(ladder_.tried);
-    for (std::size_t other = roll; other < fits_.size(); ++other) {
-      if (other == chosen) continue;
+    const auto compares = [&](std::size_t other) {
+      const auto weighed = [](const TriedStructure& t) { return has_roll(t.structure); };
+      // The roll's own fit is compared with simpler ones before it is weighed.
+      return other != chosen &&
+             (weighed(ladder_.tried[chosen]) == weighed(ladder_.tried[other]) || !weighed(ladder_.tried[chosen]));
+    };
+    for (std::size_t other = 0; other < fits_.size(); ++other) {
+      if (!compares(other)) continue;
       const double probability = probability_against(ladder_.tried[other], ladder_.tried[chosen]);
       if (probability > kExcluded)
         ladder_.doubts.push_back(structure_doubt(ladder_.tried[other].structure, probability, fits_[other].estimate,
@@ -232,7 +240,7 @@ std::string reason_of(const StructureLadder& ladder, bool contradicts) {
     reason += ": none richer makes the drive likelier";
   } else {
     reason += contradicts ? ": the recording contradicts itself, and nothing richer was tried on it"
-                          : ": it leaves no more than the sensors do";
+                          : ": it leaves no more than rounding does";
   }
   return reason;
 }

@@ -24,15 +24,12 @@ struct StructureLadder {
   [[nodiscard]] bool empty() const { return tried.empty(); }
 };
 
-/// The largest residual over what sensors and the steering's error leave (normalised chi-square of an output) at which
-/// nothing richer is looked for.
-inline constexpr double kExplained = 1.25;
-
-/// Fits the structure that the study fixes, or all of them, each from where the one before it ended: until one without
-/// roll leaves no more residual than the sensors do. Relaxation and saturation are tried wherever roll is taken, since
-/// what they move stiffnesses by hides in the noise of a gentle drive; there all residuals are weighed by the filter of
-/// the roll's fit, and one that is not taken leaves a doubt, by its probability. A recording that contradicts itself (a
-/// failed row) says nothing of the structure: only the bicycle is fitted to it.
+/// Fits the structure that the study fixes, or all of them, each from where the one before it ended. Up to roll all are
+/// tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth too low leaves no more than
+/// the sensors do. What tyres do beside (relaxation, saturation) is tried where roll is taken, with all residuals
+/// weighed by the filter of the roll's fit. One that is not taken leaves a doubt, by its probability. A recording that
+/// contradicts itself (a failed row) says nothing of the structure: only the bicycle is fitted to it; nor is anything
+/// richer fitted to rounding errors.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 

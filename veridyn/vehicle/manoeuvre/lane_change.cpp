@@ -27,9 +27,7 @@ std::array<Corner, 4> corners_of(const VehicleTrajectory& t, std::size_t k, cons
   return {place(body.ahead, half), place(body.ahead, -half), place(-body.behind, -half), place(-body.behind, half)};
 }
 
-}  // namespace
-
-DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
+DoubleLaneChange empty_course(double vehicle_width, double scale) {
   if (!(scale > 0.0 && std::isfinite(scale)))
     throw InputError("double lane change", fmt::format("scale is {:g}; must be > 0", scale));
   if (!(vehicle_width > 0.0 && std::isfinite(vehicle_width))) {
@@ -38,6 +36,13 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
   DoubleLaneChange course;
   course.vehicle_width = vehicle_width;
   course.scale = scale;
+  return course;
+}
+
+}  // namespace
+
+DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
+  DoubleLaneChange course = empty_course(vehicle_width, scale);
   const double w = vehicle_width / scale;
   const std::array<double, 3> width{1.1 * w + 0.25, 1.2 * w + 0.25, 1.3 * w + 0.25};
   const double right = -0.5 * width[0];
@@ -55,6 +60,29 @@ DoubleLaneChange iso_double_lane_change(double vehicle_width, double scale) {
       .append_line(25.0 * scale - 2.0 * early)
       .append_lane_change(25.0 * scale + 2.0 * early, middle(2) - middle(1))
       .append_line(30.0 * scale - early + 60.0 * scale);
+  return course;
+}
+
+DoubleLaneChange iso_obstacle_avoidance(double vehicle_width, double scale) {
+  DoubleLaneChange course = empty_course(vehicle_width, scale);
+  course.standard = "ISO 3888-2";
+  const double w = vehicle_width / scale;
+  const std::array<double, 3> width{1.1 * w + 0.25, w + 1.0, std::min(1.3 * w + 0.25, 3.0)};
+  const double right = -0.5 * width[0], second = right + width[0] + 1.0;
+  const double first = kApproach;
+  course.lanes = {{{first, first + 12.0, right, right + width[0]},
+                   {first + 25.5, first + 36.5, second, second + width[1]},
+                   {first + 49.0, first + 61.0, right, right + width[2]}}};
+  for (Lane& lane : course.lanes) lane = {scale * lane.begin, scale * lane.end, scale * lane.right, scale * lane.left};
+  // In the second lane half a metre is left on both sides of the body, of which the path leaves less on the right; the
+  // longer and smaller shifts are gentler.
+  const double aside = scale * (second + 0.5 * w + 0.3), back = 0.5 * (course.lanes[2].right + course.lanes[2].left);
+  const double early = 3.0 * scale;
+  course.path.append_line((kApproach + 12.0) * scale - early)
+      .append_lane_change(13.5 * scale + 2.0 * early, aside)
+      .append_line(11.0 * scale - 2.0 * early)
+      .append_lane_change(12.5 * scale + 2.0 * early, back - aside)
+      .append_line(12.0 * scale - early + 60.0 * scale);
   return course;
 }
 

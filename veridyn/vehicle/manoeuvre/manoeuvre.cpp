@@ -11,6 +11,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/random.hpp"
 #include "veridyn/vehicle/manoeuvre/driver_model.hpp"
+#include "veridyn/vehicle/manoeuvre/turn_braking_driver.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -125,6 +126,14 @@ std::string_view to_string(ManoeuvreKind kind) {
       return "steady-state circle";
     case ManoeuvreKind::kDoubleLaneChange:
       return "double lane change";
+    case ManoeuvreKind::kObstacleAvoidance:
+      return "obstacle avoidance";
+    case ManoeuvreKind::kSlalom:
+      return "slalom";
+    case ManoeuvreKind::kRampSteer:
+      return "ramp steer";
+    case ManoeuvreKind::kBrakingInATurn:
+      return "braking in a turn";
     case ManoeuvreKind::kFollowPath:
       return "follow path";
     case ManoeuvreKind::kSignal:
@@ -260,6 +269,14 @@ Manoeuvre slowly_increasing_steer(double amplitude, double rate, double start) {
   return m;
 }
 
+Manoeuvre ramp_steer(double amplitude, double rate, double start, double hold) {
+  require(hold >= 0.0 && std::isfinite(hold), "hold", hold, "s", ">= 0");
+  Manoeuvre m = slowly_increasing_steer(amplitude, rate, start);
+  m.kind = ManoeuvreKind::kRampSteer;
+  m.default_duration += hold;
+  return m;
+}
+
 Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque, PiecewiseLinear brake_torque) {
   if (steer.empty()) throw InputError("manoeuvre", "the steering signal has no samples");
   double peak = 0.0;
@@ -306,15 +323,57 @@ Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Pat
   return m;
 }
 
+namespace {
+
+double body_width(const VehicleParameters<double>& p, double given) {
+  return given == 0.0 ? 7.0 / 6.0 * std::max(p.track_f, p.track_r) : given;
+}
+
+/// A path between cones for a body of this width.
+Manoeuvre between_cones(ManoeuvreKind kind, const ManoeuvreContext& context, const Path& path, double width,
+                        const PreviewDriverOptions& options) {
+  Manoeuvre m = follow_path(context, std::make_shared<const Path>(path), options);
+  m.kind = kind;
+  m.body = {.ahead = context.parameters.a, .behind = context.parameters.b, .width = width};
+  return m;
+}
+
+}  // namespace
+
 Manoeuvre double_lane_change(const ManoeuvreContext& context, double vehicle_width, double course_scale,
                              const PreviewDriverOptions& options) {
-  const VehicleParameters<double>& p = context.parameters;
-  if (vehicle_width == 0.0) vehicle_width = 7.0 / 6.0 * std::max(p.track_f, p.track_r);
-  DoubleLaneChange course = iso_double_lane_change(vehicle_width, course_scale);
-  Manoeuvre m = follow_path(context, std::make_shared<const Path>(course.path), options);
-  m.kind = ManoeuvreKind::kDoubleLaneChange;
-  m.body = {.ahead = p.a, .behind = p.b, .width = vehicle_width};
+  DoubleLaneChange course = iso_double_lane_change(body_width(context.parameters, vehicle_width), course_scale);
+  Manoeuvre m = between_cones(ManoeuvreKind::kDoubleLaneChange, context, course.path, course.vehicle_width, options);
   m.course = std::move(course);
+  return m;
+}
+
+Manoeuvre obstacle_avoidance(const ManoeuvreContext& context, double vehicle_width, double course_scale,
+                             const PreviewDriverOptions& options) {
+  DoubleLaneChange course = iso_obstacle_avoidance(body_width(context.parameters, vehicle_width), course_scale);
+  Manoeuvre m = between_cones(ManoeuvreKind::kObstacleAvoidance, context, course.path, course.vehicle_width, options);
+  m.course = std::move(course);
+  return m;
+}
+
+Manoeuvre slalom(const ManoeuvreContext& context, Slalom course, const PreviewDriverOptions& options) {
+  Manoeuvre m = between_cones(ManoeuvreKind::kSlalom, context, course.path, course.vehicle_width, options);
+  m.slalom = std::move(course);
+  return m;
+}
+
+Manoeuvre braking_in_a_turn(const ManoeuvreContext& context, double radius, double deceleration, double brake_time,
+                            const PreviewDriverOptions& options) {
+  require_positive(deceleration, "deceleration", "m/s^2");
+  require_positive(brake_time, "brake_time", "s");
+  Manoeuvre m = constant_radius_circle(context, radius, context.speed, brake_time, options);
+  m.kind = ManoeuvreKind::kBrakingInATurn;
+  m.driver = std::make_unique<TurnBrakingDriver>(
+      std::move(m.driver),
+      TurnBrakingOptions{.brake_time = brake_time,
+                         .brake_torque = context.parameters.mass * deceleration * context.wheel_radius});
+  m.brake_time = brake_time;
+  m.default_duration = brake_time + context.speed / deceleration;
   return m;
 }
 

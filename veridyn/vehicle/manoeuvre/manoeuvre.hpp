@@ -13,6 +13,7 @@
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
 #include "veridyn/vehicle/manoeuvre/path.hpp"
 #include "veridyn/vehicle/manoeuvre/piecewise_linear.hpp"
+#include "veridyn/vehicle/manoeuvre/slalom.hpp"
 #include "veridyn/vehicle/model/driver.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 
@@ -30,6 +31,10 @@ enum class ManoeuvreKind {
   kFishhook,           ///< ramp to the amplitude, dwell, ramp to the opposite one, held (NHTSA fixed timing)
   kSteadyStateCircle,  ///< ISO 4138: constant speed and slowly growing steer, or constant radius and growing speed
   kDoubleLaneChange,   ///< ISO 3888-1, driven by a preview driver
+  kObstacleAvoidance,  ///< ISO 3888-2, driven by a preview driver
+  kSlalom,             ///< cones in a line, driven by a preview driver: our own
+  kRampSteer,          ///< steer growing at a rate at constant speed, to the limit and held: our own
+  kBrakingInATurn,     ///< ISO 7975: a circle at constant speed, then brakes with the steering held
   kFollowPath,         ///< a path from a file or a circle, driven by a preview driver
   kSignal              ///< a recorded or written steering signal
 };
@@ -48,6 +53,8 @@ struct Manoeuvre {
   double end_frequency = 0.0;      ///< the highest [Hz]
   double radius = 0.0;             ///< of a constant-radius circle [m]
   std::optional<DoubleLaneChange> course{};
+  std::optional<Slalom> slalom{};
+  double brake_time = 0.0;  ///< when braking begins [s]; 0: never
   BodyOutline body{};
   std::shared_ptr<const Path> path{};  ///< which is followed: from the origin along x, where simulations start
   /// Speed over time that the manoeuvre needs to vary; empty: constant.
@@ -82,6 +89,8 @@ struct Manoeuvre {
 [[nodiscard]] Manoeuvre fishhook(double amplitude, double rate, double start = 1.0, double dwell = 0.25);
 /// Steer growing at `rate` [rad/s] to `amplitude`.
 [[nodiscard]] Manoeuvre slowly_increasing_steer(double amplitude, double rate, double start = 1.0);
+/// Steer growing at `rate` [rad/s] to `amplitude`, held for `hold` [s]: from straight running to the limit in seconds.
+[[nodiscard]] Manoeuvre ramp_steer(double amplitude, double rate, double start = 1.0, double hold = 2.0);
 /// Steer and torques [N m] over time, straight between samples.
 [[nodiscard]] Manoeuvre steering_signal(PiecewiseLinear steer, PiecewiseLinear drive_torque = {},
                                         PiecewiseLinear brake_torque = {});
@@ -113,6 +122,17 @@ struct ManoeuvreContext {
 /// `vehicle_width` 0: 7/6 of the track.
 [[nodiscard]] Manoeuvre double_lane_change(const ManoeuvreContext& context, double vehicle_width = 0.0,
                                            double course_scale = 1.0, const PreviewDriverOptions& options = {});
+/// `vehicle_width` 0: 7/6 of the track.
+[[nodiscard]] Manoeuvre obstacle_avoidance(const ManoeuvreContext& context, double vehicle_width = 0.0,
+                                           double course_scale = 1.0, const PreviewDriverOptions& options = {});
+/// At the speed of the context along the path of a `slalom_course`.
+[[nodiscard]] Manoeuvre slalom(const ManoeuvreContext& context, Slalom course,
+                               const PreviewDriverOptions& options = {});
+/// On a circle of `radius` [m] (negative: to the right) at the speed of the context, kept by drive torque; from
+/// `brake_time` [s] on brakes of `deceleration` [m/s^2] (as torque at the wheels, mass times radius) with the steering
+/// held. @throws InputError for numbers that are not > 0 (radius: 0).
+[[nodiscard]] Manoeuvre braking_in_a_turn(const ManoeuvreContext& context, double radius, double deceleration,
+                                          double brake_time = 15.0, const PreviewDriverOptions& options = {});
 /// From the beginning of the path, moved to the origin along x; ends after its length at the speed of the context.
 [[nodiscard]] Manoeuvre follow_path(const ManoeuvreContext& context, std::shared_ptr<const Path> path,
                                     const PreviewDriverOptions& options = {});
@@ -124,7 +144,8 @@ struct ManoeuvreContext {
 /// Reads `[drive]`; keys (with defaults):
 ///
 /// - `manoeuvre`: "reference" (default), "step steer", "sine", "continuous sine", "sine with dwell", "sweep", "random
-///   steer", "fishhook", "steady-state circle", "double lane change", "follow path", "signal";
+///   steer", "fishhook", "steady-state circle", "double lane change", "obstacle avoidance", "slalom", "ramp steer",
+///   "braking in a turn", "follow path", "signal";
 /// - `amplitude` [rad] (`"5 deg"`): steer at the road wheels; 2 deg by default, less than 90 deg. `start` [s] (1).
 /// - step steer: `rise_time` (0.1 s). sine, sine with dwell: `frequency` [Hz] (0.5; 0.7), `periods` (3), `dwell` (0.5
 /// s).
@@ -132,11 +153,16 @@ struct ManoeuvreContext {
 /// - fishhook: `rate` [rad/s] (0.75: 720 deg/s at the hand wheel, ratio 17), `dwell` (0.25 s).
 /// - steady-state circle: `method` = "constant speed" (default; `rate` [rad/s], 0.2 deg/s) or "constant radius"
 ///   (`radius` [m], `end_speed` [m/s], `length` [s]).
-/// - double lane change: `vehicle_width` [m] (7/6 of the track), `course_scale` (1), `front_overhang`, `rear_overhang`
+/// - ramp steer: `amplitude` (5 deg), `rate` [rad/s] (1 deg/s), `hold` (2 s).
+/// - slalom: `cones` (8), `spacing` (18 m), `clearance` (0.5 m), `vehicle_width` and the overhangs as below.
+/// - braking in a turn, with `longitudinal = true`: `radius` (100 m; negative: to the right), `deceleration` (4 m/s^2),
+///   `brake_time` (15 s).
+/// - double lane change, obstacle avoidance: `vehicle_width` [m] (7/6 of the track), `course_scale` (1),
+/// `front_overhang`, `rear_overhang`
 ///   [m] (0). follow path: `file`, or `radius` and `direction` = "left" | "right" of a circle.
 /// - all, with `longitudinal = true`: `hold_speed` (false) or `target_speed` [m/s]: drive and brakes keep it;
 ///   `drive_torque`, `brake_torque` [N m]: a number, or as many as there are in `torque_time` [s], straight between.
-/// - drivers of both: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
+/// - drivers of paths: `preview_time`, `delay`, `lag` [s], `max_steer` [rad], `max_steer_rate` [rad/s].
 /// - signal: `file` (CSV with time[s], steer[rad], and optionally drive_torque[N m], brake_torque[N m]) or arrays
 ///   `time` and `steer`.
 ///

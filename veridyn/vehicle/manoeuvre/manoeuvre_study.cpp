@@ -103,9 +103,23 @@ Manoeuvre read_path_manoeuvre(const StudyTable& drive, const ManoeuvreContext& c
   return follow_path(context, std::make_shared<const Path>(Path::circle(radius, side)), read_driver(drive));
 }
 
-Manoeuvre read_lane_change(const StudyTable& drive, const ManoeuvreContext& context) {
+/// A manoeuvre between cones, with the body's overhangs.
+Manoeuvre read_cones(const std::string& name, const StudyTable& drive, const ManoeuvreContext& context) {
   const double width = drive.has("vehicle_width") ? drive.positive("vehicle_width", "m") : 0.0;
-  Manoeuvre m = double_lane_change(context, width, drive.positive_or("course_scale", "1", 1.0), read_driver(drive));
+  const auto course = [&] {
+    if (name == "slalom") {
+      const VehicleParameters<double>& p = context.parameters;
+      return slalom(context,
+                    slalom_course(static_cast<int>(drive.integer_or("cones", 8)),
+                                  drive.positive_or("spacing", "m", 18.0), drive.number_or("clearance", "m", 0.5),
+                                  width == 0.0 ? 7.0 / 6.0 * std::max(p.track_f, p.track_r) : width),
+                    read_driver(drive));
+    }
+    const double scale = drive.positive_or("course_scale", "1", 1.0);
+    return name == "double lane change" ? double_lane_change(context, width, scale, read_driver(drive))
+                                        : obstacle_avoidance(context, width, scale, read_driver(drive));
+  };
+  Manoeuvre m = course();
   const auto overhang = [&](const char* key) {
     const double length = drive.number_or(key, "m", 0.0);
     if (!(length >= 0.0)) drive.fail(key, fmt::format("= {:g} must be >= 0", length));
@@ -120,9 +134,16 @@ Manoeuvre read_one(const std::string& name, const StudyTable& drive, const Manoe
                    const Progress& progress) {
   if (name == "reference") return reference_manoeuvre();
   if (name == "signal") return read_signal(drive);
-  if (name == "double lane change") return read_lane_change(drive, context);
+  if (name == "double lane change" || name == "obstacle avoidance" || name == "slalom")
+    return read_cones(name, drive, context);
+  if (name == "braking in a turn") {
+    if (!drive.flag_or("longitudinal", false)) drive.fail("manoeuvre", "brakes, which needs longitudinal = true");
+    return braking_in_a_turn(context, drive.number_or("radius", "m", 100.0),
+                             drive.positive_or("deceleration", "m/s^2", 4.0),
+                             drive.positive_or("brake_time", "s", 15.0), read_driver(drive));
+  }
   if (name == "follow path") return read_path_manoeuvre(drive, context);
-  const double amplitude = drive.number_or("amplitude", "rad", 2.0 * kDegree);
+  const double amplitude = drive.number_or("amplitude", "rad", (name == "ramp steer" ? 5.0 : 2.0) * kDegree);
   const double start = drive.number_or("start", "s", 1.0);
   if (name == "step steer") return step_steer(amplitude, start, drive.positive_or("rise_time", "s", 0.1));
   if (name == "sine") return sine_steer(amplitude, drive.positive_or("frequency", "Hz", 0.5), start, 1);
@@ -133,6 +154,9 @@ Manoeuvre read_one(const std::string& name, const StudyTable& drive, const Manoe
   if (name == "sine with dwell") {
     return sine_with_dwell(amplitude, start, drive.positive_or("frequency", "Hz", 0.7),
                            drive.number_or("dwell", "s", 0.5));
+  }
+  if (name == "ramp steer") {
+    return ramp_steer(amplitude, drive.positive_or("rate", "rad/s", kDegree), start, drive.number_or("hold", "s", 2.0));
   }
   if (name == "fishhook") {
     return fishhook(amplitude, drive.positive_or("rate", "rad/s", 0.75), start, drive.positive_or("dwell", "s", 0.25));
@@ -148,10 +172,22 @@ Manoeuvre read_one(const std::string& name, const StudyTable& drive, const Manoe
 }  // namespace
 
 Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& context, const Progress& progress) {
-  static const std::array<std::string, 12> names{"reference",          "step steer",      "sine",
-                                                 "continuous sine",    "sine with dwell", "sweep",
-                                                 "random steer",       "fishhook",        "steady-state circle",
-                                                 "double lane change", "follow path",     "signal"};
+  static const std::array<std::string, 16> names{"reference",
+                                                 "step steer",
+                                                 "sine",
+                                                 "continuous sine",
+                                                 "sine with dwell",
+                                                 "sweep",
+                                                 "random steer",
+                                                 "fishhook",
+                                                 "steady-state circle",
+                                                 "double lane change",
+                                                 "obstacle avoidance",
+                                                 "slalom",
+                                                 "ramp steer",
+                                                 "braking in a turn",
+                                                 "follow path",
+                                                 "signal"};
   const std::string name = drive.text_or("manoeuvre", names[0]);
   if (std::ranges::find(names, name) == names.end()) {
     drive.fail("manoeuvre", fmt::format("no manoeuvre is called '{}'{}", name, suggestion(name, names)));
@@ -161,7 +197,8 @@ Manoeuvre read_manoeuvre(const StudyTable& drive, const ManoeuvreContext& contex
     return with_longitudinal(read_one(name, drive, context, progress), drive, context);
   } catch (const InputError& wrong) {
     // A refusal by the library names the key behind it, where that can be known.
-    if (wrong.place() != "manoeuvre" && wrong.place() != "driver" && wrong.place() != "signal") throw;
+    static const std::array<std::string_view, 4> own{"manoeuvre", "driver", "signal", "slalom"};
+    if (std::ranges::find(own, wrong.place()) == own.end()) throw;
     const std::string_view what = std::string_view(wrong.what()).substr(wrong.place().size() + 2);
     std::string key(what.substr(0, what.find(' ')));
     if (key == "steer" && drive.has("amplitude")) key = "amplitude";

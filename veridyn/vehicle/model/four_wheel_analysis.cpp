@@ -100,6 +100,13 @@ std::vector<FourWheelMode> modes(const LinearFourWheel& model) {
   return list;
 }
 
+SteadyCornering steady_cornering(const LinearFourWheel& model, double wheelbase) {
+  constexpr double kSteady_Hz = 1e-7;
+  const FourWheelResponse response = frequency_response(model, kSteady_Hz);
+  return {.understeer_gradient = (model.u / response.yaw_rate.real() - wheelbase) / (model.u * model.u),
+          .roll_gradient = response.roll.real() / response.lateral_acceleration.real()};
+}
+
 FourWheelResponse frequency_response(const LinearFourWheel& model, double frequency_Hz) {
   using Matrix = Eigen::MatrixXcd;
   const std::complex<double> s(0.0, 2.0 * kPi * frequency_Hz);

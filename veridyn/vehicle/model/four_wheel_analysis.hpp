@@ -44,6 +44,14 @@ struct FourWheelResponse {
 /// Steady response of a stable model; undefined on an eigenvalue.
 [[nodiscard]] FourWheelResponse frequency_response(const LinearFourWheel& model, double frequency_Hz);
 
+/// What a small steady turn needs and does, per lateral acceleration: with everything that steers and rolls in it.
+struct SteadyCornering {
+  double understeer_gradient = 0.0;  ///< K of yaw rate/steer = u/(L + K u^2) [rad s^2/m]
+  double roll_gradient = 0.0;        ///< [rad s^2/m]
+};
+/// Of a model that is not on an eigenvalue of 0.
+[[nodiscard]] SteadyCornering steady_cornering(const LinearFourWheel& model, double wheelbase);
+
 /// By central differences of 1e-6 (m, rad, m/s, rad/s): relative errors of 1e-9. Longitudinal dynamics are left out.
 template <typename Tyre>
 [[nodiscard]] LinearFourWheel linearise(const FourWheelModel<double, Tyre>& model, double u);

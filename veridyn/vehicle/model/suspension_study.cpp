@@ -11,12 +11,13 @@
 
 namespace veridyn::vehicle {
 
-AxleSuspension read_axle_suspension(const StudyTable& table, char suffix) {
+AxleSuspension read_axle_suspension(const StudyTable& table, char suffix, const AxleSuspension& otherwise) {
   const auto key = [suffix](const char* name) { return fmt::format("{}_{}", name, suffix); };
-  AxleSuspension axle{.roll_centre = table.number_or(key("roll_centre"), "m", 0.0),
-                      .roll_steer = table.number_or(key("roll_steer"), "rad/rad", 0.0),
-                      .bump_steer = table.number_or(key("bump_steer"), "rad/m", 0.0),
-                      .compliance_steer = table.number_or(key("compliance_steer"), "rad/N", 0.0)};
+  AxleSuspension axle = otherwise;
+  axle.roll_centre = table.number_or(key("roll_centre"), "m", axle.roll_centre);
+  axle.roll_steer = table.number_or(key("roll_steer"), "rad/rad", axle.roll_steer);
+  axle.bump_steer = table.number_or(key("bump_steer"), "rad/m", axle.bump_steer);
+  axle.compliance_steer = table.number_or(key("compliance_steer"), "rad/N", axle.compliance_steer);
   if (table.has(key("travel")) || table.has(key("force"))) {
     std::vector<double> travel = table.numbers(key("travel"), "m"), force = table.numbers(key("force"), "N");
     try {

@@ -109,7 +109,7 @@ KnownVehicle with_suspension(const StudyTable& subject, KnownVehicle known) {
   const StudyTable table = subject.table("suspension");
   for (const char suffix : {'f', 'r'}) {
     AxleSuspension& axle = suffix == 'f' ? known.vehicle.suspension_f : known.vehicle.suspension_r;
-    axle = read_axle_suspension(table, suffix);
+    axle = read_axle_suspension(table, suffix, axle);
     if (axle.spring.empty()) continue;
     const std::string rate = fmt::format("K_s{}", suffix);
     if (subject.has(rate))
@@ -282,6 +282,8 @@ Vehicle read_vehicle(const StudyTable& subject, VehicleNeeds needs) {
     vehicle.name = builtin.name;
     vehicle.description = builtin.description;
     vehicle.speed = builtin.speed;
+    vehicle.suspension_f = builtin.suspension_f;
+    vehicle.suspension_r = builtin.suspension_r;
     known.given.fill(true);
   }
   vehicle.name = subject.text_or("name", vehicle.name.empty() ? "vehicle" : vehicle.name);

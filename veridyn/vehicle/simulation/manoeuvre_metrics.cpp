@@ -194,22 +194,70 @@ std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double whee
       {"understeer_gradient", understeer.slope, "rad s^2/m", "ISO 4138", range},
       {"understeer_gradient_deg_per_g", understeer.slope * kGravity * 180.0 / kPi, "deg/g", "ISO 4138", range},
       {"sideslip_gradient", fit(acceleration, sideslip).slope, "rad s^2/m", "ISO 4138", range}};
-  if (rolls) list.push_back({"roll_gradient", fit(acceleration, roll).slope, "rad s^2/m", "ISO 4138", range});
+  if (rolls) {
+    const double slope = fit(acceleration, roll).slope;
+    list.push_back({"roll_gradient", slope, "rad s^2/m", "ISO 4138", range});
+    list.push_back({"roll_gradient_deg_per_g", slope * kGravity / kDegree, "deg/g", "ISO 4138", range});
+  }
   return list;
 }
 
 std::vector<Metric> lane_change_metrics(const VehicleTrajectory& t, const DoubleLaneChange& course,
                                         const BodyOutline& body) {
   const LaneCheck check = check_lanes(t, course, body);
-  std::vector<Metric> list{{"within_lanes", check.within && check.finished ? 1.0 : 0.0, "1", "ISO 3888-1",
+  std::vector<Metric> list{{"within_lanes", check.within && check.finished ? 1.0 : 0.0, "1", course.standard,
                             !check.within    ? fmt::format("left lane {} at {:.2f} s", check.lane, check.time)
                             : check.finished ? "passed without touching a cone"
                                              : "the drive ended before the last lane did"},
-                           {"lane_margin", check.margin, "m", "ISO 3888-1",
+                           {"lane_margin", check.margin, "m", course.standard,
                             fmt::format("smallest, in lane {} at {:.2f} s; negative outside", check.lane, check.time)}};
   const double entry = crossing(t.time, t.x, course.lanes[0].begin);
-  list.push_back({"entry_speed", std::isfinite(entry) ? at_time(t.time, t.u, entry) : kNone, "m/s", "ISO 3888-1", ""});
+  list.push_back(
+      {"entry_speed", std::isfinite(entry) ? at_time(t.time, t.u, entry) : kNone, "m/s", course.standard, ""});
   return list;
+}
+
+std::vector<Metric> slalom_metrics(const VehicleTrajectory& t, const Slalom& course, const BodyOutline& body) {
+  const ConeCheck check = check_cones(t, course, body);
+  const double begin = crossing(t.time, t.x, course.cone(0)),
+               end = crossing(t.time, t.x, course.cone(course.cones - 1));
+  double slowest = kInfinity;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (t.time[i] >= begin && !(t.time[i] > end)) slowest = std::min(slowest, t.u[i]);
+  }
+  return {{"cones_hit", static_cast<double>(check.hit), "1", "", fmt::format("of {} that were reached", check.passed)},
+          {"cones_passed", static_cast<double>(check.passed), "1", "", fmt::format("of {}", course.cones)},
+          {"cone_margin", check.passed > 0 ? check.margin : kNone, "m", "",
+           fmt::format("smallest, at cone {}; negative: hit", check.nearest)},
+          {"entry_speed", std::isfinite(begin) ? at_time(t.time, t.u, begin) : kNone, "m/s", "", "at the first cone"},
+          {"lowest_speed", slowest < kInfinity ? slowest : kNone, "m/s", "", "between the first and the last cone"}};
+}
+
+std::vector<Metric> ramp_steer_metrics(const VehicleTrajectory& t, double wheelbase) {
+  std::vector<Metric> list = steady_state_metrics(t, wheelbase);
+  if (t.size() == 0) return list;
+  const auto by_size = [](double one, double other) { return std::abs(one) < std::abs(other); };
+  const auto most = std::ranges::max_element(t.lateral_acceleration, by_size) - t.lateral_acceleration.begin();
+  list.push_back({"steer_at_peak", t.steer[static_cast<std::size_t>(most)], "rad", "",
+                  "where the lateral acceleration is largest"});
+  return list;
+}
+
+std::vector<Metric> braking_in_a_turn_metrics(const VehicleTrajectory& t, double brake_time) {
+  if (t.size() < 10) return {};
+  const auto at = [&](Series x, double when) { return at_time(t.time, x, when); };
+  const std::vector<double> beta = sideslip_of(t);
+  const double r0 = at(t.r, brake_time), u0 = at(t.u, brake_time), r1 = at(t.r, brake_time + 1.0);
+  const double u1 = at(t.u, brake_time + 1.0);
+  const char* source = "after ISO 7975";
+  return {
+      {"deceleration", at(t.u, brake_time + 0.5) - at(t.u, brake_time + 1.5), "m/s^2", source,
+       "mean from 0.5 to 1.5 s after the pedal moves"},
+      {"initial_lateral_acceleration", at(t.lateral_acceleration, brake_time), "m/s^2", source, "when the pedal moves"},
+      {"yaw_rate_ratio_1.00s", r1 / r0, "1", source, "1 s after the pedal moves, over that before"},
+      {"yaw_rate_of_circle_ratio_1.00s", r1 / (r0 * u1 / u0), "1", source,
+       "over that of the speed left on the same circle: above 1 turns in"},
+      {"sideslip_change_1.00s", at(beta, brake_time + 1.0) - at(beta, brake_time), "rad", source, ""}};
 }
 
 MeasuredFrequencyResponse measured_frequency_response(const VehicleTrajectory& t, double low_Hz, double high_Hz) {
@@ -323,7 +371,17 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
                                   manoeuvre.radius != 0.0 ? 0.15 * manoeuvre.default_duration : 0.0);
       break;
     case ManoeuvreKind::kDoubleLaneChange:
+    case ManoeuvreKind::kObstacleAvoidance:
       if (manoeuvre.course) list = lane_change_metrics(t, *manoeuvre.course, manoeuvre.body);
+      break;
+    case ManoeuvreKind::kSlalom:
+      if (manoeuvre.slalom) list = slalom_metrics(t, *manoeuvre.slalom, manoeuvre.body);
+      break;
+    case ManoeuvreKind::kRampSteer:
+      list = ramp_steer_metrics(t, parameters.wheelbase());
+      break;
+    case ManoeuvreKind::kBrakingInATurn:
+      list = braking_in_a_turn_metrics(t, manoeuvre.brake_time);
       break;
     case ManoeuvreKind::kReference:
     case ManoeuvreKind::kSine:

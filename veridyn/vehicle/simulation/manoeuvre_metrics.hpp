@@ -38,13 +38,25 @@ struct Metric {
 
 /// ISO 4138: slopes over lateral acceleration, by least squares over the samples between `low` and `high` [m/s^2] of
 /// absolute lateral acceleration, from the time `begin` [s] on: understeer gradient d(delta - L/R)/d a_y, sideslip
-/// gradient, roll gradient (where there is a roll angle).
+/// gradient, roll gradient (where there is a roll angle); understeer and roll also in deg/g.
 [[nodiscard]] std::vector<Metric> steady_state_metrics(const VehicleTrajectory& trajectory, double wheelbase,
                                                        double begin = 0.0, double low = 0.5, double high = 4.0);
 
 /// ISO 3888-1: whether and by how much the body stayed within the lanes; entry speed and peaks.
 [[nodiscard]] std::vector<Metric> lane_change_metrics(const VehicleTrajectory& trajectory,
                                                       const DoubleLaneChange& course, const BodyOutline& body);
+
+/// Our own: cones hit and passed, smallest margin, entry speed and the lowest one between the cones.
+[[nodiscard]] std::vector<Metric> slalom_metrics(const VehicleTrajectory& trajectory, const Slalom& course,
+                                                 const BodyOutline& body);
+
+/// The gradients of `steady_state_metrics`, and the steer where lateral acceleration is largest.
+[[nodiscard]] std::vector<Metric> ramp_steer_metrics(const VehicleTrajectory& trajectory, double wheelbase);
+
+/// Of the manoeuvre of ISO 7975, our own choice: mean deceleration in the second from half a second after the pedal
+/// moves, yaw rate 1 s after it moves over that before, and over what the speed left would have on the same circle; the
+/// change of sideslip in that second.
+[[nodiscard]] std::vector<Metric> braking_in_a_turn_metrics(const VehicleTrajectory& trajectory, double brake_time);
 
 /// Responses to steer, estimated from a sweep or random steer (Welch's method, see `numerics::spectral_response`).
 struct MeasuredFrequencyResponse {
