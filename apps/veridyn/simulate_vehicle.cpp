@@ -10,6 +10,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -39,6 +40,10 @@ Summary summary_of(const std::filesystem::path& folder, const SimulationStudy& s
   const auto values = to_array(run.characteristics);
   for (std::size_t i = 0; i < values.size(); ++i)
     s["characteristics"][kBicycleCharacteristicFields[i].name] = values[i];
+  if (run.cornering) {
+    s["steady_cornering"]["understeer_gradient_deg_per_g"] = run.cornering->understeer_gradient * kGravity / kDegree;
+    s["steady_cornering"]["roll_gradient_deg_per_g"] = run.cornering->roll_gradient * kGravity / kDegree;
+  }
   s["lift_offs"] = Summary::array();
   for (const LiftOff& l : run.trajectory.lift_offs)
     s["lift_offs"].push_back(Summary::object({{"wheel", kWheelNames[l.wheel]}, {"from_s", l.from}, {"to_s", l.to}}));
@@ -75,6 +80,12 @@ int simulate_vehicle(const StudyRun& run) {
   print_line(run.options(),
              fmt::format("{} of {}: {}; at most {:.2f} m/s^2 sideways", to_string(vehicle.manoeuvre.kind),
                          vehicle.vehicle.name, trajectory.message(), most));
+  if (driven.cornering) {
+    print_line(run.options(), fmt::format("gentle steady turns: understeer gradient {:.2f} deg/g, roll gradient {:.2f} "
+                                          "deg/g",
+                                          driven.cornering->understeer_gradient * kGravity / kDegree,
+                                          driven.cornering->roll_gradient * kGravity / kDegree));
+  }
   print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
   return kDone;
 }

@@ -19,7 +19,7 @@ seed = 1
 [subject]
 kind = "vehicle"
 name = "my car"
-# builtin = "reference"            # or "reference_1to5": start from it; every key below then overrides it
+# builtin = "reference"            # or "saloon", "reference_1to5": start from it; every key below overrides it
 mass = @MASS@                   # whole vehicle
 a = @A@                       # centre of gravity to front axle
 b = @B@                       # to rear axle
@@ -49,7 +49,8 @@ tyre = "fiala"                     # "linear", "magic formula", or a tyre file: 
 model = "four-wheel"               # "bicycle", "linear bicycle"
 speed = "80 km/h"
 manoeuvre = "step steer"           # "reference", "sine", "sine with dwell", "sweep", "random steer", "fishhook",
-                                   # "steady-state circle", "double lane change", "follow path", "signal"
+                                   # "steady-state circle", "double lane change", "obstacle avoidance", "slalom",
+                                   # "ramp steer", "braking in a turn", "follow path", "signal"
 amplitude = "2 deg"                # at the road wheels
 duration = 10
 # longitudinal = false             # true: drive, brake, drag, grade

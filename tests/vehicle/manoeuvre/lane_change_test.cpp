@@ -41,6 +41,40 @@ TEST(LaneChange, ItsPathStaysWithinTheLanes) {
   EXPECT_TRUE(check.finished);
 }
 
+// Lengths as in the standard, 61 m together; the vehicle's width decides the lanes' and where the second lies.
+TEST(LaneChange, ObstacleAvoidanceHasTheLengthsAndWidthsOfTheStandard) {
+  const double w = 1.8;
+  const DoubleLaneChange course = iso_obstacle_avoidance(w);
+  const auto& [first, second, third] = course.lanes;
+  EXPECT_EQ(course.standard, "ISO 3888-2");
+  EXPECT_NEAR(first.end - first.begin, 12.0, 1e-12);
+  EXPECT_NEAR(second.begin - first.end, 13.5, 1e-12);
+  EXPECT_NEAR(second.end - second.begin, 11.0, 1e-12);
+  EXPECT_NEAR(third.begin - second.end, 12.5, 1e-12);
+  EXPECT_NEAR(third.end - third.begin, 12.0, 1e-12);
+  EXPECT_NEAR(third.end - first.begin, 61.0, 1e-12);
+  EXPECT_NEAR(first.left - first.right, 1.1 * w + 0.25, 1e-12);
+  EXPECT_NEAR(second.left - second.right, w + 1.0, 1e-12);
+  EXPECT_NEAR(third.left - third.right, 1.3 * w + 0.25, 1e-12);
+  EXPECT_NEAR(second.right - first.left, 1.0, 1e-12);
+  EXPECT_NEAR(third.right, first.right, 1e-12);
+  const Lane wide = iso_obstacle_avoidance(2.3).lanes[2];
+  EXPECT_NEAR(wide.left - wide.right, 3.0, 1e-12);
+}
+
+TEST(LaneChange, ThePathOfTheObstacleAvoidanceStaysWithinTheLanesAndScales) {
+  for (const double width : {1.6, 1.8, 2.1}) {
+    const DoubleLaneChange course = iso_obstacle_avoidance(width);
+    const LaneCheck check = check_lanes(along(course.path), course, {1.15, 1.55, width});
+    EXPECT_TRUE(check.within) << width << ": " << check.margin << " in lane " << check.lane;
+    EXPECT_TRUE(check.finished);
+    EXPECT_GT(check.margin, 0.05) << width;
+  }
+  const DoubleLaneChange full = iso_obstacle_avoidance(1.75), small = iso_obstacle_avoidance(0.35, 0.2);
+  EXPECT_NEAR(small.path.length(), 0.2 * full.path.length(), 1e-9);
+  EXPECT_NEAR(small.lanes[1].left, 0.2 * full.lanes[1].left, 1e-12);
+}
+
 TEST(LaneChange, SeesABodyThatTouchesACone) {
   const DoubleLaneChange course = iso_double_lane_change(1.75);
   const BodyOutline body{1.25, 1.0, 1.75};

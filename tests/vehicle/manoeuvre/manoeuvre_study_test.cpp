@@ -41,6 +41,19 @@ TEST(Manoeuvre, StudiesNameEveryOne) {
   const Manoeuvre lanes = read("manoeuvre = \"double lane change\"\nfront_overhang = 0.8");
   EXPECT_NEAR(lanes.body.ahead, 2.05, 1e-12);
   EXPECT_NEAR(lanes.course->vehicle_width, 1.75, 1e-12);
+  const Manoeuvre avoiding = read("manoeuvre = \"obstacle avoidance\"\nrear_overhang = 0.9\nvehicle_width = 1.8");
+  EXPECT_EQ(avoiding.course->standard, "ISO 3888-2");
+  EXPECT_NEAR(avoiding.body.behind, 1.9, 1e-12);
+  const Manoeuvre cones = read("manoeuvre = \"slalom\"\ncones = 5\nspacing = 22\nclearance = \"40 cm\"");
+  EXPECT_EQ(cones.slalom->cones, 5);
+  EXPECT_NEAR(cones.slalom->cone(4), 40.0 + 4.0 * 22.0, 1e-12);
+  EXPECT_NEAR(cones.slalom->vehicle_width, 1.75, 1e-12);
+  EXPECT_NEAR(steer(read("manoeuvre = \"ramp steer\"\nrate = \"2 deg/s\"\nhold = 1"), 2.0), 2.0 * kDegree, 1e-12);
+  const Manoeuvre braking =
+      read("manoeuvre = \"braking in a turn\"\nlongitudinal = true\nradius = -80\nbrake_time = 9");
+  EXPECT_EQ(braking.brake_time, 9.0);
+  EXPECT_NEAR(braking.driver->controls(10.0).brake_torque, 1100.0 * 4.0 * 0.3, 1e-9);
+  EXPECT_NEAR(braking.path->at(1.0).curvature, -1.0 / 80.0, 1e-15);
   EXPECT_EQ(read("manoeuvre = \"follow path\"\nradius = 30\ndirection = \"right\"").path->at(0.0).curvature,
             -1.0 / 30.0);
   EXPECT_NEAR(steer(read("manoeuvre = \"signal\"\ntime = [0, 2]\nsteer = [0, \"4 deg\"]"), 1.0), 2.0 * kDegree, 1e-12);
@@ -91,6 +104,13 @@ TEST(Manoeuvre, RefusesWhatNobodyCanDriveWithThePlace) {
               (void)read("manoeuvre = \"signal\"\ntime = [0, 2, 1]\nsteer = [0, 0, 0]");
             }).find("sample 3 at 1 s is not after the one before"),
             std::string::npos);
+  EXPECT_NE(
+      why([] { (void)read("manoeuvre = \"braking in a turn\""); }).find("brakes, which needs longitudinal = true"),
+      std::string::npos);
+  EXPECT_EQ(why([] { (void)read("manoeuvre = \"slalom\"\ncones = 0"); }),
+            "study.toml:3: drive.cones: cones is 0; must be 1 to 1000");
+  EXPECT_EQ(why([] { (void)read("manoeuvre = \"ramp steer\"\nhold = -1"); }),
+            "study.toml:3: drive.hold: hold is -1 s; must be >= 0");
   EXPECT_NE(why([] { (void)read("manoeuvre = \"follow path\""); }).find("needs a file or the radius"),
             std::string::npos);
   EXPECT_NE(why([] {

@@ -82,6 +82,17 @@ TEST(Manoeuvre, PreparingARandomSteerStopsWhenInterrupted) {
   EXPECT_EQ(m.default_duration, 63.0);
 }
 
+TEST(Manoeuvre, RampSteerGrowsAtItsRateAndHolds) {
+  const Manoeuvre m = ramp_steer(0.1, 0.02, 1.0, 3.0);
+  EXPECT_EQ(m.kind, ManoeuvreKind::kRampSteer);
+  EXPECT_EQ(steer(m, 1.0), 0.0);
+  EXPECT_NEAR(steer(m, 3.5), 0.05, 1e-15);
+  EXPECT_NEAR(steer(m, 6.0), 0.1, 1e-15);
+  EXPECT_EQ(steer(m, 8.9), 0.1);
+  EXPECT_NEAR(m.default_duration, 1.0 + 5.0 + 3.0, 1e-12);
+  EXPECT_NEAR(steer(ramp_steer(-0.1, 0.02), 3.5), -0.05, 1e-15);
+}
+
 TEST(Manoeuvre, FishhookTurnsIn720DegreesASecondOfTheHandWheel) {
   const Manoeuvre m = fishhook(0.15, 0.75, 1.0, 0.25);
   EXPECT_NEAR(steer(m, 1.1), 0.075, 1e-12);

@@ -61,6 +61,19 @@ TEST(FourWheelAnalysis, SteadyYawRateIsTheBicyclesAndRollBalancesTheSprings) {
   EXPECT_NEAR(steady.roll.real(), expected, 1e-5 * expected);
 }
 
+TEST(FourWheelAnalysis, SteadyCorneringIsThatOfTheBicycleAndOfTheSprings) {
+  const VehicleParameters<double> p = road_car();
+  const double L = p.a + p.b;
+  for (const double u : {10.0, 25.0}) {
+    const LinearFourWheel linear = linearise(car_of(p), u);
+    const SteadyCornering steady = steady_cornering(linear, L);
+    const double K = p.mass * (p.b / p.C_f - p.a / p.C_r) / (2.0 * L);
+    EXPECT_NEAR(steady.understeer_gradient, K, 1e-6 * K);
+    const FourWheelResponse response = frequency_response(linear, 1e-7);
+    EXPECT_NEAR(steady.roll_gradient * response.lateral_acceleration.real(), response.roll.real(), 1e-12);
+  }
+}
+
 // A car that is the same in front and behind: heave and wheel hop are those of a quarter of it, eigenvalues of two
 // masses.
 TEST(FourWheelAnalysis, ASymmetricCarBouncesAsItsQuarter) {
