@@ -121,7 +121,7 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
             "mu roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
   EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, DriveTyre::kFiala);
   EXPECT_EQ(freed(DriveStructure::kMagicFormula),
-            "mu C E roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+            "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss roll_frequency roll_damping ");
   EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, DriveTyre::kMagicFormula);
 }
 

@@ -225,5 +225,31 @@ TEST(RollingBicycle, MirroredSteeringAndStateGiveMirroredRates) {
             RollingState<4>(-model.rates<4>(RollingState<4>(-body), -0.07, kForwardSpeed).derivative));
 }
 
+// In steady cornering the body carries a_y: at 1 g the loss is load_transfer_loss, at half of it a quarter.
+TEST(RollingBicycle, LosesForceWithTheSquareOfTheLoadThatMoves) {
+  LinearRolling model = rolling_car();
+  model.load_transfer_loss = 0.2;
+  const std::array<double, 2> slip{0.03, 0.02};
+  const std::array<double, 2> whole = model.bicycle.tyre_forces(slip);
+  for (const double g : {-0.5, 0.0, 0.5, 1.0}) {
+    const RollingState<4> x{0.0, 0.0, g * kGravity * model.roll.gradient, 0.0};
+    const std::array<double, 2> left = model.axle_forces<4>(slip, x);
+    for (std::size_t axle = 0; axle < 2; ++axle)
+      EXPECT_NEAR(left[axle], (1.0 - 0.2 * g * g) * whole[axle], 1e-9 * whole[axle]) << g;
+  }
+  // A body without springs' travel to show it by, and two states, have none.
+  model.roll.gradient = 0.0;
+  EXPECT_EQ(model.axle_forces<4>(slip, {0.0, 0.0, 0.05, 0.0}), whole);
+}
+
+// What dampers carry while the body is on its way counts as what springs carry: both press on the outer wheel.
+TEST(RollingBicycle, DampersMoveLoadAsSpringsDo) {
+  LinearRolling model = rolling_car();
+  model.load_transfer_loss = 0.3;
+  const std::array<double, 2> slip{0.03, 0.02};
+  const double rate = 0.04 * model.roll.frequency / (2.0 * model.roll.damping);
+  EXPECT_EQ(model.axle_forces<4>(slip, {0.0, 0.0, 0.04, 0.0}), model.axle_forces<4>(slip, {0.0, 0.0, 0.0, rate}));
+}
+
 }  // namespace
 }  // namespace veridyn::vehicle

@@ -14,12 +14,13 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr std::array kRolls{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping,
-                            DriveUnknown::kRollArm, DriveUnknown::kRelaxationLength};
+constexpr std::array kRolls{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,    DriveUnknown::kRollDamping,
+                            DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer};
 constexpr std::array kByGeometry{
     DriveUnknown::kCf,          DriveUnknown::kCr,           DriveUnknown::kIz,
     DriveUnknown::kA,           DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
-    DriveUnknown::kRollDamping, DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength};
+    DriveUnknown::kRollDamping, DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength,
+    DriveUnknown::kLoadTransfer};
 
 struct Knowledge {
   double mean = 0.0, sigma = 0.0;
@@ -48,6 +49,8 @@ Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& veh
       return {0.3, 0.2};
     case DriveUnknown::kRollArm:
       return {0.85 * vehicle.cg_height, 0.25 * vehicle.cg_height};
+    case DriveUnknown::kLoadTransfer:
+      return {0.2, 0.2};
     default:
       return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
   }
@@ -136,7 +139,9 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
   options.structure = structure;
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
   for (const DriveUnknown u : kRolls)
-    options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure) : has_roll(structure);
+    options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure)
+                      : u == DriveUnknown::kLoadTransfer   ? has_load_transfer(structure)
+                                                           : has_roll(structure);
   if (saturates(structure) && options.tyre == DriveTyre::kLinear) {
     const bool has_shape = structure == DriveStructure::kMagicFormula;
     options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;

@@ -23,6 +23,7 @@ enum class DriveUnknown : std::size_t {
   kRollGradient,      ///< steady roll per lateral acceleration [rad/(m/s^2)]
   kRollArm,           ///< centre of gravity above the roll axis [m]
   kRelaxationLength,  ///< travel in which the slip angles follow by 63 % [m]
+  kLoadTransfer,      ///< share of the axles' force that is lost where the body leans as much as at 1 g [-]
   /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
   /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
   /// alone has them.
@@ -40,7 +41,7 @@ enum class DriveUnknown : std::size_t {
   kAccelYDelay
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 22;
+inline constexpr std::size_t kDriveUnknowns = 23;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// A value for each of them.
@@ -57,6 +58,7 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "roll_gradient",
                                                                       "roll_arm",
                                                                       "relaxation_length",
+                                                                      "load_transfer_loss",
                                                                       "roll_frequency",
                                                                       "roll_damping",
                                                                       "steer_bias",
@@ -71,7 +73,7 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_y_delay"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad", "N/rad", "kg m^2", "m",     "1",     "1", "1",   "rad s^2/m", "m", "m", "rad/s",
+    "N/rad", "N/rad", "kg m^2", "m",     "1",     "1", "1",   "rad s^2/m", "m", "m", "1", "rad/s",
     "1",     "rad",   "1",      "rad/s", "m/s^2", "1", "rad", "rad/s",     "s", "s", "s"};
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }

@@ -74,6 +74,8 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
       return {0.05, 1.2};
     case DriveUnknown::kRollArm:
       return {0.0, wheelbase};
+    case DriveUnknown::kLoadTransfer:
+      return {0.0, 1.0};
     case DriveUnknown::kRelaxationLength:
       return {kShortestRelaxation * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
@@ -377,7 +379,9 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
                  .frequency = unknown(DriveUnknown::kRollFrequency),
                  .damping = unknown(DriveUnknown::kRollDamping),
                  .arm = unknown(DriveUnknown::kRollArm)},
-        .relaxation_length = unknown(DriveUnknown::kRelaxationLength)};
+        .relaxation_length = unknown(DriveUnknown::kRelaxationLength),
+        .load_transfer_loss =
+            has_load_transfer(options_.structure) ? unknown(DriveUnknown::kLoadTransfer) : Scalar(0.0)};
     switch (options_.structure) {
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());

@@ -20,7 +20,9 @@ enum class DriveStructure : std::size_t {
   kRoll,         ///< and the body's roll on its springs
   kRelaxation,   ///< and tyres whose slip follows after a relaxation length
   kSaturation,   ///< and tyres whose stiffness falls with their force (Fiala); relaxation length 0: slip at once
-  kMagicFormula  ///< the same with the reduced Magic Formula, whose stiffness falls later and more
+  /// The same with the reduced Magic Formula, whose stiffness falls later and more, and with what an axle loses when
+  /// its load moves from one wheel to the other
+  kMagicFormula
 };
 /// How many there are.
 inline constexpr std::size_t kDriveStructures = 6;
@@ -58,6 +60,9 @@ struct TriedStructure {
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
 };
 
+[[nodiscard]] constexpr bool has_load_transfer(DriveStructure structure) {
+  return structure == DriveStructure::kMagicFormula;
+}
 /// Whether its tyres have a friction limit.
 [[nodiscard]] constexpr bool saturates(DriveStructure structure) { return structure >= DriveStructure::kSaturation; }
 

@@ -179,8 +179,6 @@ class Climb {
     for (const DriveStructure structure :
          {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
-      // A study that names its tyre has it in all structures.
-      if (structure == DriveStructure::kMagicFormula && problem_.options.model.tyre != DriveTyre::kLinear) continue;
       if (saturates(structure)) search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
       fit(structure, relaxes);
       ladder_.tried.back().negative_log_likelihood += unweighed - weighed;

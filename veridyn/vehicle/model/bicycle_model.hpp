@@ -61,14 +61,26 @@ struct BicycleModel {
   /// The same at given slip angles, of tyres whose slip lags for example.
   [[nodiscard]] BicycleRates<Scalar> rates_at_slips(const std::array<Scalar, 2>& slip_angle, const Scalar& r,
                                                     const Scalar& steer, const Scalar& u) const {
+    return rates_of_forces(slip_angle, tyre_forces(slip_angle), r, steer, u);
+  }
+
+  /// Of one tyre, front and rear, at the static loads [N].
+  [[nodiscard]] std::array<Scalar, 2> tyre_forces(const std::array<Scalar, 2>& slip_angle) const {
+    const PerWheel<Scalar> load = static_loads(parameters, gravity);
+    const Scalar none(0.0);
+    return {front.forces(load[kFrontLeft], none, slip_angle[0], none).Fy,
+            rear.forces(load[kRearLeft], none, slip_angle[1], none).Fy};
+  }
+
+  /// The rates that forces of one tyre, front and rear, bring about; the slip angles only go with them.
+  [[nodiscard]] BicycleRates<Scalar> rates_of_forces(const std::array<Scalar, 2>& slip_angle,
+                                                     const std::array<Scalar, 2>& Fy, const Scalar& r,
+                                                     const Scalar& steer, const Scalar& u) const {
     using std::cos;
     const VehicleParameters<Scalar>& p = parameters;
-    const PerWheel<Scalar> load = static_loads(p, gravity);
     BicycleRates<Scalar> out;
     out.slip_angle = slip_angle;
-    const Scalar none(0.0);
-    out.Fy = {front.forces(load[kFrontLeft], none, out.slip_angle[0], none).Fy,
-              rear.forces(load[kRearLeft], none, out.slip_angle[1], none).Fy};
+    out.Fy = Fy;
     const Scalar lateral_f = geometry == BicycleGeometry::kExact ? Scalar(out.Fy[0] * cos(steer)) : out.Fy[0];
     out.lateral_acceleration = 2.0 * (lateral_f + out.Fy[1]) / p.mass;
     out.dv = out.lateral_acceleration - r * u;

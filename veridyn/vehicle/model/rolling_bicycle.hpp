@@ -42,6 +42,9 @@ struct RollingBicycle {
   BicycleModel<Scalar, Tyre> bicycle;
   BodyRoll<Scalar> roll = {};
   Scalar relaxation_length{0.3};  ///< with six states; > 0 [m]
+  /// Share of both axles' force that is lost at 1 g of steady cornering, since the stiffness of a tyre grows less than
+  /// its load: it goes with the square of the load that springs and dampers move from wheel to wheel. 0 to 1.
+  Scalar load_transfer_loss{0.0};
 
   template <int kStates>
   [[nodiscard]] RollingBicycleRates<Scalar, kStates> rates(const Eigen::Matrix<Scalar, kStates, 1>& x,
@@ -55,7 +58,7 @@ struct RollingBicycle {
       out.derivative(5) = per_time * (slip[1] - x(5));
       slip = {x(4), x(5)};
     }
-    const BicycleRates<Scalar> plane = bicycle.rates_at_slips(slip, x(1), steer, u);
+    const BicycleRates<Scalar> plane = bicycle.rates_of_forces(slip, axle_forces<kStates>(slip, x), x(1), steer, u);
     out.lateral_acceleration = plane.lateral_acceleration;
     out.derivative(0) = plane.dv;
     out.derivative(1) = plane.dr;
@@ -65,6 +68,23 @@ struct RollingBicycle {
                                             2.0 * roll.damping * x(3));
     }
     return out;
+  }
+
+  /// Of one tyre, front and rear [N].
+  template <int kStates>
+  [[nodiscard]] std::array<Scalar, 2> axle_forces(const std::array<Scalar, 2>& slip,
+                                                  const Eigen::Matrix<Scalar, kStates, 1>& x) const {
+    std::array<Scalar, 2> Fy = bicycle.tyre_forces(slip);
+    if constexpr (kStates > 2) {
+      if (load_transfer_loss > 0.0 && roll.gradient > 0.0) {
+        // The lateral acceleration that springs and dampers carry, in g.
+        const Scalar carried = (x(2) + 2.0 * roll.damping / roll.frequency * x(3)) / (bicycle.gravity * roll.gradient);
+        const Scalar left = 1.0 - load_transfer_loss * carried * carried;
+        Fy[0] *= left;
+        Fy[1] *= left;
+      }
+    }
+    return Fy;
   }
 
   /// Sideways, of the contact points below the centre of gravity [m/s].
