@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/muscle/muscle_studies.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::muscle {
@@ -62,13 +63,8 @@ TEST(MuscleRun, SaysWhenASimulationLeavesARange) {
 
 class MuscleRunFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("veridyn_muscle_study_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
+  veridyn::test::TemporaryFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(MuscleRunFiles, AForwardStudyReplaysWhatComputedMuscleControlFound) {

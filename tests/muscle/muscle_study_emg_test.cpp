@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/task_study.hpp"
 
@@ -23,14 +24,10 @@ class EmgStudy : public ::testing::Test {
  protected:
   using Change = std::function<double(double, double)>;
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("veridyn_emg_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
     angles();
     moments();
     emg();
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void angles(const Change& elbow = as_it_is, const std::string& column = "elbow_flexion",
               const std::string& degrees = "no") {
@@ -83,7 +80,8 @@ class EmgStudy : public ::testing::Test {
   inline static const std::string kColumns =
       "[emg.columns]\nbiceps_long = \"BIC\"\nbiceps_short = \"BIC\"\nbrachialis = \"BRA\"\ntriceps_long = \"TRI\"\n"
       "triceps_lateral = \"TRI\"\ntriceps_medial = \"TRI\"\n";
-  std::filesystem::path folder_;
+  veridyn::test::TemporaryFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(EmgStudy, ReadsFilesWithTimesOfTheirOwn) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/muscle/muscle_studies.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -19,13 +20,6 @@ using testing::HasSubstr;
 
 class MuscleStudyExcitation : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() /
-        ("veridyn_muscle_excitation_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   /// A forward study with a file of controls.
   [[nodiscard]] std::string with(const std::string& columns, const std::string& rows, const std::string& more) const {
     std::ofstream(folder_ / "controls.sto") << "controls\nversion=1\nendheader\n" << columns << "\n" << rows;
@@ -36,7 +30,8 @@ class MuscleStudyExcitation : public testing::Test {
     signals.evaluate(time, values.data());
     return values;
   }
-  std::filesystem::path folder_;
+  veridyn::test::TemporaryFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(MuscleStudyExcitation, OfAFileLeavesMusclesWithoutAColumnAsTheStudySays) {

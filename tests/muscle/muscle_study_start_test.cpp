@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/muscle/muscle_studies.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/constants.hpp"
 
 namespace veridyn::muscle {
@@ -21,12 +22,6 @@ using testing::IsEmpty;
 
 class MuscleStudyStart : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("veridyn_muscle_start_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   /// A forward study that starts in a file of states with these columns and rows at 0 and 1 s.
   [[nodiscard]] std::string from(const std::string& columns, const std::string& rows, bool degrees = false,
                                  const std::string& begin = "0.25") const {
@@ -36,7 +31,8 @@ class MuscleStudyStart : public testing::Test {
         << rows;
     return kArm + "[motion]\nstart_file = \"states.sto\"\nbegin = " + begin + "\nduration = 0.1\n";
   }
-  std::filesystem::path folder_;
+  veridyn::test::TemporaryFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(MuscleStudyStart, IsTheStateOfItsFileAtTheBeginning) {

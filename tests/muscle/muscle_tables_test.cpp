@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/muscle/muscle_studies.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/io/opensim/storage.hpp"
 #include "veridyn/muscle/muscle_run.hpp"
 
@@ -13,13 +14,8 @@ namespace {
 
 class MuscleTables : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("veridyn_muscle_tables_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
+  veridyn::test::TemporaryFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 TEST_F(MuscleTables, TablesReadBackAsTheMotionTheyAre) {
