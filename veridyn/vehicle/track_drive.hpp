@@ -22,11 +22,11 @@ class TrackedDrive {
   /// @return the changes found. @throws InputError when channels are missing
   std::vector<DriveChange> advance(const recording::MappedRecording& mapped, bool finished, Progress& progress);
 
-  /// Null before the first second of the drive: noise and rate are learned from it.
+  /// Null before the first 20 s of the drive: noise and rate are learned from them.
   [[nodiscard]] const DriveTracker* tracker() const { return tracker_ ? &*tracker_ : nullptr; }
   /// What was assumed of the signals.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  /// As DriveTracker::estimate; without parameters before the first second of the drive.
+  /// As DriveTracker::estimate; without parameters before the first 20 s of the drive.
   [[nodiscard]] estimation::Estimate estimate() const;
 
  private:

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/vehicle/simulated_drive.hpp"
+#include "tests/vehicle/drive_with_drop.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/track_drive.hpp"
 
@@ -14,30 +14,8 @@ namespace {
 using testing::family_car;
 using testing::mapped;
 
-using Linear = BicycleModel<double, LinearTyre<double>>;
-
-/// Grip falls to 60 % at a time.
-Recording drive_with_drop(std::uint64_t seed, double duration, double drop_s, double rms = 0.02) {
-  const VehicleParameters<double> p = family_car();
-  VehicleParameters<double> wet = p;
-  wet.C_f *= 0.6;
-  wet.C_r *= 0.6;
-  const testing::WanderingSteer steer(seed, rms, 0.1, 1.0);
-  const VehicleTrajectory t = testing::drive_bicycle<Linear>(
-      [&](double at) { return testing::linear_bicycle(at < drop_s ? p : wet); }, duration,
-      [&](double at) { return steer(at); }, [](double at) { return 20.0 + 2.0 * std::sin(0.2 * at); });
-  return record_drive(t, reference_drive_sensors(), seed);
-}
-
-VehicleStudy study_of(const Recording& recording) {
-  VehicleStudy study;
-  study.subject_name = "car";
-  study.vehicle = family_car();
-  study.vehicle.C_f *= 1.2;
-  study.vehicle.C_r *= 0.9;
-  study.log.mapped = mapped(recording);
-  return study;
-}
+using testing::drive_with_drop;
+using testing::study_of;
 
 TEST(DriveTracker, FindsAGripDropAndFollowsIt) {
   for (const std::uint64_t seed : {1U, 2U}) {
@@ -155,31 +133,6 @@ TEST(DriveTrackerRows, RefuseTyresThatPushTheWrongWay) {
   EXPECT_NE(reversed.find("C_f")->status, estimation::ParameterStatus::kIdentified);
   EXPECT_NE(reversed.judgement.parameters.grade, estimation::Grade::kYes);
   EXPECT_EQ(tracked_row(reversed, "plausibility of C_r", "C_r"), nullptr) << "the rear axle does not know the steering";
-}
-
-TEST(DriveTracker, DoesNotDependOnThePiecesInWhichARecordingComes) {
-  const Recording whole = drive_with_drop(4, 80.0, 1e9);
-  VehicleStudy study = study_of(whole);
-  Progress silent;
-  const DriveTracking at_once = track(study, silent);
-  TrackedDrive pieces(study);
-  for (const double until : {5.0, 21.0, 21.5, 40.0, 77.3}) {
-    Recording part = recording::without_channels(whole);
-    for (Channel channel : whole.channels()) {
-      const auto times = channel.times();
-      const auto n = std::upper_bound(times.begin(), times.end(), until) - times.begin();
-      channel.value.resize(static_cast<std::size_t>(n));
-      channel.time = make_time_base(std::vector<double>(times.begin(), times.begin() + n));
-      part.add(std::move(channel));
-    }
-    static_cast<void>(pieces.advance(mapped(part), false, silent));
-  }
-  static_cast<void>(pieces.advance(mapped(whole), true, silent));
-  const DriveTracker &a = *at_once.drive.tracker(), &b = *pieces.tracker();
-  EXPECT_EQ(a.rows(), b.rows());
-  for (const TrackedAxle axle : kAllTrackedAxles) {
-    EXPECT_NEAR(a.value(axle), b.value(axle), 1e-9 * std::abs(a.value(axle)));
-  }
 }
 
 TEST(DriveTracker, UsesNoSampleAfterTheOneItWasGiven) {
