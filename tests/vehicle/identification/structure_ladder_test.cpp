@@ -133,11 +133,11 @@ TEST(StructureLadder, TriesOnlyTheStructureThatTheStudyFixes) {
 }
 
 // Nothing is left that a richer structure could explain.
-TEST(StructureLadder, EndsWhereTheSensorsAloneExplainTheResidual) {
+TEST(StructureLadder, EndsWhereNoMoreIsLeftThanRounding) {
   const StructureLadder ladder = climbed(bicycle_drive(), testing::perfect_sensors(), family_car());
   ASSERT_EQ(ladder.tried.size(), 1U);
   EXPECT_EQ(ladder.tried[0].structure, DriveStructure::kBicycle);
-  EXPECT_EQ(ladder.reason, "structure: bicycle: it leaves no more than the sensors do");
+  EXPECT_EQ(ladder.reason, "structure: bicycle: it leaves no more than rounding does");
   EXPECT_NEAR(value_of(ladder, DriveUnknown::kCf) / family_car().C_f, 1.0, 1e-3);
 }
 
