@@ -303,11 +303,11 @@ VehicleTrajectory simulate(const BicycleModel<double, Tyre>& start, Driver& driv
   const double u = options.speed;
   {
     // The linear bicycle at the start: two states.
-    constexpr double kStep = 1e-6;
-    const auto dv = model.rates(kStep, 0.0, 0.0, u), dr = model.rates(0.0, kStep, 0.0, u);
+    constexpr double kDifference = 1e-6;
+    const auto dv = model.rates(kDifference, 0.0, 0.0, u), dr = model.rates(0.0, kDifference, 0.0, u);
     Eigen::MatrixXd matrix(2, 2);
     matrix << dv.dv, dr.dv, dv.dr, dr.dr;
-    internal::check_step(options.step, internal::fastest_eigenvalue(matrix / kStep));
+    internal::check_step(options.step, internal::fastest_eigenvalue(matrix / kDifference));
   }
   const internal::StepPlan plan = internal::plan_steps(options);
 
