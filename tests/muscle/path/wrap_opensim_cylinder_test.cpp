@@ -48,18 +48,21 @@ TEST(WrapCylinderAsOpenSim, EndsWhereTheCylinderEnds) {
   EXPECT_FALSE(at_height(-0.51 * kLength));
 }
 
-// Both ends on the far side of the active quadrant: the path goes over the top, the long way round.
+// Both ends on the far side of the active quadrant: the path goes over the top, the long way round; of ends that lie
+// close together by more than half a turn.
 TEST(WrapCylinderAsOpenSim, AQuadrantSendsThePathTheLongWayRound) {
-  const Vector3d p(0.05, -0.03, 0.0), q(-0.05, -0.03, 0.0);
-  EXPECT_FALSE(around(p, q).wraps()) << "the straight line passes below";
-  const OpenSimWrap over = around(p, q, {.axis = 1, .sign = 1});
-  EXPECT_EQ(over.action, OpenSimWrapAction::kWrapped);
-  EXPECT_NEAR(whole_length(over, p, q), wrap(WrapCylinder{kRadius, 0.5 * kLength, {1, 1}}, p, q).length, 1e-12);
-  // Symmetric, by the closed form: from the tangent point of p over the top to that of q.
-  const double distance = std::hypot(0.05, 0.03);
-  const double half_angle = kPi - std::atan2(0.05, 0.03) - std::acos(kRadius / distance);
-  EXPECT_NEAR(over.surface_length, 2.0 * kRadius * half_angle, 1e-12);
-  EXPECT_FALSE(around(p, q, {.axis = 1, .sign = -1}).wraps()) << "that side is where the path is";
+  for (const double x : {0.05, 0.01}) {
+    const Vector3d p(x, -0.03, 0.0), q(-x, -0.03, 0.0);
+    EXPECT_FALSE(around(p, q).wraps()) << "the straight line passes below";
+    const OpenSimWrap over = around(p, q, {.axis = 1, .sign = 1});
+    EXPECT_EQ(over.action, OpenSimWrapAction::kWrapped);
+    EXPECT_NEAR(whole_length(over, p, q), wrap(WrapCylinder{kRadius, 0.5 * kLength, {1, 1}}, p, q).length, 1e-12);
+    // Symmetric, by the closed form: from the tangent point of p over the top to that of q.
+    const double half_angle = kPi - std::atan2(x, 0.03) - std::acos(kRadius / std::hypot(x, 0.03));
+    EXPECT_NEAR(over.surface_length, 2.0 * kRadius * half_angle, 1e-12);
+    EXPECT_EQ(half_angle > 0.5 * kPi, x == 0.01);
+    EXPECT_FALSE(around(p, q, {.axis = 1, .sign = -1}).wraps()) << "that side is where the path is";
+  }
 }
 
 // No path around a cylinder is shorter than the geodesic; OpenSim's approximation is near it, and nearer once its
