@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tests/support/counting_new.hpp"
+#include "tests/vehicle/model/moments.hpp"
 #include "veridyn/vehicle/simulation/stepped_drive.hpp"
 #include "veridyn/vehicle/simulation/vehicle_simulation.hpp"
 #include "veridyn/vehicle/tyre/linear_tyre.hpp"
@@ -28,6 +29,9 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
   longitudinal.longitudinal.emplace();
   const FourWheelModel<double, LinearTyre<double>> constant_speed(p, {tyre, tyre, tyre, tyre});
   const FourWheelModel<double, LinearTyre<double>> driven(p, {tyre, tyre, tyre, tyre}, longitudinal);
+  const LinearTyre<double> trailing{.stiffness = p.C_f, .pneumatic_trail = 0.03};
+  const FourWheelModel<double, LinearTyre<double>> guided(p, {trailing, trailing, trailing, trailing},
+                                                          testing::every_option());
   const BicycleModel<double, LinearTyre<double>> bicycle{p, tyre, tyre};
   Slalom driver;
   const Waves road;
@@ -42,6 +46,7 @@ TEST(VehicleSimulation, DoesNotAllocateInItsLoop) {
   const auto check = [&](const auto& run) { EXPECT_EQ(allocated(run, 1.0), allocated(run, 4.0)); };
   check([&](const SimulationOptions& o) { return simulate(constant_speed, driver, &road, o, silent); });
   check([&](const SimulationOptions& o) { return simulate(driven, driver, &road, o, silent); });
+  check([&](const SimulationOptions& o) { return simulate(guided, driver, &road, o, silent); });
   check([&](const SimulationOptions& o) { return simulate(bicycle, driver, o, silent); });
 }
 
