@@ -72,6 +72,7 @@ int sensitivity_aircraft(const StudyRun& run);
 int sensitivity_vehicle(const StudyRun& run);
 int sensitivity_muscle(const StudyRun& run);
 int export_aircraft(const StudyRun& run);
+int export_vehicle(const StudyRun& run);
 int scale_vehicle(const StudyRun& run);
 int cue_platform(const StudyRun& run);
 

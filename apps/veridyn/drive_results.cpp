@@ -18,6 +18,7 @@
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
+#include "veridyn/vehicle/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
@@ -76,6 +77,8 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
     Vehicle identified;
     identified.name = drive.study.subject_name;
     identified.parameters = id.identified;
+    if (id.verdict != estimation::GroupVerdict::kRejected)
+      identified = estimated_vehicle(std::move(identified), id.best()->parameters);
     folder.write("subject.toml", estimation::graded_toml(write_vehicle_toml(identified), analysis.estimate.judgement));
   }
   report::DriveReportContext context{.program = program_name()};

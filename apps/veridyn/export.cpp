@@ -1,4 +1,4 @@
-// veridyn export STUDY: the subject's model for other programs: JSON, TOML, CSV, JSBSim.
+// veridyn export STUDY: the subject's model for other programs; of an aircraft JSON, TOML, CSV, JSBSim.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
+#include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 
@@ -47,6 +48,8 @@ int export_aircraft(const StudyRun& run) {
     subject = aircraft::estimated_subject(subject, *estimate, file);
   }
   const std::string& format = run.arguments.text("--format");
+  if (format == "tir")
+    throw InputError(run.path.string(), "--format tir is for vehicles; an aircraft has json, toml, csv and jsbsim");
   const auto desired = [&](const char* name) { return format == "all" || format == name; };
   if (desired("json")) folder.write("model.json", aircraft::to_json(subject, estimate ? &*estimate : nullptr));
   // What was graded says for which purposes its numbers may be used.
@@ -70,7 +73,7 @@ int export_aircraft(const StudyRun& run) {
 
 Command export_command() {
   return {.name = "export",
-          .summary = "the model for other programs: JSON, TOML, CSV, JSBSim XML",
+          .summary = "the model for other programs: TOML, CSV; of an aircraft JSON, JSBSim XML; of a vehicle .tir",
           .arguments = {{.name = "STUDY", .help = "study, or the subject.toml of an identification", .required = true},
                         {.name = "--estimate-file",
                          .help = "take the parameters from this estimate.json",
@@ -79,7 +82,7 @@ Command export_command() {
                         {.name = "--format",
                          .help = "what to write",
                          .value = "all",
-                         .choices = {"all", "json", "toml", "csv", "jsbsim"}}},
+                         .choices = {"all", "json", "toml", "csv", "jsbsim", "tir"}}},
           .default_out = "out/export",
           .example = "veridyn export study.toml --estimate-file out/identify/estimate.json --format jsbsim",
           .run = [](const Arguments& arguments) { return run_on_study("export", arguments); }};

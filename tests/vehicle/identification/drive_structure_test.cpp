@@ -69,9 +69,19 @@ TEST(DriveStructure, TakesCorrelatedSamplesForFewer) {
 
 TEST(DriveStructure, TakesNothingThatPredictsTheHoldoutWorse) {
   std::vector<TriedStructure> tried = {fit(DriveStructure::kBicycle, 0.0), fit(DriveStructure::kRoll, -1000.0)};
+  tried[1].holdout_samples = 20000.0;
   tried[1].holdout_misfit = tried[0].holdout_misfit + 0.019;
   EXPECT_EQ(choose_structure(tried), 1U);
   tried[1].holdout_misfit = tried[0].holdout_misfit + 0.021;
+  EXPECT_EQ(choose_structure(tried), 0U);
+  // A short hold-out is worse by chance: 1000 over four times 5000.
+  tried[1].holdout_samples = 5000.0;
+  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.049;
+  EXPECT_EQ(choose_structure(tried), 1U);
+  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.051;
+  EXPECT_EQ(choose_structure(tried), 0U);
+  tried[1].holdout_samples = 10.0;
+  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.101;
   EXPECT_EQ(choose_structure(tried), 0U);
   // Without a hold-out the likelihood decides alone.
   tried[0].holdout_misfit = tried[1].holdout_misfit = kNaN;

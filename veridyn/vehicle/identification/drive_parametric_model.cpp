@@ -63,7 +63,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kMu:
       return {0.02, 5.0};
     case DriveUnknown::kShape:
-      return {0.8, 2.5};
+      return {1.0, 1.99};
     case DriveUnknown::kCurvature:
       return {-10.0, 1.0};
     case DriveUnknown::kRollGradient:

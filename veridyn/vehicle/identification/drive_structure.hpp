@@ -56,6 +56,7 @@ struct TriedStructure {
   double log_prior_volume = 0.0;
   double inflation = 1.0;        ///< of variances by the residual's autocorrelation: samples that say what one would
   double holdout_misfit = kNaN;  ///< sum of the logarithms of the rms of all outputs' residuals on the hold-out
+  double holdout_samples = 0.0;  ///< of each output
   double holdout_rmse = kNaN;    ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
 };
@@ -78,8 +79,10 @@ struct StructureDoubt {
 /// divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20 is exceeded by chance once in
 /// 2000 times (four unknowns).
 inline constexpr double kLikelier = 10.0;
-/// And predicts the hold-out no worse than by this, in the logarithm of all residuals together.
+/// And predicts the hold-out no worse than by this, in the logarithm of all residuals together; or by a quarter of what
+/// it gains for each sample of the hold-out, up to `kMostWorse`: a short hold-out is worse by chance.
 inline constexpr double kNoWorse = 0.02;
+inline constexpr double kMostWorse = 0.1;
 
 /// Which structure to take: from the simplest upward as long as a later one is likelier by `kLikelier`, predicts no
 /// worse and has none of its own unknowns at a bound. The first where none is usable.

@@ -72,7 +72,10 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (problem.segments.holdout.empty() || progress.interrupted()) return out;
   const DriveValidation there = predict_drive(problem.signals, problem.segments.holdout, problem.start,
                                               problem.options.model, {fit.raw.theta, {}}, progress);
-  if (const estimation::PredictedQuantity* yaw_rate = there.find("yaw_rate")) out.holdout_rmse = yaw_rate->fit.rmse;
+  if (const estimation::PredictedQuantity* yaw_rate = there.find("yaw_rate")) {
+    out.holdout_rmse = yaw_rate->fit.rmse;
+    out.holdout_samples = static_cast<double>(yaw_rate->fit.count);
+  }
   out.holdout_misfit = 0.0;
   for (const estimation::OutputFit& output : fit.raw.outputs)
     if (const estimation::PredictedQuantity* q = there.find(output.name)) out.holdout_misfit += std::log(q->fit.rmse);

@@ -356,6 +356,7 @@ std::string write_vehicle_toml(const Vehicle& vehicle) {
     }
   }
   if (vehicle.aligning_moment) text += "aligning_moment = true\n";
+  if (vehicle.relaxation_length > 0.0) text += fmt::format("relaxation_length = {}  # m\n", vehicle.relaxation_length);
   if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) {
     if (!vehicle.inputs.empty()) {
       text += "[subject.tyres]\n";
@@ -364,8 +365,15 @@ std::string write_vehicle_toml(const Vehicle& vehicle) {
     }
   } else {
     text += "tyre = " + quoted(vehicle.tyre_text) + "\n";
-    if (const double trail = pneumatic_trail(vehicle.tyres); trail != 0.0)
-      text += fmt::format("[subject.tyres]\npneumatic_trail = {}\n", trail);
+    const double trail = pneumatic_trail(vehicle.tyres);
+    const auto* curved = std::get_if<AxleTyres<SimpleMagicFormulaTyre<double>>>(&vehicle.tyres);
+    if (trail != 0.0 || curved != nullptr) text += "[subject.tyres]\n";
+    if (trail != 0.0) text += fmt::format("pneumatic_trail = {}\n", trail);
+    if (curved != nullptr) {
+      const SimpleMagicFormulaTyre<double>& t = curved->front;
+      text += fmt::format("C = {}  # shape\nE = {}  # curvature\nmu_load = {}\nstiffness_saturation = {}\n", t.C, t.E,
+                          t.mu_load, t.stiffness_saturation);
+    }
   }
   return text + write_suspension_toml(vehicle.suspension_f, vehicle.suspension_r, vehicle.lift);
 }
