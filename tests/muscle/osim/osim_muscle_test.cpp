@@ -19,7 +19,8 @@ Model pendulum(const std::string& forces) {
   return OsimFile::parse(R"xml(<?xml version="1.0"?>
 <OpenSimDocument Version="40000"><Model name="pendulum">
 <Ground name="ground"><WrapObjectSet><objects><WrapCylinder name="drum">
-<translation>0 0 0</translation><radius>0.02</radius><length>0.2</length></WrapCylinder></objects></WrapObjectSet></Ground>
+<translation>0 0 0</translation><radius>0.02</radius><length>0.2</length></WrapCylinder>
+</objects></WrapObjectSet></Ground>
 <BodySet><objects><Body name="rod"><mass>1</mass><mass_center>0 -0.2 0</mass_center>
 <inertia>0.1 0.1 0.1 0 0 0</inertia></Body></objects></BodySet>
 <JointSet><objects><PinJoint name="hinge">
