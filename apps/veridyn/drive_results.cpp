@@ -78,7 +78,7 @@ void write_results(OutputFolder& folder, const PreparedDrive& drive, const Vehic
     identified.name = drive.study.subject_name;
     identified.parameters = id.identified;
     if (id.verdict != estimation::GroupVerdict::kRejected)
-      identified = estimated_vehicle(std::move(identified), id.best()->parameters);
+      identified = estimated_vehicle(std::move(identified), id.best()->parameters, drive.study.identify.model);
     folder.write("subject.toml", estimation::graded_toml(write_vehicle_toml(identified), analysis.estimate.judgement));
   }
   report::DriveReportContext context{.program = program_name()};

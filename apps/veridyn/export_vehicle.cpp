@@ -15,6 +15,7 @@
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/tyre/tir_writer.hpp"
 
 namespace veridyn::app {
@@ -67,7 +68,8 @@ int export_vehicle(const StudyRun& run) {
   if (!file.empty()) {
     estimate = io::read_estimate(file);
     if (estimate->find("C_f") == nullptr) throw InputError(file, "is not an estimate of a vehicle: it has no C_f");
-    vehicle = estimated_vehicle(std::move(vehicle), estimate->parameters);
+    const VehicleIdentifyOptions options = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
+    vehicle = estimated_vehicle(std::move(vehicle), estimate->parameters, options.model);
   }
   const std::string& format = run.arguments.text("--format");
   const auto desired = [&](const char* name) { return format == "all" || format == name; };

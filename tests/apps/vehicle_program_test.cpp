@@ -136,6 +136,39 @@ TEST_F(VehicleProgram, RollOfTheBodyIsNotTakenForTheTyres) {
   EXPECT_EQ(found, truth.size());
 }
 
+TEST_F(VehicleProgram, ExportsIdentifiedTyresAsFilesThatItDrivesOn) {
+  const std::string friction = study("profile_friction");
+  ASSERT_EQ(run("identify " + friction + " --set identify.profiles=false --quiet" + out()).exit_code, 0);
+  const std::string estimate = (folder_ / "kept.json").string();
+  std::filesystem::copy_file(in_out("estimate.json"), estimate);
+  EXPECT_THAT(read_file(in_out("subject.toml")), HasSubstr("tyre = \"magic formula\"\n[subject.tyres]\nC = "));
+  const Outcome exported = run("export " + friction + " --estimate-file " + estimate + out());
+  ASSERT_EQ(exported.exit_code, 0) << exported.text;
+  for (const char* name : {"subject.toml", "model.csv", "tyre_front.tir", "tyre_rear.tir"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  const std::string tyre = read_file(in_out("tyre_front.tir"));
+  EXPECT_THAT(tyre, HasSubstr("$   C_f = "));
+  EXPECT_THAT(tyre, HasSubstr("PCY1"));
+  for (const char* axle : {"front", "rear"})
+    std::filesystem::copy_file(in_out(std::string("tyre_") + axle + ".tir"), folder_ / (std::string(axle) + ".tir"));
+  const std::string tyres = " --set 'subject.tyres.front=\"" + (folder_ / "front.tir").string() +
+                            "\"' --set 'subject.tyres.rear=\"" + (folder_ / "rear.tir").string() + "\"'";
+  const Outcome driven = run("simulate " + friction + tyres + out());
+  EXPECT_EQ(driven.exit_code, 0) << driven.text;
+}
+
+TEST_F(VehicleProgram, RefusesToExportWhatAVehicleDoesNotHave) {
+  const Outcome linear = run("export " + study("rolling_car") + " --format tir" + out());
+  EXPECT_EQ(linear.exit_code, 2);
+  EXPECT_THAT(linear.text, HasSubstr("has linear tyres, of which there is no .tir"));
+  const Outcome jsbsim = run("export " + study("rolling_car") + " --format jsbsim" + out());
+  EXPECT_EQ(jsbsim.exit_code, 2);
+  EXPECT_THAT(jsbsim.text, HasSubstr("a vehicle has toml, csv and tir"));
+  EXPECT_FALSE(std::filesystem::exists(in_out("subject.toml")));
+  const std::string other = file("other.json", R"({"subject": "x", "method": "OLS", "parameters": []})");
+  EXPECT_EQ(run("export " + study("rolling_car") + " --estimate-file " + other + out()).exit_code, 2);
+}
+
 TEST_F(VehicleProgram, SaysWhichStructureItTookAndWhatTheOthersMakeOfTheDrive) {
   const std::string spoken = " --out " + (folder_ / "out").string();
   const Outcome identified = run("identify " + study("rolling_car") + spoken);

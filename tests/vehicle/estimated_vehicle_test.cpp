@@ -30,18 +30,24 @@ Vehicle car() {
 TEST(EstimatedVehicle, HasTheTyresOfTheStructureThatWasIdentified) {
   const std::vector<estimation::Parameter> linear{identified("C_f", 61000.0), identified("C_r", 72000.0),
                                                   identified("I_z", 2100.0)};
-  Vehicle vehicle = estimated_vehicle(car(), linear);
+  Vehicle vehicle = estimated_vehicle(car(), linear, {});
   EXPECT_EQ(vehicle.parameters.I_z, 2100.0);
   EXPECT_EQ(std::get<AxleTyres<LinearTyre<double>>>(vehicle.tyres).rear.stiffness, 72000.0);
   std::vector<estimation::Parameter> saturating = linear;
   saturating.push_back(identified("mu", 0.9));
   saturating.push_back(identified("relaxation_length", 0.35));
-  vehicle = estimated_vehicle(car(), saturating);
+  vehicle = estimated_vehicle(car(), saturating, {});
   EXPECT_EQ(std::get<AxleTyres<FialaTyre<double>>>(vehicle.tyres).front.mu, 0.9);
   EXPECT_EQ(vehicle.relaxation_length, 0.35);
+  DriveModelOptions held;
+  held.tyre = DriveTyre::kMagicFormula;
+  held.start[DriveUnknown::kShape] = 1.35;
+  vehicle = estimated_vehicle(car(), saturating, held);
+  EXPECT_EQ(std::get<AxleTyres<SimpleMagicFormulaTyre<double>>>(vehicle.tyres).front.C, 1.35);
   saturating.push_back(identified("C", 1.4));
   saturating.push_back(identified("E", -0.3));
-  vehicle = estimated_vehicle(car(), saturating);
+  saturating.back().status = estimation::ParameterStatus::kNotExcited;  // as its prior has it, and a part of the curve
+  vehicle = estimated_vehicle(car(), saturating, {});
   const auto& tyres = std::get<AxleTyres<SimpleMagicFormulaTyre<double>>>(vehicle.tyres);
   EXPECT_EQ(tyres.rear.stiffness, 72000.0);
   EXPECT_EQ(tyres.front.C, 1.4);
@@ -53,7 +59,7 @@ TEST(EstimatedVehicle, HasTheTyresOfTheStructureThatWasIdentified) {
 TEST(EstimatedVehicle, KeepsWhatWasNotExcited) {
   std::vector<estimation::Parameter> parameters{identified("C_f", 61000.0), identified("a", 1.3)};
   parameters[0].status = estimation::ParameterStatus::kNotExcited;
-  const Vehicle vehicle = estimated_vehicle(car(), parameters);
+  const Vehicle vehicle = estimated_vehicle(car(), parameters, {});
   EXPECT_EQ(vehicle.parameters.C_f, car().parameters.C_f);
   EXPECT_EQ(vehicle.parameters.a, 1.3);
   EXPECT_NEAR(vehicle.parameters.b, 1.4, 1e-12);
@@ -69,7 +75,7 @@ TEST(EstimatedVehicle, IsReadFromItsTomlAsItIs) {
                                                       identified("C", 1.4),
                                                       identified("E", -0.3),
                                                       identified("relaxation_length", 0.35)};
-  const Vehicle vehicle = estimated_vehicle(car(), parameters);
+  const Vehicle vehicle = estimated_vehicle(car(), parameters, {});
   const Study study = Study::parse(write_vehicle_toml(vehicle), "subject.toml");
   const Vehicle read = read_vehicle(study.root().table("subject"), VehicleNeeds::kBicycle);
   EXPECT_EQ(read.relaxation_length, 0.35);

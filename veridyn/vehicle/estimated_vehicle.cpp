@@ -22,14 +22,17 @@ AxleTyres<Tyre> tyres_of(const VehicleParameters<double>& p) {
 
 }  // namespace
 
-Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter> parameters) {
+Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter> parameters,
+                          const DriveModelOptions& model) {
+  const auto take_fitted = [&](const char* name, double& to) {
+    const estimation::Parameter* p = estimation::find_parameter(parameters, name);
+    if (p == nullptr || !std::isfinite(p->value)) return false;
+    to = p->value;
+    return true;
+  };
   const auto take = [&](const char* name, double& to) {
-    for (const estimation::Parameter& p : parameters) {
-      if (p.name != name || p.status == estimation::ParameterStatus::kNotExcited || !std::isfinite(p.value)) continue;
-      to = p.value;
-      return true;
-    }
-    return false;
+    const estimation::Parameter* p = estimation::find_parameter(parameters, name);
+    return p != nullptr && p->status != estimation::ParameterStatus::kNotExcited && take_fitted(name, to);
   };
   VehicleParameters<double>& p = vehicle.parameters;
   const double wheelbase = p.wheelbase();
@@ -37,10 +40,11 @@ Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter
   take("I_z", p.I_z);
   if (take("a", p.a)) p.b = wheelbase - p.a;
   take("relaxation_length", vehicle.relaxation_length);
-  double C = 0.0, E = 0.0;
-  const bool limited = take("mu", p.mu);
-  if (limited && take("C", C)) {
-    take("E", E);
+  double C = model.start[DriveUnknown::kShape], E = model.start[DriveUnknown::kCurvature];
+  const bool limited = take_fitted("mu", p.mu);
+  const bool has_shape = take_fitted("C", C) || model.tyre == DriveTyre::kMagicFormula;
+  if (limited && has_shape) {
+    take_fitted("E", E);
     const PerWheel<double> load = static_loads(p, kGravity);
     auto tyres = tyres_of<SimpleMagicFormulaTyre<double>>(p);
     tyres.front.nominal_load = load[kFrontLeft];
