@@ -65,16 +65,17 @@ TEST(RollingCars, ADriveGivesTheStiffnessesOfACarThatLeans) {
 }
 
 // Tyres that lag hide in the noise of a gentle drive: taken as if they did not, I_z came out 5 to 8 % high beyond its
-// interval. Here the data leave open whether they do, and the intervals say so.
+// interval. Here they are probable, but predict the hold-out worse: it stays open whether they lag, and the intervals
+// say so.
 TEST(RollingCars, AGentleDriveSaysWhatItLeavesOpenOfTheStructure) {
-  const VehicleStudy study = testing::rolling_drive(testing::rolling_car(1), CarTyre::kLinear, 2, 21);
+  const VehicleStudy study = testing::rolling_drive(testing::rolling_car(1), CarTyre::kLinear, 2, 22);
   const testing::IdentifiedDrive drive = testing::identified(study);
   ASSERT_FALSE(drive.refused) << drive.message;
   const VehicleIdentification& found = drive.analysis.identification;
   ASSERT_TRUE(has_roll(found.structure));
   ASSERT_FALSE(found.structure_doubts.empty());
-  EXPECT_GT(found.structure_doubts[0].probability, 0.05);
-  EXPECT_LT(found.structure_doubts[0].probability, 0.95);
+  EXPECT_EQ(found.structure_doubts[0].structure, DriveStructure::kRelaxation);
+  EXPECT_GT(found.structure_doubts[0].probability, 0.5);
   const estimation::Parameter* I_z = found.best()->find("I_z");
   EXPECT_LE(I_z->low95, study.truth.at("I_z"));
   EXPECT_GE(I_z->high95, study.truth.at("I_z"));

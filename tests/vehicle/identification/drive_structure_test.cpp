@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace veridyn::vehicle {
@@ -69,19 +70,9 @@ TEST(DriveStructure, TakesCorrelatedSamplesForFewer) {
 
 TEST(DriveStructure, TakesNothingThatPredictsTheHoldoutWorse) {
   std::vector<TriedStructure> tried = {fit(DriveStructure::kBicycle, 0.0), fit(DriveStructure::kRoll, -1000.0)};
-  tried[1].holdout_samples = 20000.0;
   tried[1].holdout_misfit = tried[0].holdout_misfit + 0.019;
   EXPECT_EQ(choose_structure(tried), 1U);
   tried[1].holdout_misfit = tried[0].holdout_misfit + 0.021;
-  EXPECT_EQ(choose_structure(tried), 0U);
-  // A short hold-out is worse by chance: 1000 over four times 5000.
-  tried[1].holdout_samples = 5000.0;
-  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.049;
-  EXPECT_EQ(choose_structure(tried), 1U);
-  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.051;
-  EXPECT_EQ(choose_structure(tried), 0U);
-  tried[1].holdout_samples = 10.0;
-  tried[1].holdout_misfit = tried[0].holdout_misfit + 0.101;
   EXPECT_EQ(choose_structure(tried), 0U);
   // Without a hold-out the likelihood decides alone.
   tried[0].holdout_misfit = tried[1].holdout_misfit = kNaN;
@@ -101,7 +92,7 @@ TEST(DriveStructure, PassesOverFitsThatAreNotUsable) {
   tried[0].usable = tried[1].usable = false;
   tried[0].negative_log_likelihood = tried[1].negative_log_likelihood = kNaN;
   tried[2].negative_log_likelihood = 0.0;
-  tried[3].negative_log_likelihood = -kNotQuite;
+  tried[3].negative_log_likelihood = -2.0;
   EXPECT_EQ(choose_structure(tried), 2U);
   tried[3].negative_log_likelihood = -kJust;
   EXPECT_EQ(choose_structure(tried), 3U);
@@ -117,6 +108,45 @@ TEST(DriveStructure, NamesWhatEachHas) {
   EXPECT_FALSE(has_roll(DriveStructure::kBicycle) || has_roll(DriveStructure::kScaledAccel));
   EXPECT_TRUE(has_roll(DriveStructure::kRoll) && has_roll(DriveStructure::kRelaxation));
   EXPECT_TRUE(has_relaxation(DriveStructure::kRelaxation) && !has_relaxation(DriveStructure::kRoll));
+}
+
+// Every tyre lags: beyond roll a probability of 95 % is enough, below roll it is not.
+TEST(DriveStructure, TakesWhatIsProbableBeyondRoll) {
+  std::vector<TriedStructure> tried = {fit(DriveStructure::kRoll, 0.0), fit(DriveStructure::kRelaxation, -3.0)};
+  EXPECT_EQ(choose_structure(tried), 1U);
+  tried[1].negative_log_likelihood = -2.9;
+  EXPECT_EQ(choose_structure(tried), 0U);
+  tried = {fit(DriveStructure::kBicycle, 0.0), fit(DriveStructure::kRoll, -3.0)};
+  EXPECT_EQ(choose_structure(tried), 0U);
+}
+
+TEST(DriveStructure, HasAProbabilityByTheRatioOfEvidences) {
+  const TriedStructure roll = fit(DriveStructure::kRoll, -100.0);
+  TriedStructure relaxing = fit(DriveStructure::kRelaxation, -100.0);
+  EXPECT_DOUBLE_EQ(probability_against(relaxing, roll), 0.5);
+  relaxing.negative_log_likelihood = -102.0;
+  EXPECT_NEAR(probability_against(relaxing, roll), std::exp(2.0) / (1.0 + std::exp(2.0)), 1e-12);
+  // The data narrow what it adds to a tenth of its prior: chance alone would gain it as much as that costs.
+  relaxing.log_prior_volume = -std::log(10.0);
+  EXPECT_NEAR(probability_against(relaxing, roll), 0.1 * std::exp(2.0) / (1.0 + 0.1 * std::exp(2.0)), 1e-12);
+  EXPECT_NEAR(probability_against(relaxing, roll) + probability_against(roll, relaxing), 1.0, 1e-12);
+}
+
+TEST(DriveStructure, IsLessCertainByCorrelatedSamples) {
+  const TriedStructure roll = fit(DriveStructure::kRoll, 0.0);
+  TriedStructure relaxing = fit(DriveStructure::kRelaxation, -6.0);
+  relaxing.inflation = 3.0;
+  EXPECT_NEAR(probability_against(roll, relaxing), 1.0 / (1.0 + std::exp(2.0)), 1e-12);
+  EXPECT_NEAR(probability_against(relaxing, roll), std::exp(2.0) / (1.0 + std::exp(2.0)), 1e-12);
+}
+
+TEST(DriveStructure, HasNoProbabilityWhereItWasNotFittedOrIsTheSimplerOne) {
+  const TriedStructure roll = fit(DriveStructure::kRoll, 0.0);
+  TriedStructure other = fit(DriveStructure::kRelaxation, -5.0);
+  other.at_bound = true;
+  EXPECT_EQ(probability_against(other, roll), 0.0);
+  other.at_bound = other.usable = false;
+  EXPECT_EQ(probability_against(other, roll), 0.0);
 }
 
 }  // namespace

@@ -11,10 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TriedStructure tried_fit(DriveStructure structure, double negative_log_likelihood) {
-  return {.structure = structure, .usable = true, .negative_log_likelihood = negative_log_likelihood};
-}
-
 /// C_f and I_z with independent standard errors.
 VehicleEstimate estimate(double C_f, double I_z) {
   const auto parameter = [](const char* name, double value, double sigma) {
@@ -32,34 +28,6 @@ VehicleEstimate estimate(double C_f, double I_z) {
   e.degrees_of_freedom = 1e4;
   for (estimation::Parameter& p : e.parameters) estimation::set_interval(p, e.degrees_of_freedom);
   return e;
-}
-
-TEST(StructureDoubt, ProbabilityIsTheRatioOfEvidences) {
-  const TriedStructure roll = tried_fit(DriveStructure::kRoll, -100.0);
-  TriedStructure relaxing = tried_fit(DriveStructure::kRelaxation, -100.0);
-  EXPECT_DOUBLE_EQ(probability_against(relaxing, roll), 0.5);
-  relaxing.negative_log_likelihood = -102.0;
-  EXPECT_NEAR(probability_against(relaxing, roll), std::exp(2.0) / (1.0 + std::exp(2.0)), 1e-12);
-  // The data narrow what it adds to a tenth of its prior: chance alone would gain it as much as that costs.
-  relaxing.log_prior_volume = -std::log(10.0);
-  EXPECT_NEAR(probability_against(relaxing, roll), 0.1 * std::exp(2.0) / (1.0 + 0.1 * std::exp(2.0)), 1e-12);
-  EXPECT_NEAR(probability_against(relaxing, roll) + probability_against(roll, relaxing), 1.0, 1e-12);
-}
-
-TEST(StructureDoubt, CorrelatedSamplesSayLessOfTheStructure) {
-  const TriedStructure roll = tried_fit(DriveStructure::kRoll, 0.0);
-  TriedStructure relaxing = tried_fit(DriveStructure::kRelaxation, -6.0);
-  relaxing.inflation = 3.0;
-  EXPECT_NEAR(probability_against(relaxing, roll), std::exp(2.0) / (1.0 + std::exp(2.0)), 1e-12);
-}
-
-TEST(StructureDoubt, ThereIsNoneOfWhatWasNotFittedOrIsTheSimplerOne) {
-  const TriedStructure roll = tried_fit(DriveStructure::kRoll, 0.0);
-  TriedStructure other = tried_fit(DriveStructure::kRelaxation, -5.0);
-  other.at_bound = true;
-  EXPECT_EQ(probability_against(other, roll), 0.0);
-  other.at_bound = other.usable = false;
-  EXPECT_EQ(probability_against(other, roll), 0.0);
 }
 
 TEST(StructureDoubt, AnIntervalReachesToWhatTheOtherStructureGives) {

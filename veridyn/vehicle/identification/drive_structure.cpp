@@ -1,8 +1,16 @@
 #include "veridyn/vehicle/identification/drive_structure.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace veridyn::vehicle {
+
+double probability_against(const TriedStructure& other, const TriedStructure& taken) {
+  if (!other.usable || (other.at_bound && other.structure > taken.structure)) return 0.0;
+  const double gain = taken.negative_log_likelihood - other.negative_log_likelihood;
+  // Of the richer one, which leaves less to be correlated.
+  const double inflation = (other.structure > taken.structure ? other : taken).inflation;
+  return 1.0 / (1.0 + std::exp(-gain / inflation - (other.log_prior_volume - taken.log_prior_volume)));
+}
 
 std::size_t choose_structure(std::span<const TriedStructure> tried) {
   std::size_t chosen = 0;
@@ -11,9 +19,10 @@ std::size_t choose_structure(std::span<const TriedStructure> tried) {
   for (std::size_t i = chosen + 1; i < tried.size(); ++i) {
     if (!tried[i].usable || tried[i].at_bound) continue;
     const double gain = tried[chosen].negative_log_likelihood - tried[i].negative_log_likelihood;
-    const bool likelier = gain > kLikelier * tried[i].inflation;
-    const double allowed = std::clamp(0.25 * gain / std::max(1.0, tried[i].holdout_samples), kNoWorse, kMostWorse);
-    const bool worse = tried[i].holdout_misfit > tried[chosen].holdout_misfit + allowed;
+    const bool likelier =
+        gain > kLikelier * tried[i].inflation ||
+        (has_roll(tried[chosen].structure) && probability_against(tried[i], tried[chosen]) > kProbable);
+    const bool worse = tried[i].holdout_misfit > tried[chosen].holdout_misfit + kNoWorse;
     if (likelier && !worse) chosen = i;
   }
   return chosen;

@@ -56,7 +56,6 @@ struct TriedStructure {
   double log_prior_volume = 0.0;
   double inflation = 1.0;        ///< of variances by the residual's autocorrelation: samples that say what one would
   double holdout_misfit = kNaN;  ///< sum of the logarithms of the rms of all outputs' residuals on the hold-out
-  double holdout_samples = 0.0;  ///< of each output
   double holdout_rmse = kNaN;    ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
 };
@@ -75,17 +74,24 @@ struct StructureDoubt {
   std::vector<std::pair<std::string, double>> difference = {};
 };
 
+/// Probability of a structure against another, both as likely before the data and fitted under one weighing of the
+/// residual: the ratio of their evidences (Laplace's approximation; MacKay 1992, Neural Computation 4(3)), in which an
+/// unknown that it adds costs what the data narrow its prior by. 0 where it has no usable fit, and for a richer one at
+/// a bound, where it is the simpler one.
+[[nodiscard]] double probability_against(const TriedStructure& other, const TriedStructure& taken);
+
 /// A richer structure is taken where it makes the data likelier by more than this (the log of the likelihoods' ratio,
 /// divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20 is exceeded by chance once in
 /// 2000 times (four unknowns).
 inline constexpr double kLikelier = 10.0;
-/// And predicts the hold-out no worse than by this, in the logarithm of all residuals together; or by a quarter of what
-/// it gains for each sample of the hold-out, up to `kMostWorse`: a short hold-out is worse by chance.
+/// Beyond roll, where residuals are whitened and what is added is known to exist, this probability is enough.
+inline constexpr double kProbable = 0.95;
+/// And predicts the hold-out no worse than by this, in the logarithm of all residuals together.
 inline constexpr double kNoWorse = 0.02;
-inline constexpr double kMostWorse = 0.1;
 
-/// Which structure to take: from the simplest upward as long as a later one is likelier by `kLikelier`, predicts no
-/// worse and has none of its own unknowns at a bound. The first where none is usable.
+/// Which structure to take: from the simplest upward as long as a later one is likelier by `kLikelier` or, beyond roll,
+/// has a probability of `kProbable` against it, predicts no worse and has none of its own unknowns at a bound. The
+/// first where none is usable.
 [[nodiscard]] std::size_t choose_structure(std::span<const TriedStructure> tried);
 
 }  // namespace veridyn::vehicle

@@ -24,15 +24,6 @@ bool is_shown(const estimation::Parameter& p) { return p.name == "C_f" || p.name
 
 }  // namespace
 
-double probability_against(const TriedStructure& other, const TriedStructure& taken) {
-  // At a bound the richer one is the simpler one.
-  if (!other.usable || (other.at_bound && other.structure > taken.structure)) return 0.0;
-  const double gain = taken.negative_log_likelihood - other.negative_log_likelihood;
-  const double log_ratio =
-      gain / std::max(other.inflation, taken.inflation) + (other.log_prior_volume - taken.log_prior_volume);
-  return 1.0 / (1.0 + std::exp(-log_ratio));
-}
-
 StructureDoubt structure_doubt(DriveStructure structure, double probability, const VehicleEstimate& other,
                                const VehicleEstimate& taken) {
   StructureDoubt doubt{.structure = structure, .probability = probability};

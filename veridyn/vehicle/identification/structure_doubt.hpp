@@ -8,13 +8,7 @@
 
 namespace veridyn::vehicle {
 
-/// Probability of a structure against the one that was taken, both as likely before the data and fitted under one
-/// weighing of the residual: the ratio of their evidences (Laplace's approximation; MacKay 1992, Neural Computation
-/// 4(3)), in which an unknown that it adds costs what the data narrow its prior by. 0 where it has no usable fit or one
-/// at a bound, where it is the simpler one.
-[[nodiscard]] double probability_against(const TriedStructure& other, const TriedStructure& taken);
-
-/// `fit` of another structure against `taken`: by how much it moves what both have.
+/// By how much the estimate of another structure moves what both have.
 [[nodiscard]] StructureDoubt structure_doubt(DriveStructure structure, double probability, const VehicleEstimate& other,
                                              const VehicleEstimate& taken);
 

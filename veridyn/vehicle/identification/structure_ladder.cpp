@@ -56,10 +56,11 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.log_prior_volume = log_prior_volume(problem, fit);
   out.inflation = inflation_of(fit.raw);
-  std::vector<DriveUnknown> added{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
-                                  DriveUnknown::kRollDamping};
+  // At these bounds it is a simpler one. Where roll's frequency or damping end at theirs in few steps the weighed fit
+  // may not; if it does, that is judged.
   const DriveStructure structure = problem.options.model.structure;
-  added.push_back(saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength);
+  const std::array added{DriveUnknown::kRollGradient,
+                         saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength};
   out.at_bound = std::ranges::any_of(added, [&](DriveUnknown u) {
     return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
   });
@@ -72,10 +73,7 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   if (problem.segments.holdout.empty() || progress.interrupted()) return out;
   const DriveValidation there = predict_drive(problem.signals, problem.segments.holdout, problem.start,
                                               problem.options.model, {fit.raw.theta, {}}, progress);
-  if (const estimation::PredictedQuantity* yaw_rate = there.find("yaw_rate")) {
-    out.holdout_rmse = yaw_rate->fit.rmse;
-    out.holdout_samples = static_cast<double>(yaw_rate->fit.count);
-  }
+  if (const estimation::PredictedQuantity* yaw_rate = there.find("yaw_rate")) out.holdout_rmse = yaw_rate->fit.rmse;
   out.holdout_misfit = 0.0;
   for (const estimation::OutputFit& output : fit.raw.outputs)
     if (const estimation::PredictedQuantity* q = there.find(output.name)) out.holdout_misfit += std::log(q->fit.rmse);
@@ -176,6 +174,7 @@ class Climb {
     fits_[roll] = refined(std::move(fits_[roll]), given(roll), equation_error_, progress_);
     if (!fits_[roll].raw.usable()) return;
     weighing_ = fits_[roll].whitening;
+    ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
     const double unweighed = ladder_.tried[roll].negative_log_likelihood;
     const double weighed = fits_[roll].raw.negative_log_likelihood;
     bool relaxes = false;
@@ -187,7 +186,6 @@ class Climb {
       ladder_.tried.back().negative_log_likelihood += unweighed - weighed;
       relaxes = relaxes || taken().structure == DriveStructure::kRelaxation;
     }
-    ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
   }
 
   /// What others that compare with the chosen one leave in doubt.
