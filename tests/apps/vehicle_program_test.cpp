@@ -186,6 +186,12 @@ TEST_F(VehicleProgram, SaysWhichStructureItTookAndWhatTheOthersMakeOfTheDrive) {
   EXPECT_EQ(tried[2]["parameters"][2]["name"], "I_z");
   // Three standard errors of this short drive.
   EXPECT_NEAR(tried[2]["parameters"][2]["value"], 2350.0, 210.0);
+  const std::string kept = (folder_ / "kept.json").string();
+  std::filesystem::copy_file(in_out("estimate.json"), kept);
+  const Outcome validated =
+      run("validate " + study("rolling_car") + " --seed 9 --set drive.length=20 --estimate-file " + kept + spoken);
+  ASSERT_EQ(validated.exit_code, 0) << validated.text;
+  EXPECT_THAT(validated.text, HasSubstr("structure: roll, as the estimate has it"));
   const Outcome fixed =
       run("identify " + study("rolling_car") + " --set identify.structure=bicycle --set drive.length=20" + spoken);
   ASSERT_EQ(fixed.exit_code, 0) << fixed.text;

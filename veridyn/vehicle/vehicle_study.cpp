@@ -256,6 +256,8 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   out.estimate.parameters = estimate.parameters;
   out.estimate.covariance = estimate.covariance;
   out.estimate.method = estimate.method;
+  out.estimate.structure = to_string(given.options.structure);
+  out.estimate.structure_reason = fmt::format("structure: {}, as the estimate has it", out.estimate.structure);
   return out;
 }
 

@@ -70,7 +70,8 @@ Table trial_table(const std::vector<StructureTrial>& trials) {
                   "Each was fitted to the data of the identification, in few steps, to compare. What it gained is over "
                   "the first; one is taken where it gains more than is needed over the one taken before it, which the "
                   "autocorrelation of its residual raises, and predicts the hold-out no worse. From roll on residuals "
-                  "are whitened, which tells more: gains are on top of roll's. The one that was taken was then fitted "
+                  "are whitened, which tells more: gains are on top of roll's, and a probability of 95 % is enough. "
+                  "The one that was taken was then fitted "
                   "to the end: the table of parameters has its values and intervals.",
               .columns = columns_of(shown),
               .sortable = false};
