@@ -48,6 +48,16 @@ double log_prior_volume(const VehicleProblem& problem, const OutputErrorResult& 
   return sum + L.diagonal().array().log().sum();
 }
 
+/// Whether a fit ended where its structure is a simpler one. Where roll's frequency or damping end at their bounds in
+/// few steps the weighed fit may not; if it does, that is judged.
+bool ends_at_simpler(DriveStructure structure, const OutputErrorResult& fit) {
+  const std::array added{DriveUnknown::kRollGradient,
+                         saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength};
+  return std::ranges::any_of(added, [&](DriveUnknown u) {
+    return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
+  });
+}
+
 /// How a fit does, on its own data and on the hold-out.
 TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit, Progress& progress) {
   TriedStructure out{
@@ -56,14 +66,7 @@ TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.log_prior_volume = log_prior_volume(problem, fit);
   out.inflation = inflation_of(fit.raw);
-  // At these bounds it is a simpler one. Where roll's frequency or damping end at theirs in few steps the weighed fit
-  // may not; if it does, that is judged.
-  const DriveStructure structure = problem.options.model.structure;
-  const std::array added{DriveUnknown::kRollGradient,
-                         saturates(structure) ? DriveUnknown::kMu : DriveUnknown::kRelaxationLength};
-  out.at_bound = std::ranges::any_of(added, [&](DriveUnknown u) {
-    return fit.raw.parameters[static_cast<std::size_t>(u)].status == estimation::ParameterStatus::kAtBound;
-  });
+  out.at_bound = ends_at_simpler(out.structure, fit);
   constexpr std::array kShown{DriveUnknown::kCf, DriveUnknown::kCr, DriveUnknown::kIz};
   for (std::size_t i = 0; i < kShown.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(kShown[i]);
@@ -173,6 +176,10 @@ class Climb {
     progress_.stage("output error, structure: roll, weighed");
     fits_[roll] = refined(std::move(fits_[roll]), given(roll), equation_error_, progress_);
     if (!fits_[roll].raw.usable()) return;
+    if (ends_at_simpler(DriveStructure::kRoll, fits_[roll])) {
+      ladder_.tried[roll].at_bound = true;
+      return;
+    }
     weighing_ = fits_[roll].whitening;
     ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
     const double unweighed = ladder_.tried[roll].negative_log_likelihood;
