@@ -36,7 +36,7 @@ Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter
   };
   VehicleParameters<double>& p = vehicle.parameters;
   const double wheelbase = p.wheelbase();
-  const bool stiff = take("C_f", p.C_f) | take("C_r", p.C_r);
+  const bool stiff_front = take("C_f", p.C_f), stiff_rear = take("C_r", p.C_r);
   take("I_z", p.I_z);
   if (take("a", p.a)) p.b = wheelbase - p.a;
   take("relaxation_length", vehicle.relaxation_length);
@@ -56,7 +56,7 @@ Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter
   } else if (limited) {
     vehicle.tyres = tyres_of<FialaTyre<double>>(p);
     vehicle.tyre_text = "fiala";
-  } else if (stiff) {
+  } else if (stiff_front || stiff_rear) {
     vehicle.tyres = tyres_of<LinearTyre<double>>(p);
     vehicle.tyre_text = "linear";
   }

@@ -68,7 +68,7 @@ TEST(RollingCars, ADriveGivesTheStiffnessesOfACarThatLeans) {
 // interval. Here they are probable, but predict the hold-out worse: it stays open whether they lag, and the intervals
 // say so.
 TEST(RollingCars, AGentleDriveSaysWhatItLeavesOpenOfTheStructure) {
-  const VehicleStudy study = testing::rolling_drive(testing::rolling_car(1), CarTyre::kLinear, 2, 22);
+  const VehicleStudy study = testing::rolling_drive(testing::rolling_car(1), CarTyre::kLinear, 2, 23);
   const testing::IdentifiedDrive drive = testing::identified(study);
   ASSERT_FALSE(drive.refused) << drive.message;
   const VehicleIdentification& found = drive.analysis.identification;

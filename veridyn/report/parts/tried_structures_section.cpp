@@ -68,11 +68,11 @@ Table trial_table(const std::vector<StructureTrial>& trials) {
   Table table{.title = "Structures that were tried",
               .caption =
                   "Each was fitted to the data of the identification, in few steps, to compare. What it gained is over "
-                  "the first; one is taken where it gains more than is needed over the one taken before it, which the "
-                  "autocorrelation of its residual raises, and predicts the hold-out no worse. From roll on residuals "
-                  "are whitened, which tells more: gains are on top of roll's, and a probability of 95 % is enough. "
-                  "The one that was taken was then fitted "
-                  "to the end: the table of parameters has its values and intervals.",
+                  "the first; one is taken where its probability against the one taken before it is above 95 %, up to "
+                  "roll also where it gains more than is needed over that one, which the autocorrelation of its "
+                  "residual raises, and predicts the hold-out no worse. Where roll is likelier the residuals of all "
+                  "are whitened. The one that was "
+                  "taken was then fitted to the end: the table of parameters has its values and intervals.",
               .columns = columns_of(shown),
               .sortable = false};
   for (const StructureTrial& trial : trials) table.rows.push_back(row_of(trial, shown));

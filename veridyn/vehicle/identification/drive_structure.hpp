@@ -48,9 +48,7 @@ struct TriedStructure {
   bool usable = false;
   bool at_bound = false;  ///< one of the unknowns that it adds is at a bound
   std::string message = {};
-  /// Of the identification segments, without a constant. From roll on the residual is whitened: what a structure gains
-  /// there over roll is counted from what roll has without.
-  double negative_log_likelihood = kNaN;
+  double negative_log_likelihood = kNaN;  ///< of the identification segments, without a constant
   /// What priors and the widths of the posterior add to the logarithm of the evidence (Laplace's approximation),
   /// without a constant: only differences between structures count.
   double log_prior_volume = 0.0;
@@ -80,18 +78,17 @@ struct StructureDoubt {
 /// a bound, where it is the simpler one.
 [[nodiscard]] double probability_against(const TriedStructure& other, const TriedStructure& taken);
 
-/// A richer structure is taken where it makes the data likelier by more than this (the log of the likelihoods' ratio,
-/// divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20 is exceeded by chance once in
-/// 2000 times (four unknowns).
-inline constexpr double kLikelier = 10.0;
-/// Beyond roll, where residuals are whitened and what is added is known to exist, this probability is enough.
+/// A richer structure is taken where its probability against the one taken so far is larger than this.
 inline constexpr double kProbable = 0.95;
+/// And up to roll, which a plain bicycle must not be taken for, where it makes the data likelier by more than this (the
+/// log of the likelihoods' ratio, divided by `inflation`): twice it is a chi-square of the added unknowns, of which 20
+/// is exceeded by chance once in 2000 times (four unknowns).
+inline constexpr double kLikelier = 10.0;
 /// And predicts the hold-out no worse than by this, in the logarithm of all residuals together.
 inline constexpr double kNoWorse = 0.02;
 
-/// Which structure to take: from the simplest upward as long as a later one is likelier by `kLikelier` or, beyond roll,
-/// has a probability of `kProbable` against it, predicts no worse and has none of its own unknowns at a bound. The
-/// first where none is usable.
+/// Which structure to take: from the simplest upward as long as a later one is probable enough, up to roll likelier
+/// enough too, predicts no worse and has none of its own unknowns at a bound. The first where none is usable.
 [[nodiscard]] std::size_t choose_structure(std::span<const TriedStructure> tried);
 
 }  // namespace veridyn::vehicle

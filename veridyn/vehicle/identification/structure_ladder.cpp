@@ -128,6 +128,7 @@ class Climb {
       fit(*problem_.options.structure, true);
     } else {
       climb_to_roll();
+      if (takes_roll()) weigh();
       if (takes_roll()) climb_beyond_roll();
       if (!progress_.interrupted()) doubt();
     }
@@ -153,11 +154,17 @@ class Climb {
   void fit(DriveStructure structure, bool relaxes) {
     progress_.stage(fmt::format("output error, structure: {}", to_string(structure)));
     options_.push_back(with_structure(problem_.options, structure, relaxes));
-    const VehicleProblem problem = with_options(problem_, options_.back());
-    fits_.push_back(estimate_by_output_error(problem, equation_error_, search_start_, weighing_,
-                                             SearchEffort::kToCompare, progress_));
-    ladder_.tried.push_back(tried(problem, fits_.back(), progress_));
-    if (fits_.back().raw.usable()) search_start_ = fits_.back().raw.theta;
+    fits_.emplace_back();
+    ladder_.tried.emplace_back();
+    fit_again(fits_.size() - 1);
+  }
+
+  /// The fit of a rung from where the search is, under the filter that there is.
+  void fit_again(std::size_t rung) {
+    fits_[rung] = estimate_by_output_error(given(rung), equation_error_, search_start_, weighing_,
+                                           SearchEffort::kToCompare, progress_);
+    ladder_.tried[rung] = tried(given(rung), fits_[rung], progress_);
+    if (fits_[rung].raw.usable()) search_start_ = fits_[rung].raw.theta;
   }
 
   void climb_to_roll() {
@@ -170,42 +177,37 @@ class Climb {
     }
   }
 
-  /// What tyres do beside rolling, all under the filter of the roll's fit, so that likelihoods compare.
+  /// All so far again, under the filter of the roll's fit: likelihoods of coloured residuals take chance for structure.
+  void weigh() {
+    const std::size_t roll = ladder_.tried.size() - 1;
+    weighing_ = output_error_problem(given(roll), equation_error_).model.whitening(fits_[roll].raw.theta);
+    if (weighing_.empty()) return;
+    progress_.stage("output error, all again with whitened residuals");
+    for (std::size_t rung = 0; rung <= roll && !progress_.interrupted(); ++rung) {
+      if (!fits_[rung].raw.usable()) continue;
+      search_start_ = fits_[rung].raw.theta;
+      fit_again(rung);
+    }
+  }
+
+  /// What tyres do beside rolling.
   void climb_beyond_roll() {
     const std::size_t roll = ladder_.tried.size() - 1;
-    progress_.stage("output error, structure: roll, weighed");
-    fits_[roll] = refined(std::move(fits_[roll]), given(roll), equation_error_, progress_);
-    if (!fits_[roll].raw.usable()) return;
-    if (ends_at_simpler(DriveStructure::kRoll, fits_[roll])) {
-      ladder_.tried[roll].at_bound = true;
-      return;
-    }
-    weighing_ = fits_[roll].whitening;
-    ladder_.tried[roll].log_prior_volume = log_prior_volume(given(roll), fits_[roll]);
-    const double unweighed = ladder_.tried[roll].negative_log_likelihood;
-    const double weighed = fits_[roll].raw.negative_log_likelihood;
     bool relaxes = false;
     for (const DriveStructure structure :
          {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
-      if (saturates(structure)) search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
+      search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
       fit(structure, relaxes);
-      ladder_.tried.back().negative_log_likelihood += unweighed - weighed;
       relaxes = relaxes || taken().structure == DriveStructure::kRelaxation;
     }
   }
 
-  /// What others that compare with the chosen one leave in doubt.
+  /// What the others leave in doubt.
   void doubt() {
     const std::size_t chosen = choose_structure(ladder_.tried);
-    const auto compares = [&](std::size_t other) {
-      const auto weighed = [](const TriedStructure& t) { return has_roll(t.structure); };
-      // The roll's own fit is compared with simpler ones before it is weighed.
-      return other != chosen &&
-             (weighed(ladder_.tried[chosen]) == weighed(ladder_.tried[other]) || !weighed(ladder_.tried[chosen]));
-    };
     for (std::size_t other = 0; other < fits_.size(); ++other) {
-      if (!compares(other)) continue;
+      if (other == chosen) continue;
       const double probability = probability_against(ladder_.tried[other], ladder_.tried[chosen]);
       if (probability > kExcluded)
         ladder_.doubts.push_back(structure_doubt(ladder_.tried[other].structure, probability, fits_[other].estimate,
@@ -219,9 +221,7 @@ class Climb {
     progress_.stage("output error");
     ladder_.model = options_[ladder_.chosen].model;
     ladder_.fit = std::move(fits_[ladder_.chosen]);
-    const bool to_the_end =
-        ladder_.tried[ladder_.chosen].structure == DriveStructure::kRoll && takes_roll() && !problem_.options.structure;
-    if (!to_the_end) ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
+    ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
     ladder_.steer_delay = steer_delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
   }
 
@@ -232,7 +232,7 @@ class Climb {
   std::vector<OutputErrorResult> fits_;
   std::vector<VehicleIdentifyOptions> options_;
   Eigen::VectorXd search_start_;
-  DriveWhitening weighing_;  // empty below roll
+  DriveWhitening weighing_;  // empty until roll is likelier
 };
 
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {

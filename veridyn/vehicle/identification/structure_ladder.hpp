@@ -26,10 +26,10 @@ struct StructureLadder {
 
 /// Fits the structure that the study fixes, or all of them, each from where the one before it ended. Up to roll all are
 /// tried, however little the bicycle leaves: in a gentle drive a stiffness that is a tenth too low leaves no more than
-/// the sensors do. What tyres do beside (relaxation, saturation) is tried where roll is taken, with all residuals
-/// weighed by the filter of the roll's fit. One that is not taken leaves a doubt, by its probability. A recording that
-/// contradicts itself (a failed row) says nothing of the structure: only the bicycle is fitted to it; nor is anything
-/// richer fitted to rounding errors.
+/// the sensors do. Where roll is likelier all are fitted again under the filter that whitens the roll's residual, and
+/// compared by that; if roll is taken still, so is what tyres do beside (relaxation, saturation). One that is not taken
+/// leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
+/// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 
