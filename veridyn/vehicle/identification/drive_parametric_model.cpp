@@ -434,8 +434,7 @@ LinearDrive DriveParametricModel::linearized(double u, const Eigen::VectorXd& th
   const auto outputs = signed_index(compared_.size());
   const double gain = 1.0 / (1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kSteerScale)));
   const double accel_scale = 1.0 + theta(static_cast<Eigen::Index>(DriveUnknown::kAccelYScale));
-  const Parameters<double> shared = theta;
-  return with_model(shared, [&](const auto& model, auto states) -> LinearDrive {
+  return with_model(theta, [&](const auto& model, auto states) -> LinearDrive {
     constexpr int kStates = decltype(states)::value;
     using State = Eigen::Matrix<double, kStates, 1>;
     // There everything is odd in the state: a small step's difference is the derivative.
