@@ -37,10 +37,19 @@ inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> k
 /// As study files and estimates name it.
 [[nodiscard]] constexpr std::string_view to_string(DriveStructure structure) { return kDriveStructureNames[structure]; }
 
+/// Whether its body rolls.
 [[nodiscard]] constexpr bool has_roll(DriveStructure structure) { return structure >= DriveStructure::kRoll; }
+/// Whether the slip of its tyres may lag.
 [[nodiscard]] constexpr bool has_relaxation(DriveStructure structure) {
   return structure >= DriveStructure::kRelaxation;
 }
+
+/// Whether its axles lose force where load moves from one wheel to the other.
+[[nodiscard]] constexpr bool has_load_transfer(DriveStructure structure) {
+  return structure == DriveStructure::kMagicFormula;
+}
+/// Whether its tyres have a friction limit.
+[[nodiscard]] constexpr bool saturates(DriveStructure structure) { return structure >= DriveStructure::kSaturation; }
 
 /// One structure that was fitted to the identification segments and tried on the hold-out.
 struct TriedStructure {
@@ -57,12 +66,6 @@ struct TriedStructure {
   double holdout_rmse = kNaN;    ///< of the predicted yaw rate [rad/s]; NaN without a hold-out
   std::array<double, 3> value{}, sigma{};  ///< C_f, C_r, I_z, before intervals are widened
 };
-
-[[nodiscard]] constexpr bool has_load_transfer(DriveStructure structure) {
-  return structure == DriveStructure::kMagicFormula;
-}
-/// Whether its tyres have a friction limit.
-[[nodiscard]] constexpr bool saturates(DriveStructure structure) { return structure >= DriveStructure::kSaturation; }
 
 /// A structure that the data neither ask for nor exclude, beside the one that is taken.
 struct StructureDoubt {

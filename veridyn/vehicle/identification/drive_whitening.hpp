@@ -12,6 +12,7 @@ namespace veridyn::vehicle {
 ///
 /// The innovations of a steady Kalman filter about driving straight ahead, by speed, on the straight line between.
 struct DriveWhitening {
+  /// At one speed: states x states, states x outputs, outputs x states.
   struct Filter {
     Eigen::MatrixXd transition, gain, output;
   };

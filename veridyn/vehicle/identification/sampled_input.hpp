@@ -10,8 +10,9 @@
 
 namespace veridyn::vehicle {
 
-/// The value of a number with or without derivatives.
+/// The value of a number without derivatives: itself.
 [[nodiscard]] inline double sampled_value(double x) { return x; }
+/// The value of one with derivatives.
 template <int kN>
 [[nodiscard]] double sampled_value(const ceres::Jet<double, kN>& x) {
   return x.a;
