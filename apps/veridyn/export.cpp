@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "apps/veridyn/analysis_results.hpp"
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/export_results.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "veridyn/aircraft/model/estimated_subject.hpp"
@@ -14,7 +14,6 @@
 #include "veridyn/aircraft/simulation/simulate_study.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 
 namespace veridyn::app {
 namespace {
@@ -41,19 +40,15 @@ int export_aircraft(const StudyRun& run) {
   aircraft::Subject subject = aircraft::read_subject(root.table("subject"));
   if (root.has("flight")) static_cast<void>(aircraft::read_simulation(root));
   finish_flight_study(root);
-  const std::string& file = run.arguments.text("--estimate-file");
-  std::optional<estimation::Estimate> estimate;
-  if (!file.empty()) {
-    estimate = io::read_estimate(file);
-    subject = aircraft::estimated_subject(subject, *estimate, file);
-  }
+  const std::optional<estimation::Estimate> estimate = given_estimate(run);
+  if (estimate) subject = aircraft::estimated_subject(subject, *estimate, run.arguments.text("--estimate-file"));
   const std::string& format = run.arguments.text("--format");
   if (format == "tir")
     throw InputError(run.path.string(), "--format tir is for vehicles; an aircraft has json, toml, csv and jsbsim");
   const auto desired = [&](const char* name) { return format == "all" || format == name; };
   if (desired("json")) folder.write("model.json", aircraft::to_json(subject, estimate ? &*estimate : nullptr));
   // What was graded says for which purposes its numbers may be used.
-  const bool graded = estimate && !estimate->evidence.empty();
+  const bool graded = is_graded(estimate);
   const std::string toml = aircraft::write_subject_toml(subject);
   if (desired("toml")) folder.write("subject.toml", graded ? estimation::graded_toml(toml, estimate->judgement) : toml);
   if (desired("csv")) folder.write("model.csv", model_csv(subject));
@@ -61,13 +56,7 @@ int export_aircraft(const StudyRun& run) {
     const std::string xml = aircraft::write_jsbsim(subject);
     folder.write("jsbsim.xml", graded ? graded_xml(xml, estimate->judgement) : xml);
   }
-  const std::vector<std::string> files = folder.files();
-  RunRecord record = run.record(0);
-  if (estimate) record.inputs.emplace_back(file);
-  folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
-  for (const std::string& name : files)
-    print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
-  if (graded) print_line(run.options(), estimation::sentence_of(estimate->judgement));
+  publish_export(run, folder, {}, estimate);
   return kDone;
 }
 

@@ -5,15 +5,14 @@
 #include <optional>
 #include <variant>
 
-#include "apps/veridyn/console.hpp"
 #include "apps/veridyn/domains.hpp"
+#include "apps/veridyn/export_results.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/vehicle/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 #include "veridyn/vehicle/tyre/tir_writer.hpp"
@@ -42,7 +41,7 @@ std::vector<std::string> comments_on(const Vehicle& vehicle, const char* axle,
                                      const std::optional<estimation::Estimate>& estimate) {
   std::vector<std::string> lines{fmt::format("{} tyre of {}, written by {}", axle, vehicle.name, program_name())};
   if (!estimate) return lines;
-  lines.push_back(fmt::format("identified from a drive; value +- standard error (interval of 95 %):"));
+  lines.emplace_back("identified from a drive; value +- standard error (interval of 95 %):");
   for (const char* name : {"C_f", "C_r", "mu", "C", "E", "load_transfer_loss"}) {
     const estimation::Parameter* p = estimate->find(name);
     if (p == nullptr) continue;
@@ -52,7 +51,7 @@ std::vector<std::string> comments_on(const Vehicle& vehicle, const char* axle,
   if (estimate->find("load_transfer_loss") != nullptr)
     lines.emplace_back("load_transfer_loss is the axles' and not in the coefficients below");
   lines.emplace_back("driving and braking: stiffness 1.3 times that of cornering, assumed; the same curve");
-  if (!estimate->evidence.empty()) lines.push_back(estimation::sentence_of(estimate->judgement));
+  if (is_graded(estimate)) lines.push_back(estimation::sentence_of(estimate->judgement));
   return lines;
 }
 
@@ -63,11 +62,10 @@ int export_vehicle(const StudyRun& run) {
   const StudyTable& root = run.study.root();
   Vehicle vehicle = read_vehicle(root.table("subject"), VehicleNeeds::kGeometry);
   finish_drive_study(root, Progress());
-  const std::string& file = run.arguments.text("--estimate-file");
-  std::optional<estimation::Estimate> estimate;
-  if (!file.empty()) {
-    estimate = io::read_estimate(file);
-    if (estimate->find("C_f") == nullptr) throw InputError(file, "is not an estimate of a vehicle: it has no C_f");
+  const std::optional<estimation::Estimate> estimate = given_estimate(run);
+  if (estimate) {
+    if (estimate->find("C_f") == nullptr)
+      throw InputError(run.arguments.text("--estimate-file"), "is not an estimate of a vehicle: it has no C_f");
     const VehicleIdentifyOptions options = VehicleIdentifyOptions::read(root.table_or_empty("identify"));
     vehicle = estimated_vehicle(std::move(vehicle), estimate->parameters, options.model);
   }
@@ -81,7 +79,7 @@ int export_vehicle(const StudyRun& run) {
     throw InputError(run.path.string(), fmt::format("has {} tyres, of which there is no .tir: identify it with "
                                                     "identify.tyre = \"magic formula\"",
                                                     vehicle.tyre_text));
-  const bool graded = estimate && !estimate->evidence.empty();
+  const bool graded = is_graded(estimate);
   const std::string toml = write_vehicle_toml(vehicle);
   if (desired("toml")) {
     folder.write("subject.toml", graded ? estimation::graded_toml(toml, estimate->judgement)
@@ -94,15 +92,9 @@ int export_vehicle(const StudyRun& run) {
     folder.write("tyre_rear.tir", write_tir(curved->rear, {.comments = comments_on(vehicle, "rear", estimate),
                                                            .vertical_stiffness = vehicle.parameters.K_tr}));
   }
-  const std::vector<std::string> files = folder.files();
-  RunRecord record = run.record(0, vehicle.inputs);
-  if (estimate) record.inputs.emplace_back(file);
-  folder.publish(record, run.options(), Summary::object({{"folder", folder.path().string()}, {"files", files}}));
-  for (const std::string& name : files)
-    print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
-  if (format == "all" && curved == nullptr)
-    print_line(run.options(), fmt::format("no .tir: the tyres are {}", vehicle.tyre_text));
-  if (graded) print_line(run.options(), estimation::sentence_of(estimate->judgement));
+  const bool lacks_tyres = format == "all" && curved == nullptr;
+  publish_export(run, folder, vehicle.inputs, estimate,
+                 lacks_tyres ? fmt::format("no .tir: the tyres are {}", vehicle.tyre_text) : std::string());
   return kDone;
 }
 

@@ -3,25 +3,6 @@
 #include <cmath>
 
 namespace veridyn::vehicle {
-namespace {
-
-/// Driving stiffness over cornering stiffness of one tyre where a study does not give it, as `read_vehicle` assumes.
-constexpr double kSlipStiffness = 1.3;
-
-template <typename Tyre>
-AxleTyres<Tyre> tyres_of(const VehicleParameters<double>& p) {
-  const auto axle = [&](double C) {
-    Tyre tyre;
-    tyre.stiffness = C;
-    tyre.slip_stiffness = kSlipStiffness * C;
-    tyre.mu = p.mu;
-    return tyre;
-  };
-  return {axle(p.C_f), axle(p.C_r)};
-}
-
-}  // namespace
-
 Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter> parameters,
                           const DriveModelOptions& model) {
   const auto take_fitted = [&](const char* name, double& to) {
@@ -45,19 +26,16 @@ Vehicle estimated_vehicle(Vehicle vehicle, std::span<const estimation::Parameter
   const bool has_shape = take_fitted("C", C) || model.tyre == DriveTyre::kMagicFormula;
   if (limited && has_shape) {
     take_fitted("E", E);
-    const PerWheel<double> load = static_loads(p, kGravity);
-    auto tyres = tyres_of<SimpleMagicFormulaTyre<double>>(p);
-    tyres.front.nominal_load = load[kFrontLeft];
-    tyres.rear.nominal_load = load[kRearLeft];
+    auto tyres = tyres_by_numbers<SimpleMagicFormulaTyre<double>>(p);
     tyres.front.C = tyres.rear.C = C;
     tyres.front.E = tyres.rear.E = E;
     vehicle.tyres = tyres;
     vehicle.tyre_text = "magic formula";
   } else if (limited) {
-    vehicle.tyres = tyres_of<FialaTyre<double>>(p);
+    vehicle.tyres = tyres_by_numbers<FialaTyre<double>>(p);
     vehicle.tyre_text = "fiala";
   } else if (stiff_front || stiff_rear) {
-    vehicle.tyres = tyres_of<LinearTyre<double>>(p);
+    vehicle.tyres = tyres_by_numbers<LinearTyre<double>>(p);
     vehicle.tyre_text = "linear";
   }
   return vehicle;

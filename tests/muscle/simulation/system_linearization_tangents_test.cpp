@@ -104,8 +104,8 @@ TEST_F(TangentsOfTheArm, AtTheStartStandStillWhereTheActivationIsAtItsLimit) {
   for (const double value : S) EXPECT_EQ(value, 0.0);
 }
 
-// A stage that is implicit in the fibre lengths: its tangents against differences of whole stages, which solve
-// l = base + step l' anew.
+// A stage that is implicit in the fibre lengths: its tangents against differences of whole stages, each of
+// which solves l = base + step l' again.
 TEST_F(TangentsOfTheArm, OfAnImplicitStageAreThoseOfItsSolution) {
   const StateLayout& layout = system.layout();
   const double step = 5e-3;

@@ -167,7 +167,8 @@ TEST(DriveParametricModel, WhiteningIsLinear) {
   Eigen::VectorXd state = Eigen::VectorXd::Zero(model.filter.filter[0].transition.rows());
   int missing = 0;
   for (Eigen::Index k = 0; k < residual.rows(); ++k) {
-    const DriveWhitening::Filter f = model.filter.at(signals[DriveSignal::kSpeed].value[first + at(k)]);
+    DriveWhitening::Filter f;
+    model.filter.at(signals[DriveSignal::kSpeed].value[first + at(k)], f);
     Eigen::VectorXd expected = residual.row(k).transpose() - f.output * state;
     for (Eigen::Index j = 0; j < expected.size(); ++j) {
       if (std::isnan(expected(j))) {

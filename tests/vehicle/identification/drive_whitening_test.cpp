@@ -98,7 +98,8 @@ TEST(DriveWhitening, IsOnTheStraightLineBetweenItsSpeeds) {
   EXPECT_FALSE(whitening.empty());
   for (const auto& [speed, value] :
        {std::pair{5.0, 1.0}, std::pair{10.0, 1.0}, std::pair{12.5, 1.25}, std::pair{20.0, 2.0}, std::pair{30.0, 2.0}}) {
-    const DriveWhitening::Filter there = whitening.at(speed);
+    DriveWhitening::Filter there;
+    whitening.at(speed, there);
     EXPECT_DOUBLE_EQ(there.transition(0, 0), value) << speed;
     EXPECT_DOUBLE_EQ(there.gain(0, 0), 2.0 * value) << speed;
     EXPECT_DOUBLE_EQ(there.output(0, 0), 3.0 * value) << speed;

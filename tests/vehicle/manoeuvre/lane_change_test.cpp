@@ -5,23 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/vehicle/manoeuvre/tangent_drive.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-/// A drive along a path, the body tangent to it, shifted to the left.
-VehicleTrajectory along(const Path& path, double shift = 0.0) {
-  VehicleTrajectory t;
-  for (double s = 0.0; s < path.length(); s += 0.05) {
-    const PathPoint p = path.at(s);
-    t.time.push_back(s / 20.0);
-    t.x.push_back(p.x);
-    t.y.push_back(p.y + shift);
-    t.yaw.push_back(p.heading);
-  }
-  return t;
-}
+VehicleTrajectory along(const Path& path, double shift = 0.0) { return testing::tangent_drive(path, 20.0, 1.0, shift); }
 
 // The middles of the lanes for a width of 1.72 m are those of the path that Project Chrono ships: 3.586 and 0.172 m.
 TEST(LaneChange, LanesFollowTheStandardAndTheWidth) {

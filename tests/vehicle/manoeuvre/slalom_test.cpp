@@ -5,21 +5,13 @@
 #include <cmath>
 
 #include "tests/support/refusal.hpp"
+#include "tests/vehicle/manoeuvre/tangent_drive.hpp"
 
 namespace veridyn::vehicle {
 namespace {
 
-/// A drive along a path, the body tangent to it, mirrored about the line of cones by `side` -1.
 VehicleTrajectory tangent_drive(const Path& path, double side = 1.0) {
-  VehicleTrajectory t;
-  for (double s = 0.0; s < path.length(); s += 0.05) {
-    const PathPoint p = path.at(s);
-    t.time.push_back(s / 10.0);
-    t.x.push_back(p.x);
-    t.y.push_back(side * p.y);
-    t.yaw.push_back(side * p.heading);
-  }
-  return t;
+  return testing::tangent_drive(path, 10.0, side);
 }
 
 TEST(Slalom, ThePathPassesEveryConeAtItsClearanceInTurn) {

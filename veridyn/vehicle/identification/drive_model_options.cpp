@@ -135,6 +135,44 @@ DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParamete
   return options;
 }
 
+std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
+  switch (unknown) {
+    case DriveUnknown::kCf:
+    case DriveUnknown::kCr:
+    case DriveUnknown::kIz:
+      return {start / factor, factor * start};
+    case DriveUnknown::kA:
+      return {0.02 * wheelbase, 0.98 * wheelbase};
+    case DriveUnknown::kMu:
+      return {0.02, 5.0};
+    case DriveUnknown::kShape:
+      return {1.0, 1.99};
+    case DriveUnknown::kCurvature:
+      return {-10.0, 1.0};
+    case DriveUnknown::kRollGradient:
+      return {0.0, 0.1};
+    case DriveUnknown::kRollFrequency:
+      return {0.4 * start, 2.5 * start};
+    case DriveUnknown::kRollDamping:
+      return {0.05, 1.2};
+    case DriveUnknown::kRollArm:
+      return {0.0, wheelbase};
+    case DriveUnknown::kLoadTransfer:
+      return {0.0, 1.0};
+    case DriveUnknown::kRelaxationLength:
+      return {kShortestRelaxation * wheelbase, wheelbase};
+    case DriveUnknown::kSteerScale:
+    case DriveUnknown::kAccelYScale:
+      return {-0.9, kInfinity};
+    case DriveUnknown::kSteerDelay:
+    case DriveUnknown::kYawRateDelay:
+    case DriveUnknown::kAccelYDelay:
+      return {-kLongestDelay_s, kLongestDelay_s};
+    default:
+      return {-kInfinity, kInfinity};
+  }
+}
+
 DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {
   options.structure = structure;
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;

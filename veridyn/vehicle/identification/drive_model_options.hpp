@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"
@@ -126,6 +127,11 @@ struct DriveModelOptions {
 
 /// The shortest relaxation length that is looked for, as a share of the wheelbase: a tenth of a metre.
 inline constexpr double kShortestRelaxation = 0.04;
+
+/// How late steering and outputs may be, either way [s]: a segment is driven by what was recorded so far around it.
+inline constexpr double kLongestDelay_s = 0.5;
+/// Lowest and highest value of an unknown that starts at `start`; `factor` is `DriveModelOptions::search_factor`.
+[[nodiscard]] std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor);
 
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);

@@ -24,8 +24,6 @@ constexpr double kStepTimesRate = 0.4;
 constexpr int kMostSubsteps = 40;
 /// Beyond it a yaw rate is not that of a vehicle [rad/s].
 constexpr double kLargestYawRate = 50.0;
-/// How far delays reach beyond a segment [s].
-constexpr double kReach_s = 0.5;
 
 /// How far roll, roll rate and lagging slips may be from those of steady cornering where a segment begins [rad, rad/s].
 constexpr double kInitialRoll = 0.01, kInitialRollRate = 0.05, kInitialSlip = 0.005;
@@ -49,45 +47,6 @@ double rms_of(const std::vector<double>& x) {
 std::vector<double> smoothed(const std::vector<double>& x, double rate_Hz, double cutoff_Hz) {
   if (!(cutoff_Hz > 0.0) || x.empty()) return x;
   return numerics::filter(x, numerics::modulating_kernel(rate_Hz, cutoff_Hz).smooth);
-}
-
-/// Lowest and highest value of an unknown that starts at `start`.
-std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double wheelbase, double factor) {
-  switch (unknown) {
-    case DriveUnknown::kCf:
-    case DriveUnknown::kCr:
-    case DriveUnknown::kIz:
-      return {start / factor, factor * start};
-    case DriveUnknown::kA:
-      return {0.02 * wheelbase, 0.98 * wheelbase};
-    case DriveUnknown::kMu:
-      return {0.02, 5.0};
-    case DriveUnknown::kShape:
-      return {1.0, 1.99};
-    case DriveUnknown::kCurvature:
-      return {-10.0, 1.0};
-    case DriveUnknown::kRollGradient:
-      return {0.0, 0.1};
-    case DriveUnknown::kRollFrequency:
-      return {0.4 * start, 2.5 * start};
-    case DriveUnknown::kRollDamping:
-      return {0.05, 1.2};
-    case DriveUnknown::kRollArm:
-      return {0.0, wheelbase};
-    case DriveUnknown::kLoadTransfer:
-      return {0.0, 1.0};
-    case DriveUnknown::kRelaxationLength:
-      return {kShortestRelaxation * wheelbase, wheelbase};
-    case DriveUnknown::kSteerScale:
-    case DriveUnknown::kAccelYScale:
-      return {-0.9, kInfinity};
-    case DriveUnknown::kSteerDelay:
-    case DriveUnknown::kYawRateDelay:
-    case DriveUnknown::kAccelYDelay:
-      return {-kReach_s, kReach_s};
-    default:
-      return {-kInfinity, kInfinity};
-  }
 }
 
 estimation::ModelParameter model_parameter(DriveUnknown unknown, const DriveModelOptions& options, double wheelbase) {
@@ -295,7 +254,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   const std::span<const double> steer_all(steer_), speed_all(speed_);
   const double step = grid_.step;
   // The steering before and after the segment, as far as it is there, for its delay.
-  const auto reach = static_cast<std::size_t>(kReach_s / step);
+  const auto reach = static_cast<std::size_t>(kLongestDelay_s / step);
   std::size_t lead = 0, tail = 0;
   while (lead < reach && segment.begin > lead && std::isfinite(steer_all[segment.begin - lead - 1])) ++lead;
   while (tail < reach && segment.begin + n + tail < steer_all.size() &&

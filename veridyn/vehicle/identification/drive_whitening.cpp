@@ -10,12 +10,6 @@
 
 namespace veridyn::vehicle {
 
-DriveWhitening::Filter DriveWhitening::at(double u) const {
-  Filter out;
-  at(u, out);
-  return out;
-}
-
 void DriveWhitening::at(double u, Filter& out) const {
   const auto above = static_cast<std::size_t>(std::upper_bound(speed.begin(), speed.end(), u) - speed.begin());
   const Filter& high = filter[std::min(above, speed.size() - 1)];

@@ -19,8 +19,7 @@ struct DriveWhitening {
   std::vector<double> speed;  ///< [m/s], ascending; empty: no filter
   std::vector<Filter> filter;
   [[nodiscard]] bool empty() const { return speed.empty(); }
-  [[nodiscard]] Filter at(double u) const;
-  /// The same into `out`, without allocating where that has the sizes already.
+  /// At a speed [m/s], without allocating where `out` has the sizes already.
   void at(double u, Filter& out) const;
 };
 

@@ -200,40 +200,29 @@ decltype(Vehicle::tyres) tyres_of(const StudyTable& subject, const Vehicle& vehi
   if (std::holds_alternative<AxleTyres<MagicFormulaTyre<double>>>(vehicle.tyres)) return vehicle.tyres;
   const VehicleParameters<double>& p = vehicle.parameters;
   const StudyTable details = subject.table_or_empty("tyres");
-  const auto slip = [&](double C) { return details.positive_or("slip_stiffness", "N", 1.3 * C); };
   const double trail = details.number_or("pneumatic_trail", "m", 0.0);
   if (!(std::abs(trail) < 1.0)) details.fail("pneumatic_trail", fmt::format("is {:g} m; must be below 1 m", trail));
-  const bool limited = std::isfinite(p.mu);
-  if (vehicle.tyre_text == "linear") {
-    return AxleTyres<LinearTyre<double>>{
-        {.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu, .pneumatic_trail = trail},
-        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu, .pneumatic_trail = trail}};
-  }
-  if (!limited)
+  if (vehicle.tyre_text != "linear" && !std::isfinite(p.mu))
     subject.fail("tyre", fmt::format("is \"{}\", which needs the friction coefficient `mu`", vehicle.tyre_text));
-  if (vehicle.tyre_text == "fiala") {
-    return AxleTyres<FialaTyre<double>>{
-        {.stiffness = p.C_f, .slip_stiffness = slip(p.C_f), .mu = p.mu, .pneumatic_trail = trail},
-        {.stiffness = p.C_r, .slip_stiffness = slip(p.C_r), .mu = p.mu, .pneumatic_trail = trail}};
-  }
-  const PerWheel<double> load = static_loads(p, kGravity);
-  const auto axle = [&](double C, double nominal) {
-    SimpleMagicFormulaTyre<double> t;
-    t.stiffness = C;
-    t.slip_stiffness = slip(C);
-    t.mu = p.mu;
-    t.pneumatic_trail = trail;
-    t.nominal_load = nominal;
-    t.C = details.number_or("C", "1", t.C);
-    t.E = details.number_or("E", "1", t.E);
-    t.mu_load = details.number_or("mu_load", "1", t.mu_load);
-    t.stiffness_saturation = details.number_or("stiffness_saturation", "1", t.stiffness_saturation);
-    if (!(t.C >= 1.0 && t.C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t.C));
-    if (!(t.E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t.E));
-    if (!(t.mu_load >= 0.0 && t.mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
-    return t;
+  const auto detailed = [&]<typename Tyre>(AxleTyres<Tyre> tyres) {
+    for (Tyre* t : {&tyres.front, &tyres.rear}) {
+      t->slip_stiffness = details.positive_or("slip_stiffness", "N", t->slip_stiffness);
+      t->pneumatic_trail = trail;
+      if constexpr (requires { t->mu_load; }) {
+        t->C = details.number_or("C", "1", t->C);
+        t->E = details.number_or("E", "1", t->E);
+        t->mu_load = details.number_or("mu_load", "1", t->mu_load);
+        t->stiffness_saturation = details.number_or("stiffness_saturation", "1", t->stiffness_saturation);
+        if (!(t->C >= 1.0 && t->C < 2.0)) details.fail("C", fmt::format("is {:g}; must be from 1 to below 2", t->C));
+        if (!(t->E <= 1.0)) details.fail("E", fmt::format("is {:g}; must be at most 1", t->E));
+        if (!(t->mu_load >= 0.0 && t->mu_load < 1.0)) details.fail("mu_load", "must be from 0 to below 1");
+      }
+    }
+    return tyres;
   };
-  return AxleTyres<SimpleMagicFormulaTyre<double>>{axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
+  if (vehicle.tyre_text == "linear") return detailed(tyres_by_numbers<LinearTyre<double>>(p));
+  if (vehicle.tyre_text == "fiala") return detailed(tyres_by_numbers<FialaTyre<double>>(p));
+  return detailed(tyres_by_numbers<SimpleMagicFormulaTyre<double>>(p));
 }
 
 /// Of the front tyres [m]; of a file's, what stands for it there.

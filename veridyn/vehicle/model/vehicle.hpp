@@ -21,6 +21,22 @@ struct AxleTyres {
   Tyre rear;
 };
 
+/// The tyres of a vehicle by its numbers alone: cornering stiffnesses, friction, and where the tyre has it the static
+/// load as the nominal one. The slip stiffness is 1.3 times that of cornering, as of common tyres.
+template <typename Tyre>
+[[nodiscard]] AxleTyres<Tyre> tyres_by_numbers(const VehicleParameters<double>& p) {
+  const PerWheel<double> load = static_loads(p, kGravity);
+  const auto axle = [&](double C, double nominal) {
+    Tyre tyre;
+    tyre.stiffness = C;
+    tyre.slip_stiffness = 1.3 * C;
+    tyre.mu = p.mu;
+    if constexpr (requires { tyre.nominal_load; }) tyre.nominal_load = nominal;
+    return tyre;
+  };
+  return {axle(p.C_f, load[kFrontLeft]), axle(p.C_r, load[kRearLeft])};
+}
+
 /// Tyres of any kind, both axles of the same.
 using VehicleTyres = std::variant<AxleTyres<LinearTyre<double>>, AxleTyres<FialaTyre<double>>,
                                   AxleTyres<SimpleMagicFormulaTyre<double>>, AxleTyres<MagicFormulaTyre<double>>>;
