@@ -200,7 +200,9 @@ int inspect_model(const std::string& file, const std::string& pose, bool as_open
     // Poses need geometry and inertia only: forces that are not understood do not matter here.
     const MusculoskeletalSystem system(
         osim.model(), {.paths = as_opensim ? PathSource::kAsOpenSim : PathSource::kExact, .without_unsupported = true});
-    const std::string csv = pose_csv(system, read_poses(system.model(), pose));
+    const PoseTable poses = read_poses(system.model(), pose);
+    for (const std::string& warning : poses.warnings) print_line(options, "warning: " + warning);
+    const std::string csv = pose_csv(system, poses);
     if (folder) {
       folder->write("poses.csv", csv);
       folder->publish();
@@ -210,10 +212,16 @@ int inspect_model(const std::string& file, const std::string& pose, bool as_open
     }
     return kDone;
   }
+  Model model = osim.model();
+  // Notes of the model as it would be simulated: switched-off muscles, points inside their wrap objects.
+  Model known = model;
+  known.unsupported.clear();
+  const MusculoskeletalSystem system(std::move(known));
+  model.warnings.insert(model.warnings.end(), system.notes().begin(), system.notes().end());
   if (options.json) {
-    print_summary(summary_of(file, osim.model()), options);
+    print_summary(summary_of(file, model), options);
   } else {
-    print_text(describe(file, osim.model()));
+    print_text(describe(file, model));
   }
   return kDone;
 }

@@ -62,7 +62,7 @@ TEST_F(OsimElement, ErrorsNameFileLineElementAndProperty) {
   EXPECT_THAT(error_of([&] { (void)thing.positive_or("absent", -1.0); }), HasSubstr("-1 must be > 0"));
   EXPECT_THAT(error_of([] { const Document broken("<OpenSimDocument>\n<Model>\n", "b.osim"); }),
               HasSubstr("b.osim:2: not well-formed XML"));
-  EXPECT_THAT(error_of([] { const Document other("<Model/>", "o.osim"); }), HasSubstr("not an OpenSim model"));
+  EXPECT_THAT(error_of([] { const Document other("<Other/>", "o.osim"); }), HasSubstr("not an OpenSim model"));
 }
 
 TEST(LastPart, IsTheNameAtTheEndOfAPath) {

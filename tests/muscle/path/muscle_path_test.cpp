@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -217,6 +218,34 @@ TEST(MusclePaths, OfTheBuiltInArmHaveMomentArmsThatAreDerivatives) {
   for (double s = -60.0; s < 130.0; s += 13.7)
     for (double e = 3.0; e < 130.0; e += 17.3) poses.push_back(Eigen::Vector2d(s * kDegree, e * kDegree));
   expect_differences(arm, poses, 3e-7);
+}
+
+TEST(MusclePaths, MovingPointsStayWhereTheRangeOfTheirCoordinateEnds) {
+  Model model = load_model("arm").model();
+  const int m = model.muscle("brachialis");
+  const auto k = static_cast<std::size_t>(m);
+  model.muscles[k].wraps.clear();
+  PathPoint& point = model.muscles[k].points[0];
+  const Eigen::Vector3d home = point.location;
+  point.kind = PathPointKind::kMoving;
+  point.moving_coordinate = {1, -1, -1};
+  point.moving_location = {numerics::PiecewisePolynomial::linear(0.02, home.x()),
+                           numerics::PiecewisePolynomial::constant(home.y()),
+                           numerics::PiecewisePolynomial::constant(home.z())};
+  PosedArm moving(model);
+  for (const double q : {model.coordinates[1].low - 0.3, 1.0, model.coordinates[1].high + 0.2}) {
+    const double clamped = std::clamp(q, model.coordinates[1].low, model.coordinates[1].high);
+    Model fixed_model = model;
+    fixed_model.muscles[k].points[0].kind = PathPointKind::kFixed;
+    fixed_model.muscles[k].points[0].location = home + Eigen::Vector3d(0.02 * clamped, 0.0, 0.0);
+    PosedArm fixed(fixed_model);
+    moving.pose(Eigen::Vector2d(0.3, q));
+    fixed.pose(Eigen::Vector2d(0.3, q));
+    EXPECT_NEAR(moving.workspace.length[k], fixed.workspace.length[k], 1e-15) << q;
+    // Beyond the range it does not move: the arm is that of a fixed point too.
+    EXPECT_EQ(std::abs(moving.moment_arm(m, 1) - fixed.moment_arm(m, 1)) < 1e-15, q != clamped) << q;
+  }
+  expect_differences(moving, {Eigen::Vector2d(0.1, -0.3), Eigen::Vector2d(0.1, 1.1), Eigen::Vector2d(0.1, 2.5)}, 1e-9);
 }
 
 TEST(MusclePaths, RefuseWhatIsNotAPath) {

@@ -186,6 +186,17 @@ TEST_F(BuiltInArm, AStepLimitEndsTheRun) {
   EXPECT_THAT(t.message(), HasSubstr("limit of"));
 }
 
+TEST(ForwardSimulation, ACoupledCoordinateMayStartOutsideItsRange) {
+  Model model = load_model("arm").model();
+  model.couplers.push_back({"twice", 0, 1, numerics::PiecewisePolynomial::linear(2.0, -1.0)});
+  model.coordinates[0].default_value = 0.1;  // the elbow at -0.8 rad, below its range
+  const MusculoskeletalSystem system(model);
+  Progress progress;
+  const MuscleTrajectory t =
+      simulate_forward(system, default_start(system.model()), constant_drive(6, 0.1), {.end = 0.02}, progress);
+  EXPECT_EQ(t.end, SimulationEnd::kCompleted);
+}
+
 TEST_F(BuiltInArm, StartsOutsideTheRangeOrNotFiniteAreRefusedByName) {
   const auto message = [&](double elbow) {
     start.q(1) = elbow;

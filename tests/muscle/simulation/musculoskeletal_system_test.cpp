@@ -24,6 +24,26 @@ TEST(MusculoskeletalSystem, ForcesThatAreNotUnderstoodStopASimulationUnlessItIsT
   EXPECT_THAT(system.notes().front(), ::testing::HasSubstr("hand_contact"));
 }
 
+TEST(MusculoskeletalSystem, APathPointInsideAWrapObjectIsNotedWithPoseAndDepth) {
+  Model model = load_model("arm").model();
+  for (Muscle& muscle : model.muscles) {
+    if (muscle.wraps.empty()) continue;
+    const WrapObject& object = model.wrap_objects[static_cast<std::size_t>(muscle.wraps[0].object)];
+    if (object.shape != WrapShape::kSphere) continue;
+    PathPoint& point = muscle.points[static_cast<std::size_t>(muscle.wraps[0].first_point)];
+    point.body = object.body;
+    point.location = object.placement * Eigen::Vector3d(object.dimensions[0] - 0.0015, 0.0, 0.0);
+    const MusculoskeletalSystem system(model);
+    ASSERT_EQ(system.notes().size(), 1u);
+    EXPECT_THAT(system.notes()[0],
+                ::testing::AllOf(::testing::HasSubstr("at the default pose (elbow_flexion = 20 deg)"),
+                                 ::testing::HasSubstr("muscle " + muscle.name() + ": point " + point.name),
+                                 ::testing::HasSubstr("lies 1.5 mm inside its wrap object " + object.name)));
+    return;
+  }
+  FAIL() << "the arm has no sphere";
+}
+
 TEST(MusculoskeletalSystem, DisabledMusclesAreLeftOutAndUnknownCoordinatesNamed) {
   Model model = load_model("arm").model();
   model.muscles[2].enabled = false;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <sstream>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
@@ -48,6 +50,37 @@ TEST(PoseTable, ErrorsNameTheCoordinate) {
   EXPECT_THAT(error("elbow_flexion=x"), HasSubstr("'x' is not a number for coordinate 'elbow_flexion'"));
   EXPECT_THAT(error("elbow_flexion=1 kg"), HasSubstr("coordinate 'elbow_flexion'"));
   EXPECT_THAT(error("no_such_file"), HasSubstr("neither a file nor NAME=VALUE"));
+}
+
+/// The built-in arm, its elbow turning with the shoulder at half its angle.
+Model coupled_arm() {
+  Model model = load_model("arm").model();
+  model.couplers.push_back({"half", 0, 1, numerics::PiecewisePolynomial::linear(0.5, 0.0)});
+  return model;
+}
+
+TEST(PoseTable, AGivenValueOfACoupledCoordinateIsNeverReplacedInSilence) {
+  const Model model = coupled_arm();
+  EXPECT_DOUBLE_EQ(read_poses(model, "shoulder_flexion=0.4").q[0](1), 0.2);
+  EXPECT_DOUBLE_EQ(read_poses(model, "elbow_flexion=0.2, shoulder_flexion=0.4").q[0](1), 0.2);
+  try {
+    (void)read_poses(model, "shoulder_flexion=0.4, elbow_flexion=0.3");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("coordinate 'elbow_flexion' = 0.3 rad follows 'shoulder_flexion' through a "
+                                        "coupler, which gives 0.2 rad"));
+  }
+}
+
+TEST(PoseTable, AFilesValuesOfACoupledCoordinateAreComparedWithItsCoupler) {
+  const veridyn::test::TemporaryFolder folder;
+  const auto file = (folder.path() / "poses.csv").string();
+  std::ofstream(file) << "shoulder_flexion,elbow_flexion\n0.4,0.2\n0.4,0.25\n0.2,3\n";
+  const PoseTable poses = read_poses(coupled_arm(), file);
+  ASSERT_EQ(poses.q.size(), 3u);
+  EXPECT_DOUBLE_EQ(poses.q[2](1), 0.1);
+  ASSERT_EQ(poses.warnings.size(), 1u);
+  EXPECT_THAT(poses.warnings[0], HasSubstr("in 2 of 3 rows the file's value is another, by up to 2.9 rad"));
 }
 
 TEST(PoseTable, MomentArmsOfTheCsvAreMinusTheSlopesOfItsLengths) {

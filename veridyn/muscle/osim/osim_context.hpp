@@ -28,6 +28,11 @@ struct Context {
   [[nodiscard]] int coordinate(const Element& user, const char* property, std::string_view reference) const;
   /// The frame that `reference` means to `user`: ground, a body, or an offset frame, those of `user` first.
   [[nodiscard]] FrameReference frame(const Element& user, const char* property, std::string_view reference) const;
+  /// The frame that a point is fixed to; the ground, with a warning, where its file names none.
+  [[nodiscard]] FrameReference frame_or_ground(const Element& point);
+  /// The body that an offset frame with an empty socket stands in, as OpenSim names such frames: that which owns it, or
+  /// "pelvis" of "pelvis_offset". Empty: unknown.
+  [[nodiscard]] std::string parent_by_name(const Element& offset_frame) const;
   /// Adds to the model's warnings or to its unsupported elements.
   void warn(const Element& element, std::string_view what);
   void unsupported(const Element& element, bool changes_motion);

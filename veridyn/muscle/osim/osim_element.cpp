@@ -33,15 +33,21 @@ std::string shortened(std::string_view text) {
   return std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "..." : "");
 }
 
-/// Texts of a damaged file go into messages of one line.
+/// Formats before 2.0 have other elements; OpenSim itself no longer reads them.
+[[noreturn]] void refuse_old_format(const std::string& name, const std::string& version) {
+  throw InputError(name, fmt::format("is an OpenSim model of {}, older than what is read (2.0 and later); open it in "
+                                     "OpenSim 2 or 3 and save it",
+                                     version));
+}
+
+}  // namespace
+
 std::string one_line(std::string text) {
   for (char& c : text) {
     if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte > 0x7e) c = '?';
   }
   return text;
 }
-
-}  // namespace
 
 std::string last_part(std::string_view path) {
   while (!path.empty() && path.back() == '/') path.remove_suffix(1);
@@ -62,8 +68,15 @@ Document::Document(std::string text, std::string name)
                      fmt::format("not well-formed XML: {}", result.description()));
   }
   const pugi::xml_node root = tree_.child("OpenSimDocument");
-  if (!root) throw InputError(name_, "has no OpenSimDocument element, so it is not an OpenSim model");
+  if (!root) {
+    // Formats up to 1.9 had the model as their root.
+    for (const char* old : {"Model", "SimbodyModel", "SimmModel", "ActuatedModel_SDFast"})
+      if (tree_.child(old)) refuse_old_format(name_, "format 1.9 or older");
+    throw InputError(name_, "has no OpenSimDocument element, so it is not an OpenSim model");
+  }
   version_ = root.attribute("Version").as_int();
+  if (version_ > 0 && version_ < 20000)
+    refuse_old_format(name_, fmt::format("format {}.{}", version_ / 10000, version_ / 100 % 100));
   model_ = root.child("Model");
   if (!model_) throw InputError(name_, "its OpenSimDocument holds no Model");
   defaults_ = model_.child("defaults");

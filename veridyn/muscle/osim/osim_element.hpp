@@ -78,6 +78,9 @@ class Element {
   pugi::xml_node node_;
 };
 
+/// A damaged file's text for a message: what is not printable ASCII becomes '?'.
+[[nodiscard]] std::string one_line(std::string text);
+
 /// Last part of a component path: "/bodyset/r_humerus" gives "r_humerus".
 [[nodiscard]] std::string last_part(std::string_view path);
 

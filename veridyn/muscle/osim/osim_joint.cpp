@@ -139,6 +139,24 @@ void read_spatial_transform(Context& context, const Element& element, Joint& joi
   classify(context, joint);
 }
 
+/// The frame at one end of a joint. Where its socket is empty, the joint's own offset frame of that place, parent's
+/// first, as OpenSim writes them; else the body that the formats before 4.0 name.
+FrameReference joint_frame(Context& context, const Element& element, const char* name, std::size_t place) {
+  const std::string property = fmt::format("socket_{}", name);
+  const std::string wanted = socket(element, name);
+  if (!wanted.empty()) return context.frame(element, property.c_str(), wanted);
+  const std::vector<Element> own = element.objects("frames");
+  std::string instead;
+  if (place < own.size()) {
+    instead = own[place].name();
+  } else {
+    instead = element.text_or(place == 0 ? "parent_body" : "child_body", "");
+  }
+  if (instead.empty()) element.fail(property, "is empty, and nothing else says which body is meant");
+  context.warn(element, fmt::format("{} is empty; '{}' is taken", property, one_line(instead)));
+  return context.frame(element, property.c_str(), instead);
+}
+
 struct JointSource {
   Element element;
   int child = -1;  ///< known beforehand in formats before 4.0, where a body holds its joint
@@ -176,9 +194,8 @@ void read_joints(Context& context) {
     }
     if (element.flag_or("reverse", false)) element.fail("reverse", "reversed joints are not understood");
     if (child < 0) {
-      const FrameReference parent_frame =
-          context.frame(element, "socket_parent_frame", socket(element, "parent_frame"));
-      const FrameReference child_frame = context.frame(element, "socket_child_frame", socket(element, "child_frame"));
+      const FrameReference parent_frame = joint_frame(context, element, "parent_frame", 0);
+      const FrameReference child_frame = joint_frame(context, element, "child_frame", 1);
       joint.parent = parent_frame.body;
       joint.parent_frame = parent_frame.placement;
       joint.child = child_frame.body;

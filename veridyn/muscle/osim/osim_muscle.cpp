@@ -16,9 +16,7 @@ namespace {
 PathPoint read_point(Context& context, const Element& element) {
   PathPoint point;
   point.name = element.name();
-  std::string reference = socket(element, "parent_frame");
-  if (reference.empty()) reference = element.text_or("body", "ground");
-  const FrameReference frame = context.frame(element, "socket_parent_frame", reference);
+  const FrameReference frame = context.frame_or_ground(element);
   point.body = frame.body;
   const std::string type = element.type();
   if (type == "PathPoint" || type == "ConditionalPathPoint" || type == "ViaPoint") {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -30,7 +31,8 @@ Placement read_placement(const Element& element, const char* translation, const 
           element.vector_or(translation, Eigen::Vector3d::Zero())};
 }
 
-Eigen::Matrix3d read_inertia(const Element& body) {
+/// About the mass centre. What no mass can have is repaired: negative principal moments become zero.
+Eigen::Matrix3d read_inertia(Context& context, const Element& body) {
   std::vector<double> v = body.numbers("inertia");
   if (v.empty()) {  // formats before 4.0
     for (const char* part : {"inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"}) {
@@ -40,10 +42,16 @@ Eigen::Matrix3d read_inertia(const Element& body) {
   if (v.size() != 6) body.fail("inertia", fmt::format("{} numbers where xx yy zz xy xz yz are expected", v.size()));
   Eigen::Matrix3d inertia;
   inertia << v[0], v[3], v[4], v[3], v[1], v[5], v[4], v[5], v[2];
-  const Eigen::Vector3d principal = inertia.selfadjointView<Eigen::Lower>().eigenvalues();
-  const double tolerance = 1e-9 * principal.cwiseAbs().maxCoeff();
-  if (principal.minCoeff() < -tolerance) body.fail("inertia", "is not positive semidefinite: no mass has it");
-  return inertia;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
+  const Eigen::Vector3d moments = principal.eigenvalues();
+  if (moments.minCoeff() >= -1e-9 * moments.cwiseAbs().maxCoeff()) return inertia;
+  const Eigen::Vector3d raised = moments.cwiseMax(0.0);
+  const Eigen::Matrix3d repaired =
+      principal.eigenvectors() * raised.asDiagonal() * principal.eigenvectors().transpose();
+  context.warn(body, fmt::format("inertia is not positive semidefinite, so that no mass has it: its least principal "
+                                 "moment, {:.4g} kg m^2, is taken as 0, which changes entries by up to {:.4g} kg m^2",
+                                 moments.minCoeff(), (repaired - inertia).cwiseAbs().maxCoeff()));
+  return repaired;
 }
 
 WrapQuadrant read_quadrant(const Element& wrap) {
@@ -91,14 +99,15 @@ void read_wraps_of(Context& context, const Element& body_element, int body) {
 
 void read_gravity_and_units(Context& context, const Element& root) {
   context.model.gravity = root.vector_or("gravity", {0.0, -kGravity, 0.0});
-  const std::string length = root.text_or("length_units", "meters");
-  if (length != "meters" && length != "m" && length != "meter") {
-    root.fail("length_units", fmt::format("'{}': only models in meters are read", length));
-  }
-  const std::string force = root.text_or("force_units", "N");
-  if (force != "N" && force != "newtons" && force != "Newtons") {
-    root.fail("force_units", fmt::format("'{}': only models in newtons (N) are read", force));
-  }
+  // Labels for OpenSim, which computes with the numbers as they are.
+  const auto check = [&](const char* property, std::string_view unit, std::initializer_list<std::string_view> same) {
+    const std::string text = root.text_or(property, unit);
+    if (std::find(same.begin(), same.end(), text) != same.end()) return;
+    context.warn(root, fmt::format("{} is '{}'; its numbers are taken as {}, as OpenSim takes them", property,
+                                   one_line(text), unit));
+  };
+  check("length_units", "meters", {"meters", "meter", "metres", "metre", "m"});
+  check("force_units", "newtons", {"newtons", "newton", "Newtons", "N"});
 }
 
 }  // namespace
@@ -119,6 +128,16 @@ int Context::coordinate(const Element& user, const char* property, std::string_v
                                     suggestion(last_part(reference), names_of(model.coordinates), 8)));
   }
   return index;
+}
+
+std::string Context::parent_by_name(const Element& offset_frame) const {
+  const std::string owner = offset_frame.node().parent().parent().attribute("name").value();
+  if (model.body(owner) >= 0) return owner;
+  constexpr std::string_view kSuffix = "_offset";
+  std::string stem = offset_frame.name();
+  if (!stem.ends_with(kSuffix)) return {};
+  stem.resize(stem.size() - kSuffix.size());
+  return model.body(stem) >= 0 ? stem : std::string();
 }
 
 FrameReference Context::frame(const Element& user, const char* property, std::string_view reference) const {
@@ -153,10 +172,21 @@ FrameReference Context::frame(const Element& user, const char* property, std::st
     placement = read_placement(*found, "translation", "orientation") * placement;
     wanted = socket(*found, "parent");
     owner = found->node().parent().parent();
+    if (wanted.empty()) wanted = parent_by_name(*found);
     if (wanted.empty()) user.fail(property, fmt::format("frame '{}' has no parent", name));
     if (wanted == "..") wanted = owner.attribute("name").value();
   }
   user.fail(property, fmt::format("the frames from '{}' on go round in a circle", reference));
+}
+
+FrameReference Context::frame_or_ground(const Element& point) {
+  std::string reference = socket(point, "parent_frame");
+  if (reference.empty()) reference = point.text_or("body", "");
+  if (reference.empty()) {
+    warn(point, "says no frame that it is fixed to; the ground is taken");
+    reference = "ground";
+  }
+  return frame(point, "socket_parent_frame", reference);
 }
 
 void Context::warn(const Element& element, std::string_view what) {
@@ -194,7 +224,7 @@ void read_bodies(Context& context) {
     body.name = name;
     body.mass = element.not_negative_or("mass", 0.0);
     body.mass_center = element.vector_or("mass_center", Eigen::Vector3d::Zero());
-    body.inertia = read_inertia(element);
+    body.inertia = read_inertia(context, element);
     context.model.bodies.push_back(std::move(body));
   }
 }
@@ -240,9 +270,7 @@ void read_markers(Context& context) {
   const Element root(context.document, context.document.model());
   for (const Element& element : root.objects("MarkerSet")) {
     if (element.type() != "Marker") continue;
-    std::string frame = socket(element, "parent_frame");
-    if (frame.empty()) frame = element.text_or("body", "ground");
-    const FrameReference at = context.frame(element, "socket_parent_frame", frame);
+    const FrameReference at = context.frame_or_ground(element);
     context.model.markers.push_back(
         {element.name(), at.body, at.placement * element.vector_or("location", Eigen::Vector3d::Zero())});
   }

@@ -110,6 +110,12 @@ MusclePaths::PathStation MusclePaths::station(const Model& model, const Mechanis
     moving.in_link = place.in_link;
     moving.coordinate = p.moving_coordinate;
     moving.location = p.moving_location;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (moving.coordinate[axis] < 0) continue;
+      const Coordinate& c = model.coordinates[at(moving.coordinate[axis])];
+      moving.low[axis] = c.low;
+      moving.high[axis] = c.high;
+    }
     points_.push_back({place.link, Eigen::Vector3d::Zero(), static_cast<int>(moving_.size())});
     moving_.push_back(moving);
     station.point = moving.point;

@@ -81,9 +81,14 @@ class MusclePaths {
   /// Names of the wrap objects that the path touches, in its order.
   [[nodiscard]] std::vector<std::string> touched(const Kinematics<double>& kinematics, const double* q,
                                                  int muscle) const;
-  /// One line per path point that lies inside a wrap object of its own path at this pose, naming muscle, point and
-  /// object: there is no wrap there and the path goes straight.
-  [[nodiscard]] std::vector<std::string> points_inside(const Kinematics<double>& kinematics, const double* q) const;
+  /// A path point inside a wrap object of its own path.
+  struct PointInside {
+    int muscle = 0;
+    std::string point, object;
+    double depth = 0.0;  ///< below the surface [m]; of an ellipsoid to first order in the depth
+  };
+  /// All of a pose.
+  [[nodiscard]] std::vector<PointInside> points_inside(const Kinematics<double>& kinematics, const double* q) const;
 
  private:
   template <typename Scalar>
@@ -100,6 +105,7 @@ class MusclePaths {
     int point = 0;
     Placement in_link;  ///< of its body
     std::array<int, 3> coordinate{-1, -1, -1};
+    std::array<double, 3> low{}, high{};  ///< of the coordinate's range; beyond it the point stays, as OpenSim's does
     std::array<numerics::PiecewisePolynomial, 3> location;
   };
   struct Object {

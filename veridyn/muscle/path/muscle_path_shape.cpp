@@ -1,6 +1,5 @@
 // What a path looks like at one pose: for drawings and messages.
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/index.hpp"
@@ -9,19 +8,23 @@
 namespace veridyn::muscle {
 namespace {
 
-bool inside(const Eigen::Vector3d& p, const WrapObject& object) {
+/// How deep a point lies inside an object; negative outside.
+double depth(const Eigen::Vector3d& p, const WrapObject& object) {
   const Eigen::Vector3d& d = object.dimensions;
   switch (object.shape) {
     case WrapShape::kSphere:
-      return p.norm() < d[0];
+      return d[0] - p.norm();
     case WrapShape::kCylinder:
-      return p.head<2>().norm() < d[0];
-    case WrapShape::kEllipsoid:
-      return p.cwiseQuotient(d).norm() < 1.0;
+      return d[0] - p.head<2>().norm();
+    case WrapShape::kEllipsoid: {
+      const Eigen::Vector3d scaled = p.cwiseQuotient(d);
+      const double steepness = 2.0 * scaled.cwiseQuotient(d).norm();
+      return std::min((1.0 - scaled.squaredNorm()) / std::max(steepness, 1e-9), d.minCoeff());
+    }
     case WrapShape::kTorus:
-      return std::hypot(p.head<2>().norm() - d[1], p.z()) < d[0];
+      return d[0] - std::hypot(p.head<2>().norm() - d[1], p.z());
   }
-  return false;
+  return -1.0;
 }
 
 }  // namespace
@@ -72,11 +75,13 @@ std::vector<std::string> MusclePaths::touched(const Kinematics<double>& kinemati
   return names;
 }
 
-std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& kinematics, const double* q) const {
+std::vector<MusclePaths::PointInside> MusclePaths::points_inside(const Kinematics<double>& kinematics,
+                                                                 const double* q) const {
   PathWorkspace<double> workspace(*this);
   const PathSolver<double> solver(*this, kinematics, q, workspace, PathPlaces::kEvery);
-  std::vector<std::string> lines;
-  for (const Path& path : muscles_) {
+  std::vector<PointInside> found;
+  for (int muscle = 0; muscle < muscles(); ++muscle) {
+    const Path& path = muscles_[at(muscle)];
     for (const Wrap& wrap : path.wraps) {
       const Object& object = objects_[at(wrap.object)];
       const auto& frame = workspace.object[at(wrap.object)];
@@ -84,14 +89,12 @@ std::vector<std::string> MusclePaths::points_inside(const Kinematics<double>& ki
         const PathStation& station = path.stations[at(i)];
         const Eigen::Vector3d local =
             frame.rotation.transpose() * (workspace.position[at(station.point)] - frame.position);
-        if (inside(local, object.description))
-          lines.push_back(
-              fmt::format("muscle {}: point {} lies inside its wrap object {}; the path goes straight there", path.name,
-                          station.name, object.name));
+        const double below = depth(local, object.description);
+        if (below > 0.0) found.push_back({muscle, station.name, object.name, below});
       }
     }
   }
-  return lines;
+  return found;
 }
 
 }  // namespace veridyn::muscle

@@ -70,7 +70,13 @@ inline void PathSolver<Scalar>::place(PathPlaces places) {
       const auto a = static_cast<std::size_t>(axis);
       const Vector direction = pose.rotation * moving.in_link.rotation.col(axis).template cast<Scalar>();
       const int c = moving.coordinate[a];
-      const numerics::FunctionValue<Scalar> f = moving.location[a].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
+      numerics::FunctionValue<Scalar> f;
+      if (c >= 0 && (q_[c] < Scalar(moving.low[a]) || q_[c] > Scalar(moving.high[a]))) {
+        f.value =
+            moving.location[a].evaluate(Scalar(q_[c] < Scalar(moving.low[a]) ? moving.low[a] : moving.high[a])).value;
+      } else {
+        f = moving.location[a].evaluate(c >= 0 ? q_[c] : Scalar(0.0));
+      }
       location += direction * f.value;
       w_.moving_slope[3 * i + a] = direction * f.slope;
     }

@@ -154,7 +154,10 @@ void check_start(const Model& model, const StartState& start) {
     if (!std::isfinite(q) || !std::isfinite(speed)) {
       throw InputError(model.name, fmt::format("start of coordinate '{}' is not a finite number", c.name));
     }
-    if (!c.in_range(q)) throw InputError(model.name, fmt::format("start of {}", c.outside_range(q)));
+    // Coupled ones are where their couplers put them, whatever the file says of their range.
+    const bool coupled = std::any_of(model.couplers.begin(), model.couplers.end(),
+                                     [i](const CoordinateCoupler& k) { return k.dependent == static_cast<int>(i); });
+    if (!coupled && !c.in_range(q)) throw InputError(model.name, fmt::format("start of {}", c.outside_range(q)));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/path/pose_text.hpp"
 
 namespace veridyn::muscle {
 namespace {
@@ -36,12 +37,16 @@ Model prepare(Model model, const SystemOptions& options, std::vector<std::string
   return model;
 }
 
-void check_default_pose(const Model& model, const Mechanism& mechanism, const MusclePaths& paths) {
+/// What the default pose shows of points inside wrap objects, for the notes.
+void note_points_inside(const Model& model, const Mechanism& mechanism, const MusclePaths& paths,
+                        std::vector<std::string>& notes) {
   Kinematics<double> kinematics(mechanism);
   const Eigen::VectorXd q = model.default_pose();
   update_positions(mechanism, q.data(), kinematics);
-  const std::vector<std::string> inside = paths.points_inside(kinematics, q.data());
-  if (!inside.empty()) throw InputError(model.name, fmt::format("at the default pose {}", inside.front()));
+  for (const MusclePaths::PointInside& found : paths.points_inside(kinematics, q.data()))
+    notes.push_back(fmt::format("at the default pose ({}) muscle {}: point {} lies {:.2g} mm inside its wrap object {}",
+                                pose_text(model, paths, found.muscle, q), model.muscles[at(found.muscle)].name(),
+                                found.point, found.depth * 1e3, found.object));
 }
 
 std::string fit_note(const Model& model, const FittedPaths& fit) {
@@ -92,7 +97,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       paths_(model_, mechanism_, options.paths == PathSource::kAsOpenSim ? WrapMode::kAsOpenSim : WrapMode::kTaut),
       source_(options.paths),
       muscles_(muscle_parameters(model_)) {
-  check_default_pose(model_, mechanism_, paths_);
+  note_points_inside(model_, mechanism_, paths_, notes_);
   if (source_ == PathSource::kFitted) {
     PathFitOptions fit_options;
     fit_options.mixed = true;

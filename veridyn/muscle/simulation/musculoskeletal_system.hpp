@@ -61,8 +61,7 @@ struct StateLayout {
 /// Immutable; used by many threads at once, each with its own `SystemEvaluator`.
 class MusculoskeletalSystem {
  public:
-  /// @throws InputError naming element and reason: forces that are not understood, unknown coordinates, a path point
-  /// inside a wrap object at the default pose.
+  /// @throws InputError naming element and reason: forces that are not understood, unknown coordinates.
   explicit MusculoskeletalSystem(Model model, const SystemOptions& options = {});
   /// `other` with masses added to bodies: the same paths, fitted ones shared. @throws InputError naming a body that
   /// the model does not have.
@@ -90,7 +89,8 @@ class MusculoskeletalSystem {
   [[nodiscard]] std::span<const double> scales() const { return scales_; }
   /// "speed of coordinate 'elbow_flexion'", for messages.
   [[nodiscard]] std::string state_name(std::size_t index) const;
-  /// For reports: forces left out, muscles disabled, the error of fitted paths.
+  /// For reports: forces left out, muscles disabled, path points inside wrap objects at the default pose, the error of
+  /// fitted paths.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -28,8 +30,8 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// "elbow_flexion=90 deg"
-void read_assignment(const Model& model, const std::string& text, Eigen::VectorXd& q) {
+/// "elbow_flexion=90 deg"; the coordinate.
+int read_assignment(const Model& model, const std::string& text, Eigen::VectorXd& q) {
   const std::string place = "--pose";
   const std::size_t equal = text.find('=');
   if (equal == std::string::npos) throw InputError(place, fmt::format("'{}' is neither a file nor NAME=VALUE", text));
@@ -53,11 +55,49 @@ void read_assignment(const Model& model, const std::string& text, Eigen::VectorX
   }
   check_range(model, place, index, number);
   q(index) = number;
+  return index;
+}
+
+/// Files are printed with six digits or so.
+bool differ(double given, double coupled) { return std::abs(given - coupled) > 1e-5 * (1.0 + std::abs(coupled)); }
+
+/// Puts coupled coordinates where their couplers have them.
+void couple(const Model& model, PoseTable& poses, std::span<const std::uint8_t> given, bool is_file) {
+  const CoordinateReduction reduction(model);
+  for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
+    const Coordinate& dependent = model.coordinates[static_cast<std::size_t>(coupler.dependent)];
+    const std::string& leader = model.coordinates[static_cast<std::size_t>(coupler.independent)].name;
+    double largest = 0.0;
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < poses.q.size(); ++i) {
+      const numerics::FunctionValue<double> f = coupler.function.evaluate(poses.q[i](coupler.independent));
+      const double speed = poses.qdot[i](coupler.independent), was = poses.q[i](coupler.dependent);
+      if (given[static_cast<std::size_t>(coupler.dependent)] != 0 && differ(was, f.value)) {
+        if (!is_file)
+          throw InputError(
+              "--pose", fmt::format("coordinate '{}' = {:.6g} {} follows '{}' through a coupler, which "
+                                    "gives {:.6g} {}; leave it out, or set '{}'",
+                                    dependent.name, was, dependent.unit(), leader, f.value, dependent.unit(), leader));
+        ++rows;
+        largest = std::max(largest, std::abs(was - f.value));
+      }
+      poses.q[i](coupler.dependent) = f.value;
+      poses.qdot[i](coupler.dependent) = f.slope * speed;
+      poses.qddot[i](coupler.dependent) = f.slope * poses.qddot[i](coupler.independent) + f.curvature * speed * speed;
+    }
+    if (rows > 0)
+      poses.warnings.push_back(
+          fmt::format("'{}' follows '{}' through a coupler: in {} of {} rows the file's value is another, by up to "
+                      "{:.4g} {}; the coupler's is used",
+                      dependent.name, leader, rows, poses.q.size(), largest, dependent.unit()));
+  }
 }
 
 /// Values and derivatives of coordinates from named columns.
 template <typename Column>
 PoseTable from_columns(const Model& model, const std::string& place, std::size_t rows, const Column& column) {
+  std::vector<std::uint8_t> given(model.coordinates.size(), 0), coupled(model.coordinates.size(), 0);
+  for (const CoordinateCoupler& coupler : model.couplers) coupled[static_cast<std::size_t>(coupler.dependent)] = 1;
   PoseTable poses;
   const Eigen::VectorXd rest = model.default_pose();
   poses.q.assign(rows, rest);
@@ -70,8 +110,11 @@ PoseTable from_columns(const Model& model, const std::string& place, std::size_t
       const std::vector<double> values = column(coordinate, suffix);
       if (values.empty()) return;
       any = true;
+      if (ranged) given[static_cast<std::size_t>(c)] = 1;
       for (std::size_t i = 0; i < rows; ++i) {
-        if (ranged) check_range(model, fmt::format("{}, row {}", place, i + 1), c, values[i]);
+        // Where a coupled one ends up is its coupler's affair.
+        if (ranged && coupled[static_cast<std::size_t>(c)] == 0)
+          check_range(model, fmt::format("{}, row {}", place, i + 1), c, values[i]);
         if (!std::isfinite(values[i]))
           throw InputError(place, fmt::format("row {}: '{}' is not a finite number", i + 1, coordinate.name));
         to[i](c) = values[i];
@@ -81,6 +124,7 @@ PoseTable from_columns(const Model& model, const std::string& place, std::size_t
     fill(poses.qdot, "speed", false);
     fill(poses.qddot, "acceleration", false);
   }
+  couple(model, poses, given, true);
   if (!any)
     throw InputError(place, fmt::format("no column is a coordinate of model '{}' ({})", model.name,
                                         fmt::join(model.coordinate_names(), ", ")));
@@ -127,24 +171,16 @@ PoseTable read_poses(const Model& model, const std::string& text) {
     poses = text.ends_with(".csv") ? read_csv(model, text) : read_motion(model, text);
   } else {
     Eigen::VectorXd q = model.default_pose();
+    std::vector<std::uint8_t> given(model.coordinates.size(), 0);
     for (std::size_t begin = 0; begin <= text.size();) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
       if (const std::string part = trimmed(text.substr(begin, end - begin)); !part.empty())
-        read_assignment(model, part, q);
+        given[static_cast<std::size_t>(read_assignment(model, part, q))] = 1;
       begin = end + 1;
     }
     poses.q = {q};
     poses.qdot = poses.qddot = {Eigen::VectorXd::Zero(q.size())};
-  }
-  const CoordinateReduction reduction(model);
-  for (std::size_t i = 0; i < poses.q.size(); ++i) {
-    for (const CoordinateReduction::Coupler& coupler : reduction.couplers()) {
-      const numerics::FunctionValue<double> f = coupler.function.evaluate(poses.q[i](coupler.independent));
-      const double speed = poses.qdot[i](coupler.independent);
-      poses.q[i](coupler.dependent) = f.value;
-      poses.qdot[i](coupler.dependent) = f.slope * speed;
-      poses.qddot[i](coupler.dependent) = f.slope * poses.qddot[i](coupler.independent) + f.curvature * speed * speed;
-    }
+    couple(model, poses, given, false);
   }
   return poses;
 }

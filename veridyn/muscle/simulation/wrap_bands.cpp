@@ -1,12 +1,11 @@
 #include "veridyn/muscle/simulation/wrap_bands.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "veridyn/core/constants.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/path/pose_text.hpp"
 
 namespace veridyn::muscle {
 
@@ -38,14 +37,6 @@ std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
 }
 
 std::string wrap_band_text(const MusculoskeletalSystem& system, const WrapBandVisit& visit) {
-  std::vector<std::string> pose;
-  for (const MusclePaths::Pair& pair : system.paths().pairs()) {
-    if (pair.muscle != visit.muscle) continue;
-    const Coordinate& c = system.model().coordinates[at(pair.coordinate)];
-    const bool angle = c.motion == CoordinateMotion::kRotational;
-    pose.push_back(fmt::format("{} = {:.4g} {}", c.name, visit.pose(pair.coordinate) * (angle ? 1.0 / kDegree : 1.0),
-                               angle ? "deg" : "m"));
-  }
   const char* what = visit.flag == PathFlag::kFading ? "passes a band where a wrap of its path fades out, and its "
                                                        "moment arm can be ten times too large"
                      : visit.flag == PathFlag::kInside
@@ -53,7 +44,7 @@ std::string wrap_band_text(const MusculoskeletalSystem& system, const WrapBandVi
                          : "has a wrap that was not found, and its path is straight there";
   return fmt::format("muscle '{}' {}: {:.4g} to {:.4g} s, {} samples, first at {}",
                      system.model().muscles[at(visit.muscle)].name(), what, visit.first, visit.last, visit.poses,
-                     fmt::join(pose, ", "));
+                     pose_text(system.model(), system.paths(), visit.muscle, visit.pose));
 }
 
 }  // namespace veridyn::muscle
