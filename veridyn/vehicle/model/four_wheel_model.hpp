@@ -76,6 +76,17 @@ class FourWheelModel {
   void rates_at_slips(const State& state, const WheelControls<Scalar>& controls, const PerWheel<double>& road,
                       const ChangeSlips& change, FourWheelRates<Scalar>& out) const;
 
+  /// What a road that is inclined and bends makes felt in its axes, beyond gravity square to a level one: a further
+  /// acceleration of every mass, forward, left, up [m/s^2], and how the axes' own roll and pitch rate change [rad/s^2].
+  /// The longitudinal and lateral acceleration of the rates contain the former. Without longitudinal dynamics u stays
+  /// as it is.
+  void set_field(const Eigen::Vector3d& field, const Eigen::Vector2d& turning) {
+    field_ = field;
+    turning_ = turning;
+    in_field_ = !field.isZero(0.0) || !turning.isZero(0.0);
+  }
+  [[nodiscard]] const Eigen::Vector3d& field() const { return field_; }
+
   /// Position of the wheels from the vehicle's centre of gravity, x forward, y left [m].
   [[nodiscard]] const WheelArray<Scalar>& wheel_x() const { return x_; }
   [[nodiscard]] const WheelArray<Scalar>& wheel_y() const { return y_; }
@@ -136,6 +147,9 @@ class FourWheelModel {
   Scalar per_mass_{0.0}, per_heaving_mass_{0.0}, per_unsprung_mass_{0.0};
   Scalar per_I_x_{0.0}, per_I_y_{0.0}, per_I_z_{0.0};
   double gravity_along_ = 0.0;  ///< down the grade [m/s^2]
+  Eigen::Vector3d field_ = Eigen::Vector3d::Zero();
+  Eigen::Vector2d turning_ = Eigen::Vector2d::Zero();
+  bool in_field_ = false;
 };
 
 template <typename Scalar, typename Tyre>
@@ -495,6 +509,18 @@ template <typename Scalar, typename Tyre>
   d(kRollRate) = roll_moment * per_I_x_;
   d(kPitchRate) = pitch_moment * per_I_y_;
   d(kDistance) = sqrt(u * u + v * v);
+  if (!in_field_) return;
+  if (options_.longitudinal) {
+    d(kU) += field_.x();
+    out.longitudinal_acceleration += field_.x();
+  }
+  d(kV) += field_.y();
+  out.lateral_acceleration += field_.y();
+  d(kRollRate) -= turning_.x();
+  d(kPitchRate) -= turning_.y();
+  d(kHeaveRate) += field_.z() + turning_.y() * (x_[0] - arm_[0]);
+  for (Eigen::Index i = 0; i < 4; ++i)
+    d(kWheelHeightRate + i) += field_.z() - turning_.x() * y_[i] + turning_.y() * x_[i];
 }
 
 }  // namespace veridyn::vehicle

@@ -95,6 +95,12 @@ void SteppedDrive<Tyre>::reset(const DriveState& state) {
 }
 
 template <typename Tyre>
+void SteppedDrive<Tyre>::reset(const DriveState& state, const Eigen::Vector3d& field, const Eigen::Vector2d& turning) {
+  model_.set_field(field, turning);
+  reset(state);
+}
+
+template <typename Tyre>
 PerWheel<double> SteppedDrive<Tyre>::under(const FourWheelState<double>& state) const {
   return RoadUnderWheels<Model>{model_, road_.get()}(state);
 }
@@ -263,6 +269,7 @@ recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place)
   const FourWheelState<double>& s = state_.vehicle;
   const FourWheelState<double>& d = rates_.derivative;
   const double grade = spins_ ? model_.options().longitudinal->grade : 0.0;
+  const Eigen::Vector3d& field = model_.field();
   recording::MotionSample out = motion_sample({.time = state_.time,
                                                .x = s(kX),
                                                .y = s(kY),
@@ -275,9 +282,9 @@ recording::MotionSample SteppedDrive<Tyre>::motion(const Eigen::Vector3d& place)
                                                .yaw_acceleration = d(kR),
                                                .roll_acceleration = d(kRollRate),
                                                .pitch_acceleration = d(kPitchRate),
-                                               .forward = rates_.longitudinal_acceleration,
-                                               .leftward = rates_.lateral_acceleration,
-                                               .upward = d(kHeaveRate),
+                                               .forward = rates_.longitudinal_acceleration - (spins_ ? field.x() : 0.0),
+                                               .leftward = rates_.lateral_acceleration - field.y(),
+                                               .upward = d(kHeaveRate) - field.z(),
                                                .speed = s(kU)},
                                               model_.options().gravity, grade);
   out.inputs = {state_.controls.steer, state_.controls.drive_torque, state_.controls.brake_torque};

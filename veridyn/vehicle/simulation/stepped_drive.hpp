@@ -57,6 +57,8 @@ class SteppedDrive {
   void reset(double speed = 0.0);
   /// Goes on from a saved state.
   void reset(const DriveState& state);
+  /// Goes on from a state in another field of accelerations, see `FourWheelModel::set_field`.
+  void reset(const DriveState& state, const Eigen::Vector3d& field, const Eigen::Vector2d& turning);
 
   /// Drives on for `dt` [s] with these controls held. Long steps are cut into parts that the vehicle's stiffness bears
   /// (at most 1 s a step). Controls out of range (NaN, steer beyond 90 deg, negative brake) leave the last ones; a `dt`
@@ -71,7 +73,7 @@ class SteppedDrive {
   /// The motion in all six directions at a place of the sprung body, flu. @param place from the centre of gravity [m]
   ///
   /// Attitude: heading, grade, then pitch and roll. The yaw rate is about the road's normal, gravity square to the
-  /// road is counted, so that a car parked on a grade shows g sin(grade) forward.
+  /// road is counted, so that a car parked on a grade shows g sin(grade) forward. What a field adds is not felt.
   [[nodiscard]] recording::MotionSample motion(const Eigen::Vector3d& place = Eigen::Vector3d::Zero()) const;
 
  private:
