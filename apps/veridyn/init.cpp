@@ -78,7 +78,7 @@ file = @LOG@
 
 [reconstruct]
 # turbulence = "auto"            # low_light, low_moderate, medium_light, medium_moderate, or what fits best
-# filter = "model-free"          # "model-based" where the derivatives are known, "guarded" to fall back by itself
+# filter = "model-free"          # "model-based": derivatives known; "guarded": falls back by itself; "none"
 # estimate_file = "estimate.json"  # where the model-based filter takes them from; else from [subject.model]
 # estimate = ["alpha_bias", "beta_bias", "pitot_scale"]   # sensor errors; the report says what the flight determines
 # airspeed_is = "true"           # "equivalent" where the log's airspeed is indicated
@@ -98,7 +98,7 @@ file = @LOG@
 # refit_significant = false      # once more with the significant parameters only
 # structure = "given"            # "stepwise", "orthogonal": choose the terms among [identify.candidates]
 # output_error = false           # alongside regression: output-error maximum likelihood
-# output_error_gusts = true      # its simulation is driven by the reconstructed gust; false: the air is calm
+# output_error_gusts = true      # simulated in the reconstructed gusts; false: in calm air (without ground velocity)
 # frequency_band = ["0.1 Hz", "2 Hz"]   # alongside regression: equation error in the frequency domain
 # bootstrap = 0                  # alongside regression: replicates of a block bootstrap, such as 500
 

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 
+#include "tests/aircraft/stripped_recording.hpp"
+#include "tests/support/refusal.hpp"
+#include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
@@ -30,6 +33,59 @@ TEST(AircraftStudy, IsNotChangedByItsAnalysis) {
   EXPECT_EQ(study.mapped.recording.at("vel_north").times().front(), 0.0);
   EXPECT_DOUBLE_EQ(analysis.aligned.recording.at("vel_north").times().front(), -0.05);
   EXPECT_FALSE(analysis.interrupted);
+}
+
+/// Of the coefficients that a result names.
+std::vector<std::string> identified_in(const FlightAnalysis& analysis) {
+  std::vector<std::string> names;
+  for (const CoefficientResult& r : analysis.coefficients)
+    if (r.verdict == estimation::GroupVerdict::kIdentified) names.push_back(r.name);
+  return names;
+}
+
+FlightStudy stripped(FlightStudy study, const std::vector<std::string>& channels) {
+  study.mapped.recording = aircraft::testing::without(study.mapped.recording, channels);
+  return study;
+}
+
+// Without accelerometer no filter runs and no force is measured: the moments are left. Without beta vane in addition,
+// the pitching moment.
+TEST(AircraftStudy, IdentifiesWhatTheRecordedSensorsShow) {
+  Progress silent;
+  const FlightStudy study = calm_study(150.0, "");
+  const std::vector<std::string> forces{"accel_x", "accel_y", "accel_z"};
+  const FlightAnalysis moments = identify(stripped(study, forces), silent);
+  EXPECT_EQ(moments.reconstruction.filter, FilterKind::kNone);
+  EXPECT_EQ(identified_in(moments), (std::vector<std::string>{"Cl", "Cm", "Cn"}));
+  EXPECT_THAT(moments.estimate.warnings, ::testing::Contains(::testing::HasSubstr("no accelerometer")));
+  const FlightAnalysis pitching =
+      identify(stripped(study, {"accel_x", "accel_y", "accel_z", "beta", "roll", "pitch", "yaw"}), silent);
+  EXPECT_EQ(identified_in(pitching), (std::vector<std::string>{"Cm"}));
+}
+
+TEST(AircraftStudy, DoesWithoutAFilterWhereThatIsAskedFor) {
+  Progress silent;
+  FlightStudy study = calm_study(150.0, "filter = \"none\"\n");
+  EXPECT_EQ(study.reconstruct.filter, FilterKind::kNone);
+  const FlightAnalysis analysis = identify(study, silent);
+  EXPECT_EQ(identified_in(analysis).size(), 6U);
+  EXPECT_TRUE(analysis.validation.available());
+  study.mapped.recording = aircraft::testing::without(study.mapped.recording, {"dynamic_pressure", "airspeed"});
+  EXPECT_THAT(why([&] { static_cast<void>(identify(study, silent)); }),
+              ::testing::HasSubstr("reconstruct.filter = \"none\" needs an airspeed"));
+}
+
+TEST(AircraftStudy, ValidatesAndTracksWithoutMotionOverGround) {
+  Progress silent;
+  const FlightStudy study =
+      stripped(calm_study(150.0, "[identify]\noutput_error = true\ncoefficients = [\"CL\", \"Cm\"]\n"),
+               {"vel_north", "vel_east", "vel_down", "yaw"});
+  const FlightAnalysis identified = identify(study, silent);
+  EXPECT_EQ(identified_in(identified).size(), 2U);
+  EXPECT_FALSE(identified.signals.over_ground) << "output error takes the air to be calm";
+  EXPECT_FALSE(identified.others.parameters.empty());
+  EXPECT_EQ(identified_in(validate(study, identified.estimate, silent)).size(), 2U);
+  EXPECT_GT(track_flight(study, silent).flight.tracker().rows(), 0U);
 }
 
 TEST(AircraftStudy, RefusesAnAircraftThatNeverFlies) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/contradicted_flight.hpp"
+#include "veridyn/aircraft/identification/direct_air_data.hpp"
 #include "veridyn/aircraft/identification/excited_segments.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
@@ -48,6 +49,7 @@ std::pair<double, std::string> highest_speed(const Recording& recording) {
     for (const double q : pressure->value) highest = std::fmax(highest, std::sqrt(2.0 * std::fmax(0.0, q) / 1.225));
     return {highest, "airspeed"};
   }
+  if (!recording.has("vel_north") || !recording.has("vel_east")) return {0.0, "speed"};
   const Channel& north = recording.at("vel_north");
   const Channel& east = recording.at("vel_east");
   for (std::size_t i = 0; i < std::min(north.size(), east.size()); ++i) {
@@ -58,9 +60,19 @@ std::pair<double, std::string> highest_speed(const Recording& recording) {
 
 /// What every analysis needs, refused in one sentence when it is missing.
 void check_flight(const FlightStudy& study) {
-  const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x",    "gyro_y",   "gyro_z",
-                                        "roll",    "pitch",   "yaw",     "vel_north", "vel_east", "vel_down"};
-  require_channels(study.mapped, needed, "the reconstruction of the motion through the air");
+  const std::vector<std::string> gyro_axes{"gyro_x", "gyro_y", "gyro_z"};
+  require_channels(study.mapped, gyro_axes, "the analysis of a flight");
+  const Recording& recording = study.mapped.recording;
+  const bool airspeed = recording.has("airspeed") || recording.has("dynamic_pressure");
+  const bool without_filter = study.reconstruct.filter == FilterKind::kNone;
+  const std::string obstacle = reconstruction_obstacle(recording, study.reconstruct);
+  if (!airspeed && (without_filter || !obstacle.empty()))
+    throw InputError(recording.source,
+                     fmt::format("{}; it has: {}",
+                                 without_filter ? "reconstruct.filter = \"none\" needs an airspeed (airspeed, "
+                                                  "dynamic_pressure)"
+                                                : obstacle + ", and no airspeed to do without a filter",
+                                 fmt::join(recording.names(), ", ")));
   constexpr double kSlowest_Hz = 2.0;
   if (const Channel& gyro = study.mapped.recording.at("gyro_x"); !(gyro.rate_Hz() > kSlowest_Hz)) {
     throw InputError(study.mapped.recording.source,
@@ -79,6 +91,18 @@ void check_flight(const FlightStudy& study) {
   }
 }
 
+/// By the filter, or as recorded: where that is asked for, and where no filter can run.
+Reconstruction motion_of(const Recording& recording, const ReconstructOptions& options, const SignalOptions& signals,
+                         Progress& progress, const Subject& model) {
+  if (options.filter == FilterKind::kNone) return recorded_motion(recording, options, signals);
+  const std::string obstacle = reconstruction_obstacle(recording, options);
+  if (obstacle.empty() || options.filter != FilterKind::kModelFree)
+    return reconstruct(recording, options, progress, &model);
+  Reconstruction motion = recorded_motion(recording, options, signals);
+  motion.warnings.insert(motion.warnings.begin(), fmt::format("{}: no filter can run", obstacle));
+  return motion;
+}
+
 /// Delays and motion through the air.
 FlightAnalysis reconstruct_with(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
   check_flight(study);
@@ -91,8 +115,9 @@ FlightAnalysis reconstruct_with(const FlightStudy& study, const ReconstructOptio
   if (analysis.interrupted) return analysis;
   const Recording& recording = analysis.aligned.recording;
   const Subject& model = study.filter_subject ? *study.filter_subject : study.subject;
-  analysis.reconstruction = reconstruct(recording, options, progress, &model);
-  if (study.truth && options.compare && options.filter != FilterKind::kModelFree) {
+  analysis.reconstruction = motion_of(recording, options, study.signals, progress, model);
+  const bool by_model = options.filter == FilterKind::kModelBased || options.filter == FilterKind::kGuarded;
+  if (study.truth && options.compare && by_model) {
     progress.stage("comparing the filters with the truth");
     analysis.reconstruction.comparison = compare_filters(recording, *study.truth, options, model, progress);
   }

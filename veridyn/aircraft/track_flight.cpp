@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/aircraft/identification/direct_air_data.hpp"
 #include "veridyn/aircraft/identification/excited_segments.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
-#include "veridyn/aircraft/tracking/direct_air_data.hpp"
 #include "veridyn/aircraft/tracking/tracking_judgement.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -39,7 +39,7 @@ ReconstructOptions rows_options(const FlightStudy& study) {
 
 void check_filters(const FlightStudy& study) {
   const ReconstructOptions& o = study.reconstruct;
-  if (o.filter != FilterKind::kModelFree) {
+  if (o.filter == FilterKind::kModelBased || o.filter == FilterKind::kGuarded) {
     throw InputError(study.name,
                      fmt::format("reconstruct.filter = \"{}\" contradicts tracking: rows that were filtered "
                                  "with a model would confirm that model; leave it out; track.filter = "
@@ -90,12 +90,15 @@ void TrackedFlight::run_filter(const Recording& part, const FlightStudy& study, 
 
 std::vector<FlightChange> TrackedFlight::advance(const MappedRecording& mapped, const FlightStudy& study, bool finished,
                                                  Progress& progress, std::span<const DelayReport> delays) {
-  const std::vector<std::string> needed{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  const std::vector<std::string> needed{"gyro_x", "gyro_y", "gyro_z"};
   require_channels(mapped, needed, "tracking");
   const TimeSpan span = mapped.recording.at("gyro_x").span();
   end_ = std::max(end_, span.end);
-  const bool by_sensors = study.track.air_data == AirDataSource::kSensors;
-  air_data_ = study.track.air_data;
+  // Where no filter can run, the sensors themselves are what there is.
+  const bool by_sensors = study.track.air_data == AirDataSource::kSensors ||
+                          study.reconstruct.filter == FilterKind::kNone ||
+                          !reconstruction_obstacle(mapped.recording, study.reconstruct).empty();
+  air_data_ = by_sensors ? AirDataSource::kSensors : AirDataSource::kFilter;
   const double begin = std::isfinite(tracker_.last_time())
                            ? tracker_.last_time() - (by_sensors ? kWarmSensors_s : kWarmFilter_s)
                            : span.begin;
@@ -143,7 +146,10 @@ void TrackedFlight::check_recording(const MappedRecording& mapped, const FlightS
                                     std::span<const DelayReport> delays, Progress& progress) {
   if (!recording_evidence_.empty()) return;
   progress.stage("checking the recording");
-  const Reconstruction reconstruction = reconstruct(mapped.recording, study.reconstruct, progress);
+  const bool filter = study.reconstruct.filter != FilterKind::kNone &&
+                      reconstruction_obstacle(mapped.recording, study.reconstruct).empty();
+  const Reconstruction reconstruction = filter ? reconstruct(mapped.recording, study.reconstruct, progress)
+                                               : recorded_motion(mapped.recording, study.reconstruct, study.signals);
   if (reconstruction.interrupted) return;
   judge_recording(mapped, study, reconstruction,
                   prepare_signals(mapped, reconstruction.smoothed, study.subject, study.signals), delays);

@@ -159,6 +159,7 @@ Document reconstruction_report(const FlightStudy& study, const FlightAnalysis& a
         q.quantity == "airspeed" || q.quantity == "alpha" || q.quantity == "beta" || q.quantity.starts_with("wind");
     if (air_data && q.observability != Observability::kObservable) weak.push_back(q.quantity);
   }
+  if (!analysis.reconstruction.smoothed.has("wind_north")) weak.emplace_back("wind");
   document.verdict.level = weak.empty() ? Level::kGood : Level::kCaution;
   document.verdict.word = weak.empty() ? "Observable" : "Partly observable";
   document.verdict.headline =

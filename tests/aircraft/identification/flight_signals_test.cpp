@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 
+#include "tests/aircraft/stripped_recording.hpp"
 #include "tests/support/refusal.hpp"
 #include "veridyn/aircraft/model/builtin_subjects.hpp"
 #include "veridyn/core/constants.hpp"
@@ -178,12 +179,21 @@ TEST(FlightSignals, SayWhatTheyLack) {
               }),
               HasSubstr("its gyro is sampled at 5.0 Hz; derivatives need at least 10 Hz"));
   EXPECT_THAT(refusal([](FormulaFlight& f, SignalOptions&) {
-                Recording all = std::move(f.mapped.recording);
-                f.mapped.recording = {};
-                for (const Channel& c : all.channels())
-                  if (c.name != "accel_y") f.mapped.recording.add(c);
+                f.mapped.recording = aircraft::testing::without(f.mapped.recording, {"gyro_y"});
               }),
-              HasSubstr("has no accel_y"));
+              HasSubstr("has no gyro_y"));
+}
+
+// What is not recorded costs what depends on it.
+TEST(FlightSignals, AreNotAvailableWhereNothingIsRecorded) {
+  FormulaFlight flight;
+  flight.mapped.recording = aircraft::testing::without(flight.mapped.recording, {"accel_y"});
+  flight.smoothed = aircraft::testing::without(flight.smoothed, {"roll"});
+  const FlightSignals s = flight.prepared({});
+  EXPECT_FALSE(s[F::kAy].available());
+  EXPECT_TRUE(s[F::kAz].available());
+  EXPECT_TRUE(std::isnan(s.roll.front()));
+  EXPECT_TRUE(std::isfinite(s.pitch[s.size() / 2]));
 }
 
 TEST(SignalOptions, AreReadFromTheStudy) {

@@ -14,11 +14,12 @@ namespace veridyn::aircraft::internal {
 namespace {
 
 TEST(EstimatedColumns, AreThoseOfTheOptions) {
-  const ColumnSet plain = estimated_columns({}, false);
+  const FlightStreams streams = load_streams(aircraft::testing::make_flight({.duration = 2.0}).recording, {});
+  const ColumnSet plain = estimated_columns({}, streams, false);
   EXPECT_EQ(std::count(plain.begin(), plain.end(), true), static_cast<std::ptrdiff_t>(kFirstImuBias));
   ReconstructOptions o;
   o.gyro_bias = o.pitot_scale = true;
-  const ColumnSet some = estimated_columns(o, true);
+  const ColumnSet some = estimated_columns(o, streams, true);
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
     const std::string_view name = kColumns[c].name;
     const bool expected =

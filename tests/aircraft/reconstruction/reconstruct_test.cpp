@@ -9,12 +9,15 @@
 #include <cstdlib>
 
 #include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
+#include "tests/aircraft/stripped_recording.hpp"
 #include "veridyn/aircraft/reconstruction/information_bound.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::aircraft {
 namespace {
+
+using aircraft::testing::without;
 
 using testing::errors_of;
 using testing::FlightCase;
@@ -35,15 +38,6 @@ Reconstruction run(const Recording& recording, const ReconstructOptions& options
 }
 
 /// The recording without some channels.
-Recording without(const Recording& from, std::initializer_list<const char*> names) {
-  Recording r;
-  r.source = from.source;
-  r.frame = from.frame;
-  for (const Channel& c : from.channels()) {
-    if (std::find(names.begin(), names.end(), c.name) == names.end()) r.add(c);
-  }
-  return r;
-}
 
 const QuantityReport& quantity(const Reconstruction& r, const char* name) {
   return *std::find_if(r.quantities.begin(), r.quantities.end(), [&](const auto& q) { return q.quantity == name; });
@@ -297,6 +291,38 @@ TEST(Reconstruct, GivesTheSameBytesTwice) {
   for (const Channel& c : a.smoothed.channels()) EXPECT_EQ(c.value, b.smoothed.at(c.name).value) << c.name;
 }
 
+// --- Missing sensors ------------------------------------------------------------------------------------------------
+
+// Flow angles and airspeed come from vanes and pitot tube; what is left out helps them little.
+TEST(Reconstruct, KnowsTheAirWithoutMotionOverGroundHeadingOrAttitude) {
+  const MadeFlight f = make_flight({.duration = 60.0});
+  const double with_all = errors_of(run(f.recording, {}).smoothed, "alpha", f.alpha, 10.0).rms;
+  const std::vector<std::vector<std::string>> steps{{"vel_north", "vel_east", "vel_down"},
+                                                    {"vel_north", "vel_east", "vel_down", "yaw"},
+                                                    {"yaw"},
+                                                    {"roll", "pitch"},
+                                                    {"roll", "pitch", "yaw"}};
+  for (const std::vector<std::string>& missing : steps) {
+    const Reconstruction r = run(without(f.recording, missing), {});
+    ASSERT_FALSE(r.contradiction.has_value()) << missing.front();
+    EXPECT_LT(errors_of(r.smoothed, "alpha", f.alpha, 10.0).rms, 1.5 * with_all) << missing.front();
+    EXPECT_LT(errors_of(r.smoothed, "airspeed", f.airspeed, 10.0).rms, 0.5) << missing.front();
+  }
+}
+
+TEST(Reconstruct, HasNoWindAndNoHeadingWhereNothingShowsThem) {
+  const MadeFlight f = make_flight({.duration = 10.0});
+  const Reconstruction r = run(without(f.recording, {"vel_north", "vel_east", "vel_down"}), {});
+  for (const char* channel : {"wind_north", "wind_total_east", "wind_down", "vel_north"})
+    EXPECT_FALSE(r.smoothed.has(channel)) << channel;
+  EXPECT_TRUE(r.smoothed.has("yaw"));
+  EXPECT_TRUE(r.smoothed.has("gust_x"));
+  for (const QuantityReport& q : r.quantities) EXPECT_FALSE(q.quantity.starts_with("wind")) << q.quantity;
+  EXPECT_THAT(r.warnings, ::testing::Contains(HasSubstr("no ground velocity")));
+  const Reconstruction lost = run(without(f.recording, {"vel_north", "vel_east", "vel_down", "yaw"}), {});
+  EXPECT_FALSE(lost.smoothed.has("yaw"));
+}
+
 // --- Bad input ------------------------------------------------------------------------------------------------------
 
 std::string message_of(const Recording& recording) {
@@ -311,8 +337,11 @@ std::string message_of(const Recording& recording) {
 TEST(Reconstruct, RefusesWhatItCannotUseInOneSentence) {
   const MadeFlight f = make_flight({.duration = 5.0});
   EXPECT_THAT(message_of(without(f.recording, {"gyro_y"})), HasSubstr("gyro_y"));
-  EXPECT_THAT(message_of(without(f.recording, {"vel_down"})), HasSubstr("vel_down"));
-  EXPECT_THAT(message_of(without(f.recording, {"vel_down"})), HasSubstr("vel_north")) << "says what there is";
+  EXPECT_THAT(message_of(without(f.recording, {"accel_x"})), HasSubstr("no accelerometer"));
+  EXPECT_THAT(message_of(without(f.recording, {"roll", "vel_east"})), HasSubstr("neither attitude (roll, pitch) nor"));
+  EXPECT_THAT(message_of(without(f.recording, {"vel_east", "dynamic_pressure"})),
+              HasSubstr("neither ground velocity (vel_north, vel_east) nor airspeed"));
+  EXPECT_THAT(message_of(without(f.recording, {"accel_x"})), HasSubstr("it has: ")) << "says what there is";
   Recording flu = f.recording;
   flu.frame = Frame::kFlu;
   EXPECT_THAT(message_of(flu), HasSubstr("frd"));
@@ -320,7 +349,13 @@ TEST(Reconstruct, RefusesWhatItCannotUseInOneSentence) {
   Channel roll = nan.at("roll");
   std::fill(roll.value.begin(), roll.value.end(), std::nan(""));
   nan.set(roll);
-  EXPECT_THAT(message_of(nan), HasSubstr("'roll' holds no finite sample"));
+  EXPECT_EQ(message_of(nan), "") << "a roll that is never known is none";
+  for (const char* north : {"vel_north", "vel_east"}) {
+    Channel channel = nan.at(north);
+    std::fill(channel.value.begin(), channel.value.end(), std::nan(""));
+    nan.set(channel);
+  }
+  EXPECT_THAT(message_of(nan), HasSubstr("neither attitude (roll, pitch) nor"));
   EXPECT_THAT(message_of(make_flight({.duration = 0.5}).recording), HasSubstr("no second"));
 }
 

@@ -25,7 +25,8 @@ std::vector<FlightSignal> needed_signals(const CoefficientModel& model) {
   if (uses(AeroVariable::kDr)) needed.push_back(FlightSignal::kRudder);
   if (uses(AeroVariable::kCT)) needed.push_back(FlightSignal::kThrust);
   if (model.coefficient == Coefficient::kCL || model.coefficient == Coefficient::kCD)
-    needed.push_back(FlightSignal::kAlpha);
+    needed.insert(needed.end(), {FlightSignal::kAlpha, FlightSignal::kAx, FlightSignal::kAz});
+  if (model.coefficient == Coefficient::kCY) needed.push_back(FlightSignal::kAy);
   return needed;
 }
 

@@ -15,6 +15,9 @@ struct SignalDoubt {
   FlightSignal signal = FlightSignal::kAirspeed;
   double scale = 0.0;  ///< of reading over truth
   double zero = 0.0;   ///< in the signal's unit
+  /// Whether it is part of the interval: of what no sensor measures the reconstruction knows how wrong it may be, while
+  /// a sensor is taken as right.
+  bool in_interval = false;
 };
 
 /// A check of the recording, and which coefficients rest on what it checked.

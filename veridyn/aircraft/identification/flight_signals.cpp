@@ -14,6 +14,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/numerics/rotation.hpp"
 #include "veridyn/numerics/statistics.hpp"
 
 namespace veridyn::aircraft {
@@ -34,8 +35,8 @@ struct CommonGrid {
 };
 
 CommonGrid common_grid(const MappedRecording& mapped, const SignalOptions& options) {
-  const std::vector<std::string> needed{"accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z"};
-  require_channels(mapped, needed, "the aerodynamic forces");
+  const std::vector<std::string> needed{"gyro_x", "gyro_y", "gyro_z"};
+  require_channels(mapped, needed, "the aerodynamic coefficients");
   const Channel& gyro = mapped.recording.at("gyro_x");
   const double rate = recording::grid_rate(gyro, options.rate_Hz);
   if (!(rate >= 10.0)) {
@@ -133,6 +134,7 @@ InertialSignals inertial_signals(const GriddedChannels& channels, const CommonGr
     signals.rate_derivative[i] = channels.filtered(common.differentiate, gyros[i], raw, sd, "differentiated gyro");
   }
   for (std::size_t i = 0; i < 3; ++i) {
+    if (channels.find(accels[i]) == nullptr) continue;
     const std::vector<double> raw = channels.raw(accels[i]);
     const double sd = channels.noise_of(accels[i], raw);
     signals.force[i] = channels.filtered(common.smooth, accels[i], raw, sd, "filtered accelerometer");
@@ -143,6 +145,7 @@ InertialSignals inertial_signals(const GriddedChannels& channels, const CommonGr
 /// Specific force at the centre of gravity: a_cg = a - w' x r - w x (w x r), `r` from there to the sensor [m].
 std::array<GridSignal, 3> force_at_centre_of_gravity(const InertialSignals& at_sensor, const Eigen::Vector3d& r) {
   std::array<GridSignal, 3> force = at_sensor.force;
+  if (!std::ranges::all_of(force, &GridSignal::available)) return force;
   for (std::size_t k = 0; k < force[0].value.size(); ++k) {
     const auto at = [k](const std::array<GridSignal, 3>& s) {
       return Eigen::Vector3d(s[0].value[k], s[1].value[k], s[2].value[k]);
@@ -174,7 +177,7 @@ struct FlowAngle {
   std::string note;  ///< empty: nothing
 };
 
-/// @param smoothed_angle the smoother's, on the grid
+/// @param smoothed_angle the smoother's, on the grid; empty where there is none
 FlowAngle flow_angle(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
                      FlowAngles choice, const std::string& name, const std::vector<double>& smoothed_angle) {
   const Channel* vane = channels.find(name);
@@ -182,7 +185,8 @@ FlowAngle flow_angle(const GriddedChannels& channels, const CommonGrid& common, 
     throw InputError(channels.source(),
                      fmt::format("has no {} vane, which signals.flow_angles = \"vane\" asks for", name));
   }
-  if (vane == nullptr || choice == FlowAngles::kSmoothed) {
+  if (vane == nullptr && smoothed_angle.empty()) return {};
+  if (vane == nullptr || (choice == FlowAngles::kSmoothed && !smoothed_angle.empty())) {
     // The smoother follows what the filter cannot: the same pass band for all regressors.
     return {.signal = {.value = numerics::filter(smoothed_angle, common.smooth),
                        .sigma = typical_sigma(smoothed, "sigma_" + name),
@@ -226,17 +230,24 @@ struct FlowSignals {
 
 FlowSignals flow_signals(const GriddedChannels& channels, const CommonGrid& common, const Recording& smoothed,
                          FlowAngles choice) {
-  std::vector<double> alpha_smoothed = on_grid(smoothed.at("alpha"), common.grid);
-  std::vector<double> beta_smoothed = on_grid(smoothed.at("beta"), common.grid);
+  const bool recorded = smoothed.information.contains("airspeed");
+  const auto estimated = [&](const char* name) {
+    const Channel* channel = smoothed.find(name);
+    return channel == nullptr ? std::vector<double>() : on_grid(*channel, common.grid);
+  };
+  std::vector<double> alpha_smoothed = estimated("alpha");
+  std::vector<double> beta_smoothed = estimated("beta");
   FlowAngle alpha = flow_angle(channels, common, smoothed, choice, "alpha", alpha_smoothed);
   FlowAngle beta = flow_angle(channels, common, smoothed, choice, "beta", beta_smoothed);
   std::vector<std::string> notes;
   for (const FlowAngle* angle : {&alpha, &beta})
     if (!angle->note.empty()) notes.push_back(angle->note);
+  for (std::vector<double>* angle : {&alpha_smoothed, &beta_smoothed})
+    if (angle->empty()) angle->assign(common.grid.count, kNaN);
   return {.airspeed = {.value = on_grid(smoothed.at("airspeed"), common.grid),
                        .sigma = typical_sigma(smoothed, "sigma_airspeed"),
-                       .error = ErrorKind::kBerkson,
-                       .origin = "smoother"},
+                       .error = recorded ? ErrorKind::kClassical : ErrorKind::kBerkson,
+                       .origin = recorded ? "filtered airspeed" : "smoother"},
           .alpha = std::move(alpha.signal),
           .beta = std::move(beta.signal),
           .alpha_smoothed = std::move(alpha_smoothed),
@@ -308,13 +319,14 @@ ThrustSignals computed_thrust(const Propulsion& propulsion, const std::vector<do
   std::vector<double> force(command.size(), kNaN), torque(command.size(), 0.0), per_airspeed(command.size(), 0.0);
   constexpr double kStep_mps = 0.01;
   double rotor = kNaN;
+  const auto cosine = [](double angle) { return std::isfinite(angle) ? std::cos(angle) : 1.0; };
   for (std::size_t k = 0; k < command.size(); ++k) {
     if (!std::isfinite(command[k]) || !std::isfinite(airspeed[k])) continue;
     const double steady = propulsion.steady_rotor_speed(command[k]);
     const bool lags = propulsion.kind == PropulsionKind::kPropeller && std::isfinite(rotor);
     rotor = lags ? steady + (rotor - steady) * std::exp(-step / propulsion.time_constant) : steady;
     // The propeller sees the airspeed along its axis.
-    const double along = std::cos(flow.alpha_smoothed[k]) * std::cos(flow.beta_smoothed[k]);
+    const double along = cosine(flow.alpha_smoothed[k]) * cosine(flow.beta_smoothed[k]);
     const auto load_at = [&](double Va) { return propulsion.load(command[k], Va * along, flow.air_density[k], rotor); };
     const auto load = load_at(airspeed[k]);
     force[k] = load.thrust;
@@ -345,6 +357,25 @@ ThrustSignals thrust_signals(const GriddedChannels& channels, const CommonGrid& 
           .per_airspeed = {},
           .note = throttle == nullptr ? "thrust is unknown: the log has neither thrust nor throttle"
                                       : "thrust is unknown: the subject has no propulsion model"};
+}
+
+/// What stands for the ground velocity where there is none: R (v_r + gust), north where the heading counts from.
+void velocity_through_mean_air(const Recording& smoothed, FlightSignals& flight) {
+  std::array<std::vector<double>, 3> v;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    v[i] = on_grid(smoothed.at("air_velocity_" + axis), flight.grid);
+    const std::vector<double> gust = on_grid(smoothed.at("gust_" + axis), flight.grid);
+    for (std::size_t k = 0; k < v[i].size(); ++k) v[i][k] += gust[k];
+  }
+  for (std::size_t k = 0; k < flight.grid.count; ++k) {
+    const Eigen::Vector3d ned = numerics::R_body_from_ned(flight.roll[k], flight.pitch[k], flight.yaw[k]).transpose() *
+                                Eigen::Vector3d(v[0][k], v[1][k], v[2][k]);
+    for (std::size_t i = 0; i < 3; ++i) v[i][k] = ned(static_cast<Eigen::Index>(i));
+  }
+  flight.vel_north = std::move(v[0]);
+  flight.vel_east = std::move(v[1]);
+  flight.vel_down = std::move(v[2]);
 }
 
 }  // namespace
@@ -419,9 +450,14 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   }
   flight.jump_response = response_to_jump(common.smooth);
 
-  flight.roll = angle_on_grid(smoothed.at("roll"), grid);
-  flight.pitch = angle_on_grid(smoothed.at("pitch"), grid);
-  flight.yaw = angle_on_grid(smoothed.at("yaw"), grid);
+  const auto angle_where_known = [&](const char* name, double otherwise) {
+    const Channel* channel = smoothed.find(name);
+    return channel == nullptr ? std::vector<double>(grid.count, otherwise) : angle_on_grid(*channel, grid);
+  };
+  flight.roll = angle_where_known("roll", kNaN);
+  flight.pitch = angle_where_known("pitch", kNaN);
+  // Where nothing shows the heading, any does.
+  flight.yaw = angle_where_known("yaw", 0.0);
   const auto where_known = [&](const char* name) {
     const Channel* channel = smoothed.find(name);
     return channel == nullptr ? std::vector<double>(grid.count, kNaN) : on_grid(*channel, grid);
@@ -429,6 +465,8 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   flight.vel_north = where_known("vel_north");
   flight.vel_east = where_known("vel_east");
   flight.vel_down = where_known("vel_down");
+  flight.over_ground = smoothed.has("vel_north");
+  if (!flight.over_ground && smoothed.has("gust_x")) velocity_through_mean_air(smoothed, flight);
   flight.wind_north = where_known("wind_north");
   flight.wind_east = where_known("wind_east");
   flight.wind_down = where_known("wind_down");

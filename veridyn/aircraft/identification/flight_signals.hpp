@@ -56,7 +56,8 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   std::vector<double> thrust_per_airspeed;
   std::vector<double> torque;                            ///< reaction torque of the engine about x [N m]; empty without
   std::vector<double> roll, pitch, yaw;                  ///< smoothed attitude
-  std::vector<double> vel_north, vel_east, vel_down;     ///< smoothed ground velocity
+  std::vector<double> vel_north, vel_east, vel_down;     ///< smoothed ground velocity; without: through the mean air
+  bool over_ground = false;                              ///< whether that is the velocity over ground
   std::vector<double> wind_north, wind_east, wind_down;  ///< smoothed slow wind
   std::vector<double> alpha_smoothed, beta_smoothed;     ///< the smoother's, whatever is regressed on
 
@@ -69,7 +70,9 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
 /// accelerometer is moved to the centre of gravity. Thrust is the channel `thrust` or, with `throttle`, the subject's
 /// propulsion model.
 /// `known` gives the sensors' noise where their data sheet is known; otherwise it is measured.
-/// @throws InputError when accelerometer, gyro or smoothed airspeed are missing.
+/// Where `smoothed.information` says that the airspeed is as recorded, its error is taken for a classical one.
+/// What the recording and `smoothed` lack is not available, and attitude and wind are NaN.
+/// @throws InputError when gyro or smoothed airspeed are missing.
 [[nodiscard]] FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& smoothed,
                                             const Subject& subject, const SignalOptions& options,
                                             const SensorSigma* known = nullptr);

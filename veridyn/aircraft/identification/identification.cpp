@@ -226,12 +226,13 @@ Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView&
   });
 }
 
-/// See parameter_doubt.
-Eigen::VectorXd doubt_of_air_data(const CoefficientFit& fit, const FlightView& flight) {
+/// See doubt_sensitivity: of the doubts that are part of the interval, or of those alongside it.
+Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& flight, bool in_interval) {
   std::vector<SignalDoubt> doubts;
   for (const FlightEvidence& row : flight.recording)
-    if (row.doubt && row.bears_on(fit.model.coefficient)) doubts.push_back(*row.doubt);
-  return parameter_doubt(flight.signals, doubts, fit.chosen->theta, [&](const FlightSignals& changed) {
+    if (row.doubt && row.doubt->in_interval == in_interval && row.bears_on(fit.model.coefficient))
+      doubts.push_back(*row.doubt);
+  return doubt_sensitivity(flight.signals, doubts, fit.chosen->theta, [&](const FlightSignals& changed) {
     RegressionData data =
         coefficient_data(fit.model, changed, flight.axis_of_model(fit.model).identification, flight.subject);
     const auto n = data.parameters();
@@ -362,6 +363,7 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     if (reached == estimation::GroupVerdict::kIdentified) {
       result.body_sensitivity = sensitivity_to_body(fit, flight);
       widen(*fit.chosen, result.body_sensitivity, options.significance);
+      widen(*fit.chosen, doubts_of_air_data(fit, flight, true), options.significance);
       verdict =
           explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
     } else {
@@ -371,7 +373,7 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     fit.chosen->parameters = estimation::marked(
         estimation::marked(std::move(fit.chosen->parameters), plausible, ParameterStatus::kImplausible), reached);
     if (reached == estimation::GroupVerdict::kIdentified) {
-      result.air_data_doubt = doubt_of_air_data(fit, flight);
+      result.air_data_doubt = doubts_of_air_data(fit, flight, false).rowwise().norm();
       fit.chosen->parameters = weak_by_doubt(std::move(fit.chosen->parameters), result.air_data_doubt);
       result.evidence.push_back(doubt_row(result.name, fit.chosen->parameters, result.air_data_doubt));
     }

@@ -43,8 +43,9 @@ struct IdentifyOptions {
   /// named choose among `default_candidates`.
   EnumArray<Coefficient, std::vector<Term>, kCoefficients> candidates;
   bool output_error = false;  ///< `output_error`: output-error maximum likelihood in addition to regression
-  /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm.
-  bool output_error_gusts = true;
+  /// `output_error_gusts`: the reconstructed gust is an input of its simulation; false takes the air to be calm. Where
+  /// it is not given: true where a ground velocity is recorded, against which a gust can be told from motion.
+  std::optional<bool> output_error_gusts = {};
   bool output_error_biases = false;  ///< `output_error_biases`: constant biases of the accelerometers, per segment
   double frequency_low_Hz = 0.0;     ///< `frequency_band = ["0.1 Hz", "2 Hz"]`: equation error in the frequency domain
   double frequency_high_Hz = 0.0;    ///< 0: none

@@ -76,7 +76,7 @@ IdentifyOptions IdentifyOptions::read(const StudyTable& table) {
   if (table.has("candidates") && !options.structure)
     table.fail("candidates", "needs structure = \"stepwise\" or \"orthogonal\"");
   options.output_error = table.flag_or("output_error", options.output_error);
-  options.output_error_gusts = table.flag_or("output_error_gusts", options.output_error_gusts);
+  if (table.has("output_error_gusts")) options.output_error_gusts = table.flag_or("output_error_gusts", true);
   options.output_error_biases = table.flag_or("output_error_biases", options.output_error_biases);
   if (table.has("frequency_band")) {
     const std::vector<double> band = table.numbers("frequency_band", "Hz");

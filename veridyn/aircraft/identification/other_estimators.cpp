@@ -56,7 +56,8 @@ AxisOutputError axis_output_error(Axis axis, const FlightSignals& signals, const
     names.emplace_back(name_of(r.coefficient));
   }
   const std::string label = fmt::format("output error, {}", to_string(axis));
-  const OutputErrorModel model(signals, segments.of(axis).identification, subject, models, options.output_error_gusts);
+  const OutputErrorModel model(signals, segments.of(axis).identification, subject, models,
+                               options.output_error_gusts.value_or(signals.over_ground));
   if (models.empty() || model.segments() == 0) {
     run.text = fmt::format(
         "{}: not tried, {}", label,

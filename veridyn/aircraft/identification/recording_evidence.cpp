@@ -9,6 +9,7 @@
 
 #include "veridyn/aircraft/identification/air_data_evidence.hpp"
 #include "veridyn/aircraft/identification/contradicted_flight.hpp"
+#include "veridyn/aircraft/identification/missing_sensor_evidence.hpp"
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/units.hpp"
 #include "veridyn/recording/inertial_consistency.hpp"
@@ -299,6 +300,7 @@ std::vector<FlightEvidence> recording_evidence(const Recording& recording, const
   add(delay_rows(delays));
   add(together_rows(delays));
   add(air_data_evidence(recording, reconstruction, options.airspeed_is_true, segments));
+  add(missing_sensor_evidence(recording, reconstruction, segments));
   add(range_rows(recording, segments));
   if (std::optional<FlightEvidence> length = length_row(reconstruction, segments)) rows.push_back(std::move(*length));
   rows.push_back(deflection_row(recording));

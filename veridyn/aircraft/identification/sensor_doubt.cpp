@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "veridyn/core/index.hpp"
+
 namespace veridyn::aircraft {
 namespace {
 
@@ -25,18 +27,24 @@ FlightSignals with_changed(FlightSignals signals, const SignalDoubt& doubt, doub
   return signals;
 }
 
+Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
+                                  const Eigen::VectorXd& theta,
+                                  const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate) {
+  // A tenth of a deviation: the tangent, also where the deviation is large.
+  constexpr double kStep = 0.1;
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(theta.size(), signed_index(doubts.size()));
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    if (!signals[doubts[i].signal].available()) continue;
+    const Eigen::VectorXd changed = estimate(with_changed(signals, doubts[i], kStep));
+    if (changed.size() == theta.size()) columns.col(signed_index(i)) = (changed - theta) / kStep;
+  }
+  return columns;
+}
+
 Eigen::VectorXd parameter_doubt(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
                                 const Eigen::VectorXd& theta,
                                 const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate) {
-  // A tenth of a deviation: the tangent, also where the deviation is large.
-  constexpr double kStep = 0.1;
-  Eigen::VectorXd variance = Eigen::VectorXd::Zero(theta.size());
-  for (const SignalDoubt& doubt : doubts) {
-    if (!signals[doubt.signal].available()) continue;
-    const Eigen::VectorXd changed = estimate(with_changed(signals, doubt, kStep));
-    if (changed.size() == theta.size()) variance += ((changed - theta) / kStep).cwiseAbs2();
-  }
-  return variance.cwiseSqrt();
+  return doubt_sensitivity(signals, doubts, theta, estimate).rowwise().norm();
 }
 
 estimation::Evidence doubt_row(const std::string& coefficient, std::span<const Parameter> parameters,

@@ -15,11 +15,17 @@
 /// Like mass and geometry, a wrong scale is the same in every row: it does not average out and shows in no residual.
 /// Unlike them it is partly measured by the recording itself, on the headings and in the manoeuvres that were flown. It
 /// is stated alongside the interval and not added to it: the interval says what noise and turbulence leave if air data
-/// are right, which a calibration can establish; the doubt says what is left without one.
+/// are right, which a calibration can establish; the doubt says what is left without one. Where there is no sensor to
+/// calibrate, what the reconstruction leaves in doubt widens the interval (`SignalDoubt::in_interval`).
 namespace veridyn::aircraft {
 
 /// The signals as they would be with an error of so many standard deviations.
 [[nodiscard]] FlightSignals with_changed(FlightSignals signals, const SignalDoubt& doubt, double deviations);
+
+/// Change of the parameters per standard deviation of each doubt, a column a doubt; see `parameter_doubt`.
+[[nodiscard]] Eigen::MatrixXd doubt_sensitivity(const FlightSignals& signals, std::span<const SignalDoubt> doubts,
+                                                const Eigen::VectorXd& theta,
+                                                const std::function<Eigen::VectorXd(const FlightSignals&)>& estimate);
 
 /// Standard deviation of each parameter for all doubts together, which are independent: each signal is changed and the
 /// parameters estimated again, linearly about `theta`. What cannot be estimated again counts for nothing. A thrust that

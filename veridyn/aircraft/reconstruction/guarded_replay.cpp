@@ -51,7 +51,7 @@ Recording replay_guarded(const Recording& mapped, const ReconstructOptions& opti
                                  .spectrum = turbulence,
                                  .recording = &mapped};
   internal::GuardedPass pass = internal::run_guarded(task, Eigen::Matrix<double, 5, 1>::Zero(), in_use,
-                                                     internal::estimated_columns(options, true), progress);
+                                                     internal::estimated_columns(options, streams, true), progress);
   Recording out;
   out.source = mapped.source;
   out.frame = Frame::kFrd;

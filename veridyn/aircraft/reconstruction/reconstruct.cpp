@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -177,9 +178,17 @@ std::vector<std::string> contradiction_warnings(std::span<const SensorReport> se
 /// Sensors that are missing, and what cannot be known without them.
 std::vector<std::string> missing_sensor_warnings(const FlightStreams& s) {
   std::vector<std::string> warnings;
-  const bool pitot = !s.sensors[internal::kPitot].t.empty();
-  const bool vane_a = !s.sensors[internal::kAlpha].t.empty();
-  const bool vane_b = !s.sensors[internal::kBeta].t.empty();
+  const bool pitot = s.has(internal::kPitot), vane_a = s.has(internal::kAlpha), vane_b = s.has(internal::kBeta);
+  if (!s.has_ground_velocity()) {
+    warnings.emplace_back(
+        "no ground velocity: wind and motion over ground are not distinguishable; the velocity is the one through the "
+        "mean air, and slow changes of the wind count as its accelerations");
+  } else if (!s.has(internal::kYaw)) {
+    warnings.emplace_back("no heading: it is found from accelerations over ground, slowly where there are few");
+  }
+  if (!s.has_tilt())
+    warnings.emplace_back(
+        "no roll and pitch: they are found from gyro, accelerometer and ground velocity, with the gyro's biases");
   if (!pitot) warnings.emplace_back("no pitot tube: the size of the airspeed is known only through the wind");
   if (!vane_a) {
     warnings.emplace_back("no alpha vane: gusts along z stay unknown, so alpha is known only as far as they are small");
@@ -323,6 +332,7 @@ Solution solved(FilterKind kind, const internal::SolveTask& task, Progress& prog
     case FilterKind::kModelBased:
       return internal::solve_model_based(task, progress);
     case FilterKind::kModelFree:
+    case FilterKind::kNone:
       break;
   }
   return internal::solve_model_free(task, progress);
@@ -330,12 +340,33 @@ Solution solved(FilterKind kind, const internal::SolveTask& task, Progress& prog
 
 }  // namespace
 
-Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& options, Progress& progress,
+std::string reconstruction_obstacle(const Recording& mapped, const ReconstructOptions& options) {
+  const auto has = [&mapped](const char* name) {
+    const Channel* channel = mapped.find(name);
+    return channel != nullptr && std::ranges::any_of(channel->value, [](double v) { return std::isfinite(v); });
+  };
+  const auto all = [&has](std::initializer_list<const char*> names) { return std::ranges::all_of(names, has); };
+  if (!all({"gyro_x", "gyro_y", "gyro_z"})) return "the recording has no gyro (gyro_x, gyro_y, gyro_z)";
+  if (!all({"accel_x", "accel_y", "accel_z"})) return "the recording has no accelerometer (accel_x, accel_y, accel_z)";
+  const bool ground = all({"vel_north", "vel_east"});
+  if (!ground && !all({"roll", "pitch"}))
+    return "the recording has neither attitude (roll, pitch) nor ground velocity (vel_north, vel_east)";
+  if (!ground && !(options.use_pitot && (has("dynamic_pressure") || has("airspeed"))))
+    return "the recording has neither ground velocity (vel_north, vel_east) nor airspeed (airspeed, dynamic_pressure)";
+  return {};
+}
+
+Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& given, Progress& progress,
                            const Subject* subject) {
   if (mapped.frame == Frame::kFlu) {
     throw InputError(mapped.source, "is in the frame flu; reconstruction of an aircraft needs frd, convert it first");
   }
-  FlightStreams streams = internal::load_streams(mapped, options);
+  if (const std::string obstacle = reconstruction_obstacle(mapped, given); !obstacle.empty())
+    throw InputError(mapped.source, fmt::format("{}; it has: {}", obstacle, fmt::join(mapped.names(), ", ")));
+  FlightStreams streams = internal::load_streams(mapped, given);
+  ReconstructOptions options = given;
+  // What an attitude would take off, the integral of the gyro keeps.
+  if (!streams.has_tilt()) options.gyro_bias = true;
   std::optional<Subject> force_model;
   if (options.filter != FilterKind::kModelFree) {
     if (subject == nullptr) {
@@ -349,8 +380,8 @@ Reconstruction reconstruct(const Recording& mapped, const ReconstructOptions& op
   if (segments.empty()) {
     throw InputError(
         mapped.source,
-        fmt::format("holds no second of gyro, accelerometer, attitude and ground velocity together without "
-                    "a gap longer than {:g} s",
+        fmt::format("holds no second of gyro, accelerometer, attitude and ground velocity, as far as it has these, "
+                    "together without a gap longer than {:g} s",
                     options.max_gap));
   }
   internal::OutputStamps stamps = internal::output_stamps(streams, segments, options.rate_Hz);

@@ -104,18 +104,27 @@ struct Reconstruction {
   std::vector<std::string> warnings;
 };
 
+/// Why no filter can run on these channels: one clause ("the recording has neither attitude nor ground velocity"), or
+/// empty. A recording of airspeed and vanes may be analysed as it is then (`filter = "none"`).
+[[nodiscard]] std::string reconstruction_obstacle(const Recording& mapped, const ReconstructOptions& options);
+
 /// Estimates airspeed, angles of attack and sideslip, and wind of a recording with standard channel names (frd): a
 /// model-free extended Kalman filter (see AirDataModel) and its fixed-interval smoother, every sensor at its own time
 /// stamps.
 ///
-/// Needs `accel_x|y|z`, `gyro_x|y|z`, `roll`, `pitch`, `yaw`, `vel_north|east|down`. Uses what there is of
-/// `dynamic_pressure` (or else `airspeed`), `alpha`, `beta`, and for the air density `air_density`, `static_pressure`,
-/// `air_temperature`, `alt`. Without a pitot tube or vanes it works too; `quantities` and the sigma channels show what
-/// is then not known.
+/// Needs `accel_x|y|z` and `gyro_x|y|z`, of attitude (`roll`, `pitch`) and ground velocity (`vel_north`, `vel_east`)
+/// one, of ground velocity and airspeed one. Uses what there is of these, of `vel_down`, `yaw`, `dynamic_pressure` (or
+/// else `airspeed`), `alpha`, `beta`, and for the air density `air_density`, `static_pressure`, `air_temperature`,
+/// `alt`. `quantities` and the sigma channels show what is then not known:
+/// - without ground velocity wind and motion over ground cannot be told apart: the velocity is the one through the slow
+///   wind, and there are no channels of either;
+/// - without heading it follows from the ground velocity in manoeuvres; without both there is no channel `yaw`;
+/// - without attitude it follows from gyro, accelerometer and ground velocity, with the gyro's biases as states;
+/// - without a pitot tube or vanes the air moves as the model of wind and gusts allows.
 ///
 /// Each segment starts from the first attitude, ground velocity and airspeed: v_r points as the vanes show, without
 /// vanes along the ground velocity, and is scaled to the airspeed; the rest of the ground velocity is wind.
-/// @throws InputError naming a missing channel and what the recording has, or saying that there is too little data.
+/// @throws InputError as `reconstruction_obstacle` says, or that there is too little data.
 ///
 /// Attitude, ground velocity and airspeed are corrected by one sensor each. Where that is refused for 10 s
 /// (`dead_reckoning`), and a twentieth of the recording, longer than it is accepted, the estimate is dead reckoning,

@@ -30,9 +30,9 @@ std::vector<char> trusted_samples(const GuardTrace& trace, std::span<const doubl
 }
 
 /// What a guarded filter estimates along a recording: all but errors of the air data, which are known along a run.
-std::optional<ColumnSet> columns_of_guarded(const ReconstructOptions& options) {
+std::optional<ColumnSet> columns_of_guarded(const ReconstructOptions& options, const FlightStreams& streams) {
   if (!options.keep_filter) return std::nullopt;
-  ColumnSet columns = estimated_columns(options, true);
+  ColumnSet columns = estimated_columns(options, streams, true);
   std::fill(columns.begin() + kFirstAirDataError, columns.begin() + kFirstCoefficientError, false);
   return columns;
 }
@@ -133,7 +133,8 @@ Solution solve_guarded(const SolveTask& task, Progress& progress) {
   Solution based = solve_model_based(whole, progress);
   const ModelInUse known{
       .from_s = -kInfinity, .subject = std::make_shared<const Subject>(*task.subject), .error = motion_of(task).error};
-  GuardedPass guarded = run_guarded(task, free.air_error, {&known, 1}, columns_of_guarded(*task.options), progress);
+  GuardedPass guarded =
+      run_guarded(task, free.air_error, {&known, 1}, columns_of_guarded(*task.options, *task.streams), progress);
 
   const bool reverted = guarded.trace.reverts > 0;
   const std::size_t count = std::min(based.count, free.count);

@@ -40,10 +40,11 @@ std::array<double, 3> read_force_errors(const StudyTable& table, const char* key
 }
 
 FilterKind read_filter(const StudyTable& table) {
-  const std::array<std::string, 3> filters{"model-free", "model-based", "guarded"};
+  const std::array<std::string, 4> filters{"model-free", "model-based", "guarded", "none"};
   const std::string filter = table.choice_or("filter", filters, "model-free");
   return filter == "guarded"       ? FilterKind::kGuarded
          : filter == "model-based" ? FilterKind::kModelBased
+         : filter == "none"        ? FilterKind::kNone
                                    : FilterKind::kModelFree;
 }
 
@@ -96,6 +97,8 @@ const char* to_string(FilterKind kind) {
       return "model-based";
     case FilterKind::kGuarded:
       return "guarded";
+    case FilterKind::kNone:
+      return "none";
   }
   return "";
 }

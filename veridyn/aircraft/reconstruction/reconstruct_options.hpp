@@ -33,7 +33,8 @@ struct SensorSigma {
 enum class FilterKind {
   kModelFree,   ///< kinematics only (AirDataModel)
   kModelBased,  ///< the subject's force coefficients are known (ModelBasedAirData)
-  kGuarded      ///< both; the model-based one while its innovations are as they should be (GuardedFilter)
+  kGuarded,     ///< both; the model-based one while its innovations are as they should be (GuardedFilter)
+  kNone         ///< none: airspeed and flow angles as recorded
 };
 
 [[nodiscard]] const char* to_string(FilterKind kind);
@@ -58,7 +59,8 @@ struct AssumedTurbulence {
 ///     [reconstruct]
 ///     filter = "model-free"    # "model-based": the subject's derivatives are known, the accelerometer is a
 ///     measurement;
-///                              # "guarded": both in parallel, the model-based one as long as its innovations allow
+///                              # "guarded": both in parallel, the model-based one as long as its innovations allow;
+///                              # "none": regression on airspeed and flow angles as they were recorded
 ///     estimate_file = "estimate.json"  # source of the derivatives of CL, CD, CY; without it the subject's values
 ///     compare = true           # with "model-based" or "guarded" and a simulated flight: the other filters' errors too
 ///     model_error = [0.02, 0.005, 0.01]  # 1 sigma of constants by which CL, CD, CY may be off; 0: the model is exact

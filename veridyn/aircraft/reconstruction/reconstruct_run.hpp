@@ -39,6 +39,8 @@ struct Start {
   /// Of the error vector that all filters share; that of the gusts is `AirDataMotion::stationary_gust_covariance`.
   Eigen::Matrix<double, AirDataErrorVector::kFull, 1> variance =
       Eigen::Matrix<double, AirDataErrorVector::kFull, 1>::Zero();
+  /// Covariance of the attitude's error, in place of `variance`, where its angles are not known alike.
+  std::optional<Eigen::Matrix3d> attitude = {};
 };
 /// From the first attitude, ground velocity and air data of the segment; see `reconstruct`.
 [[nodiscard]] Start start_of(const RunSetting& setting, const Segment& segment);
@@ -102,6 +104,7 @@ template <class Model>
                       .further = start.variance.tail<Model::kFull - Model::kCore>(),
                       .by_sensor_errors = true};
   typename Model::Covariance P = Model::row(diagonal).asDiagonal();
+  if (start.attitude) P.template block<3, 3>(Model::kAttitude, Model::kAttitude) = *start.attitude;
   P.template block<5, 5>(Model::kGust, Model::kGust) = Model::stationary_gust_covariance();
   return P;
 }

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include "veridyn/aircraft/reconstruction/air_data_check.hpp"
 #include "veridyn/aircraft/reconstruction/air_data_likelihood.hpp"
 #include "veridyn/aircraft/reconstruction/contradiction.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
 
 namespace veridyn::aircraft::internal {
 namespace {
@@ -145,9 +148,20 @@ Solution solve_with_air_data_errors(const FilterEngine& engine, const SolveTask&
 
 }  // namespace
 
-ColumnSet estimated_columns(const ReconstructOptions& o, bool aerodynamics) {
+ColumnSet estimated_columns(const ReconstructOptions& o, const FlightStreams& streams, bool aerodynamics) {
   ColumnSet columns{};
   std::fill_n(columns.begin(), kFirstImuBias, true);
+  const auto leave_out = [&columns](std::initializer_list<const char*> names) {
+    for (const char* name : names)
+      columns[at(std::ranges::find(kColumns, std::string_view(name),
+                                   [](const ColumnName& c) { return std::string_view(c.name); }) -
+                 kColumns.begin())] = false;
+  };
+  // Nothing tells the motion over ground from that of the air.
+  if (!streams.has_ground_velocity())
+    leave_out({"wind_north", "wind_east", "wind_total_north", "wind_total_east", "vel_north", "vel_east"});
+  if (!streams.has_ground_velocity() && !streams.has(kVelDown)) leave_out({"wind_down", "wind_total_down", "vel_down"});
+  if (!streams.has_ground_velocity() && !streams.has(kYaw)) leave_out({"yaw"});
   for (std::size_t k = 0; k < 3; ++k) {
     columns[kFirstImuBias + k] = o.gyro_bias;
     columns[kFirstImuBias + 3 + k] = o.accel_bias;
@@ -186,8 +200,9 @@ AirDataNoise noise_of(const FlightStreams& s, const ReconstructOptions& o) {
   AirDataNoise noise;
   noise.gyro = s.sigma.gyro * std::sqrt(s.gyro.interval);
   noise.accelerometer = s.sigma.accelerometer * std::sqrt(s.accel.interval);
-  noise.wind_walk = o.wind_walk;
-  noise.wind_down_walk = o.wind_down_walk;
+  // Without ground velocity the velocity is that through the slow wind, which has then no say.
+  noise.wind_walk = s.has_ground_velocity() ? o.wind_walk : 0.0;
+  noise.wind_down_walk = s.has_ground_velocity() || s.has(kVelDown) ? o.wind_down_walk : 0.0;
   return noise;
 }
 
@@ -212,7 +227,7 @@ ModelBasedMotion motion_of(const SolveTask& task) {
 Solution solve(const FilterEngine& engine, const SolveTask& task, Progress& progress) {
   const RunSetting setting{
       .streams = task.streams, .options = task.options, .motion = motion_of(task), .output_t = task.stamps};
-  const ColumnSet columns = estimated_columns(*task.options, engine.has_forces());
+  const ColumnSet columns = estimated_columns(*task.options, *task.streams, engine.has_forces());
   if (task.options->estimates_air_data_errors())
     return solve_with_air_data_errors(engine, task, setting, columns, progress);
   return run_pass(engine, task, setting, columns, {&progress, 0.0, 1.0});

@@ -100,8 +100,10 @@ inline constexpr double kGuardMargin_s = 3.0;
 /// `model_based` and `guard_ratio` on the first `count` stamps.
 void add_guard_channels(const GuardTrace& trace, const TimeBase& time, std::size_t count, Recording& filtered);
 
-/// The columns that the options estimate; `aerodynamics`: the filter knows a force model.
-[[nodiscard]] ColumnSet estimated_columns(const ReconstructOptions& options, bool aerodynamics);
+/// The columns that the options estimate; `aerodynamics`: the filter knows a force model. Wind and velocity over ground
+/// are left out where no sensor tells one from the other, the heading where nothing shows it.
+[[nodiscard]] ColumnSet estimated_columns(const ReconstructOptions& options, const FlightStreams& streams,
+                                          bool aerodynamics);
 
 /// Stamps of the results.
 struct OutputStamps {

@@ -80,6 +80,10 @@ VectorStream vector(const Recording& recording, const std::string& stem) {
   return s;
 }
 
+bool has_accelerometer(const Recording& recording) {
+  return recording.has("accel_x") && recording.has("accel_y") && recording.has("accel_z");
+}
+
 /// White noise per sample from third differences, which take away everything that is smooth; robust against spikes.
 /// Samples that repeat their predecessor (a slow sensor logged fast) are passed over.
 double noise_floor(std::span<const double> v) {
@@ -190,21 +194,13 @@ double FlightStreams::density_at(double time, std::size_t& cursor) const {
 FlightStreams load_streams(const Recording& recording, const ReconstructOptions& o) {
   FlightStreams s;
   s.gyro = vector(recording, "gyro");
-  s.accel = vector(recording, "accel");
-  const auto needed = [&](Sensor which, const char* name, const char* unit, double delay) {
-    static_cast<void>(recording.at(name));
-    s.sensors[which] = scalar(recording, name, unit, delay);
-    if (s.sensors[which].t.empty()) {
-      throw InputError(recording.source,
-                       fmt::format("channel '{}' holds no finite sample; reconstruction needs it", name));
-    }
-  };
-  needed(kRoll, "roll", "rad", o.delay.attitude);
-  needed(kPitch, "pitch", "rad", o.delay.attitude);
-  needed(kYaw, "yaw", "rad", o.delay.attitude);
-  needed(kVelNorth, "vel_north", "m/s", o.delay.velocity);
-  needed(kVelEast, "vel_east", "m/s", o.delay.velocity);
-  needed(kVelDown, "vel_down", "m/s", o.delay.velocity);
+  if (has_accelerometer(recording)) s.accel = vector(recording, "accel");
+  s.sensors[kRoll] = scalar(recording, "roll", "rad", o.delay.attitude);
+  s.sensors[kPitch] = scalar(recording, "pitch", "rad", o.delay.attitude);
+  s.sensors[kYaw] = scalar(recording, "yaw", "rad", o.delay.attitude);
+  s.sensors[kVelNorth] = scalar(recording, "vel_north", "m/s", o.delay.velocity);
+  s.sensors[kVelEast] = scalar(recording, "vel_east", "m/s", o.delay.velocity);
+  s.sensors[kVelDown] = scalar(recording, "vel_down", "m/s", o.delay.velocity);
   load_density(recording, s);
 
   s.sensors[kPitot] = scalar(recording, "dynamic_pressure", "Pa", o.delay.pitot);
@@ -381,6 +377,7 @@ std::vector<Segment> find_segments(const FlightStreams& s, double max_gap) {
       Segment both{std::max(g.begin, a.begin), std::min(g.end, a.end)};
       for (const Sensor i : {kRoll, kPitch, kYaw, kVelNorth, kVelEast, kVelDown}) {
         const auto& t = s.sensors[i].t;
+        if (t.empty()) continue;
         const auto it = std::lower_bound(t.begin(), t.end(), both.begin);
         both.begin = std::max(both.begin, it == t.end() ? both.end : *it);
       }

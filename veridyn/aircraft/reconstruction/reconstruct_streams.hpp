@@ -65,10 +65,17 @@ struct FlightStreams {
   SensorSigma sigma;
   std::vector<std::string> warnings;  ///< what had to be assumed
 
+  [[nodiscard]] bool has(Sensor sensor) const { return !sensors[sensor].t.empty(); }
+  /// Roll and pitch.
+  [[nodiscard]] bool has_tilt() const { return has(kRoll) && has(kPitch); }
+  /// North and east. Without it velocity is relative to the slow wind, which then cannot be told from it.
+  [[nodiscard]] bool has_ground_velocity() const { return has(kVelNorth) && has(kVelEast); }
+
   [[nodiscard]] double density_at(double time, std::size_t& cursor) const;
 };
 
-/// @throws InputError naming a missing channel.
+/// Channels that the recording lacks have empty streams.
+/// @throws InputError where the gyro is missing
 [[nodiscard]] FlightStreams load_streams(const Recording& recording, const ReconstructOptions& options);
 
 /// Streams with a force model to filter with.

@@ -133,26 +133,29 @@ Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis)
   Section section{.title = "The flight", .id = "flight"};
   const Recording& smoothed = analysis.reconstruction.smoothed;
   const Recording& measured = analysis.aligned.recording;
+  const bool filtered = analysis.reconstruction.filter != FilterKind::kNone;
+  const char* const estimator = filtered ? "smoother" : "low-passed";
   TimeSeries air{.title = "Motion through the air",
-                 .caption =
-                     "Estimates of the smoother with 95 % bands. Shaded: what was used to identify (longitudinal and "
-                     "lateral) and what was held out."};
+                 .caption = fmt::format("{} Shaded: what was used to identify (longitudinal and lateral) and what was "
+                                        "held out.",
+                                        filtered ? "Estimates of the smoother with 95 % bands."
+                                                 : "As recorded, without a filter, with 95 % bands of their noise.")};
   air.spans = segment_spans(analysis.segments, true, true);
   const auto panel = [&](const char* channel, const char* label, const char* unit, double factor, const char* sensor) {
     Panel p{.label = label, .unit = unit};
     add_channel(p, measured, sensor, "measured", factor, Role::kMeasured);
-    p.lines.push_back(estimate_line(smoothed, channel, "smoother", factor));
+    if (smoothed.has(channel)) p.lines.push_back(estimate_line(smoothed, channel, estimator, factor));
     if (study.truth) add_channel(p, *study.truth, channel, "truth", factor, Role::kReference);
-    air.panels.push_back(std::move(p));
+    if (!p.lines.empty()) air.panels.push_back(std::move(p));
   };
   panel("airspeed", "airspeed", "m/s", 1.0, "airspeed");
   panel("alpha", "alpha", "deg", 1.0 / kDegree, "alpha");
   panel("beta", "beta", "deg", 1.0 / kDegree, "beta");
   Panel wind{.label = "slow wind", .unit = "m/s"};
-  wind.lines.push_back(estimate_line(smoothed, "wind_north", "north", 1.0));
-  wind.lines.push_back(estimate_line(smoothed, "wind_east", "east", 1.0));
-  wind.lines.push_back(estimate_line(smoothed, "wind_down", "down", 1.0));
-  air.panels.push_back(std::move(wind));
+  for (const char* axis : {"north", "east", "down"})
+    if (const std::string channel = std::string("wind_") + axis; smoothed.has(channel))
+      wind.lines.push_back(estimate_line(smoothed, channel, axis, 1.0));
+  if (!wind.lines.empty()) air.panels.push_back(std::move(wind));
   section.blocks.emplace_back(std::move(air));
   if (study.truth) section.blocks.emplace_back(bound_table(study, analysis));
 
@@ -172,7 +175,7 @@ Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis)
   Panel attitude{.label = "attitude", .unit = "deg"};
   for (const char* name : {"roll", "pitch"})
     add_channel(attitude, smoothed, name, name, 1.0 / kDegree, Role::kEstimate);
-  inputs.panels.push_back(std::move(attitude));
+  if (!attitude.lines.empty()) inputs.panels.push_back(std::move(attitude));
   inputs.spans = segment_spans(analysis.segments, true, true);
   section.blocks.emplace_back(std::move(inputs));
   return section;

@@ -1,4 +1,4 @@
-#include "veridyn/aircraft/tracking/direct_air_data.hpp"
+#include "veridyn/aircraft/identification/direct_air_data.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/aircraft/reconstruction/reconstruct_flight.hpp"
+#include "tests/aircraft/stripped_recording.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace veridyn::aircraft {
@@ -41,12 +42,27 @@ TEST(DirectAirData, StatesTheErrorThatTheFilterLeavesOfTheTubes) {
   EXPECT_NEAR(direct.at("sigma_airspeed").value[1000], SensorSigma{}.dynamic_pressure / (1.2 * Va) * left, 1e-9);
 }
 
+TEST(RecordedMotion, StandsForAReconstructionWithoutAFilter) {
+  const aircraft::testing::MadeFlight flight = aircraft::testing::make_flight({.duration = 5.0});
+  const Reconstruction whole = recorded_motion(flight.recording, data_sheet(), {});
+  EXPECT_EQ(whole.filter, FilterKind::kNone);
+  EXPECT_EQ(whole.sigma.alpha, SensorSigma{}.alpha);
+  EXPECT_FALSE(whole.smoothed.has("wind_north"));
+  const Recording few = aircraft::testing::without(
+      flight.recording, {"beta", "roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down", "accel_x"});
+  const Reconstruction rest = recorded_motion(few, data_sheet(), {});
+  EXPECT_EQ(rest.smoothed.at("airspeed").value, whole.smoothed.at("airspeed").value);
+  EXPECT_FALSE(rest.smoothed.has("beta"));
+  EXPECT_THAT(rest.warnings, ::testing::Contains(::testing::HasSubstr("beta is not recorded")));
+}
+
 TEST(DirectAirData, NeedsAPitotTube) {
   ReconstructOptions o = data_sheet();
   o.use_pitot = false;
   const Recording recording = aircraft::testing::make_flight({.duration = 2.0}).recording;
   EXPECT_EQ(why([&] { static_cast<void>(direct_air_data(recording, o, {})); }),
-            "made flight: has neither dynamic pressure nor airspeed; track.air_data = \"filter\" does without");
+            "made flight: has neither dynamic pressure nor airspeed, which coefficients without a filter need "
+            "(reconstruct.filter, track.air_data)");
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
-#include "veridyn/aircraft/tracking/direct_air_data.hpp"
+#include "veridyn/aircraft/identification/direct_air_data.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/aircraft/reconstruction/reconstruct_streams.hpp"
 #include "veridyn/core/constants.hpp"
@@ -15,14 +18,16 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
   const internal::Stream& pitot = streams.sensors[internal::kPitot];
   if (pitot.t.empty()) {
     throw InputError(recording.source,
-                     "has neither dynamic pressure nor airspeed; track.air_data = \"filter\" does without");
+                     "has neither dynamic pressure nor airspeed, which coefficients without a filter need "
+                     "(reconstruct.filter, track.air_data)");
   }
   Recording out;
   out.source = recording.source;
   out.frame = recording.frame;
-  for (const char* name : {"roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down", "alpha", "beta"}) {
+  for (const char* name : {"roll", "pitch", "yaw", "vel_north", "vel_east", "vel_down"})
     if (const Channel* channel = recording.find(name)) out.add(*channel);
-  }
+  for (const auto& [name, used] : {std::pair{"alpha", reconstruct.use_alpha}, std::pair{"beta", reconstruct.use_beta}})
+    if (const Channel* channel = recording.find(name); channel != nullptr && used) out.add(*channel);
 
   // Airspeed at the pitot's stamps, filtered on an even grid of its rate.
   std::vector<double> airspeed(pitot.t.size()), density(pitot.t.size());
@@ -53,11 +58,31 @@ Recording direct_air_data(const Recording& recording, const ReconstructOptions& 
     const double raw = streams.pitot_is_pressure ? pitot.sigma / (rho[k] * std::max(1.0, even[k])) : pitot.sigma;
     sigma[k] = std::isfinite(even[k]) ? raw * std::sqrt(kernel.noise_gain()) : kNaN;
   }
+  out.information["airspeed"] = "as recorded";
   const TimeBase time = make_time_base(std::move(stamps));
   out.set(make_channel("airspeed", "m/s", time, std::move(even)));
   out.set(make_channel("sigma_airspeed", "m/s", time, std::move(sigma)));
   out.set(make_channel("air_density", "kg/m^3", time, std::move(rho)));
   return out;
+}
+
+Reconstruction recorded_motion(const Recording& recording, const ReconstructOptions& reconstruct,
+                               const SignalOptions& options) {
+  const internal::FlightStreams streams = internal::load_streams(recording, reconstruct);
+  Reconstruction motion;
+  motion.smoothed = direct_air_data(recording, reconstruct, options);
+  motion.filter = FilterKind::kNone;
+  motion.sigma = streams.sigma;
+  motion.density_origin = streams.density_origin;
+  motion.turbulence_origin = "none: no filter";
+  motion.segments = {motion.smoothed.at("airspeed").span()};
+  motion.warnings = streams.warnings;
+  motion.warnings.emplace_back("no filter: airspeed and flow angles are as recorded, wind and gusts are not estimated");
+  for (const char* vane : {"alpha", "beta"})
+    if (!motion.smoothed.has(vane))
+      motion.warnings.push_back(fmt::format(
+          "{} is not recorded, and without a filter nothing stands for it: what depends on it is skipped", vane));
+  return motion;
 }
 
 }  // namespace veridyn::aircraft
