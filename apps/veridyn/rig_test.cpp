@@ -18,6 +18,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/units.hpp"
+#include "veridyn/cueing/platform/platform_file.hpp"
 #include "veridyn/cueing/platform/platform_guard.hpp"
 #include "veridyn/live/platform/platform_packet.hpp"
 #include "veridyn/live/platform/platform_response.hpp"
@@ -172,34 +173,17 @@ double position_asked_for(const std::string& text, TestSignal signal, PlatformAx
   return position;
 }
 
-/// `[platform]` of the platform that was measured.
-std::string platform_toml(const LiveStudy& study, const std::map<PlatformAxis, PlatformResponse>& responses) {
-  const cueing::Platform& p = study.cueing.platform;
-  std::string text = fmt::format("# Measured by `veridyn rig test` on platform {}.\n[platform]\n", p.name);
-  bool built_in = false;
-  for (const cueing::Platform& known : cueing::built_in_platforms()) built_in = built_in || known.name == p.name;
-  if (built_in) text += fmt::format("subject = \"{}\"\n", p.name);
-  double omega = 0.0, zeta = 0.0, delay = 0.0;
+/// The platform that was measured: each axis as it follows, and where it reaches less or more than it is told.
+cueing::Platform measured_platform(const LiveStudy& study, const std::map<PlatformAxis, PlatformResponse>& responses) {
+  cueing::Platform p = study.cueing.platform;
   for (const auto& [axis, r] : responses) {
-    omega += r.omega.value / static_cast<double>(responses.size());
-    zeta += r.zeta.value / static_cast<double>(responses.size());
-    delay += r.delay.value / static_cast<double>(responses.size());
-  }
-  text +=
-      fmt::format("omega = {:.4g}   # rad/s\nzeta = {:.4g}\ndelay = {:.4g}   # s, the way there and back included\n",
-                  omega, zeta, delay);
-  for (const auto& [axis, r] : responses) {
+    p.axis_actuators[axis] =
+        cueing::ActuatorOptions{.omega = r.omega.value, .zeta = r.zeta.value, .delay = std::max(r.delay.value, 0.0)};
     const cueing::AxisLimits& l = p.limits[axis];
-    if (!built_in) {
-      text +=
-          fmt::format("{0} = [{1:.6g}, {2:.6g}]\n{0}_rate = {3:.6g}\n{0}_acceleration = {4:.6g}\n{0}_jerk = {5:.6g}\n",
-                      name_of(axis), l.lowest, l.highest, l.rate, l.acceleration, l.jerk);
-    }
     if (std::abs(r.gain.value - 1.0) > 0.01 + 2.0 * r.gain.sigma)
-      text += fmt::format("{0}_commanded = [{1:.6g}, {2:.6g}]\n{0}_reached = [{3:.6g}, {4:.6g}]\n", name_of(axis),
-                          l.lowest, l.highest, r.gain.value * l.lowest, r.gain.value * l.highest);
+      p.reach[axis] = {{l.lowest, l.highest}, {r.gain.value * l.lowest, r.gain.value * l.highest}};
   }
-  return text;
+  return p;
 }
 
 int rig_test(const Arguments& arguments) {
@@ -266,9 +250,12 @@ int rig_test(const Arguments& arguments) {
     s["not_explained"] = r.rms;
     s["notes"] = r.notes;
   }
-  if (!responses.empty()) folder.write("platform.toml", platform_toml(study, responses));
+  if (!responses.empty())
+    folder.write("platform.toml", cueing::platform_file(measured_platform(study, responses),
+                                                        "Measured by `veridyn rig test`; delays hold the way there and "
+                                                        "back. In a study: [platform] file = \"platform.toml\""));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
-  folder.publish(run.record(0), options, summary);
+  folder.publish(run.record(0, study.cueing.inputs), options, summary);
   print_line(options, fmt::format("wrote {} in {}", files, folder.path().string()));
   return kDone;
 }

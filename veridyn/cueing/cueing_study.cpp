@@ -253,6 +253,8 @@ CueingStudy read_rig(const StudyTable& root) {
   s.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
   const StudyTable cue = root.table_or_empty("cue");
   s.platform = root.has("platform") ? Platform::read(root.table("platform")) : built_in_platform("three_axis");
+  if (root.has("platform") && root.table("platform").has("file"))
+    s.inputs.push_back(root.table("platform").file("file"));
   s.algorithms = read_algorithms(root, cue, s.platform);
   std::vector<std::string> models;
   for (const VestibularModel& m : vestibular_models()) models.push_back(m.name);

@@ -7,6 +7,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/platform/platform_file.hpp"
 
 namespace veridyn::cueing {
 namespace {
@@ -102,6 +103,23 @@ void read_reach(const StudyTable& table, PlatformAxis axis, StaticReach& reach) 
     table.fail(commanded, "must grow from each value to the next");
 }
 
+void read_response(const StudyTable& table, const std::string& before, ActuatorOptions& a) {
+  a.omega = table.number_or(before + "omega", "rad/s", a.omega);
+  a.zeta = table.positive_or(before + "zeta", "1", a.zeta);
+  a.delay = table.number_or(before + "delay", "s", a.delay);
+}
+
+void validate_response(const std::string& before, const ActuatorOptions& a) {
+  if (!(a.omega >= 0.0) || !std::isfinite(a.omega))
+    throw InputError(before + "omega", fmt::format("is {}; must be above 0", a.omega));
+  constexpr double kMostDelay = 0.5;
+  if (!(a.delay >= 0.0 && a.delay < kMostDelay))
+    throw InputError(before + "delay", fmt::format("is {} s; takes 0 to {} s", a.delay, kMostDelay));
+  if (a.omega == 0.0 && a.delay > 0.0)
+    throw InputError(before + "delay", "of a platform that follows at once (omega = 0) must be 0");
+  if (!(a.zeta > 0.0)) throw InputError(before + "zeta", fmt::format("is {}; must be above 0", a.zeta));
+}
+
 }  // namespace
 
 StaticReach::Point StaticReach::at(double command) const {
@@ -117,16 +135,25 @@ StaticReach::Point StaticReach::at(double command) const {
 Platform Platform::read(const StudyTable& table) {
   Platform p;
   p.name = "own";
+  if (table.has("file")) {
+    if (table.has("subject")) table.fail("subject", "is given as well as `file`: give one of them");
+    p = read_platform_file(table.file("file"));
+  }
   if (table.has("subject")) {
     std::vector<std::string> names;
     for (const Platform& known : built_in_platforms()) names.push_back(known.name);
     p = built_in_platform(table.choice_or("subject", names, ""));
   }
+  p.name = table.text_or("name", p.name);
   p.limits.read_over(table);
   read_legs(table, p);
-  p.actuators.omega = table.number_or("omega", "rad/s", p.actuators.omega);
-  p.actuators.zeta = table.positive_or("zeta", "1", p.actuators.zeta);
-  p.actuators.delay = table.number_or("delay", "s", p.actuators.delay);
+  read_response(table, "", p.actuators);
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    const std::string before = fmt::format("{}_", name_of(axis));
+    const bool own = table.has(before + "omega") || table.has(before + "zeta") || table.has(before + "delay");
+    if (own && !p.axis_actuators[axis]) p.axis_actuators[axis] = p.actuators;
+    if (own) read_response(table, before, *p.axis_actuators[axis]);
+  }
   for (const PlatformAxis axis : kAllPlatformAxes) read_reach(table, axis, p.reach[axis]);
   if (table.has("rider")) {
     const std::vector<double> place = table.numbers("rider", "m");
@@ -139,14 +166,10 @@ Platform Platform::read(const StudyTable& table) {
 
 void Platform::validate() const {
   limits.validate();
-  if (!(actuators.omega >= 0.0) || !std::isfinite(actuators.omega))
-    throw InputError("platform.omega", fmt::format("is {}; must be above 0", actuators.omega));
-  constexpr double kMostDelay = 0.5;
-  if (!(actuators.delay >= 0.0 && actuators.delay < kMostDelay))
-    throw InputError("platform.delay", fmt::format("is {} s; takes 0 to {} s", actuators.delay, kMostDelay));
-  if (actuators.omega == 0.0 && actuators.delay > 0.0)
-    throw InputError("platform.delay", "of a platform that follows at once (omega = 0) must be 0");
-  if (!(actuators.zeta > 0.0)) throw InputError("platform.zeta", fmt::format("is {}; must be above 0", actuators.zeta));
+  validate_response("platform.", actuators);
+  for (const PlatformAxis axis : kAllPlatformAxes) {
+    if (axis_actuators[axis]) validate_response(fmt::format("platform.{}_", name_of(axis)), *axis_actuators[axis]);
+  }
   if (!rider.allFinite()) throw InputError("platform.rider", "is not finite");
   if (legs) static_cast<void>(Legs(*legs, limits));
 }

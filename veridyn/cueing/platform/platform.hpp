@@ -34,6 +34,9 @@ struct Platform {
   PlatformLimits limits;
   std::optional<LegGeometry> legs;  ///< nothing: each axis has an actuator of its own
   ActuatorOptions actuators;
+  /// Of axes that were measured one by one; an axis without follows as `actuators`. With legs these hold for the axes,
+  /// and the legs follow them at once.
+  PerPlatformAxis<std::optional<ActuatorOptions>> axis_actuators = {};
   PerPlatformAxis<StaticReach> reach = {};  ///< empty: it comes to rest where it is told to
   Eigen::Vector3d rider = {0.0, 0.0,
                            -0.8};  ///< the driver's head from the centre of rotation: forward, right, down [m]
@@ -41,11 +44,16 @@ struct Platform {
   /// Reads `[platform]`: `subject` names a built-in one, whose values other keys replace; limits as
   /// `PlatformLimits::read`; `legs` = "none"; `leg_stroke` = [shortest, longest] against neutral, `leg_rate`,
   /// `leg_acceleration`, `feet` and `heads` (numbers in threes: forward, right, down); `omega`, `zeta`, `delay` of the
-  /// actuators; `NAME_commanded` and `NAME_reached`; `rider`.
+  /// actuators, and `NAME_omega`, `NAME_zeta`, `NAME_delay` of an axis; `NAME_commanded` and `NAME_reached`; `rider`;
+  /// `name`. `file` names another file's `[platform]`, as `veridyn rig test` writes it, in place of `subject`.
   /// @throws InputError with file, line and key.
   [[nodiscard]] static Platform read(const StudyTable& table);
   /// @throws InputError naming what cannot be: limits, legs that do not reach, a delay of half a second or more.
   void validate() const;
+  /// How an axis follows.
+  [[nodiscard]] const ActuatorOptions& response(PlatformAxis axis) const {
+    return axis_actuators[axis] ? *axis_actuators[axis] : actuators;
+  }
 };
 
 /// "three_axis": roll, pitch and heave on three upright actuators. "three_axis_measured": the same with the resting

@@ -63,10 +63,16 @@ AxisState PlatformSimulator::Actuator::step(const AxisState& told, double step) 
 
 PlatformSimulator::PlatformSimulator(const Platform& platform) : platform_((platform.validate(), platform)) {
   if (platform.legs) legs_.emplace(*platform.legs, platform.limits);
-  const auto count = legs_ ? static_cast<std::size_t>(legs_->count()) : kPlatformAxes;
-  for (std::size_t i = 0; i < count; ++i) {
-    actuators_.push_back(actuator(platform.actuators));
-    if (platform.legs) actuators_.back().guard.emplace(platform.legs->leg);
+  bool by_axes = false;
+  for (const PlatformAxis which : kAllPlatformAxes) by_axes = by_axes || platform.axis_actuators[which].has_value();
+  if (!legs_ || by_axes) {
+    std::vector<Actuator>& axes = legs_ ? axes_ : actuators_;
+    for (const PlatformAxis which : kAllPlatformAxes) axes.push_back(actuator(platform.response(which)));
+  }
+  for (Eigen::Index i = 0; legs_ && i < legs_->count(); ++i) {
+    actuators_.push_back(
+        actuator(by_axes ? ActuatorOptions{.omega = 0.0, .zeta = 1.0, .delay = 0.0} : platform.actuators));
+    actuators_.back().guard.emplace(platform.legs->leg);
   }
   reset({});
 }
@@ -80,16 +86,23 @@ PlatformState PlatformSimulator::step(const PlatformState& told, double step) {
 PlatformState PlatformSimulator::act(const PlatformState& told, std::optional<double> step) {
   if (step && *step == 0.0) return state_;
   if (legs_) {
-    before_reach_ = act_on_legs(told, step);
+    before_reach_ = act_on_legs(axes_.empty() ? told : act_on_axes(axes_, told, step), step);
   } else {
-    for (const PlatformAxis which : kAllPlatformAxes) {
-      const AxisState to = axis(told, which);
-      Actuator& a = actuators_[static_cast<std::size_t>(which)];
-      set_axis(before_reach_, which, step ? a.step(to, *step) : a.reset(to.position));
-    }
+    before_reach_ = act_on_axes(actuators_, told, step);
   }
   state_ = at_rest_places(before_reach_);
   return state_;
+}
+
+PlatformState PlatformSimulator::act_on_axes(std::vector<Actuator>& axes, const PlatformState& told,
+                                             std::optional<double> step) {
+  PlatformState reached;
+  for (const PlatformAxis which : kAllPlatformAxes) {
+    const AxisState to = axis(told, which);
+    Actuator& a = axes[static_cast<std::size_t>(which)];
+    set_axis(reached, which, step ? a.step(to, *step) : a.reset(to.position));
+  }
+  return reached;
 }
 
 PlatformState PlatformSimulator::act_on_legs(const PlatformState& told, std::optional<double> step) {

@@ -55,12 +55,14 @@ class PlatformSimulator {
   };
   [[nodiscard]] Actuator actuator(const ActuatorOptions& options) const;
   PlatformState act(const PlatformState& told, std::optional<double> step);
+  static PlatformState act_on_axes(std::vector<Actuator>& axes, const PlatformState& told, std::optional<double> step);
   PlatformState act_on_legs(const PlatformState& told, std::optional<double> step);
   [[nodiscard]] PlatformState at_rest_places(const PlatformState& s) const;
 
   Platform platform_;
   std::optional<Legs> legs_;
-  std::vector<Actuator> actuators_;
+  std::vector<Actuator> actuators_;  ///< of the legs, else of the axes
+  std::vector<Actuator> axes_;       ///< of a platform on legs whose axes were measured: they lead the legs
   PlatformState state_, before_reach_;
   Legs::Values leg_positions_, leg_rates_;
 };
