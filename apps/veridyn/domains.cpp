@@ -14,6 +14,7 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/subject_files.hpp"
 #include "veridyn/muscle/muscle_study.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 
@@ -126,6 +127,7 @@ Domain domain_of(const Study& study) {
 }
 
 RunRecord StudyRun::record(std::uint64_t seed, std::vector<std::filesystem::path> inputs) const {
+  inputs.insert(inputs.end(), subject_files.begin(), subject_files.end());
   inputs.push_back(path);
   return {command, study.name(), study.to_toml(), seed, std::move(inputs), text_to_write};
 }
@@ -134,7 +136,9 @@ StudyRun parse_study(std::string command, const std::filesystem::path& path, std
                      const Arguments& arguments) {
   std::vector<std::string> overrides = arguments.common.overrides;
   if (arguments.common.seed) overrides.push_back(fmt::format("seed={}", *arguments.common.seed));
-  return {std::move(command), path, Study::parse(text, path.string(), path.parent_path(), overrides), arguments};
+  StudyRun run{std::move(command), path, Study::parse(text, path.string(), path.parent_path(), overrides), arguments};
+  run.subject_files = subject_files(text, path.string(), path.parent_path(), overrides);
+  return run;
 }
 
 int run_on_study(std::string_view command, const Arguments& arguments) {

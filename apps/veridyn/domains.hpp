@@ -36,9 +36,11 @@ struct StudyRun {
   Study study;
   Arguments arguments;
   std::string text_to_write = {};  ///< of a study that comes with the program and is written with its results
+  std::vector<std::filesystem::path> subject_files = {};  ///< from which it takes a subject
 
   [[nodiscard]] const CommonOptions& options() const { return arguments.common; }
-  /// What run.json says of this run; `inputs` are the files read beyond the study, which is added.
+  /// What run.json says of this run; `inputs` are the files read beyond the study and its subject's, which are
+  /// added.
   [[nodiscard]] RunRecord record(std::uint64_t seed, std::vector<std::filesystem::path> inputs = {}) const;
 };
 

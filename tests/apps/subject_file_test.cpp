@@ -1,4 +1,6 @@
 // What `identify` wrote is simulated and scaled by naming its file, unless it was rejected.
+#include <nlohmann/json.hpp>
+
 #include "tests/apps/program.hpp"
 #include "tests/support/folders.hpp"
 
@@ -29,6 +31,12 @@ TEST_F(SubjectFileProgram, AnIdentifiedCarIsSimulatedAndScaled) {
   const Outcome simulated = run("simulate " + driven(file) + " --out " + (folder_ / "simulated").string());
   EXPECT_EQ(simulated.exit_code, 0) << simulated.text;
   EXPECT_THAT(simulated.text, Not(HasSubstr("no physical constants")));
+  // run.json says by which file, as it was.
+  const auto record = nlohmann::json::parse(read_file(folder_ / "simulated" / "run.json"));
+  ASSERT_EQ(record["inputs"].size(), 2U) << record.dump();
+  EXPECT_EQ(record["inputs"][0]["file"], file);
+  const Outcome sum = run_in_shell("sha1sum " + file, "--version");
+  EXPECT_EQ(record["inputs"][0]["sha1"], sum.text.substr(0, 40));
   const std::string stiffness = written.substr(written.find("C_f = "), 20);
   EXPECT_THAT(read_file(folder_ / "simulated" / "subject.toml"), HasSubstr(stiffness));
   const std::string scale = (test::source_folder() / "examples/studies/vehicle/scale.toml").string();

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include "veridyn/core/files.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/core/subject_files.hpp"
 #include "veridyn/core/units.hpp"
 
 namespace veridyn {
@@ -183,6 +185,9 @@ void fill_from(toml::table& table, toml::table&& other, std::string_view whole) 
     }
   }
 }
+
+/// The tables that may name such a file.
+constexpr std::array<const char*, 3> kTablesOfSubjects = {"subject", "scale.model", "cue.vehicle"};
 
 /// Puts the keys of the [subject] in the file that `table.file` names into the table, where it does not have them
 /// itself: what an identification wrote is simulated, scaled or identified again by naming its subject.toml. A
@@ -443,7 +448,7 @@ Study Study::parse(std::string_view text, std::string name, const std::filesyste
   document->folder = folder;
   document->root = parsed(text, name);
   for (const std::string& text_of_override : overrides) apply_override(document->root, text_of_override);
-  for (const char* path : {"subject", "scale.model", "cue.vehicle"}) {
+  for (const char* path : kTablesOfSubjects) {
     if (toml::table* table = document->root.at_path(path).as_table()) take_subject_of_file(*table, path, *document);
   }
   auto node = std::make_shared<StudyNode>();
@@ -454,6 +459,23 @@ Study Study::parse(std::string_view text, std::string name, const std::filesyste
   study.name_ = std::move(name);
   study.folder_ = folder;
   return study;
+}
+
+std::vector<std::filesystem::path> subject_files(std::string_view text, const std::string& name,
+                                                 const std::filesystem::path& folder,
+                                                 std::span<const std::string> overrides) {
+  toml::table root = parsed(text, name);
+  for (const std::string& text_of_override : overrides) apply_override(root, text_of_override);
+  std::vector<std::filesystem::path> files;
+  for (const char* path : kTablesOfSubjects) {
+    const toml::table* table = root.at_path(path).as_table();
+    const toml::node* named = table == nullptr ? nullptr : table->get("file");
+    if (named == nullptr) continue;
+    std::filesystem::path file = text_from(*named, fmt::format("{}: {}.file", name, path));
+    if (file.is_relative()) file = folder / file;
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  }
+  return files;
 }
 
 const std::vector<std::string>& Study::notes() const { return root_.node_->document->notes; }
