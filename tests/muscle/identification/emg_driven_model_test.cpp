@@ -62,8 +62,9 @@ TEST_P(EmgDrivenArm, DerivativesAreThoseOfCentralDifferences) {
   const Eigen::VectorXd theta = arm.theta.head(8);
   std::vector<Eigen::Index> active(8);
   std::iota(active.begin(), active.end(), 0);
-  estimation::ModelResponse exact, plus, minus;
+  estimation::ModelResponse exact, middle, plus, minus;
   ASSERT_TRUE(driven.respond(0, theta, active, exact));
+  ASSERT_TRUE(finer.respond(0, theta, {}, middle));
   for (Eigen::Index j = 0; j < 8; ++j) {
     // Wide enough that what is left of the integration's error, over it, is none of the derivative. A rigid tendon's
     // fibre is not integrated, and a wide step would cross the corners of its curves.
@@ -76,14 +77,22 @@ TEST_P(EmgDrivenArm, DerivativesAreThoseOfCentralDifferences) {
     ASSERT_TRUE(finer.respond(0, up, {}, plus) && finer.respond(0, down, {}, minus));
     for (Eigen::Index o = 0; o < 4; ++o) {
       double largest = 0.0, difference = 0.0;
-      Eigen::Index where = 0;
+      Eigen::Index where = 0, corners = 0;
+      for (Eigen::Index k = 0; k < exact.output.rows(); ++k)
+        largest = std::max(largest, std::abs(plus.output(k, o) - minus.output(k, o)) / (2.0 * h));
       for (Eigen::Index k = 0; k < exact.output.rows(); ++k) {
         const double numeric = (plus.output(k, o) - minus.output(k, o)) / (2.0 * h);
-        largest = std::max(largest, std::abs(numeric));
+        // Thelen's velocity curve has a corner at rest. Where the two halves of a difference differ by as much as is
+        // allowed, it tells no slope.
+        if (std::abs(plus.output(k, o) - 2.0 * middle.output(k, o) + minus.output(k, o)) / h > 2e-2 * largest) {
+          ++corners;
+          continue;
+        }
         if (std::abs(numeric - exact.sensitivity(4 * k + o, j)) > difference) where = k;
         difference = std::max(difference, std::abs(numeric - exact.sensitivity(4 * k + o, j)));
       }
-      // Thelen's velocity curve has a corner at rest, near which single samples are that far off.
+      EXPECT_LE(corners, exact.output.rows() / 5);
+      // Next to the corner single samples are that far off.
       EXPECT_LE(difference, 2e-2 * largest)
           << kNames[static_cast<std::size_t>(j)] << ", output " << o << ", sample " << where;
     }

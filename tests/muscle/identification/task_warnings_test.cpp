@@ -27,14 +27,14 @@ TEST(WrapBands, OfATaskAreInItsWarnings) {
     segment.name = name;
     return segment;
   };
-  // Of every tenth of a degree about the jump, one is in the band.
+  // The triceps comes off the end of its cylinder about here.
   std::vector<MotionSegment> segments;
-  for (int i = 0; i <= 40; ++i) segments.push_back(task(20.0 + 0.5 * i, "near the jump"));
+  for (int i = 0; i <= 20; ++i) segments.push_back(task(35.0 + 0.5 * i, "near the end"));
   segments.push_back(task(0.0, "far from it"));
   const MuscleParametricModel model(system, std::vector<MuscleUnknown>{}, segments, {});
   std::size_t near = 0, far = 0;
   for (const std::string& warning : task_warnings(model, Eigen::VectorXd())) {
-    near += warning.find("near the jump: muscle 'BIClong'") == 0 ? 1 : 0;
+    near += warning.find("near the end: muscle 'TRIlong'") == 0 ? 1 : 0;
     far += warning.find("far from it") == 0 ? 1 : 0;
   }
   EXPECT_GT(near, 0u);

@@ -1,13 +1,16 @@
 #include "veridyn/muscle/path/muscle_path.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <random>
 #include <sstream>
 
 #include "tests/muscle/path/posed_arm.hpp"
@@ -80,11 +83,17 @@ bool opensim_arm_is_off(const std::string& muscle, double shoulder) {
   return opensim_jumps(muscle, shoulder) || (muscle == "TRIlong" && std::abs(shoulder - 64.2857) < 0.01);
 }
 
+// BIClong's second point lies inside the humeral head from shoulder 31.35 to 91.1 deg. OpenSim drops the wrap there,
+// with jumps of 1.7 and 0.13 mm (a2_arm26_path_jumps.csv); ours lifts the point, by up to 1.5 mm.
+bool opensim_drops_the_wrap(const std::string& muscle, double shoulder) {
+  return muscle == "BIClong" && shoulder > 31.3 && shoulder < 91.15;
+}
+
 TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
   SKIP_WITHOUT_PATH_REFERENCE();
   PosedArm arm(arm26());
   const auto rows = csv(veridyn::test::shared_folder() / "reference/opensim/a_arm26_paths_grid.csv");
-  int compared = 0, left_out = 0;
+  int compared = 0, left_out = 0, lifted = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const auto& row = rows[i];
     const double shoulder = std::stod(row[0]), elbow = std::stod(row[1]);
@@ -97,6 +106,13 @@ TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
       ++left_out;
       continue;
     }
+    if (opensim_drops_the_wrap(name, shoulder)) {
+      ++lifted;
+      EXPECT_GT(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3])) << at;
+      EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), 1.4e-3) << at;
+      EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-3) << at;
+      continue;
+    }
     ++compared;
     const double tolerance = name == "BICshort" ? 1e-9 : (wrapped ? 1e-4 : 1e-5);
     EXPECT_NEAR(arm.workspace.length[static_cast<std::size_t>(m)], std::stod(row[3]), tolerance) << at;
@@ -105,8 +121,9 @@ TEST(MusclePaths, OfArm26AreOpenSimsOverTheSmoothPartOfTheGrid) {
       EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[6]), 2e-4) << at;
     }
   }
-  EXPECT_EQ(compared, 1204);
+  EXPECT_EQ(compared, 1162);
   EXPECT_EQ(left_out, 56);
+  EXPECT_EQ(lifted, 42);
 }
 
 TEST(MusclePaths, OfArm26AreContinuousInBothJoints) {
@@ -164,6 +181,120 @@ TEST(MusclePaths, ReproduceOpenSimsOwnWrapInItsComparisonMode) {
     EXPECT_NEAR(arm.moment_arm(m, 0), std::stod(row[4]), 3e-5) << name << " " << row[0] << " " << row[1];
     EXPECT_NEAR(arm.moment_arm(m, 1), std::stod(row[5]), 5e-6) << name << " " << row[0] << " " << row[1];
   }
+}
+
+/// Random poses over the whole ranges: no arm sticks out of those within 1 deg of it along either coordinate by half or
+/// more, and arms are the slopes of lengths. Next to where a path lifts off or comes to a surface its slope bends like
+/// a root, and differences of one step may straddle that: of two steps the better one counts.
+void expect_believable_arms(const Model& model, int poses, double tolerance = 1e-7) {
+  PosedArm arm(model);
+  std::mt19937_64 random(18);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int beside = 0;
+  std::string where;
+  for (int n = 0; n < poses; ++n) {
+    Eigen::VectorXd q = model.default_pose();
+    for (Eigen::Index c = 0; c < q.size(); ++c) {
+      const Coordinate& k = model.coordinates[static_cast<std::size_t>(c)];
+      const double u = part(random);
+      if (k.high > k.low && k.high - k.low < 20.0) q[c] = k.low + (k.high - k.low) * u;
+    }
+    arm.pose(q);
+    const std::vector<double> gradient = arm.workspace.gradient;
+    for (int c = 0; c < arm.paths.coordinates(); ++c) {
+      std::vector<double> near(gradient.size(), 0.0);
+      for (const double step : {-1.0, -0.5, 0.5, 1.0}) {
+        arm.pose(q + step * kDegree * Eigen::VectorXd::Unit(q.size(), c));
+        for (std::size_t k = 0; k < near.size(); ++k) near[k] = std::max(near[k], std::abs(arm.workspace.gradient[k]));
+      }
+      std::array<std::vector<double>, 2> slope;
+      for (std::size_t s = 0; s < 2; ++s) {
+        const double h = s == 0 ? 1e-4 : 1e-5;
+        slope[s].assign(model.muscles.size(), 0.0);
+        for (const auto& [step, weight] : {std::pair{1.0, 8.0}, {-1.0, -8.0}, {2.0, -1.0}, {-2.0, 1.0}}) {
+          arm.pose(q + step * h * Eigen::VectorXd::Unit(q.size(), c));
+          for (std::size_t m = 0; m < slope[s].size(); ++m)
+            slope[s][m] += weight * arm.workspace.length[m] / (12.0 * h);
+        }
+      }
+      for (std::size_t k = 0; k < gradient.size(); ++k) {
+        const MusclePaths::Pair& pair = arm.paths.pairs()[k];
+        const auto m = static_cast<std::size_t>(pair.muscle);
+        EXPECT_LE(std::abs(gradient[k]), 1.5 * std::max(near[k], 2e-3))
+            << model.muscles[m].name() << " at " << q.transpose();
+        if (pair.coordinate != c) continue;
+        const double error = std::min(std::abs(slope[0][m] - gradient[k]), std::abs(slope[1][m] - gradient[k]));
+        if (error > tolerance) where += fmt::format("{} at {} {}\n", model.muscles[m].name(), q[0], q[1]);
+        beside += error > tolerance ? 1 : 0;
+      }
+    }
+  }
+  // A side change or a root within 2e-5 rad of a random pose.
+  EXPECT_LE(beside, poses / 300) << where;
+}
+
+TEST(MusclePaths, OfArm26HaveArmsThatNeverStickOut) {
+  SKIP_WITHOUT_PATH_REFERENCE();
+  expect_believable_arms(arm26(), 3000);
+}
+
+TEST(MusclePaths, OfTheOtherModelsHaveArmsThatNeverStickOut) {
+  expect_believable_arms(load_model("arm").model(), 3000);
+  SKIP_WITHOUT_PATH_REFERENCE();
+  for (const char* file : {"leg6dof9musc.osim", "gait10dof18musc.osim"})
+    expect_believable_arms(read_osim(veridyn::test::shared_folder() / "data/opensim" / file), 200);
+}
+
+/// A muscle over two cylinders as the gastrocnemius of gait models has them: on the proximal bone behind the joint, on
+/// the distal one below it, and an origin that dips into the first.
+TEST(MusclePaths, OverTwoCylindersAndWithAnEndThatDipsInHaveArmsThatNeverStickOut) {
+  Model model = load_model("arm").model();
+  const int humerus = model.body("humerus"), forearm = model.body("forearm");
+  ASSERT_GT(humerus, 0);
+  const Eigen::Vector3d elbow = model.joints[1].parent_frame.translation;
+  const auto cylinder = [&](const char* name, int body, const Eigen::Vector3d& at, double radius) {
+    WrapObject object;
+    object.name = name;
+    object.shape = WrapShape::kCylinder;
+    object.body = body;
+    object.placement.translation = at;
+    object.dimensions = {radius, 0.2, 0.0};
+    model.wrap_objects.push_back(object);
+    return static_cast<int>(model.wrap_objects.size()) - 1;
+  };
+  const int condyle = cylinder("condyle", humerus, elbow, 0.025);
+  const int shank = cylinder("shank", forearm, Eigen::Vector3d(0.0, -0.05, 0.0), 0.028);
+  Muscle gastrocnemius = model.muscles[static_cast<std::size_t>(model.muscle("brachialis"))];
+  gastrocnemius.parameters.name = "gastrocnemius";
+  const auto point = [](const char* name, int body, const Eigen::Vector3d& at) {
+    PathPoint p;
+    p.name = name;
+    p.body = body;
+    p.location = at;
+    return p;
+  };
+  const auto wrap = [](int object) {
+    PathWrap w;
+    w.object = object;
+    return w;
+  };
+  gastrocnemius.points = {point("origin", humerus, elbow + Eigen::Vector3d(0.02, 0.03, 0.01)),
+                          point("heel", forearm, {0.03, -0.2, -0.01})};
+  gastrocnemius.wraps = {wrap(condyle), wrap(shank)};
+  Muscle dipping = gastrocnemius;
+  dipping.parameters.name = "dipping";
+  // On the forearm, so that it goes into the condyle and comes out of it as the joint turns.
+  dipping.points.insert(dipping.points.begin() + 1, point("via", forearm, {0.022, 0.004, 0.004}));
+  model.muscles = {gastrocnemius, dipping};
+  expect_believable_arms(model, 1000);
+  PosedArm arm(model);
+  const int m = 0;
+  int touches = 0;
+  for (double e = 0.0; e < 130.0; e += 5.0) {
+    arm.pose_deg(0.0, e);
+    touches = std::max(touches, static_cast<int>(arm.paths.touched(arm.kinematics, arm.q.data(), m).size()));
+  }
+  EXPECT_EQ(touches, 2);
 }
 
 void compare_random_poses(const std::string& file, const std::string& prefix) {

@@ -76,7 +76,7 @@ TEST(WrapCylinder, AQuadrantSendsThePathTheLongWayRound) {
   }
 }
 
-TEST(WrapCylinder, FadesOutBeyondItsEndsAndWhereAnEndDipsIn) {
+TEST(WrapCylinder, LetsGoBeyondItsEnds) {
   const WrapCylinder cylinder{0.02, 0.05, {}};
   double before = -1.0;
   for (double z = 0.03; z < 0.08; z += 1e-5) {
@@ -95,9 +95,6 @@ TEST(WrapCylinder, FadesOutBeyondItsEndsAndWhereAnEndDipsIn) {
       EXPECT_FALSE(r.wrapped());
     }
   }
-  const Vector3d q(0.05, 0.001, 0.0);
-  EXPECT_LT(wrap(cylinder, Vector3d(-0.0198, 0.0, 0.0), q).weight, 1.0);
-  EXPECT_EQ(wrap(cylinder, Vector3d(-0.015, 0.0, 0.0), q).status, WrapStatus::kInside);
 }
 
 TEST(WrapCylinder, DerivativesAreThoseOfTheLength) {

@@ -55,8 +55,8 @@ struct TaskAdvice {
 /// (`estimation::covariance_after`). What counts is the widest interval of the parameters that are identified, or
 /// would be with one task more (three quarters of the prior's variance gone). Corrections of the intervals for
 /// correlation and size of the residual are taken to stay as they are, parameters at their bound are left out.
-/// Candidates that enter a band where a wrap fades out, with the standard model's parameters or the estimate's, are not
-/// advised. On the progress' threads, the same bits on any number of them.
+/// Candidates that pass a side change or a cylinder's end, with the standard model's parameters or the estimate's, are
+/// not advised. On the progress' threads, the same bits on any number of them.
 /// @param options of `model`
 [[nodiscard]] TaskAdvice advise_task(const MusculoskeletalSystem& subject, const MuscleParametricModel& model,
                                      const MuscleModelOptions& options, const TaskEstimate& estimate,

@@ -265,11 +265,12 @@ Evidence check_wraps(const TaskFindings& f) {
                .value = static_cast<double>(f.wrap_warnings.size()),
                .limit = 0.0,
                .scale = "muscles and tasks",
-               .text = "no task enters a band where a muscle's wrap fades out",
+               .text = "no task passes a pose where a muscle's path changes side or comes off a cylinder",
                .bears_on = Purpose::kParameters};
   if (!f.wrap_warnings.empty()) {
-    row.text = fmt::format("tasks enter bands where a muscle's wrap fades out, and arms there can be far too large: {}",
-                           f.wrap_warnings.front());
+    row.text = fmt::format(
+        "tasks pass poses where a muscle's path changes side or comes off a cylinder, and arms there are doubtful: {}",
+        f.wrap_warnings.front());
     if (f.wrap_warnings.size() > 1) row.text += fmt::format(" (and {} more)", f.wrap_warnings.size() - 1);
     row.advice = "take other tasks in their place";
   }

@@ -148,8 +148,8 @@ void MusclePaths::add_path(const Model& model, const Mechanism& mechanism, const
     wrap.method = w.method;
     path.wraps.push_back(wrap);
   }
-  if (path.wraps.size() > 32)
-    throw InputError(model.name, fmt::format("muscle {}: more than 32 wrap objects", path.name));
+  if (path.wraps.size() > kMostWraps)
+    throw InputError(model.name, fmt::format("muscle {}: more than {} wrap objects", path.name, kMostWraps));
   muscles_.push_back(path);
 }
 
@@ -173,19 +173,43 @@ void MusclePaths::list_spans(Path& path) {
       }
       // OpenSim's cylinder depends on whether it is the path's only wrap, its ellipsoid on the method: not shared.
       const auto same = std::find_if(spans_.begin(), spans_.end(), [&](const Span& s) {
-        return mode_ == WrapMode::kTaut && s.a == a && s.b == b && s.object == wrap.object;
+        return mode_ == WrapMode::kTaut && s.a == a && s.b == b && s.object == wrap.object && s.alone == wrap.alone;
       });
       wrap.spans.push_back(static_cast<int>(same - spans_.begin()));
-      if (same == spans_.end()) spans_.push_back({a, b, wrap.object});
+      if (same == spans_.end()) spans_.push_back({a, b, wrap.object, wrap.alone});
     }
   }
+}
+
+/// A wrap for each segment that its object can act on, so that no choice between segments makes the length jump.
+void MusclePaths::part_wraps(Path& path) const {
+  std::vector<Wrap> parts;
+  for (const Wrap& wrap : path.wraps) {
+    for (int i = wrap.first; i < wrap.last; ++i) {
+      const int span = wrap.spans[at(i - wrap.first)];
+      if (span >= 0) parts.push_back({wrap.object, i, i + 1, wrap.method, wrap.alone, {span}});
+    }
+  }
+  if (parts.size() <= kMostWraps) path.wraps = std::move(parts);
 }
 
 void MusclePaths::compile_path(int muscle) {
   Path& path = muscles_[at(muscle)];
   const bool conditional =
       std::any_of(path.stations.begin(), path.stations.end(), [](const PathStation& s) { return s.condition >= 0; });
-  if (!conditional) list_spans(path);
+  const auto share = [&](std::size_t i, std::size_t j) {
+    return path.wraps[i].first < path.wraps[j].last && path.wraps[j].first < path.wraps[i].last;
+  };
+  for (std::size_t i = 0; i < path.wraps.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (share(i, j)) path.wraps[i].alone = path.wraps[j].alone = false;
+  if (!conditional) {
+    list_spans(path);
+    if (mode_ == WrapMode::kTaut) part_wraps(path);
+  }
+  for (std::size_t i = 0; i < path.wraps.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (share(i, j)) path.coupled = true;
   for (std::size_t i = 0; i + 1 < path.stations.size(); ++i) {
     const Point& pa = points_[at(path.stations[i].point)];
     const Point& pb = points_[at(path.stations[i + 1].point)];

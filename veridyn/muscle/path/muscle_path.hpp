@@ -29,9 +29,9 @@ struct PathWorkspace;
 /// The musculotendon paths of a model, compiled: lengths L(q) and their derivatives dL/dq. A muscle's moment arm about
 /// a coordinate is -dL/dq, in OpenSim's sign (positive where tension raises the coordinate).
 ///
-/// Points are fixed, conditional or moving as in the file. Wrap objects are tested on every segment of their range; the
-/// first that meets the object wraps, otherwise the one that a quadrant's wall lengthens least. Objects that share a
-/// segment are solved together until all tangent points settle.
+/// Points are fixed, conditional or moving as in the file. A wrap object acts on every segment of its range by itself
+/// (on paths with conditional points, and as OpenSim does: on the first that meets the object, otherwise the one that a
+/// quadrant's wall lengthens least). Objects that share a segment are solved together until all tangent points settle.
 ///
 /// What is the same for every pose (segments within a link) is computed once here, what several muscles share
 /// (segments, wraps of one pair of points) once per pose. Immutable, used by many threads at once; no call below
@@ -134,11 +134,13 @@ class MusclePaths {
   /// A pair of points and an object, shared by all muscles that have it.
   struct Span {
     int a = 0, b = 0, object = 0;
+    bool alone = true;
   };
   struct Wrap {
     int object = 0;
     int first = 0, last = 0;  ///< points of the path, inclusive
     EllipsoidMethod method = EllipsoidMethod::kHybrid;
+    bool alone = true;       ///< no other object of the path acts on its segments
     std::vector<int> spans;  ///< by segment first..last-1, -1: can never wrap; empty where points are conditional
   };
   struct PathStation {
@@ -153,6 +155,7 @@ class MusclePaths {
     std::vector<Wrap> wraps;
     std::vector<double> fixed;  ///< length from a station to the next where both are fixed to one link, else -1
     std::array<std::size_t, 2> pairs{};
+    bool coupled = false;  ///< several objects may act on one segment
   };
   struct Condition {
     int coordinate = 0;
@@ -176,6 +179,7 @@ class MusclePaths {
     int a = 0, b = 0;
     std::size_t first = 0, end = 0;
   };
+  static constexpr std::size_t kMostWraps = 32;      ///< of a path
   static constexpr std::size_t kMostConditions = 4;  ///< of a path that is compiled into variants
 
   int point(int link, const Eigen::Vector3d& location);
@@ -187,6 +191,7 @@ class MusclePaths {
   [[nodiscard]] bool never_wraps(const Object& object, const Point& a, const Point& b) const;
   [[nodiscard]] static WrapStatus wrap_status(const Object& object, const Eigen::Vector3d& p, const Eigen::Vector3d& q);
   void list_spans(Path& path);
+  void part_wraps(Path& path) const;
   void compile_path(int muscle);
   void compile_straight(int muscle);
   void sort_segments();

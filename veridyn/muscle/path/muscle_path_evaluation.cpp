@@ -9,11 +9,12 @@ template SpheroidArrival<double> spheroid_geodesic<double>(const Spheroid&, cons
 template GeodesicShot<double> shoot<double>(const Eigen::Vector3d&, const Spheroid&, const Eigen::Vector3d&,
                                             const Eigen::Vector3d&, const TangentCircle<double>&, const double&,
                                             const double&, const double&, int);
-template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&, WrapResult<double>&);
-template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
                                 WrapResult<double>&);
-template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&, GeodesicMemory*,
+template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
                                 WrapResult<double>&);
+template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
+                                GeodesicMemory*, WrapResult<double>&);
 
 }  // namespace internal
 

@@ -90,7 +90,11 @@ std::vector<MusclePaths::PointInside> MusclePaths::points_inside(const Kinematic
         const Eigen::Vector3d local =
             frame.rotation.transpose() * (workspace.position[at(station.point)] - frame.position);
         const double below = depth(local, object.description);
-        if (below > 0.0) found.push_back({muscle, station.name, object.name, below});
+        const auto same = [&](const PointInside& other) {
+          return other.muscle == muscle && other.point == station.name && other.object == object.name;
+        };
+        if (below > 0.0 && std::none_of(found.begin(), found.end(), same))
+          found.push_back({muscle, station.name, object.name, below});
       }
     }
   }

@@ -104,6 +104,7 @@ class PathSolver {
   std::size_t n_stations_ = 0;
   unsigned done_ = 0;  ///< fading objects that `blended` has decided on
   int side_ = 0;
+  bool repeats_ = false;     ///< this side's solution is the best path so far
   double give_up_ = 0.0;     ///< length above which another side is abandoned
   std::size_t other_n_ = 0;  ///< nodes of the best path so far
   static constexpr double kNearlySettled = 1e-3;

@@ -30,8 +30,10 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
   if (object.reach > 0.0) {
     const Eigen::Vector3d a = value_of(Vector(p_ground - frame.position));
     const Eigen::Vector3d b = value_of(Vector(q_ground - p_ground));
-    const double b2 = b.squaredNorm(), along = -a.dot(b);
-    if (!(along > 0.0 && along < b2) || a.squaredNorm() * b2 - along * along > object.reach * object.reach * b2) {
+    const double a2 = a.squaredNorm(), b2 = b.squaredNorm(), along = -a.dot(b),
+                 r2 = 1.00001 * object.reach * object.reach;
+    const bool beside = !(along > 0.0 && along < b2) || a2 * b2 - along * along > r2 * b2;
+    if (beside && a2 > r2 && a2 - 2.0 * along + b2 > r2) {
       r.clear();
       return false;
     }
@@ -42,7 +44,8 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
     const Eigen::Vector3d q = value_of(Vector(q_ground - frame.position));
     const internal::CylinderPass pass =
         internal::cylinder_pass(object.cylinder, x.dot(p), y.dot(p), x.dot(q), y.dot(q));
-    if (!pass.meets && !pass.long_way) {
+    const double r2 = object.cylinder.radius * object.cylinder.radius * 1.00001;
+    if (!pass.meets && !pass.long_way && pass.p2 > r2 && pass.q2 > r2) {
       r.clear();
       return false;
     }
@@ -54,18 +57,18 @@ inline bool PathSolver<Scalar>::wrap_between(const MusclePaths::Object& object, 
   } else {
     switch (object.shape) {
       case WrapShape::kSphere:
-        internal::wrap_onto(object.sphere, p, q, r);
+        internal::wrap_onto(object.sphere, p, q, wrap.alone, r);
         break;
       case WrapShape::kCylinder:
-        internal::wrap_onto(object.cylinder, p, q, r);
+        internal::wrap_onto(object.cylinder, p, q, wrap.alone, r);
         break;
       case WrapShape::kEllipsoid:
         if (side_ == 0) {
-          internal::wrap_onto(object.ellipsoid, p, q, memory, r);
+          internal::wrap_onto(object.ellipsoid, p, q, wrap.alone, memory, r);
         } else {
           WrapEllipsoid one_side = object.ellipsoid;
           one_side.side = side_;
-          internal::wrap_onto(one_side, p, q, memory, r);
+          internal::wrap_onto(one_side, p, q, wrap.alone, memory, r);
         }
         break;
       case WrapShape::kTorus:
@@ -115,7 +118,10 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
     const MusclePaths::Object& object = paths_.objects_[static_cast<std::size_t>(wrap.object)];
     w_.first_segment[i] = -1;
     double least = 1e300;
-    for (std::size_t k = 0; k + 1 < n_stations_; ++k) {
+    // Without conditional points every station is there.
+    const bool every = !wrap.spans.empty();
+    const std::size_t end = every ? static_cast<std::size_t>(wrap.last) : n_stations_ - 1;
+    for (std::size_t k = every ? static_cast<std::size_t>(wrap.first) : 0; k < end; ++k) {
       const Node& a = w_.stations[k];
       const Node& b = w_.stations[k + 1];
       if (a.station < wrap.first || b.station > wrap.last) continue;
@@ -132,7 +138,6 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
       } else {
         wrap_between(object, wrap.object, wrap, path.wraps.size() == 1, a.x, b.x, w_.fresh);
       }
-      if (r->status == WrapStatus::kInside) flag = std::max(flag, PathFlag::kInside);
       if (r->status == WrapStatus::kFailed) flag = std::max(flag, PathFlag::kFailed);
       if (!r->wrapped()) continue;
       const double longer = value_of(r->length) - value_of(Vector(b.x - a.x)).norm();
@@ -156,7 +161,7 @@ inline bool PathSolver<Scalar>::detect(const Path& path, PathFlag& flag) {
 template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::solve(const Path& path, unsigned mask) {
   const std::size_t n = settle(path, mask);
-  if (path.wraps.size() < 2 || paths_.mode_ == WrapMode::kAsOpenSim) return n;
+  if (!path.coupled || paths_.mode_ == WrapMode::kAsOpenSim) return n;
   double spread = 1.0;
   for (std::size_t k = 0; k < n; ++k)
     if (w_.nodes[k].wrap >= 0) spread = std::min(spread, w_.result[static_cast<std::size_t>(w_.nodes[k].wrap)]->spread);
@@ -172,7 +177,7 @@ inline std::size_t PathSolver<Scalar>::solve(const Path& path, unsigned mask) {
     other_n_ = other_n;
     const std::size_t count = settle(path, mask);
     const double l = muscle::value_of(measure<false>(path, count, Scalar(1.0)));
-    if (l < other_length - 1e-12) {
+    if (!repeats_ && l < other_length - 1e-12) {
       other_length = l;
       other_n = count;
       swap_with_other();
@@ -204,15 +209,20 @@ template <typename Scalar>
 inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
   std::copy_n(w_.stations.begin(), n_stations_, w_.nodes.begin());
   std::size_t n = n_stations_;
-  if (path.wraps.size() == 1) {
-    if ((mask & 1u) != 0 && w_.first_segment[0] >= 0) {
-      w_.result[0] = w_.first[0];
-      insert(path, 0, static_cast<std::size_t>(w_.first_segment[0]), n);
+  if (!path.coupled) {
+    for (std::size_t i = 0; i < path.wraps.size(); ++i) {
+      if ((mask >> i & 1u) == 0 || w_.first_segment[i] < 0) continue;
+      w_.result[i] = w_.first[i];
+      const int station = w_.stations[static_cast<std::size_t>(w_.first_segment[i])].station;
+      auto at = static_cast<std::size_t>(w_.first_segment[i]);
+      while (w_.nodes[at].station != station) ++at;
+      insert(path, i, at, n);
     }
     return n;
   }
   if (paths_.mode_ == WrapMode::kAsOpenSim) return solve_as_opensim(path, n);
   for (std::size_t i = 0; i < path.wraps.size(); ++i) w_.memory[i].clear();
+  repeats_ = false;
   // Jets continue for their derivatives after the values have settled.
   int more = std::is_same_v<Scalar, double> ? 0 : 8;
   // An object is solved again only where another one on the path has changed since.
@@ -257,12 +267,13 @@ inline std::size_t PathSolver<Scalar>::settle(const Path& path, unsigned mask) {
         changed_at[i] = step;
       }
     }
-    if (moved == 0.0 || (pass > 0 && moved < 1e-8 && more-- <= 0)) break;
+    if (moved == 0.0 || (pass > 0 && moved < 1e-10 && more-- <= 0)) break;
     // Nearly settled tangent points show which solution they approach; the length is stationary and shows whether it
     // is longer.
-    if (side_ != 0 && moved < kNearlySettled &&
-        (as_before(n) || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_))
-      break;
+    if (side_ != 0 && moved < kNearlySettled) {
+      repeats_ = as_before(n);
+      if (repeats_ || muscle::value_of(measure<false>(path, n, Scalar(1.0))) > give_up_) break;
+    }
     if constexpr (std::is_same_v<Scalar, double>) {
       if (pass > 0) accelerate(n, moved, acceleration);
     }

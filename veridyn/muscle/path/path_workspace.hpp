@@ -11,9 +11,8 @@ namespace veridyn::muscle {
 /// How good a path's length is, worse values last.
 enum class PathFlag : std::uint8_t {
   kFine = 0,
-  kFading = 1,  ///< a wrap counts in part: an end dips into its object, or a cylinder ends
-  kInside = 2,  ///< a point lies inside a wrap object: straight there
-  kFailed = 3,  ///< a geodesic did not converge: straight there
+  kFading = 1,  ///< a wrap counts in part: its cylinder ends
+  kFailed = 2,  ///< a geodesic did not converge: straight there
 };
 
 /// Results and scratch memory of `MusclePaths`, made once, used by one thread.

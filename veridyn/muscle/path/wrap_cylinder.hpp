@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/muscle/path/wrap_lift.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 
 namespace veridyn::muscle {
@@ -22,12 +23,15 @@ struct CylinderPass {
   bool meets = false;
   bool long_way = false;  ///< it crosses the quadrant's wall
   double cross = 0.0;
+  double p2 = 0.0, q2 = 0.0;  ///< squared distances of the ends from the axis
 };
 
 inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, double py, double qx, double qy) {
   CylinderPass pass;
   const double ux = qx - px, uy = qy - py;
   pass.cross = px * qy - py * qx;
+  pass.p2 = px * px + py * py;
+  pass.q2 = qx * qx + qy * qy;
   if (cylinder.quadrant.sign != 0) {
     // Does the segment cross the wall { s x[axis] < 0, the other coordinate 0 }?
     const bool along_x = cylinder.quadrant.axis == 0;
@@ -48,24 +52,23 @@ inline CylinderPass cylinder_pass(const WrapCylinder& cylinder, double px, doubl
 /// A path over a cylinder as seen along the axis: straight parts of length d1 and d2 and the arc between them.
 template <typename Scalar>
 struct CylinderPath {
-  Scalar radius, d1, d2;
-  Scalar angle;           ///< of the arc
-  Scalar planar;          ///< length of all three
-  Scalar flat;            ///< planar / length
-  Scalar slope;           ///< along the axis, per planar length
-  bool inside = false;    ///< an end lies inside: `radius` shrinks to it
-  bool p_nearer = false;  ///< that end is P
-  Eigen::Matrix<Scalar, 3, 1> end_slope = Eigen::Matrix<Scalar, 3, 1>::Zero();  ///< dradius / d(end inside)
+  Scalar radius;
+  Scalar d1, d2;
+  Scalar angle;   ///< of the arc
+  Scalar planar;  ///< length of all three
+  Scalar flat;    ///< planar / length
+  Scalar slope;   ///< along the axis, per planar length
 };
 
-/// Fades a wrap out whose nearer tangent point lies beyond the cylinder's ends.
+/// Lets a wrap go whose nearer tangent point lies beyond the cylinder's ends. Returns the weight's slope with respect
+/// to the radius.
 ///
 /// From the slopes of the tangent point's height, z1 = p.z + dz d1/planar or z2 = q.z - dz d2/planar. A planar taut
-/// string's length changes by minus its direction at P, by its direction at Q.
+/// string's length changes by minus its direction at P, by its direction at Q, by its angle with the radius.
 template <typename Scalar>
-void fade_beyond_ends(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
-                      const Eigen::Matrix<Scalar, 3, 1>& q, const CylinderPath<Scalar>& path,
-                      WrapResult<Scalar>& result) {
+Scalar fade_beyond_ends(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
+                        const Eigen::Matrix<Scalar, 3, 1>& q, const CylinderPath<Scalar>& path,
+                        WrapResult<Scalar>& result) {
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   const Scalar zero(0.0);
   const bool first = std::abs(value_of(result.r1.z())) < std::abs(value_of(result.r2.z()));
@@ -78,59 +81,49 @@ void fade_beyond_ends(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 
   // d part = (d d - part d planar) / planar
   Vector3 part_p = in * part, part_q = out * (-part);
   (first ? part_p : part_q) += d_slope;
-  if (path.inside) (path.p_nearer ? part_p : part_q) -= path.end_slope * (path.radius / d + part * path.angle);
+  const Scalar part_radius = -path.radius / d - part * path.angle;
   const Scalar sign = first ? path.slope : Scalar(-path.slope);
   Vector3 height_p = part_p * sign, height_q = part_q * sign;
   height_p.z() += first ? Scalar(Scalar(1.0) - part) : part;
   height_q.z() += first ? part : Scalar(Scalar(1.0) - part);
   const double up = value_of(height) > 0.0 ? 1.0 : -1.0;
-  if (!path.inside) begin_weight(result);
   const double band = (kEndFade - kEndStart) * cylinder.radius;
   const Scalar x = (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
   const Scalar change = fade_slope(x) * Scalar(up / band);
-  times<Scalar>(result, fade(x), height_p * change, height_q * change);
+  result.weight = fade(x);
+  result.weight_p = height_p * change;
+  result.weight_q = height_q * change;
+  return part_radius * sign * change;
 }
 
+/// Both ends outside `radius`, which is below the cylinder's own where an end was lifted. Returns the slope of the
+/// weight with respect to it.
 template <typename Scalar>
-void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
-               WrapResult<Scalar>& result) {
+Scalar wrap_outside(const WrapCylinder& cylinder, const CylinderPass& pass, const Scalar& radius,
+                    const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+                    WrapResult<Scalar>& result) {
   using std::atan2;
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   result.clear();
-  const CylinderPass pass = cylinder_pass(cylinder, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
-  const bool long_way = pass.long_way;
-  const double cross = pass.cross;
   result.meets = pass.meets;
-  if (!long_way && !result.meets) return;
-
+  const Scalar none(0.0);
+  if (!pass.long_way && !pass.meets) return Scalar(0.0);
   const Scalar p2 = p.x() * p.x() + p.y() * p.y();
   const Scalar q2 = q.x() * q.x() + q.y() * q.y();
-  const double gap = (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap);
-  Scalar radius2(cylinder.radius * cylinder.radius);
-  const Scalar& nearer2 = p2 < q2 ? p2 : q2;
-  const bool inside = value_of(nearer2) * gap < value_of(radius2);
-  if (inside) radius2 = nearer2 * Scalar(gap);
-  const Scalar radius = inside ? Scalar(sqrt(radius2)) : Scalar(cylinder.radius);
-  if (inside) {
-    result.depth = 1.0 - value_of(radius) / cylinder.radius;
-    if (result.depth >= kInsideFade) {
-      result.status = WrapStatus::kInside;
-      return;
-    }
-  }
-  const double turn = (cross > 0.0) != long_way ? 1.0 : -1.0;
+  const Scalar radius2 = radius * radius;
+  const double turn = (pass.cross > 0.0) != pass.long_way ? 1.0 : -1.0;
   const Scalar d1 = sqrt(p2 - radius2);
   const Scalar d2 = sqrt(q2 - radius2);
   const Scalar ip = Scalar(1.0) / p2;
   const Scalar iq = Scalar(1.0) / q2;
   const Scalar ap = radius2 * ip, bp = radius * d1 * ip * Scalar(turn);
   const Scalar aq = radius2 * iq, bq = radius * d2 * iq * Scalar(turn);
-  result.r1 = Vector3(p.x() * ap - p.y() * bp, p.y() * ap + p.x() * bp, Scalar(0.0));
-  result.r2 = Vector3(q.x() * aq + q.y() * bq, q.y() * aq - q.x() * bq, Scalar(0.0));
+  result.r1 = Vector3(p.x() * ap - p.y() * bp, p.y() * ap + p.x() * bp, none);
+  result.r2 = Vector3(q.x() * aq + q.y() * bq, q.y() * aq - q.x() * bq, none);
   Scalar angle = atan2((result.r1.x() * result.r2.y() - result.r1.y() * result.r2.x()) * Scalar(turn),
                        result.r1.x() * result.r2.x() + result.r1.y() * result.r2.y());
-  if (long_way && angle < Scalar(0.0)) angle += Scalar(kFullTurn);
+  if (pass.long_way && angle < none) angle += Scalar(kFullTurn);
   const Scalar arc = radius * angle;
   const Scalar planar = d1 + arc + d2;
   const Scalar dz = q.z() - p.z();
@@ -141,7 +134,7 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
   result.r2.z() = q.z() - slope * d2;
   const double overrun =
       std::min(std::abs(value_of(result.r1.z())), std::abs(value_of(result.r2.z()))) - cylinder.half_length;
-  if (overrun >= kEndFade * cylinder.radius) return;
+  if (overrun >= kEndFade * cylinder.radius) return Scalar(0.0);
   result.status = WrapStatus::kWrapped;
   const Scalar flat = planar * per_length;
   const Scalar steep = dz * per_length;
@@ -151,25 +144,57 @@ void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& 
   result.direction2 = Vector3((q.x() - result.r2.x()) * s2, (q.y() - result.r2.y()) * s2, steep);
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  const Scalar zero(0.0);
-  Vector3 end_slope(zero, zero, zero);  // d radius / d end that lies inside
-  if (inside) {
-    const bool end_is_p = p2 < q2;
-    const Vector3& end = end_is_p ? p : q;
-    end_slope = Vector3(end.x(), end.y(), zero) * (Scalar(gap) / radius);
-    // dL/dradius = angle planar/L.
-    (end_is_p ? result.gradient_p : result.gradient_q) += end_slope * (angle * flat);
-    const Scalar distance = sqrt(nearer2);
-    fade_inside<Scalar>(result, distance / Scalar(cylinder.radius),
-                        Vector3(end.x(), end.y(), zero) / (distance * Scalar(cylinder.radius)), end_is_p);
-  }
   if (overrun > kEndStart * cylinder.radius)
-    fade_beyond_ends<Scalar>(cylinder, p, q, {radius, d1, d2, angle, planar, flat, slope, inside, p2 < q2, end_slope},
-                             result);
+    return fade_beyond_ends<Scalar>(cylinder, p, q, {radius, d1, d2, angle, planar, flat, slope}, result);
+  return Scalar(0.0);
+}
+
+/// An end inside: that of its foot, with the ends' band as well where nothing but the foot is touched.
+template <typename Scalar>
+void wrap_lifted_onto(const WrapCylinder& cylinder, const Lift<Scalar>& lift, bool radial, WrapResult<Scalar>& result) {
+  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
+  result.clear();
+  const Vector3 &p = lift.p.foot, &q = lift.q.foot;
+  if (!(value_of(lift.scale) > kLeastScale)) return;
+  const Scalar radius = lift.scale * Scalar(cylinder.radius);
+  WrapCylinder shrunk = cylinder;
+  shrunk.radius = value_of(radius);
+  const CylinderPass pass = cylinder_pass(shrunk, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
+  Scalar weight_radius = wrap_outside<Scalar>(cylinder, pass, radius, p, q, result);
+  if (!pass.long_way && !pass.meets) {
+    const bool first = lift.p.lifted && !(lift.q.lifted && std::abs(value_of(q.z())) < std::abs(value_of(p.z())));
+    const Scalar& height = first ? p.z() : q.z();
+    const double beyond = std::abs(value_of(height)) - cylinder.half_length;
+    if (beyond >= kEndFade * cylinder.radius) return;
+    if (beyond > kEndStart * cylinder.radius) {
+      const double up = value_of(height) > 0.0 ? 1.0 : -1.0, band = (kEndFade - kEndStart) * cylinder.radius;
+      const Scalar x =
+          (height * Scalar(up) - Scalar(cylinder.half_length + kEndStart * cylinder.radius)) / Scalar(band);
+      result.weight = fade(x);
+      result.weight_p = result.weight_q = Vector3::Zero();
+      (first ? result.weight_p : result.weight_q).z() = fade_slope(x) * Scalar(up / band);
+    }
+  } else if (!result.wrapped()) {
+    return;  // beyond the ends
+  }
+  const bool fading = result.weight < Scalar(1.0);
+  finish_lifted(lift, radial, result);
+  if (fading) pull_back<Scalar>(lift, false, weight_radius * Scalar(cylinder.radius), result.weight_p, result.weight_q);
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+               bool radial, WrapResult<Scalar>& result) {
+  const CylinderPass pass = cylinder_pass(cylinder, value_of(p.x()), value_of(p.y()), value_of(q.x()), value_of(q.y()));
+  if (std::min(pass.p2, pass.q2) * kOutwards < cylinder.radius * cylinder.radius) {
+    const double w = 1.0 / (cylinder.radius * cylinder.radius);
+    return wrap_lifted_onto(cylinder, lift_ends<Scalar>(Eigen::Vector3d(w, w, 0.0), p, q), radial, result);
+  }
+  wrap_outside<Scalar>(cylinder, pass, Scalar(cylinder.radius), p, q, result);
 }
 
 // In muscle_path_evaluation.cpp.
-extern template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+extern template void wrap_onto<double>(const WrapCylinder&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
                                        WrapResult<double>&);
 
 }  // namespace internal
@@ -186,7 +211,7 @@ template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapCylinder& cylinder, const Eigen::Matrix<Scalar, 3, 1>& p,
                                       const Eigen::Matrix<Scalar, 3, 1>& q) {
   WrapResult<Scalar> result;
-  internal::wrap_onto(cylinder, p, q, result);
+  internal::wrap_onto(cylinder, p, q, true, result);
   return result;
 }
 

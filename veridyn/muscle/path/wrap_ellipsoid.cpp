@@ -37,7 +37,9 @@ void newton(const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vec
     // The last correction leaves about step^2 size of the tangent points, of the directions that over the straight
     // part.
     const double straight = std::min(solution.shot.length1, c.length2) / size;
-    if (is_fine && step < 0.5 * tolerance && step * step < tolerance * tolerance * straight && c.reached) {
+    const double focus = std::min(1.0, std::max(0.0, 2.5 * c.jacobi / solution.length));
+    if (is_fine && step < 0.5 * tolerance && step * step < tolerance * tolerance * straight * focus * focus &&
+        c.reached) {
       solution.middle = solution.shot.r1 + solution.shot.r2;
       solution.converged = c.jacobi > 0.0;
       return;
@@ -70,17 +72,6 @@ EllipsoidPass ellipsoid_pass(const WrapEllipsoid& ellipsoid, const Eigen::Vector
   pass.toward = ps + pass.along * (along / u2);
   pass.distance2 = pass.toward.squaredNorm();
   if (!(pass.distance2 < 1.0)) return pass;
-  pass.end_distance2 = std::min(ps.squaredNorm(), qs.squaredNorm());
-  pass.inside = pass.end_distance2 * (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap) < 1.0;
-  pass.p_nearer = ps.squaredNorm() <= qs.squaredNorm();
-  if (pass.inside) {
-    pass.scale = std::sqrt(pass.end_distance2) * (1.0 - kSurfaceGap);
-    if (1.0 - pass.scale >= kInsideFade) {
-      pass.status = WrapStatus::kInside;
-      return pass;
-    }
-    if (!(pass.distance2 < pass.scale * pass.scale)) return pass;
-  }
   if (pass.distance2 < 1e-24) {
     Eigen::Vector3d& near = pass.toward;
     near = Eigen::Vector3d::Unit(ellipsoid.quadrant.sign != 0 ? ellipsoid.quadrant.axis : 0);

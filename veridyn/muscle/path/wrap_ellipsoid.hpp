@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "veridyn/muscle/path/geodesic_spheroid.hpp"
+#include "veridyn/muscle/path/wrap_lift.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 #include "veridyn/numerics/runge_kutta_nystrom.hpp"
 
@@ -219,16 +220,13 @@ struct SolvedGeodesic : GeodesicSolution {
   ShotCorrection<double> last;
 };
 
-/// How a segment passes an ellipsoid, in coordinates x / radii where the ellipsoid is the unit sphere.
+/// How a segment with both ends outside passes an ellipsoid, in coordinates x / radii where the ellipsoid is the unit
+/// sphere.
 struct EllipsoidPass {
   WrapStatus status = WrapStatus::kStraight;         ///< kWrapped: there is a geodesic to be found
   Eigen::Vector3d along = Eigen::Vector3d::Zero();   ///< from P to Q
   Eigen::Vector3d toward = Eigen::Vector3d::Zero();  ///< from the centre to the segment's nearest point
   double distance2 = 0.0;                            ///< of that point from the centre, squared
-  double end_distance2 = 0.0;                        ///< of the end nearer to the centre, squared
-  bool p_nearer = true;                              ///< that end is P
-  bool inside = false;                               ///< it lies inside or on the surface
-  double scale = 1.0;                                ///< below 1 where an end lies inside: leaves it just outside
 };
 
 [[nodiscard]] EllipsoidPass ellipsoid_pass(const WrapEllipsoid& ellipsoid, const Eigen::Vector3d& p,
@@ -249,7 +247,11 @@ inline bool on_inactive_side(const WrapQuadrant& quadrant, const Eigen::Vector3d
                                            const Eigen::Vector3d& a, const Spheroid& spheroid, const Eigen::Vector3d& p,
                                            const Eigen::Vector3d& q, const GeodesicSolution* nearby, double tolerance);
 
-/// Newton's last step, in `Scalar`: tangent points and the length between them.
+/// Newton's last step, in `Scalar`: tangent points and the whole length.
+///
+/// The tangent points are left with an error of the step's square. The length of the shot and of the straight line from
+/// its end to Q, which meet at an angle, is stationary in that end but for the angle: half of what the step would gain
+/// at its first slope leaves an error of the step's cube.
 template <typename Scalar>
 void last_step(const SolvedGeodesic& from, const Eigen::Vector3d& a, const Spheroid& spheroid,
                const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q, WrapResult<Scalar>& result) {
@@ -257,7 +259,14 @@ void last_step(const SolvedGeodesic& from, const Eigen::Vector3d& a, const Spher
     const Scalar d_alpha = c.angle / shot.angle_slope;
     result.r1 = shot.r1 + shot.r1_slope * d_alpha;
     result.r2 = shot.r2 + shot.sideways * (shot.jacobi * c.angle) + shot.t2 * c.s;
-    result.surface_length = shot.surface + c.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+    if constexpr (std::is_same_v<Scalar, double>) {
+      const Eigen::Vector3d way = q - shot.r2;
+      const double straight = way.norm();
+      result.length =
+          shot.length1 + shot.surface + straight + 0.5 * (shot.t2 - way / straight).dot(result.r2 - shot.r2);
+    } else {
+      result.surface_length = shot.surface + c.s - shot.t1.dot(shot.r1_slope) * d_alpha;
+    }
   };
   if constexpr (std::is_same_v<Scalar, double>) {
     take(from.shot, from.last);
@@ -270,19 +279,18 @@ void last_step(const SolvedGeodesic& from, const Eigen::Vector3d& a, const Spher
   }
 }
 
+/// Both ends outside.
 template <typename Scalar>
-void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
-               const Eigen::Matrix<Scalar, 3, 1>& q, GeodesicMemory* memory, WrapResult<Scalar>& result) {
+void wrap_outside(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+                  const Eigen::Matrix<Scalar, 3, 1>& q, GeodesicMemory* memory, WrapResult<Scalar>& result) {
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
   result.clear();
   const Eigen::Vector3d pv = values_of(p), qv = values_of(q);
   const EllipsoidPass pass = ellipsoid_pass(ellipsoid, pv, qv);
-  // An end inside shrinks the ellipsoid until it lies just outside.
-  if (pass.inside) result.depth = 1.0 - pass.scale;
   result.status = pass.status;
   if (!result.wrapped()) return;
-  const Eigen::Vector3d a = ellipsoid.radii * pass.scale;
+  const Eigen::Vector3d& a = ellipsoid.radii;
   const Spheroid spheroid = internal::spheroid(a);
   // Derivatives are taken at the last shot: it has to be closer to the solution for them.
   constexpr double tolerance = std::is_same_v<Scalar, double> ? 1e-3 : 1e-7;
@@ -310,27 +318,29 @@ void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>
   const Scalar length2 = sqrt(out.squaredNorm());
   result.direction1 = in / length1;
   result.direction2 = out / length2;
-  result.length = length1 + result.surface_length + length2;
+  if constexpr (std::is_same_v<Scalar, double>) {
+    result.surface_length = result.length - length1 - length2;
+  } else {
+    result.length = length1 + result.surface_length + length2;
+  }
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  if (pass.inside) {
-    // L is homogeneous in P, Q and the size k: k dL/dk = L - P.dL/dP - Q.dL/dQ.
-    const Scalar growth = (result.length - p.dot(result.gradient_p) - q.dot(result.gradient_q)) *
-                          Scalar((1.0 - kSurfaceGap) / pass.scale);
-    const Vector3 square = ellipsoid.radii.cwiseProduct(ellipsoid.radii).cast<Scalar>();
-    const Vector3& end = pass.p_nearer ? p : q;
-    const Vector3 slope = end.cwiseQuotient(square) * (growth / Scalar(std::sqrt(pass.end_distance2)));
-    (pass.p_nearer ? result.gradient_p : result.gradient_q) += slope;
-    const Scalar radii = sqrt(end.cwiseQuotient(ellipsoid.radii.cast<Scalar>().eval()).squaredNorm());
-    fade_inside<Scalar>(result, radii, end.cwiseQuotient(square) / radii, pass.p_nearer);
-  }
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapEllipsoid& ellipsoid, const Eigen::Matrix<Scalar, 3, 1>& p,
+               const Eigen::Matrix<Scalar, 3, 1>& q, bool radial, GeodesicMemory* memory, WrapResult<Scalar>& result) {
+  const Eigen::Vector3d w = ellipsoid.radii.cwiseAbs2().cwiseInverse();
+  if (!dips_in<Scalar>(w, p, q)) return wrap_outside(ellipsoid, p, q, memory, result);
+  wrap_lifted(lift_ends<Scalar>(w, p, q), radial, result,
+              [&](const auto& fp, const auto& fq) { wrap_outside<Scalar>(ellipsoid, fp, fq, memory, result); });
 }
 
 // In muscle_path_evaluation.cpp.
 extern template GeodesicShot<double> shoot<double>(const Eigen::Vector3d&, const Spheroid&, const Eigen::Vector3d&,
                                                    const Eigen::Vector3d&, const TangentCircle<double>&, const double&,
                                                    const double&, const double&, int);
-extern template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+extern template void wrap_onto<double>(const WrapEllipsoid&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
                                        GeodesicMemory*, WrapResult<double>&);
 
 }  // namespace internal
@@ -348,7 +358,7 @@ template <typename Scalar>
                                       const Eigen::Matrix<Scalar, 3, 1>& q,
                                       internal::GeodesicMemory* memory = nullptr) {
   WrapResult<Scalar> result;
-  internal::wrap_onto(ellipsoid, p, q, memory, result);
+  internal::wrap_onto(ellipsoid, p, q, true, memory, result);
   return result;
 }
 

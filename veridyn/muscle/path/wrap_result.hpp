@@ -11,23 +11,21 @@
 /// the length of a taut string: stationary in the tangent points, so that unit tension does exactly the work of its
 /// change (dL/dP = -direction1, dL/dQ = direction2), and closed forms or Newton's method find it to rounding.
 ///
-/// Where OpenSim's path jumps, ours blends: an end that dips into an object (OpenSim drops the wrap at once) shrinks
-/// the object so that the end lies on its surface and fades the wrap out over a depth of `kInsideFade` of the radius; a
-/// cylinder's wrap fades out between `kEndStart` and `kEndFade` of its radius beyond its ends. Beyond these bands
-/// lengths are OpenSim's.
+/// An end inside an object is lifted to its surface (`wrap_lift.hpp`). A cylinder's wrap goes over into the straight
+/// path between `kEndStart` and `kEndFade` of its radius beyond its ends, where OpenSim's jumps; beyond the band both
+/// are the same.
 namespace veridyn::muscle {
 
 /// How a segment goes past an object.
 enum class WrapStatus {
   kStraight,  ///< the segment misses the object, or passes it on a side where it does not wrap
   kWrapped,
-  kInside,  ///< an end lies deep inside the object: the segment is left straight
+  kInside,  ///< as OpenSim only: an end lies inside the object, and the segment is left straight
   kFailed,  ///< the geodesic iteration did not converge: the segment is left straight
 };
 
-inline constexpr double kInsideFade = 0.03;  ///< [radii]
-inline constexpr double kEndStart = 0.1;     ///< [radii of the cylinder]
-inline constexpr double kEndFade = 0.6;      ///< [radii of the cylinder]
+inline constexpr double kEndStart = 0.1;  ///< [radii of the cylinder]
+inline constexpr double kEndFade = 0.6;   ///< [radii of the cylinder]
 
 /// One segment wrapped over one object.
 template <typename Scalar>
@@ -41,14 +39,16 @@ struct WrapResult {
   Scalar surface_length{};               ///< [m]
   Vector3 direction1 = Vector3::Zero();  ///< unit, from P to r1
   Vector3 direction2 = Vector3::Zero();  ///< unit, from r2 to Q
-  /// dL/dP and dL/dQ: -direction1 and direction2 unless an end dips into the object.
+  /// dL/dP and dL/dQ: -direction1 and direction2 unless an end was lifted.
   Vector3 gradient_p = Vector3::Zero();
   Vector3 gradient_q = Vector3::Zero();
-  /// How much of the wrap counts, 0..1: below 1 in the bands where it fades out; its derivatives with respect to P, Q.
+  /// How much of the wrap counts, 0..1: below 1 in the band beyond a cylinder's ends; its derivatives with respect to
+  /// P, Q.
   Scalar weight{1.0};
   Vector3 weight_p = Vector3::Zero();
   Vector3 weight_q = Vector3::Zero();
-  /// How deep an end lies inside, in radii; 0 outside.
+  /// How deep an end lies inside, in radii; 0 outside. Above 0, `surface_length` is what is missing from the straight
+  /// parts to `length`.
   double depth = 0.0;
   /// The straight segment itself meets the object; false: only the wall of a quadrant makes it go round.
   bool meets = true;
@@ -91,35 +91,6 @@ template <typename Scalar>
 [[nodiscard]] Scalar fade_slope(const Scalar& x) {
   if (!(x > Scalar(0.0)) || !(x < Scalar(1.0))) return Scalar(0.0);
   return Scalar(-6.0) * x * (Scalar(1.0) - x);
-}
-
-/// A weight of 1, to be multiplied.
-template <typename Scalar>
-void begin_weight(WrapResult<Scalar>& result) {
-  result.weight = Scalar(1.0);
-  result.weight_p.setZero();
-  result.weight_q.setZero();
-}
-
-/// Multiplies a weight by another one.
-template <typename Scalar>
-void times(WrapResult<Scalar>& result, const Scalar& weight, const Eigen::Matrix<Scalar, 3, 1>& weight_p,
-           const Eigen::Matrix<Scalar, 3, 1>& weight_q) {
-  result.weight_p = result.weight_p * weight + weight_p * result.weight;
-  result.weight_q = result.weight_q * weight + weight_q * result.weight;
-  result.weight = result.weight * weight;
-}
-
-/// Weight of an end at `radii` < 1 of the object's size from its centre; `slope` = d radii / d end.
-template <typename Scalar>
-void fade_inside(WrapResult<Scalar>& result, const Scalar& radii, const Eigen::Matrix<Scalar, 3, 1>& slope,
-                 bool end_is_p) {
-  using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
-  const Scalar x = (Scalar(1.0) - radii * Scalar(1.0 - kSurfaceGap)) / Scalar(kInsideFade);
-  const Vector3 change = slope * (fade_slope(x) * Scalar(-(1.0 - kSurfaceGap) / kInsideFade));
-  const Vector3 none = Vector3::Zero();
-  begin_weight(result);
-  times<Scalar>(result, fade(x), end_is_p ? change : none, end_is_p ? none : change);
 }
 
 }  // namespace internal

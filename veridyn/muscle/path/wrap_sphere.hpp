@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/muscle/path/wrap_lift.hpp"
 #include "veridyn/muscle/path/wrap_result.hpp"
 
 namespace veridyn::muscle {
@@ -16,9 +17,10 @@ struct WrapSphere {
 
 namespace internal {
 
+/// Both ends outside.
 template <typename Scalar>
-void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
-               WrapResult<Scalar>& result) {
+void wrap_outside(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+                  WrapResult<Scalar>& result) {
   using std::atan2;
   using std::sqrt;
   using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
@@ -33,19 +35,8 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
 
   const Scalar p2 = p.squaredNorm();
   const Scalar q2 = q.squaredNorm();
-  const double gap = (1.0 - kSurfaceGap) * (1.0 - kSurfaceGap);
-  Scalar radius2(sphere.radius * sphere.radius);
-  const Scalar& nearer2 = p2 < q2 ? p2 : q2;
-  const bool inside = value_of(nearer2) * gap < value_of(radius2);
-  if (inside) radius2 = nearer2 * Scalar(gap);
-  const Scalar radius = inside ? Scalar(sqrt(radius2)) : Scalar(sphere.radius);
-  if (inside) {
-    result.depth = 1.0 - value_of(radius) / sphere.radius;
-    if (result.depth >= kInsideFade) {
-      result.status = WrapStatus::kInside;
-      return;
-    }
-  }
+  const double radius = sphere.radius;
+  const Scalar radius2(radius * radius);
   // Normal of the plane, such that the path turns positively about it.
   Vector3 normal = p.cross(q);
   const Scalar normal2 = normal.squaredNorm();
@@ -61,8 +52,8 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
   const Scalar d1 = sqrt(p2 - radius2);
   const Scalar d2 = sqrt(q2 - radius2);
   const auto tangent_points = [&](double turn) {
-    result.r1 = p * (radius2 / p2) + normal.cross(p) * (radius * d1 / p2 * Scalar(turn));
-    result.r2 = q * (radius2 / q2) - normal.cross(q) * (radius * d2 / q2 * Scalar(turn));
+    result.r1 = p * (radius2 / p2) + normal.cross(p) * (d1 / p2 * Scalar(radius * turn));
+    result.r2 = q * (radius2 / q2) - normal.cross(q) * (d2 / q2 * Scalar(radius * turn));
   };
   bool long_way = false;
   tangent_points(1.0);
@@ -81,23 +72,25 @@ void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, c
   Scalar angle = atan2(normal.dot(result.r1.cross(result.r2)) * Scalar(turn), result.r1.dot(result.r2));
   if (long_way && angle < Scalar(0.0)) angle += Scalar(kFullTurn);
   result.status = WrapStatus::kWrapped;
-  result.surface_length = radius * angle;
+  result.surface_length = angle * Scalar(radius);
   result.length = d1 + result.surface_length + d2;
   result.direction1 = (result.r1 - p) / d1;
   result.direction2 = (q - result.r2) / d2;
   result.gradient_p = -result.direction1;
   result.gradient_q = result.direction2;
-  if (inside) {
-    const bool end_is_p = p2 < q2;
-    const Vector3& end = end_is_p ? p : q;
-    const Scalar distance = sqrt(nearer2);
-    (end_is_p ? result.gradient_p : result.gradient_q) += end * (angle * Scalar(gap) / radius);
-    fade_inside<Scalar>(result, distance / Scalar(sphere.radius), end / (distance * Scalar(sphere.radius)), end_is_p);
-  }
+}
+
+template <typename Scalar>
+void wrap_onto(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p, const Eigen::Matrix<Scalar, 3, 1>& q,
+               bool radial, WrapResult<Scalar>& result) {
+  const auto w = Eigen::Vector3d::Constant(1.0 / (sphere.radius * sphere.radius)).eval();
+  if (!dips_in<Scalar>(w, p, q)) return wrap_outside(sphere, p, q, result);
+  wrap_lifted(lift_ends<Scalar>(w, p, q), radial, result,
+              [&](const auto& fp, const auto& fq) { wrap_outside<Scalar>(sphere, fp, fq, result); });
 }
 
 // In muscle_path_evaluation.cpp.
-extern template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&,
+extern template void wrap_onto<double>(const WrapSphere&, const Eigen::Vector3d&, const Eigen::Vector3d&, bool,
                                        WrapResult<double>&);
 
 }  // namespace internal
@@ -111,7 +104,7 @@ template <typename Scalar>
 [[nodiscard]] WrapResult<Scalar> wrap(const WrapSphere& sphere, const Eigen::Matrix<Scalar, 3, 1>& p,
                                       const Eigen::Matrix<Scalar, 3, 1>& q) {
   WrapResult<Scalar> result;
-  internal::wrap_onto(sphere, p, q, result);
+  internal::wrap_onto(sphere, p, q, true, result);
   return result;
 }
 

@@ -16,7 +16,7 @@
 namespace veridyn::muscle {
 namespace {
 
-/// Sentences on the wraps' fading bands that the standard model's motion of a task enters.
+/// Sentences on the side changes and ends of cylinders that the standard model's motion of a task passes.
 std::vector<std::string> bands_of(const PreparedTask& task, double accuracy) {
   Progress alone;
   const ForwardOptions options{
@@ -70,7 +70,7 @@ std::vector<TaskFinding> judged_tasks(const TaskResponses& responses, const Musc
   return findings;
 }
 
-/// A cover, and whether tasks in a wrap's fading band could be chosen.
+/// A cover, and whether tasks that pass such a pose could be chosen.
 struct ChosenCover {
   TaskCover cover;
   bool bands_allowed = false;

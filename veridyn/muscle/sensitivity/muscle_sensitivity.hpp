@@ -29,7 +29,7 @@ struct TaskFinding {
   std::string name;
   int number = 0;                            ///< of the 42 elbow tasks; 0: the study's own
   std::string obstacle = {};                 ///< why it is not to be chosen; empty: it may be
-  std::vector<std::string> wrap_bands = {};  ///< sentences: where the standard motion is in a wrap's fading band
+  std::vector<std::string> wrap_bands = {};  ///< sentences: side changes, ends of cylinders on the standard motion
   std::size_t failed = 0;                    ///< simulations of the sampling that could not finish
 };
 
@@ -39,7 +39,7 @@ struct MuscleSensitivity {
   std::vector<TaskFinding> tasks;
   MuscleSampling sampling;
   TaskCover cover;
-  /// Tasks in a wrap's fading band could be chosen too, since without them a muscle is excited by none.
+  /// Tasks that pass such a pose could be chosen too, since without them a muscle is excited by none.
   bool bands_allowed = false;
   TaskIndices indices;
   std::vector<std::string> warnings;

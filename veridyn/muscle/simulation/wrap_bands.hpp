@@ -10,19 +10,25 @@
 
 namespace veridyn::muscle {
 
-/// A muscle's path at poses where one of its wraps counts in part only, or not although it should (`PathFlag`). In the
-/// bands in which a wrap fades out lengths stay continuous, but they change quickly: moment arms there can be ten times
-/// those of the muscle.
-struct WrapBandVisit {
-  int muscle = 0;
-  PathFlag flag = PathFlag::kFading;  ///< the worst
-  std::size_t poses = 0;              ///< how many of those given
-  double first = 0.0, last = 0.0;     ///< times of the first and last of them [s]
-  Eigen::VectorXd pose;               ///< at the first; all coordinates
+/// What makes a muscle's moment arms doubtful along a motion.
+enum class WrapBandKind {
+  kEnds,  ///< a wrap counts in part: its cylinder ends. Lengths change quickly, arms can be several times too large
+  kSideChange,  ///< the path changes the side of a wrap object, or a point of it comes or goes: its arms jump
+  kNotFound,    ///< a wrap was not found although it should be there: straight
 };
 
-/// Muscles that are in such a band at some of the poses (rows of `q`: all coordinates). With the exact paths, whatever
-/// the system's simulations take; none for paths as OpenSim's, which have no bands.
+/// A muscle's path at poses of a motion where its arms are to be doubted.
+struct WrapBandVisit {
+  int muscle = 0;
+  WrapBandKind kind = WrapBandKind::kEnds;
+  std::size_t poses = 0;           ///< how many of those given; of a side change 1
+  double first = 0.0, last = 0.0;  ///< times of the first and last of them [s]
+  double jump = 0.0;               ///< of the moment arm at a side change [m or 1]
+  Eigen::VectorXd pose;            ///< at the first; all coordinates
+};
+
+/// Such muscles and poses of a motion (rows of `q`: all coordinates). With the exact paths, whatever the system's
+/// simulations take; none for paths as OpenSim's. Between two rows a side change is found by halving.
 [[nodiscard]] std::vector<WrapBandVisit> wrap_band_visits(const MusculoskeletalSystem& system,
                                                           std::span<const double> time, const estimation::RowMatrix& q);
 
