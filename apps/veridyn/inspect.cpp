@@ -200,7 +200,8 @@ Command inspect_command() {
           {{.name = "FILE",
             .help = "a study whose [data] names a drive; ArduPilot .bin or .log, PX4 .ulg, MATLAB .mat, OpenSim .sto "
                     "or .mot, CSV, a folder of NumPy "
-                    "arrays; OpenSim model .osim, or the built-in model 'arm'",
+                    "arrays; OpenSim model .osim, or the built-in model 'arm'; a folder of .osim models "
+                    "gives a table: loads, simulates, what is missing",
             .required = true},
            {.name = "--events", .help = "list flight modes and messages", .value = false},
            {.name = "--parameters", .help = "list the autopilot's parameters", .value = false},

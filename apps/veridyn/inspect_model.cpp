@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "veridyn/core/index.hpp"
+#include "veridyn/muscle/model_check.hpp"
 #include "veridyn/muscle/osim/builtin_models.hpp"
 #include "veridyn/muscle/simulation/pose_table.hpp"
 
@@ -77,6 +79,35 @@ std::string wraps_text(const Model& model, const Muscle& muscle) {
   return text;
 }
 
+bool is_model_folder(const std::string& folder) {
+  return std::filesystem::is_directory(folder) && !model_files(folder).empty();
+}
+
+/// What becomes of every model of a folder.
+int inspect_models(const std::string& folder, const CommonOptions& options) {
+  TerminalProgress progress = progress_of(options);
+  std::vector<ModelCheck> checks;
+  for (const std::filesystem::path& file : model_files(folder)) {
+    progress.stage(file.lexically_relative(folder).string());
+    checks.push_back(check_model(file, progress));
+  }
+  Summary summary = Summary::array();
+  for (const ModelCheck& c : checks)
+    summary.push_back(Summary::object({{"file", c.file.string()},
+                                       {"format", c.version},
+                                       {"muscles", c.muscles},
+                                       {"loads", c.loads},
+                                       {"simulates", c.simulates},
+                                       {"missing", c.missing},
+                                       {"trouble", c.trouble}}));
+  if (options.json) {
+    print_summary(Summary::object({{"models", summary}}), options);
+  } else {
+    print_text(model_check_table(checks, folder));
+  }
+  return kDone;
+}
+
 std::string describe(const std::string& file, const Model& model) {
   const auto body = [&](int index) -> const std::string& { return model.bodies[at(index)].name; };
   double mass = 0.0;
@@ -135,6 +166,17 @@ std::string describe(const std::string& file, const Model& model) {
   for (const CoordinateLimitForce& f : model.limit_forces) {
     text += fmt::format("limit force {} on {}\n", f.name, model.coordinates[at(f.coordinate)].name);
   }
+  for (const CoordinateSpring& f : model.coordinate_springs)
+    text += fmt::format("spring {} on {}\n", f.name, model.coordinates[at(f.coordinate)].name);
+  for (const PointSpring& f : model.body_forces.springs)
+    text += fmt::format("spring {} from {} to {}\n", f.name, body(f.body_1), body(f.body_2));
+  for (const Bushing& f : model.body_forces.bushings)
+    text += fmt::format("bushing {} from {} to {}\n", f.name, body(f.body_1), body(f.body_2));
+  for (const SphereContact& f : model.body_forces.contacts)
+    text +=
+        fmt::format("contact {}: sphere of {}, half space of {}\n", f.name, body(f.sphere_body), body(f.plane_body));
+  for (const PassivePath& f : model.passive_paths)
+    text += fmt::format("{} {}\n", std::holds_alternative<LigamentLaw>(f.law) ? "ligament" : "path spring", f.name);
   text += "\nunsupported: ";
   if (model.unsupported.empty()) text += "nothing\n";
   for (std::size_t i = 0; i < model.unsupported.size(); ++i) {
@@ -184,7 +226,7 @@ Summary summary_of(const std::string& file, const Model& model) {
 }  // namespace
 
 bool is_model(const std::string& file) {
-  if (file.ends_with(".osim")) return true;
+  if (file.ends_with(".osim") || is_model_folder(file)) return true;
   for (const EmbeddedText& model : builtin_models()) {
     if (model.name == file) return true;
   }
@@ -192,6 +234,7 @@ bool is_model(const std::string& file) {
 }
 
 int inspect_model(const std::string& file, const std::string& pose, bool as_opensim, const CommonOptions& options) {
+  if (is_model_folder(file)) return inspect_models(file, options);
   // Made first, so that a wrong --out is refused before anything is computed.
   std::optional<OutputFolder> folder;
   if (!pose.empty() && !options.out.empty()) folder.emplace(options.out);

@@ -188,7 +188,7 @@ ComparedOutputs outputs_within(const MeasuredMotion& measured, const MuscleSubje
       q(signed_index(c)) = value.value;
       qdot(signed_index(c)) = value.slope;
     }
-    add_limit_forces<double>(model.limit_forces, q.data(), qdot.data(), limit.data());
+    add_coordinate_forces<double>(model, q.data(), qdot.data(), limit.data());
     for (std::size_t o = 0; o < outputs.size(); ++o)
       if (outputs[o].kind == MuscleOutputKind::kMoment)
         compared.values(signed_index(k), signed_index(o)) -= limit(outputs[o].index);

@@ -72,5 +72,31 @@ TEST(CoordinateForces, AddToWhatIsThere) {
   EXPECT_NEAR(tau[1], 22.5 - 16.5, 1e-13);
 }
 
+TEST(CoordinateForces, OfASpringAreThoseOfItsEnergyAndItsDamperDissipates) {
+  Model model;
+  CoordinateSpring spring;
+  spring.stiffness = 5.0;
+  spring.rest_length = 0.2;
+  spring.viscosity = 0.3;
+  model.coordinate_springs.push_back(spring);
+  const double q = 0.7, qdot = 2.0;
+  double tau = 1.0;
+  add_coordinate_forces<double>(model, &q, &qdot, &tau);
+  EXPECT_DOUBLE_EQ(tau, 1.0 - 5.0 * 0.5 - 0.3 * 2.0);
+  const auto energy = [&](double x) { return 0.5 * 5.0 * (x - 0.2) * (x - 0.2); };
+  EXPECT_NEAR(spring_force(spring, q, 0.0), -(energy(q + 1e-5) - energy(q - 1e-5)) / 2e-5, 1e-9);
+}
+
+TEST(PassiveTension, IsNoneWhileThePathIsSlackAndNeverAPush) {
+  const std::variant<PathSpringLaw, LigamentLaw> spring = PathSpringLaw{0.3, 100.0, 0.5};
+  EXPECT_EQ(passive_tension(spring, 0.29, 1.0), 0.0);
+  EXPECT_DOUBLE_EQ(passive_tension(spring, 0.4, 0.4), 100.0 * (0.4 - 0.3) * 1.2);
+  EXPECT_EQ(passive_tension(spring, 0.4, -3.0), 0.0);
+  const std::variant<PathSpringLaw, LigamentLaw> ligament =
+      LigamentLaw{0.2, 50.0, numerics::PiecewisePolynomial::linear(2.0, 0.0)};
+  EXPECT_NEAR(passive_tension(ligament, 0.22, 0.0), 50.0 * 2.0 * 0.1, 1e-12);
+  EXPECT_EQ(passive_tension(ligament, 0.2, 0.0), 0.0);
+}
+
 }  // namespace
 }  // namespace veridyn::muscle

@@ -152,7 +152,7 @@ TEST(OsimForces, ActuatorsMayHaveNoBoundAndAreOffWhereTheFileSaysSo) {
   EXPECT_EQ(on.actuators[0].min_control, CoordinateActuator().min_control) << "as where it says nothing";
   EXPECT_EQ(on.actuators[0].max_control, 3.0);
   EXPECT_TRUE(pendulum(actuator + "<appliesForce>false</appliesForce></CoordinateActuator>").actuators.empty());
-  EXPECT_EQ(pendulum("<BushingForce name=\"b\"/>").unsupported.size(), 1U);
+  EXPECT_EQ(pendulum("<TorqueActuator name=\"b\"/>").unsupported.size(), 1U);
 }
 
 TEST(OsimMuscle, MistakesAreNamedInOneLine) {

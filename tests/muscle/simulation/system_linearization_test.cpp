@@ -110,6 +110,53 @@ TEST(SystemLinearization, OfLockedCoordinatesLoadsAndRigidTendons) {
   expect_those_of_jets(MusculoskeletalSystem(model, {}), 1e-7);
 }
 
+TEST(SystemLinearization, OfForcesThatFollowFromTheMotion) {
+  Model model = load_model("arm").model();
+  const int forearm = static_cast<int>(model.bodies.size()) - 1;
+  CoordinateSpring spring;
+  spring.coordinate = 1;
+  spring.stiffness = 3.0;
+  spring.rest_length = 0.4;
+  spring.viscosity = 0.5;
+  model.coordinate_springs.push_back(spring);
+  expect_those_of_jets(MusculoskeletalSystem(model), 1e-7);
+  Bushing bushing;
+  bushing.body_2 = forearm;
+  bushing.frame_1.translation = {0.1, -0.2, 0.05};
+  bushing.rotational_stiffness = {2.0, 3.0, 4.0};
+  bushing.translational_stiffness = {30.0, 40.0, 50.0};
+  bushing.rotational_damping = {0.2, 0.1, 0.3};
+  bushing.translational_damping = {1.0, 2.0, 3.0};
+  model.body_forces.bushings.push_back(bushing);
+  PointSpring point;
+  point.body_2 = forearm;
+  point.point_2 = {0.0, -0.2, 0.1};
+  point.stiffness = 20.0;
+  point.rest_length = 0.1;
+  model.body_forces.springs.push_back(point);
+  SphereContact contact;
+  contact.sphere_body = forearm;
+  contact.center = {0.0, -0.2, 0.0};
+  contact.radius = 0.1;
+  contact.plane.rotation = body_fixed_xyz({0.0, 0.0, -1.2});
+  contact.plane.translation = {0.0, -0.4, 0.0};
+  contact.half_stiffness = 500.0;
+  contact.dissipation = 0.5;
+  contact.static_friction = 0.8;
+  contact.dynamic_friction = 0.6;
+  contact.smooth = true;
+  model.body_forces.contacts.push_back(contact);
+  PassivePath path;
+  path.name = "cord";
+  path.points = model.muscles[0].points;
+  path.wraps = model.muscles[0].wraps;
+  path.law = PathSpringLaw{0.1, 200.0, 0.3};
+  model.passive_paths.push_back(path);
+  path.law = LigamentLaw{0.1, 30.0, numerics::PiecewisePolynomial::linear(2.0, 0.1)};
+  model.passive_paths.push_back(path);
+  expect_those_of_jets(MusculoskeletalSystem(model), 1e-7);
+}
+
 TEST(SystemLinearization, OfRealModelsWithCouplersAndJointsOfSeveralAxes) {
   const auto folder = veridyn::test::shared_folder() / "data/opensim";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the OpenSim models of ../shared/data are not here";

@@ -2,11 +2,12 @@
 
 #include <cstddef>
 #include <span>
+#include <variant>
 
 #include "veridyn/muscle/model/model.hpp"
 
-/// Generalised forces that act on single coordinates: actuators, and the springs and dampers of their limits. Nothing
-/// allocates or throws.
+/// Generalised forces that act on single coordinates: actuators, springs, and the springs and dampers of their limits;
+/// and the tension of passive paths. Nothing allocates or throws.
 namespace veridyn::muscle {
 
 namespace internal {
@@ -61,6 +62,36 @@ void add_limit_forces(std::span<const CoordinateLimitForce> limits, const Scalar
   for (const CoordinateLimitForce& limit : limits) {
     tau[limit.coordinate] += limit_force(limit, q[limit.coordinate], qdot[limit.coordinate]);
   }
+}
+
+/// Force of a spring and damper on a coordinate [N m or N].
+template <typename Scalar>
+[[nodiscard]] Scalar spring_force(const CoordinateSpring& spring, const Scalar& q, const Scalar& qdot) {
+  return (q - spring.rest_length) * (-spring.stiffness) - qdot * spring.viscosity;
+}
+
+/// Adds the forces of a model's limits and of its springs on single coordinates to tau (by coordinate).
+template <typename Scalar>
+void add_coordinate_forces(const Model& model, const Scalar* q, const Scalar* qdot, Scalar* tau) {
+  add_limit_forces<Scalar>(model.limit_forces, q, qdot, tau);
+  for (const CoordinateSpring& spring : model.coordinate_springs)
+    tau[spring.coordinate] += spring_force(spring, q[spring.coordinate], qdot[spring.coordinate]);
+}
+
+/// Tension of a stretched path of this length and lengthening speed; 0 while it is slack [N].
+template <typename Scalar>
+[[nodiscard]] Scalar passive_tension(const std::variant<PathSpringLaw, LigamentLaw>& law, const Scalar& length,
+                                     const Scalar& speed) {
+  Scalar tension = length * 0.0;
+  if (const auto* spring = std::get_if<PathSpringLaw>(&law)) {
+    if (length > Scalar(spring->resting_length))
+      tension = (length - spring->resting_length) * spring->stiffness * (speed * spring->dissipation + 1.0);
+  } else if (const auto* ligament = std::get_if<LigamentLaw>(&law)) {
+    if (length > Scalar(ligament->resting_length))
+      tension = ligament->curve.evaluate(Scalar((length - ligament->resting_length) / ligament->resting_length)).value *
+                ligament->pcsa_force;
+  }
+  return tension > Scalar(0.0) ? tension : length * 0.0;
 }
 
 /// Adds optimal_force * control of each actuator to tau. Controls are taken as they are: OpenSim too keeps the bounds

@@ -5,10 +5,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/muscle/model/body_force.hpp"
 #include "veridyn/muscle/model/muscle_parameters.hpp"
+#include "veridyn/muscle/model/placement.hpp"
 #include "veridyn/numerics/piecewise_polynomial.hpp"
 
 /// A musculoskeletal model as its file describes it: plain data with all names resolved to indices and all offset
@@ -17,21 +20,6 @@
 ///
 /// SI units, radians. Body 0 is the ground. Lists keep the order of the file.
 namespace veridyn::muscle {
-
-/// Where frame C stands in frame P: x_P = rotation x_C + translation.
-struct Placement {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-
-  [[nodiscard]] Placement operator*(const Placement& inner) const {
-    return {rotation * inner.rotation, rotation * inner.translation + translation};
-  }
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rotation * point + translation; }
-  [[nodiscard]] Placement inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
-};
-
-/// Body-fixed x-y-z rotation sequence, R = Rx(a) Ry(b) Rz(c): OpenSim's `orientation` and `xyz_body_rotation`.
-[[nodiscard]] Eigen::Matrix3d body_fixed_xyz(const Eigen::Vector3d& angles);
 
 /// A rigid body.
 struct Body {
@@ -175,6 +163,37 @@ struct CoordinateLimitForce {
   double transition = 0.1;
 };
 
+/// Spring and damper on a coordinate (SpringGeneralizedForce): -stiffness (q - rest_length) - viscosity qdot.
+struct CoordinateSpring {
+  std::string name;
+  int coordinate = 0;
+  double stiffness = 0.0;    ///< [N m/rad] or [N/m]
+  double rest_length = 0.0;  ///< [rad] or [m]
+  double viscosity = 0.0;    ///< [N m s/rad] or [N s/m]
+};
+
+/// Tension stiffness (L - L0) (1 + dissipation L') of a stretched path, never below zero (PathSpring).
+struct PathSpringLaw {
+  double resting_length = 0.0;  ///< [m]
+  double stiffness = 0.0;       ///< [N/m]
+  double dissipation = 0.0;     ///< [s/m]
+};
+
+/// Tension pcsa_force curve((L - L0)/L0) of a stretched path (Ligament).
+struct LigamentLaw {
+  double resting_length = 0.0;  ///< [m]
+  double pcsa_force = 0.0;      ///< [N]
+  numerics::PiecewisePolynomial curve;
+};
+
+/// A path under tension that nothing excites. It wraps as muscles do.
+struct PassivePath {
+  std::string name;
+  std::vector<PathPoint> points;
+  std::vector<PathWrap> wraps;
+  std::variant<PathSpringLaw, LigamentLaw> law;
+};
+
 /// A point on a body that motion capture observes.
 struct Marker {
   std::string name;
@@ -205,6 +224,9 @@ struct Model {
   std::vector<Muscle> muscles;
   std::vector<CoordinateActuator> actuators;
   std::vector<CoordinateLimitForce> limit_forces;
+  std::vector<CoordinateSpring> coordinate_springs;
+  BodyForces body_forces;
+  std::vector<PassivePath> passive_paths;
   std::vector<Marker> markers;
   std::vector<UnsupportedElement> unsupported;
   std::vector<std::string> warnings;

@@ -59,4 +59,10 @@ void read_markers(Context& context);
 /// Reads a muscle of the set of forces. @throws InputError with file, line and element.
 void read_muscle(Context& context, const Element& element);
 
+/// Reads the path of a muscle or of another force along one. @throws InputError with file, line and element.
+void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps);
+/// Reads a force that needs no control. False: it is none that is understood. @throws InputError with file, line and
+/// element.
+[[nodiscard]] bool read_passive_force(Context& context, const Element& element);
+
 }  // namespace veridyn::muscle::osim

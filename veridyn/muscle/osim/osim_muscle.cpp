@@ -9,7 +9,7 @@
 #include "veridyn/muscle/osim/osim_context.hpp"
 #include "veridyn/muscle/osim/osim_function.hpp"
 
-/// Muscles, their paths and the other forces of an .osim file.
+/// Muscles, their paths and the actuators of an .osim file.
 namespace veridyn::muscle::osim {
 namespace {
 
@@ -89,29 +89,6 @@ PathWrap read_path_wrap(Context& context, const Element& element, std::size_t po
     }
   }
   return wrap;
-}
-
-void read_path(Context& context, const Element& element, Muscle& muscle) {
-  Element path = element.child("GeometryPath");
-  if (!path) path = Element(context.document, element.property("path").child("GeometryPath"));
-  if (!path) {
-    for (const pugi::xml_node node : element.node().children()) {
-      if (std::string_view(node.name()).find("Path") != std::string_view::npos) {
-        element.fail(node.name(), "paths of this kind are not understood");
-      }
-    }
-    element.fail("GeometryPath", "missing");
-  }
-  for (const Element& point : path.objects("PathPointSet")) muscle.points.push_back(read_point(context, point));
-  if (muscle.points.size() < 2)
-    element.fail("PathPointSet", fmt::format("{} points; a path has at least two", muscle.points.size()));
-  if (muscle.points.front().kind == PathPointKind::kConditional ||
-      muscle.points.back().kind == PathPointKind::kConditional) {
-    element.fail("PathPointSet", "a path cannot begin or end with a conditional point");
-  }
-  for (const Element& wrap : path.objects("PathWrapSet")) {
-    muscle.wraps.push_back(read_path_wrap(context, wrap, muscle.points.size()));
-  }
 }
 
 /// What both forms of Thelen's muscle share.
@@ -218,23 +195,28 @@ void read_coordinate_actuator(Context& context, const Element& e) {
   context.model.actuators.push_back(std::move(a));
 }
 
-void read_limit_force(Context& context, const Element& e) {
-  CoordinateLimitForce f;
-  f.name = e.name();
-  f.coordinate = context.coordinate(e, "coordinate", e.text_or("coordinate", ""));
-  // The file is per degree for a rotational coordinate.
-  const bool rotational = context.model.coordinates[at(f.coordinate)].motion == CoordinateMotion::kRotational;
-  const double unit = rotational ? kDegree : 1.0;
-  f.upper_stiffness = e.not_negative_or("upper_stiffness", 1.0) / unit;
-  f.upper_limit = e.number_or("upper_limit", 0.0) * unit;
-  f.lower_stiffness = e.not_negative_or("lower_stiffness", 1.0) / unit;
-  f.lower_limit = e.number_or("lower_limit", 0.0) * unit;
-  f.damping = e.not_negative_or("damping", 0.001) / unit;
-  f.transition = e.positive_or("transition", 0.1) * unit;
-  context.model.limit_forces.push_back(std::move(f));
-}
-
 }  // namespace
+
+void read_path(Context& context, const Element& element, std::vector<PathPoint>& points, std::vector<PathWrap>& wraps) {
+  Element path = element.child("GeometryPath");
+  if (!path) path = Element(context.document, element.property("path").child("GeometryPath"));
+  if (!path) {
+    for (const pugi::xml_node node : element.node().children()) {
+      if (std::string_view(node.name()).find("Path") != std::string_view::npos) {
+        element.fail(node.name(), "paths of this kind are not understood");
+      }
+    }
+    element.fail("GeometryPath", "missing");
+  }
+  for (const Element& point : path.objects("PathPointSet")) points.push_back(read_point(context, point));
+  if (points.size() < 2) element.fail("PathPointSet", fmt::format("{} points; a path has at least two", points.size()));
+  if (points.front().kind == PathPointKind::kConditional || points.back().kind == PathPointKind::kConditional) {
+    element.fail("PathPointSet", "a path cannot begin or end with a conditional point");
+  }
+  for (const Element& wrap : path.objects("PathWrapSet")) {
+    wraps.push_back(read_path_wrap(context, wrap, points.size()));
+  }
+}
 
 bool is_muscle(std::string_view type) {
   return type == "Thelen2003Muscle" || type == "Thelen2003Muscle_Deprecated" ||
@@ -294,7 +276,7 @@ void read_muscle(Context& context, const Element& e) {
   if (m.tendon_slack_length == 0.0 && !p.rigid_tendon) {
     e.fail("tendon_slack_length", "0 needs a rigid tendon (ignore_tendon_compliance)");
   }
-  read_path(context, e, muscle);
+  read_path(context, e, muscle.points, muscle.wraps);
   context.model.muscles.push_back(std::move(muscle));
 }
 
@@ -307,9 +289,10 @@ void read_forces(Context& context) {
       read_muscle(context, element);
     } else if (type == "CoordinateActuator") {
       if (on) read_coordinate_actuator(context, element);
-    } else if (type == "CoordinateLimitForce") {
-      if (on) read_limit_force(context, element);
-    } else {
+    } else if (type == "PathActuator") {
+      // As those on coordinates: no force unless something controls it, which is nothing here.
+      if (on) context.unsupported(element, false);
+    } else if (!on || !read_passive_force(context, element)) {
       context.unsupported(element, on);
     }
   }

@@ -43,10 +43,10 @@ Eigen::Matrix3d read_inertia(Context& context, const Element& body) {
   Eigen::Matrix3d inertia;
   inertia << v[0], v[3], v[4], v[3], v[1], v[5], v[4], v[5], v[2];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia);
-  const Eigen::Vector3d moments = principal.eigenvalues();
+  const Eigen::Vector3d& moments = principal.eigenvalues();
   if (moments.minCoeff() >= -1e-9 * moments.cwiseAbs().maxCoeff()) return inertia;
   const Eigen::Vector3d raised = moments.cwiseMax(0.0);
-  const Eigen::Matrix3d repaired =
+  Eigen::Matrix3d repaired =
       principal.eigenvectors() * raised.asDiagonal() * principal.eigenvectors().transpose();
   context.warn(body, fmt::format("inertia is not positive semidefinite, so that no mass has it: its least principal "
                                  "moment, {:.4g} kg m^2, is taken as 0, which changes entries by up to {:.4g} kg m^2",
@@ -131,7 +131,7 @@ int Context::coordinate(const Element& user, const char* property, std::string_v
 }
 
 std::string Context::parent_by_name(const Element& offset_frame) const {
-  const std::string owner = offset_frame.node().parent().parent().attribute("name").value();
+  std::string owner = offset_frame.node().parent().parent().attribute("name").value();
   if (model.body(owner) >= 0) return owner;
   constexpr std::string_view kSuffix = "_offset";
   std::string stem = offset_frame.name();

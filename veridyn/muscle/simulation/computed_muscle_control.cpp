@@ -86,7 +86,7 @@ class Controller {
     }
     ahead_.dynamics().dynamics().inverse_dynamics(qddot_.data(), nullptr, moment_.data());
     std::fill(reserve_.begin(), reserve_.end(), 0.0);
-    add_limit_forces<double>(system_.model().limit_forces, ahead_.q(), ahead_.qdot(), reserve_.data());
+    ahead_.add_passive_forces(reserve_.data());
     qp_.b.setZero();
     qp_.A.setZero();
     for (std::size_t c = 0; c < moment_.size(); ++c) {

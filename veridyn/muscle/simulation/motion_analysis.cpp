@@ -113,7 +113,7 @@ MotionAnalysis optimise_motion(const MusculoskeletalSystem& system, const Motion
     analyse(now, row, evaluator, analysis);
     const Eigen::VectorXd slope = coupled_slopes(now.q, system.reduction());
     limits.setZero();
-    add_limit_forces<double>(system.model().limit_forces, now.q.data(), now.qdot.data(), limits.data());
+    evaluator.add_passive_forces(limits.data());
     required.setZero();
     for (Eigen::Index c = 0; c < rest.size(); ++c) {
       const int root = system.reduction().free_root(static_cast<int>(c));

@@ -96,6 +96,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(Model model, const SystemOptions& o
       reduction_(model_),
       paths_(model_, mechanism_, options.paths == PathSource::kAsOpenSim ? WrapMode::kAsOpenSim : WrapMode::kTaut),
       source_(options.paths),
+      passive_(model_, mechanism_),
       muscles_(muscle_parameters(model_)) {
   note_points_inside(model_, mechanism_, paths_, notes_);
   if (source_ == PathSource::kFitted) {
@@ -118,6 +119,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const MusculoskeletalSystem& other,
       paths_(other.paths_),
       fit_(other.fit_),
       source_(other.source_),
+      passive_(other.passive_),
       muscles_(muscle_parameters(model_)) {
   lay_out_states();
 }

@@ -11,6 +11,7 @@
 #include "veridyn/muscle/model/model.hpp"
 #include "veridyn/muscle/path/muscle_path.hpp"
 #include "veridyn/muscle/path/path_fit.hpp"
+#include "veridyn/muscle/simulation/passive_forces.hpp"
 
 namespace veridyn::muscle {
 
@@ -81,6 +82,8 @@ class MusculoskeletalSystem {
   [[nodiscard]] PathSource path_source() const { return source_; }
   /// Muscles and coordinates of `SystemEvaluator::path_gradient`.
   [[nodiscard]] std::span<const MusclePaths::Pair> pairs() const { return fit_ ? fit_->pairs() : paths_.pairs(); }
+  /// Forces between bodies and along passive paths.
+  [[nodiscard]] const PassiveForces& passive() const { return passive_; }
   [[nodiscard]] const MuscleGroup<double>& muscles() const { return muscles_; }
   [[nodiscard]] const StateLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t coordinates() const { return model_.coordinates.size(); }
@@ -103,6 +106,7 @@ class MusculoskeletalSystem {
   MusclePaths paths_;
   std::shared_ptr<const FittedPaths> fit_;
   PathSource source_;
+  PassiveForces passive_;
   MuscleGroup<double> muscles_;
   StateLayout layout_;
   std::vector<double> scales_;

@@ -46,6 +46,9 @@ class SystemEvaluator {
   /// Sets activations (by muscle) and fibre lengths in equilibrium with their tendons at the pose set, in the state x.
   void start_muscles(const Scalar* activation, Scalar* x);
 
+  /// Adds the generalised forces that follow from the motion set: springs, limits, contact, passive paths.
+  void add_passive_forces(Scalar* tau);
+
   // After a call above, in the model's order.
   [[nodiscard]] const Scalar* q() const { return q_; }
   [[nodiscard]] const Scalar* qdot() const { return qdot_; }
@@ -73,6 +76,7 @@ class SystemEvaluator {
   MuscleGroup<Scalar> muscles_;
   ReducedDynamics<Scalar> reduced_;
   PathWorkspace<Scalar> path_workspace_;
+  PassiveWorkspace<Scalar> passive_;
   std::vector<DrivenMotion<Scalar>> driven_;
   const Scalar* q_ = nullptr;
   const Scalar* qdot_ = nullptr;

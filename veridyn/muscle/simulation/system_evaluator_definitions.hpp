@@ -32,6 +32,7 @@ SystemEvaluator<Scalar>::SystemEvaluator(const MusculoskeletalSystem& system, Mu
       muscles_(std::move(muscles)),
       reduced_(system.mechanism(), system.reduction()),
       path_workspace_(system.paths()),
+      passive_(system.passive().template workspace<Scalar>()),
       tau_(system.coordinates()),
       length_(muscles_.size()),
       speed_(muscles_.size()),
@@ -98,6 +99,13 @@ void SystemEvaluator<Scalar>::read_muscles(const Scalar* x, const SystemInputs& 
 }
 
 template <typename Scalar>
+void SystemEvaluator<Scalar>::add_passive_forces(Scalar* tau) {
+  add_coordinate_forces<Scalar>(system_->model(), q_, qdot_, tau);
+  if (!system_->passive().empty())
+    system_->passive().add(system_->mechanism(), reduced_.kinematics(), q_, qdot_, passive_, tau);
+}
+
+template <typename Scalar>
 bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& inputs, Scalar* rate) {
   const StateLayout& layout = system_->layout();
   if (inputs.coordinate_force.empty()) {
@@ -109,7 +117,7 @@ bool SystemEvaluator<Scalar>::write_rates(const Scalar* x, const SystemInputs& i
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     tau_[at(pairs[i].coordinate)] -= force_[at(pairs[i].muscle)] * gradient_[i];
   }
-  add_limit_forces<Scalar>(system_->model().limit_forces, q_, qdot_, tau_.data());
+  add_passive_forces(tau_.data());
   for (std::size_t i = 0; i < layout.free; ++i) rate[i] = x[layout.free + i];
   if (!reduced_.forward_dynamics(tau_.data(), nullptr, rate + layout.free).usable()) return false;
   for (std::size_t m = 0; m < muscles_.size(); ++m) {

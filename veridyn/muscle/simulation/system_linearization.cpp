@@ -17,13 +17,16 @@ struct SystemLinearization::JetSkeleton {
         zdot(z.size()),
         qddot(system.coordinates()),
         tau(system.coordinates()),
+        passive_tau(system.coordinates()),
+        passive(system.passive().workspace<SimulationJet>()),
         ones(z.size(), 1.0) {
     for (const DrivenMotion<double>& m : system.reduction().default_motion())
       driven.push_back({SimulationJet(m.value), SimulationJet(0.0), SimulationJet(0.0)});
   }
   ExpandedState<SimulationJet> state;
   Dynamics<SimulationJet> dynamics;
-  std::vector<SimulationJet> z, zdot, qddot, tau;
+  std::vector<SimulationJet> z, zdot, qddot, tau, passive_tau;
+  PassiveWorkspace<SimulationJet> passive;
   std::vector<DrivenMotion<SimulationJet>> driven;
   std::vector<double> ones;
 };
@@ -41,9 +44,11 @@ SystemLinearization::SystemLinearization(const MusculoskeletalSystem& system,
       driven_(system.reduction().default_motion()),
       paths_(make_path_derivatives(system)),
       muscles_(system.muscles().with<double>(parameters)),
-      fiber_solver_(muscles_.size()) {
+      fiber_solver_(muscles_.size()),
+      passive_(system.passive().workspace<double>()) {
   const std::size_t muscles = system.muscles().size();
-  if (InverseDynamicsDerivatives::available(system.mechanism()) && system.reduction().free_are_uncoupled()) {
+  if (InverseDynamicsDerivatives::available(system.mechanism()) && system.reduction().free_are_uncoupled() &&
+      system.passive().empty()) {
     closed_form_.emplace(system.mechanism(), system.reduction().free());
   } else {
     jets_ = std::make_shared<JetSkeleton>(system);
@@ -194,7 +199,9 @@ bool SystemLinearization::evaluate_skeleton(const SystemInputs& inputs, double* 
   const auto pairs = system_->pairs();
   for (std::size_t p = 0; p < pairs.size(); ++p)
     tau_(pairs[p].coordinate) -= force_[at(pairs[p].muscle)] * paths_->gradient()[p];
-  add_limit_forces<double>(system_->model().limit_forces, s.q.data(), s.qdot.data(), tau_.data());
+  add_coordinate_forces<double>(system_->model(), s.q.data(), s.qdot.data(), tau_.data());
+  if (!system_->passive().empty())
+    system_->passive().add(mechanism, dynamics.kinematics(), s.q.data(), s.qdot.data(), passive_, tau_.data());
   dynamics.inverse_dynamics(s.bias.data(), nullptr, residual_tau_.data());
   dynamics.update_mass_rows();
   mass_.setZero();
@@ -271,15 +278,19 @@ void SystemLinearization::differentiate_residual() {
     const double factor = force_[at(pairs[p].muscle)] * s.slope(pairs[p].coordinate);
     for (Eigen::Index k = 0; k < n; ++k) r_z_(i, k) -= factor * paths_->curvature()[p * free_ + at(k)];
   }
-  for (const CoordinateLimitForce& limit : system_->model().limit_forces) {
-    const int c = limit.coordinate, i = reduction.free_root(c);
-    if (i < 0) continue;
-    const PathJet tau = limit_force(limit, PathJet(s.q(c), 0), PathJet(s.qdot(c), 1));
+  const auto add = [&](int c, const auto& force) {
+    const int i = reduction.free_root(c);
+    if (i < 0) return;
+    const PathJet tau = force(PathJet(s.q(c), 0), PathJet(s.qdot(c), 1));
     const double zdot = s.qdot(reduction.free()[at(i)]);
     const double speed_by_value = jets_ ? unit_speed_.bias(c) * zdot : 0.0;
     r_z_(i, i) += s.slope(c) * (tau.v(0) * s.slope(c) + tau.v(1) * speed_by_value);
     r_zd_(i, i) += s.slope(c) * tau.v(1) * s.slope(c);
-  }
+  };
+  for (const CoordinateLimitForce& limit : system_->model().limit_forces)
+    add(limit.coordinate, [&](const PathJet& q, const PathJet& qdot) { return limit_force(limit, q, qdot); });
+  for (const CoordinateSpring& spring : system_->model().coordinate_springs)
+    add(spring.coordinate, [&](const PathJet& q, const PathJet& qdot) { return spring_force(spring, q, qdot); });
 }
 
 void SystemLinearization::differentiate_skeleton() {
@@ -314,6 +325,13 @@ void SystemLinearization::differentiate_skeleton_by_jets() {
     }
     jets.dynamics.set_state(jets.state.q.data(), jets.state.qdot.data());
     jets.dynamics.inverse_dynamics(jets.qddot.data(), nullptr, jets.tau.data());
+    if (!system_->passive().empty()) {
+      std::fill(jets.passive_tau.begin(), jets.passive_tau.end(), SimulationJet(0.0));
+      system_->passive().add(system_->mechanism(), jets.dynamics.kinematics(), jets.state.q.data(),
+                             jets.state.qdot.data(), jets.passive, jets.passive_tau.data());
+      for (std::size_t c = 0; c < jets.tau.size(); ++c)
+        jets.tau[c] -= jets.passive_tau[c] - SimulationJet(jets.passive_tau[c].a);  // its value is in tau_
+    }
     for (std::size_t c = 0; c < jets.tau.size(); ++c) {
       const auto index = static_cast<Eigen::Index>(c);
       const int i = reduction.free_root(static_cast<int>(c));

@@ -127,6 +127,7 @@ class SystemLinearization {
   std::vector<double> path_speed_;
   MuscleGroup<double> muscles_;  ///< with the parameters
   FiberSolver fiber_solver_;
+  PassiveWorkspace<double> passive_;
   std::vector<double> activation_, fiber_, solved_velocity_;
   Matrix arm_;                           ///< muscles x free: dL/dz
   Matrix force_z_, force_zd_, speed_z_;  ///< muscles x free

@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "veridyn/core/constants.hpp"
+#include "veridyn/core/index.hpp"
+#include "veridyn/muscle/osim/osim_context.hpp"
+#include "veridyn/muscle/osim/osim_function.hpp"
+
+/// Forces of an .osim file that are neither muscles nor actuators.
+namespace veridyn::muscle::osim {
+namespace {
+
+void read_limit_force(Context& context, const Element& e) {
+  CoordinateLimitForce f;
+  f.name = e.name();
+  f.coordinate = context.coordinate(e, "coordinate", e.text_or("coordinate", ""));
+  // The file is per degree for a rotational coordinate.
+  const bool rotational = context.model.coordinates[at(f.coordinate)].motion == CoordinateMotion::kRotational;
+  const double unit = rotational ? kDegree : 1.0;
+  f.upper_stiffness = e.not_negative_or("upper_stiffness", 1.0) / unit;
+  f.upper_limit = e.number_or("upper_limit", 0.0) * unit;
+  f.lower_stiffness = e.not_negative_or("lower_stiffness", 1.0) / unit;
+  f.lower_limit = e.number_or("lower_limit", 0.0) * unit;
+  f.damping = e.not_negative_or("damping", 0.001) / unit;
+  f.transition = e.positive_or("transition", 0.1) * unit;
+  context.model.limit_forces.push_back(std::move(f));
+}
+
+void read_coordinate_spring(Context& context, const Element& e) {
+  CoordinateSpring s;
+  s.name = e.name();
+  s.coordinate = context.coordinate(e, "coordinate", e.text_or("coordinate", ""));
+  s.stiffness = e.not_negative_or("stiffness", 0.0);
+  s.rest_length = e.number_or("rest_length", 0.0);
+  s.viscosity = e.not_negative_or("viscosity", 0.0);
+  context.model.coordinate_springs.push_back(std::move(s));
+}
+
+/// The frame at one end of a force between bodies: a socket, or the property of formats before 4.0.
+FrameReference end_frame(Context& context, const Element& e, const char* name, const char* before) {
+  const std::string property = fmt::format("socket_{}", name);
+  std::string wanted = socket(e, name);
+  if (wanted.empty()) wanted = e.text_or(before, "");
+  if (wanted.empty()) e.fail(property, "names no body or frame");
+  return context.frame(e, property.c_str(), wanted);
+}
+
+void read_point_spring(Context& context, const Element& e) {
+  PointSpring s;
+  s.name = e.name();
+  const FrameReference one = end_frame(context, e, "body1", "body1"), two = end_frame(context, e, "body2", "body2");
+  s.body_1 = one.body;
+  s.body_2 = two.body;
+  s.point_1 = one.placement * e.vector_or("point1", Eigen::Vector3d::Zero());
+  s.point_2 = two.placement * e.vector_or("point2", Eigen::Vector3d::Zero());
+  s.stiffness = e.not_negative_or("stiffness", 1.0);
+  s.rest_length = e.not_negative_or("rest_length", 0.0);
+  context.model.body_forces.springs.push_back(std::move(s));
+}
+
+void read_bushing(Context& context, const Element& e) {
+  Bushing b;
+  b.name = e.name();
+  const FrameReference one = end_frame(context, e, "frame1", "body_1"), two = end_frame(context, e, "frame2", "body_2");
+  const auto placed = [&](const FrameReference& frame, const char* location, const char* orientation) {
+    return frame.placement * Placement{body_fixed_xyz(e.vector_or(orientation, Eigen::Vector3d::Zero())),
+                                       e.vector_or(location, Eigen::Vector3d::Zero())};
+  };
+  b.body_1 = one.body;
+  b.body_2 = two.body;
+  b.frame_1 = placed(one, "location_body_1", "orientation_body_1");
+  b.frame_2 = placed(two, "location_body_2", "orientation_body_2");
+  const auto constants = [&](const char* property) {
+    Eigen::Vector3d v = e.vector_or(property, Eigen::Vector3d::Zero());
+    if (!(v.minCoeff() >= 0.0)) e.fail(property, "all three must not be negative");
+    return v;
+  };
+  b.rotational_stiffness = constants("rotational_stiffness");
+  b.translational_stiffness = constants("translational_stiffness");
+  b.rotational_damping = constants("rotational_damping");
+  b.translational_damping = constants("translational_damping");
+  context.model.body_forces.bushings.push_back(std::move(b));
+}
+
+/// A contact geometry of the file by its name; nothing when it is not there.
+Element contact_geometry(const Context& context, std::string_view name) {
+  const Element root(context.document, context.document.model());
+  for (const Element& geometry : root.objects("ContactGeometrySet"))
+    if (geometry.name() == last_part(name)) return geometry;
+  return {context.document, {}};
+}
+
+FrameReference geometry_frame(Context& context, const Element& geometry) {
+  const FrameReference frame = end_frame(context, geometry, "frame", "body_name");
+  const Placement in_frame{body_fixed_xyz(geometry.vector_or("orientation", Eigen::Vector3d::Zero())),
+                           geometry.vector_or("location", Eigen::Vector3d::Zero())};
+  return {frame.body, frame.placement * in_frame};
+}
+
+/// What one geometry brings into a contact.
+struct ContactMaterial {
+  double stiffness = 0.0, dissipation = 0.0, static_friction = 0.0, dynamic_friction = 0.0, viscous_friction = 0.0;
+};
+
+ContactMaterial read_material(const Element& e) {
+  return {e.positive_or("stiffness", 1.0), e.not_negative_or("dissipation", 0.0),
+          e.not_negative_or("static_friction", 0.0), e.not_negative_or("dynamic_friction", 0.0),
+          e.not_negative_or("viscous_friction", 0.0)};
+}
+
+/// As Simbody combines two materials.
+SphereContact contact_of(Context& context, const Element& e, const Element& sphere, const Element& plane,
+                         const ContactMaterial& a, const ContactMaterial& b) {
+  SphereContact c;
+  c.name = e.name();
+  const FrameReference at_sphere = geometry_frame(context, sphere), at_plane = geometry_frame(context, plane);
+  c.sphere_body = at_sphere.body;
+  c.center = at_sphere.placement.translation;
+  c.radius = sphere.positive_or("radius", -1.0);
+  c.plane_body = at_plane.body;
+  c.plane = at_plane.placement;
+  const double ka = std::pow(a.stiffness, 2.0 / 3.0), kb = std::pow(b.stiffness, 2.0 / 3.0);
+  const double part_a = kb / (ka + kb);
+  c.half_stiffness = ka * part_a;
+  c.dissipation = a.dissipation * part_a + b.dissipation * (1.0 - part_a);
+  const auto both = [](double x, double y) { return x + y > 0.0 ? 2.0 * x * y / (x + y) : 0.0; };
+  c.static_friction = both(a.static_friction, b.static_friction);
+  c.dynamic_friction = both(a.dynamic_friction, b.dynamic_friction);
+  c.viscous_friction = both(a.viscous_friction, b.viscous_friction);
+  c.transition_velocity = e.positive_or("transition_velocity", 0.01);
+  return c;
+}
+
+/// False: it has a pair of geometries that is not a sphere and a half space.
+bool read_hunt_crossley(Context& context, const Element& e) {
+  struct Side {
+    Element geometry;
+    ContactMaterial material;
+  };
+  std::vector<Side> spheres, planes;
+  Element set = e.child("contact_parameters");
+  if (!set) set = e.child("HuntCrossleyForce::ContactParametersSet");
+  pugi::xml_node list = set.node();
+  if (const pugi::xml_node objects = list.child("objects")) list = objects;
+  for (const pugi::xml_node node : list.children()) {
+    if (node.type() != pugi::node_element || std::string_view(node.name()) == "groups") continue;
+    const Element parameters(context.document, node);
+    const ContactMaterial material = read_material(parameters);
+    for (const std::string& name : parameters.words("geometry")) {
+      const Element geometry = contact_geometry(context, name);
+      if (!geometry) parameters.fail("geometry", fmt::format("there is no contact geometry '{}'", name));
+      if (geometry.type() == "ContactSphere") {
+        spheres.push_back({geometry, material});
+      } else if (geometry.type() == "ContactHalfSpace") {
+        planes.push_back({geometry, material});
+      } else {
+        return false;
+      }
+    }
+  }
+  const auto body_of = [&](const Side& side) { return geometry_frame(context, side.geometry).body; };
+  for (const Side& sphere : spheres)
+    if (body_of(sphere) != body_of(spheres.front())) {
+      context.warn(e, "its spheres are of several bodies: they touch the half space, not each other");
+      break;
+    }
+  for (const Side& sphere : spheres)
+    for (const Side& plane : planes)
+      context.model.body_forces.contacts.push_back(
+          contact_of(context, e, sphere.geometry, plane.geometry, sphere.material, plane.material));
+  return true;
+}
+
+bool read_smooth_contact(Context& context, const Element& e) {
+  const Element sphere = contact_geometry(context, socket(e, "sphere"));
+  const Element plane = contact_geometry(context, socket(e, "half_space"));
+  if (!sphere || !plane) e.fail(sphere ? "socket_half_space" : "socket_sphere", "names no contact geometry");
+  const ContactMaterial material = read_material(e);
+  SphereContact c = contact_of(context, e, sphere, plane, material, material);
+  c.smooth = true;
+  c.constant_force = e.positive_or("constant_contact_force", 1e-5);
+  c.hertz_smoothing = e.positive_or("hertz_smoothing", 300.0);
+  c.hunt_crossley_smoothing = e.positive_or("hunt_crossley_smoothing", 50.0);
+  context.model.body_forces.contacts.push_back(std::move(c));
+  return true;
+}
+
+void read_path_spring(Context& context, const Element& e) {
+  PassivePath path;
+  path.name = e.name();
+  read_path(context, e, path.points, path.wraps);
+  path.law = PathSpringLaw{e.not_negative_or("resting_length", 0.0), e.not_negative_or("stiffness", 0.0),
+                           e.not_negative_or("dissipation", 0.0)};
+  context.model.passive_paths.push_back(std::move(path));
+}
+
+void read_ligament(Context& context, const Element& e) {
+  PassivePath path;
+  path.name = e.name();
+  read_path(context, e, path.points, path.wraps);
+  const Element curve = find_function(e, "force_length_curve");
+  if (!curve) e.fail("force_length_curve", "missing");
+  path.law =
+      LigamentLaw{e.positive_or("resting_length", -1.0), e.not_negative_or("pcsa_force", 0.0), read_function(curve)};
+  context.model.passive_paths.push_back(std::move(path));
+}
+
+}  // namespace
+
+bool read_passive_force(Context& context, const Element& e) {
+  const std::string type = e.type();
+  if (type == "CoordinateLimitForce") return read_limit_force(context, e), true;
+  if (type == "SpringGeneralizedForce") return read_coordinate_spring(context, e), true;
+  if (type == "PointToPointSpring") return read_point_spring(context, e), true;
+  if (type == "BushingForce") return read_bushing(context, e), true;
+  if (type == "HuntCrossleyForce") return read_hunt_crossley(context, e);
+  if (type == "SmoothSphereHalfSpaceForce") return read_smooth_contact(context, e);
+  if (type == "PathSpring") return read_path_spring(context, e), true;
+  if (type == "Ligament") return read_ligament(context, e), true;
+  return false;
+}
+
+}  // namespace veridyn::muscle::osim
