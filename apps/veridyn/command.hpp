@@ -100,6 +100,7 @@ struct Command {
 [[nodiscard]] Command rig_command();
 [[nodiscard]] Command scale_command();
 [[nodiscard]] Command sensitivity_command();
+[[nodiscard]] Command serve_command();
 [[nodiscard]] Command simulate_command();
 [[nodiscard]] Command track_command();
 [[nodiscard]] Command validate_command();

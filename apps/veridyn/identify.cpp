@@ -12,6 +12,7 @@
 #include "apps/veridyn/drive_results.hpp"
 #include "apps/veridyn/muscle_results.hpp"
 #include "apps/veridyn/output_folder.hpp"
+#include "apps/veridyn/work_progress.hpp"
 #include "veridyn/core/error.hpp"
 
 namespace veridyn::app {
@@ -30,7 +31,7 @@ void refuse_checkpoint(const StudyRun& run) {
 int identify_aircraft(const StudyRun& run) {
   refuse_checkpoint(run);
   OutputFolder folder(run.options().out);
-  TerminalProgress progress = progress_of(run.options());
+  WorkProgress progress(run, &folder);
   const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
   const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
   if (analysis.interrupted) throw Interrupted();
@@ -42,7 +43,7 @@ int identify_aircraft(const StudyRun& run) {
 int identify_vehicle(const StudyRun& run) {
   refuse_checkpoint(run);
   OutputFolder folder(run.options().out);
-  TerminalProgress progress = progress_of(run.options());
+  WorkProgress progress(run, &folder);
   PreparedDrive drive = prepare_drive(run.study, progress);
   const vehicle::VehicleAnalysis analysis = vehicle::identify(drive.study, progress);
   if (analysis.interrupted) throw Interrupted();
@@ -59,7 +60,7 @@ int identify_muscles(const StudyRun& asked) {
   const CommonOptions& options = run.options();
   std::optional<OutputFolder> folder;
   if (checkpoint.first) folder.emplace(options.out);
-  TerminalProgress progress = progress_of(options);
+  WorkProgress progress(run, folder ? &*folder : nullptr);
   const muscle::TaskStudy study = muscle::read_task_study(run.study, progress);
   const std::unique_ptr<numerics::ValueLog> log = open_value_log(checkpoint, run, study.inputs, progress);
   const muscle::MuscleAnalysis analysis = muscle::identify(study, progress, log.get());

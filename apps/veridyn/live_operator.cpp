@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -14,8 +16,9 @@
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/telemetry/sign_checker.hpp"
 #ifdef VERIDYN_HAS_PAGE
-#include "veridyn/live/page/live_page.hpp"
+#include "veridyn/live/page/page_json.hpp"
 #include "veridyn/live/page/page_token.hpp"
+#include "veridyn/live/page/platform_json.hpp"
 #include "veridyn/live/page/status_json.hpp"
 #endif
 
@@ -182,7 +185,7 @@ struct PageOfRun::Page {
   std::unique_ptr<cueing::WashoutDesign> design_;
   std::vector<std::vector<double>> before_;  ///< values of the knobs, the last ones last
   std::unique_ptr<LivePage> shown_at_;
-  double shown_ = -1.0;
+  double shown_ = -1.0, apart_ = 0.05;  ///< [s]
 };
 
 void PageOfRun::Page::obey(const PageRequest& r, const LiveStudy& study, LiveControl& control) {
@@ -210,21 +213,26 @@ PageOfRun::PageOfRun(const LiveStudy& study, const CommonOptions& options) : pag
   page_->design_ = study.cueing.algorithms.front().design->clone();
   if (!study.page) return;
   page_->felt_.emplace(study.cueing);
-  const bool drawn = study.page_token.empty() && study.page->address >> 24U == 127;
-  const std::string token = drawn ? random_token() : study.page_token.empty() ? "" : read_token_file(study.page_token);
-  page_->shown_at_ = std::make_unique<LivePage>(PageOptions{*study.page, token});
-  print_line(options, fmt::format("page: http://{}{}", to_string(*study.page), drawn ? "  token: " + token : ""));
+  const PageAccess access = page_access(*study.page, study.page_token);
+  page_->shown_at_ = std::make_unique<LivePage>(
+      PageOptions{.address = *study.page,
+                  .token = access.token,
+                  .rate = study.page_rate,
+                  .platform = [text = platform_json(study.cueing.platform)](std::size_t) { return text; }});
+  page_->apart_ = 1.0 / study.page_rate;
+  print_line(options, fmt::format("page: http://{}{}", to_string(*study.page), access.said));
 }
 
 void PageOfRun::update(const RigStatus& status, const LiveStudy& study, LiveControl& control, double time,
                        const std::string& message) {
   if (!page_->shown_at_) return;
   page_->felt_->update(status);
-  constexpr double kBetween = 0.05;  // [s]
-  if (time - page_->shown_ >= kBetween) {
+  constexpr double kEarly = 1e-3;  // [s]
+  if (time - page_->shown_ >= page_->apart_ - kEarly) {
     page_->shown_ = time;
-    page_->shown_at_->show(
-        status_json(status, study, *page_->felt_, *page_->design_, time, page_->shown_at_->refused(), message));
+    const std::array runs = {
+        ShownRun{.status = status_json(status, study, *page_->felt_, *page_->design_, time, message), .length = time}};
+    page_->shown_at_->show(page_json(runs, {}, PageControls::kAll, page_->shown_at_->refused()));
   }
   for (const PageRequest& r : page_->shown_at_->take_requests()) page_->obey(r, study, control);
 }
@@ -271,6 +279,8 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
   RealClock clock;
   bool ending = false;
   Nanoseconds give_up = 0;
+  // As often as what is felt is followed, and as the page is shown.
+  const std::chrono::duration<double> pause(std::min(0.02, 0.5 / study.page_rate));
   if (options.start) control.request(OperatorRequest::kStart);
   while (true) {
     const Nanoseconds now = clock.now();
@@ -293,7 +303,7 @@ std::vector<std::string> lead_run(const OperatorOptions& options, const LiveStud
     if (give_up != 0 &&
         (status.step.state == RigState::kParked || status.step.state == RigState::kStopped || now > give_up))
       break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(pause);
   }
   if (!drive.trouble().empty()) notes.push_back(drive.trouble());
   return notes;

@@ -59,6 +59,11 @@ fs::path OutputFolder::staged(const std::string& name) {
   return staging_ / name;
 }
 
+fs::path OutputFolder::aside(const std::string& name) const {
+  make_folder(staging_);
+  return staging_ / name;
+}
+
 void OutputFolder::write(const std::string& name, std::string_view content) {
   write_file(staged(name), content, (path_ / name).string());
 }

@@ -35,6 +35,9 @@ class OutputFolder {
   /// @throws std::runtime_error when it cannot be written.
   void write(const std::string& name, const std::function<void(const std::filesystem::path&)>& writer);
 
+  /// Where a file may be written that is no result: it goes with the command.
+  [[nodiscard]] std::filesystem::path aside(const std::string& name) const;
+
   /// Writes run.json, prints the summary (`--json`), then moves all files to their names and removes the results of the
   /// run before that this one did not write (`files_of_earlier_run`) and did not read. Call it once, at the end.
   /// @throws as `write` and `print_summary`; then nothing has appeared.

@@ -12,6 +12,7 @@
 #include "apps/veridyn/follow.hpp"
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/version.hpp"
+#include "apps/veridyn/work_progress.hpp"
 #include "veridyn/aircraft/track_flight.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -127,7 +128,7 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
 }
 
 void replay(const StudyRun& run, OutputFolder& folder) {
-  TerminalProgress progress = progress_of(run.options());
+  WorkProgress progress(run, &folder);
   const FlightStudy study = aircraft::read_study(run.study, progress);
   const TrackingAnalysis analysis = track_flight(study, progress);
   if (analysis.interrupted) throw Interrupted();
@@ -138,6 +139,8 @@ void replay(const StudyRun& run, OutputFolder& folder) {
 
 void follow_flight(const StudyRun& run, OutputFolder& folder) {
   LiveView view(run.options());
+  WorkProgress work(run, &folder);
+  work.quiet_stage("following the recording");
   std::optional<FlightStudy> study;
   std::optional<TrackedFlight> flight;
   follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
@@ -145,6 +148,7 @@ void follow_flight(const StudyRun& run, OutputFolder& folder) {
     study = aircraft::read_study(run.study, silent);
     if (!flight) flight.emplace(*study);
     view.show(*flight, flight->advance(study->mapped, *study, finished, silent));
+    work.note(live_table(*flight));
   });
   Progress silent;
   flight->check_recording(study->mapped, *study, {}, silent);

@@ -9,6 +9,7 @@
 #include "apps/veridyn/follow.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
+#include "apps/veridyn/work_progress.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -73,6 +74,8 @@ void follow_drive(const StudyRun& run, OutputFolder& folder) {
   finish_drive_study(run.study.root(), Progress());
   PreparedDrive drive;
   std::optional<TrackedDrive> tracked;
+  WorkProgress work(run, &folder);
+  work.quiet_stage("following the recording");
   follow_files(followed_files(run.study.root()), FollowOptions::of(run.arguments), run.options(), [&](bool finished) {
     Progress silent;
     drive.study = vehicle::read_study(run.study, silent);
@@ -80,6 +83,7 @@ void follow_drive(const StudyRun& run, OutputFolder& folder) {
     for (const DriveChange& c : tracked->advance(drive.study.log.mapped, finished, silent))
       print_line(run.options(), change_line(c));
     print_line(run.options(), live_line(*tracked));
+    work.note(live_line(*tracked));
   });
   publish_tracking(run, folder, drive, *tracked);
 }
@@ -92,7 +96,7 @@ int track_vehicle(const StudyRun& run) {
     follow_drive(run, folder);
     return kDone;
   }
-  TerminalProgress progress = progress_of(run.options());
+  WorkProgress progress(run, &folder);
   PreparedDrive drive = prepare_drive(run.study, progress);
   const DriveTracking tracking = vehicle::track(drive.study, progress);
   if (tracking.interrupted) throw Interrupted();

@@ -21,6 +21,7 @@ const sets = [
   'live.signs=while',
   'live.soft_start=1',
   'live.rate=500',
+  'live.page_rate=60',
   'drive.duration=30',
 ].flatMap((s) => ['--set', s]);
 const processes = [];
@@ -89,6 +90,35 @@ test('values move while the rig runs', { skip }, async () => {
   assert.ok(second > first + 50 && second < first + 500, `${first} then ${second} packets`);
   assert.ok((await largest(3000)) > 0.3);
   assert.ok((await page.$$('#latency rect')).length > 3);
+});
+
+test('the platform is drawn in space, where it is and where it is told to be, and can be turned', { skip }, async () => {
+  assert.equal((await page.$$('#platform .leg')).length, 3);
+  assert.equal((await page.$$('#platform .told')).length, 1);
+  const plate = () => page.getAttribute('#platform .reached', 'points');
+  const first = await plate();
+  await sleep(1000);
+  assert.notEqual(await plate(), first);
+  for (const used of await page.$$eval('#platform .leg', (all) => all.map((e) => +e.dataset.used))) assert.ok(used >= 0 && used <= 1, String(used));
+  const ground = () => page.getAttribute('#platform polygon', 'points');
+  const before = await ground();
+  await page.focus('#platform');
+  await page.keyboard.press('ArrowUp');
+  assert.notEqual(await ground(), before);
+});
+
+test('it moves often enough for 60 Hz', { skip }, async () => {
+  const drawn = await page.evaluate(
+    () =>
+      new Promise((done) => {
+        let count = 0;
+        const watch = new MutationObserver(() => ++count);
+        watch.observe(document.getElementById('times'), { childList: true, characterData: true, subtree: true });
+        setTimeout(() => done(count / 2), 2000);
+      }),
+  );
+  // More than at 20 Hz: how many a busy machine draws without a graphics card is not the page's.
+  assert.ok(drawn > 22 && drawn < 65, `${drawn} a second`);
 });
 
 test('what is felt and what is left of the platform are shown', { skip }, async () => {

@@ -100,11 +100,69 @@ TEST_F(LivePageTest, RefusesAndCountsControlsWithoutTheRightToken) {
 }
 
 TEST_F(LivePageTest, RefusesWhatIsNoRequest) {
-  for (const char* body : {"", "{", "[]", "{}", "{\"request\": \"fly\"}", "{\"request\": 3}",
-                           "{\"knob\": -1, \"value\": 1}", "{\"knob\": 1}", "{\"knob\": 1, \"value\": \"a\"}"})
+  for (const char* body :
+       {"", "{", "[]", "{}", "{\"request\": \"fly\"}", "{\"request\": 3}", "{\"knob\": -1, \"value\": 1}",
+        "{\"request\": \"park\", \"run\": -1}", "{\"knob\": 1}", "{\"knob\": 1, \"value\": \"a\"}"})
     EXPECT_EQ(control(body), 400) << body;
   EXPECT_EQ(control(std::string(100000, ' ')), 413);
   EXPECT_TRUE(page_.take_requests().empty());
+}
+
+/// A page that takes no more than this.
+class PageWith {
+ public:
+  PageWith(std::uint16_t port, std::uint32_t address, PageControls controls, const std::string& token)
+      : page_({.address = {address, port},
+               .token = token,
+               .controls = controls,
+               .frames = [](std::size_t run, double from, double to) { return fmt::format("{} {} {}", run, from, to); },
+               .platform = [](std::size_t run) { return fmt::format("platform {}", run); }}),
+        client_("127.0.0.1", port) {}
+  int control(const std::string& request) {
+    const auto answer = client_.Post("/control", {{"Authorization", std::string("Bearer ") + kToken}},
+                                     "{\"request\": \"" + request + "\", \"run\": 2}", "application/json");
+    return answer ? answer->status : -1;
+  }
+  int status_of(const std::string& path) { return client_.Get(path)->status; }
+  std::string get(const std::string& path) { return client_.Get(path)->body; }
+  LivePage& page() { return page_; }
+
+ private:
+  LivePage page_;
+  httplib::Client client_;
+};
+
+TEST_F(LivePageTest, ThatStopsOnlyRefusesAndCountsEverythingElse) {
+  PageWith p(static_cast<std::uint16_t>(port_ - 20000), 0x7f000001, PageControls::kStop, kToken);
+  EXPECT_EQ(p.control("emergency"), 204);
+  EXPECT_EQ(p.control("start"), 403);
+  EXPECT_EQ(p.control("release"), 403);
+  const std::vector<PageRequest> requests = p.page().take_requests();
+  ASSERT_EQ(requests.size(), 1U);
+  EXPECT_EQ(requests[0].request, OperatorRequest::kEmergency);
+  EXPECT_EQ(requests[0].run, 2U);
+  EXPECT_EQ(p.page().refused(), 2U);
+}
+
+TEST_F(LivePageTest, BeyondLoopbackWithoutATokenShowsAndRefusesEveryControl) {
+  for (const char* token : {"", kToken}) {
+    PageWith p(static_cast<std::uint16_t>(port_ - 20000), 0, PageControls::kNone, token);
+    EXPECT_EQ(p.status_of("/status"), 200);
+    EXPECT_EQ(p.control("emergency"), 403);
+    EXPECT_EQ(p.page().refused(), 1U);
+    EXPECT_TRUE(p.page().take_requests().empty());
+  }
+}
+
+TEST_F(LivePageTest, HandsOutWhatIsKeptOfARun) {
+  PageWith p(static_cast<std::uint16_t>(port_ - 20000), 0x7f000001, PageControls::kStop, kToken);
+  EXPECT_EQ(p.get("/frames?run=1&from=2.5&to=4"), "1 2.5 4");
+  EXPECT_EQ(p.get("/platform?run=3"), "platform 3");
+  for (const char* path :
+       {"/frames", "/frames?run=1&from=2", "/frames?run=-1&from=1&to=2", "/frames?run=1&from=x&to=2",
+        "/frames?run=1&from=nan&to=2", "/frames?run=1e9&from=1&to=2", "/platform", "/platform?run=a"})
+    EXPECT_EQ(p.status_of(path), 404) << path;
+  EXPECT_EQ(client_.Get("/frames?run=0&from=0&to=1")->status, 404);  // of a page that keeps nothing
 }
 
 TEST_F(LivePageTest, IsRefusedAPortInUse) {

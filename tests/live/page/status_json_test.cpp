@@ -24,7 +24,7 @@ TEST(StatusJson, SaysHowMuchOfThePlatformIsUsedAndWhatIsFelt) {
   status.step.motion->sample.force = recording::force_at_rest(Frame::kFrd);
   FeltNow felt(study.cueing);
   felt.update(status);
-  const auto json = nlohmann::json::parse(status_json(status, study, felt, *design, 1.5, 0, ""));
+  const auto json = nlohmann::json::parse(status_json(status, study, felt, *design, 1.5, ""));
   const auto& axis = json["axes"][2];
   ASSERT_EQ(axis["name"], "pitch");
   EXPECT_NEAR(axis["to_limit"].get<double>(), -0.25 * limits.lowest, 1e-12);
@@ -41,8 +41,7 @@ TEST(StatusJson, HoldsWhatThePageDraws) {
   const auto design = study.cueing.algorithms.front().design->clone();
   RigStatus status;
   status.times.receive_to_send.add(kMillisecond);
-  const auto json =
-      nlohmann::json::parse(status_json(status, study, FeltNow(study.cueing), *design, 1.5, 2, "a message"));
+  const auto json = nlohmann::json::parse(status_json(status, study, FeltNow(study.cueing), *design, 1.5, "a message"));
   EXPECT_EQ(json["state"], "parked");
   EXPECT_EQ(json["readiness"], "no telemetry");
   EXPECT_EQ(json["axes"].size(), 3U);  // heave, roll, pitch
@@ -52,10 +51,41 @@ TEST(StatusJson, HoldsWhatThePageDraws) {
     EXPECT_EQ(axis["rate_used"], 0.0);
   }
   EXPECT_FALSE(json.contains("felt"));  // no motion yet
-  EXPECT_EQ(json["refused"], 2);
+  EXPECT_EQ(json["message"], "a message");
+  EXPECT_FALSE(json.contains("car"));  // there is none
   EXPECT_EQ(json["latency"]["bins"].size(), 1U);
   EXPECT_EQ(json["packets"].size(), kPacketFates);
   EXPECT_EQ(json["knobs"].size(), knob_values(*design).size());
+}
+
+TEST(StatusJson, SaysHowTheCarIsReachedAndWhatItIsTold) {
+  const LiveStudy study = test::rig_study();
+  const auto design = study.cueing.algorithms.front().design->clone();
+  RigStatus status;
+  CarStatus& car = status.car.emplace();
+  car.link.connected = true;
+  car.link.commands_sent = 101;
+  car.link.commands_arrived = 75;
+  car.link.commands_lost = 25;
+  car.link.round_trip_median = 4 * kMillisecond;
+  car.command = {.steering = -0.2, .drive_force = 12.0, .brake = 0.25};
+  const auto parsed = [&] {
+    return nlohmann::json::parse(status_json(status, study, FeltNow(study.cueing), *design, 1.5, ""))["car"];
+  };
+  EXPECT_EQ(parsed()["state"], "not heard of");
+  EXPECT_TRUE(parsed()["battery"].is_null());
+  car.state = CarState::kBraking;
+  car.battery = 7.4;
+  const nlohmann::json json = parsed();
+  EXPECT_EQ(json["state"], "braking by itself");
+  EXPECT_EQ(json["battery"], 7.4);
+  EXPECT_TRUE(json["connected"]);
+  EXPECT_EQ(json["command_loss"], 0.25);  // of those that the car could have had
+  EXPECT_EQ(json["round_trip_p50"], 0.004);
+  EXPECT_TRUE(json["round_trip_p99"].is_null());
+  EXPECT_EQ(json["steering"], -0.2);
+  EXPECT_EQ(json["drive_force"], 12.0);
+  EXPECT_EQ(json["brake"], 0.25);
 }
 
 }  // namespace

@@ -21,9 +21,12 @@ TEST(CarLink, DrivesFromPedalToMotion) {
   EXPECT_EQ(status.step.state, RigState::kRunning);
   EXPECT_EQ(r.links.platform.counts().outside, 0U);
   ASSERT_TRUE(status.car);
-  EXPECT_TRUE(status.car->connected);
-  EXPECT_EQ(status.car->commands_lost, 0U);
-  EXPECT_EQ(status.car->reports_lost, 0U);
+  EXPECT_TRUE(status.car->link.connected);
+  EXPECT_EQ(status.car->link.commands_lost, 0U);
+  EXPECT_EQ(status.car->link.reports_lost, 0U);
+  EXPECT_EQ(status.car->state, CarState::kDriving);
+  EXPECT_GT(status.car->battery, 5.0);
+  EXPECT_GT(status.car->command.drive_force, 0.0);
   // The motion of the platform's rider is that of the car's sensors.
   const recording::MotionSample truth = r.links.car.motion();
   EXPECT_NEAR(status.step.motion->sample.rate.z(), truth.rate.z(), 0.15);

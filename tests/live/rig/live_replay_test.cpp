@@ -9,6 +9,7 @@
 
 #include "tests/live/rig/car_links_in_memory.hpp"
 #include "tests/live/rig/links_in_memory.hpp"
+#include "tests/live/rig/recorded_run.hpp"
 #include "veridyn/core/files.hpp"
 #include "veridyn/live/recording/live_recorder.hpp"
 
@@ -75,20 +76,8 @@ TEST_F(LiveLoopTest, RecordedRunIsReplayedBitForBitWithItsKnobs) {
   EXPECT_EQ(one.packets[PacketFate::kAccepted], one.times.receive_to_send.count());
 }
 
-/// Records a run of `kStudy` that nobody disturbs.
-void record_run(const std::filesystem::path& path, const LiveHead& head, Nanoseconds end) {
-  const LiveStudy study = read_live_study(Study::parse(kStudy, "rig.toml"));
-  MemoryLinks links(study);
-  SetClock clock;
-  LiveControl control;
-  LiveRecorder recorder(path, head);
-  LiveLoop loop(study, 5);
-  control.request(OperatorRequest::kStart);
-  loop.run(links, clock, control, &recorder, end);
-}
-
 TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {
-  record_run(path_, head_of(kStudy), 6 * kSecond);
+  test::record_run(path_, head_of(kStudy), 6 * kSecond);
   LiveFile file = read_live_file(path_);
   Progress quiet;
   ASSERT_EQ(replay(file, "run.vlr", quiet).different, 0U);
@@ -98,7 +87,7 @@ TEST_F(LiveLoopTest, AReplayWithOtherNumbersIsSaidToDiffer) {
 }
 
 TEST_F(LiveLoopTest, TheRecordingOfARunThatWasCutOffIsReplayedAsFarAsItGoes) {
-  record_run(path_, head_of(kStudy), 20 * kSecond);
+  test::record_run(path_, head_of(kStudy), 20 * kSecond);
   std::string bytes = read_file(path_);
   bytes.resize(bytes.size() / 2);
   Progress quiet;

@@ -19,6 +19,8 @@ struct Sender {
 
 /// "127.0.0.1:4123".
 [[nodiscard]] std::string to_string(const Sender& sender);
+/// Whether it is reached from this machine only.
+[[nodiscard]] constexpr bool is_loopback(const Sender& sender) { return sender.address >> 24U == 127; }
 
 /// Where a datagram came in.
 enum class LinkOf : std::uint8_t {

@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
+#include <cstdlib>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,20 +21,37 @@ namespace veridyn::live {
 namespace {
 
 constexpr std::size_t kMostPages = 8, kMostRequests = 64, kLongestRequest = 4096;
-constexpr std::chrono::milliseconds kBetweenEvents(50);
-
-bool is_loopback(const Sender& s) { return s.address >> 24U == 127; }
 
 std::string text_of(const Sender& s) {
   const std::string all = to_string(s);
   return all.substr(0, all.find(':'));
 }
 
-/// A request as the page writes it: {"request": "park"}, {"knob": 3, "value": 0.7}, {"undo": true}.
+/// A number of a request's address; nothing where it is none.
+std::optional<double> parameter(const httplib::Request& request, const char* name) {
+  const std::string text = request.get_param_value(name);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' || !std::isfinite(value) ? std::nullopt : std::optional(value);
+}
+
+/// Which run is asked about.
+std::optional<std::size_t> run_of(const httplib::Request& request) {
+  constexpr double kMost = 1000.0;
+  const std::optional<double> run = parameter(request, "run");
+  return run && *run >= 0.0 && *run < kMost ? std::optional(static_cast<std::size_t>(*run)) : std::nullopt;
+}
+
+/// A request as the page writes it: {"request": "park"}, {"knob": 3, "value": 0.7}, {"undo": true}; with "run" where
+/// the page shows several.
 std::optional<PageRequest> parse(const std::string& body) {
   const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) return std::nullopt;
   PageRequest r;
+  if (json.contains("run")) {
+    if (!json["run"].is_number_unsigned()) return std::nullopt;
+    r.run = json["run"].get<std::size_t>();
+  }
   if (json.contains("request") && json["request"].is_string()) {
     constexpr std::array<std::pair<const char*, OperatorRequest>, 4> kRequests = {
         {{"start", OperatorRequest::kStart},
@@ -65,7 +84,7 @@ std::optional<PageRequest> parse(const std::string& body) {
 struct LivePage::Server {
   httplib::Server http;
   std::thread thread;
-  std::string token;
+  PageOptions options;
   std::vector<std::string> hosts;  ///< names by which requests may come; empty: any, of a page for other machines
 
   std::mutex mutex;
@@ -86,7 +105,13 @@ struct LivePage::Server {
     constexpr std::string_view kBearer = "Bearer ";
     const std::string given = request.get_header_value("Authorization");
     if (!given.starts_with(kBearer)) return 401;
-    return !token.empty() && equal_in_constant_time(token, given.substr(kBearer.size())) ? 0 : 403;
+    if (options.controls == PageControls::kNone || options.token.empty()) return 403;
+    return equal_in_constant_time(options.token, given.substr(kBearer.size())) ? 0 : 403;
+  }
+  /// Whether the page takes such a control at all.
+  [[nodiscard]] bool takes(const std::optional<PageRequest>& asked) const {
+    return !asked || options.controls == PageControls::kAll ||
+           (asked->kind == PageRequest::Kind::kOperator && asked->request == OperatorRequest::kEmergency);
   }
 
   void control(const httplib::Request& request, httplib::Response& response) {
@@ -97,6 +122,12 @@ struct LivePage::Server {
       return;
     }
     const std::optional<PageRequest> asked = parse(request.body);
+    if (!takes(asked)) {
+      ++refused;
+      response.status = 403;
+      response.set_content("this page shows runs and can stop them", "text/plain");
+      return;
+    }
     const std::lock_guard lock(mutex);
     if (!asked || requests.size() >= kMostRequests) {
       response.status = asked ? 503 : 400;
@@ -119,18 +150,19 @@ struct LivePage::Server {
       sent = shown;
       event = "data: " + status + "\n\n";
     }
-    std::this_thread::sleep_for(kBetweenEvents);
-    return sink.write(event.data(), event.size());
+    const bool taken = sink.write(event.data(), event.size());
+    std::this_thread::sleep_for(std::chrono::duration<double>(1.0 / options.rate));
+    return taken;
   }
 };
 
 LivePage::LivePage(const PageOptions& options) : server_(std::make_unique<Server>()) {
   Server& s = *server_;
-  const std::string place = "live.page";
-  if (!is_loopback(options.address) && options.token.empty())
+  const std::string place = options.place;
+  if (!is_loopback(options.address) && options.token.empty() && options.controls != PageControls::kNone)
     throw InputError(place, fmt::format("{} can be reached from other machines: that needs a token (`page_token`)",
                                         to_string(options.address)));
-  s.token = options.token;
+  s.options = options;
   if (is_loopback(options.address))
     s.hosts = {to_string(options.address), fmt::format("localhost:{}", options.address.port)};
   // As many as may look, and one for controls.
@@ -157,6 +189,23 @@ LivePage::LivePage(const PageOptions& options) : server_(std::make_unique<Server
     response.set_chunked_content_provider(
         "text/event-stream", [&s, sent](std::size_t, httplib::DataSink& sink) { return s.send_event(sink, *sent); },
         [&s](bool) { --s.pages; });
+  });
+  s.http.Get("/frames", [&s](const httplib::Request& request, httplib::Response& response) {
+    const std::optional<std::size_t> run = run_of(request);
+    const std::optional<double> from = parameter(request, "from"), to = parameter(request, "to");
+    if (!s.options.frames || !run || !from || !to) {
+      response.status = 404;
+      return;
+    }
+    response.set_content(s.options.frames(*run, *from, *to), "application/json");
+  });
+  s.http.Get("/platform", [&s](const httplib::Request& request, httplib::Response& response) {
+    const std::optional<std::size_t> run = run_of(request);
+    if (!s.options.platform || !run) {
+      response.status = 404;
+      return;
+    }
+    response.set_content(s.options.platform(*run), "application/json");
   });
   s.http.Post("/control",
               [&s](const httplib::Request& request, httplib::Response& response) { s.control(request, response); });

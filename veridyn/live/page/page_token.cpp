@@ -32,6 +32,14 @@ std::string read_token_file(const std::filesystem::path& path) {
   return token;
 }
 
+PageAccess page_access(const Sender& address, const std::filesystem::path& token_file) {
+  if (!token_file.empty()) return {.token = read_token_file(token_file), .said = ""};
+  if (!is_loopback(address)) return {};
+  PageAccess access{.token = random_token(), .said = ""};
+  access.said = "  token: " + access.token;
+  return access;
+}
+
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
   unsigned different = a.size() == b.size() ? 0U : 1U;
   for (std::size_t i = 0; i < b.size(); ++i)

@@ -8,8 +8,47 @@ namespace veridyn::live {
 
 using nlohmann::json;
 
+namespace {
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json number(const std::optional<Nanoseconds>& time) { return time ? json(seconds(*time)) : json(nullptr); }
+
+std::string_view name_of(CarState state) {
+  switch (state) {
+    case CarState::kHolding:
+      return "holding";
+    case CarState::kDriving:
+      return "driving";
+    case CarState::kBraking:
+      break;
+  }
+  return "braking by itself";
+}
+
+json car_json(const CarStatus& car, const LatencyHistogram& pedal_to_command) {
+  const LinkQuality& link = car.link;
+  return {{"connected", link.connected},
+          {"state", car.state ? std::string(name_of(*car.state)) : "not heard of"},
+          {"battery", car.state ? number(car.battery) : json(nullptr)},
+          {"restarts", car.restarts},
+          {"commands", link.commands_sent},
+          {"command_loss", link.command_loss()},
+          {"reports", link.reports_received},
+          {"report_loss", link.report_loss()},
+          {"damaged", link.frames_damaged},
+          {"since_report", number(link.since_report)},
+          {"round_trip_p50", number(link.round_trip_median)},
+          {"round_trip_p99", number(link.round_trip_p99)},
+          {"pedal_to_command_p99", number(pedal_to_command.quantile(0.99))},
+          {"steering", car.command.steering},
+          {"drive_force", car.command.drive_force},
+          {"brake", car.command.brake}};
+}
+
+}  // namespace
+
 std::string status_json(const RigStatus& status, const LiveStudy& study, const FeltNow& felt,
-                        cueing::WashoutDesign& design, double time, std::uint64_t refused, const std::string& message) {
+                        cueing::WashoutDesign& design, double time, const std::string& message) {
   json j;
   j["title"] = study.cueing.title;
   j["time"] = time;
@@ -17,7 +56,6 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, const F
   j["readiness"] = described(status.readiness, status.answers);
   j["share"] = status.step.share;
   j["message"] = message;
-  j["refused"] = refused;
   for (std::size_t i = 0; i < cueing::kPlatformAxes; ++i) {
     const auto which = static_cast<cueing::PlatformAxis>(i);
     const cueing::AxisLimits& l = study.cueing.platform.limits.axes[i];
@@ -66,6 +104,7 @@ std::string status_json(const RigStatus& status, const LiveStudy& study, const F
   j["extrapolated"] = {{"steps", status.extrapolated.steps}, {"of", status.extrapolated.of}};
   j["orders"] = status.times.steps;
   j["left_out"] = status.times.left_out;
+  if (status.car) j["car"] = car_json(*status.car, status.times.pedal_to_command);
   std::size_t index = 0;
   for (const cueing::Knob& knob : design.knobs()) {
     for (std::size_t k = 0; k < knob.values.size(); ++k) {

@@ -9,9 +9,7 @@ namespace veridyn::live {
 
 /// The status of a rig as its page reads it, in one line.
 /// @param felt up to this status @param design with the knobs as they are now @param time from the run's start [s]
-/// @param refused controls of the page
 [[nodiscard]] std::string status_json(const RigStatus& status, const LiveStudy& study, const FeltNow& felt,
-                                      cueing::WashoutDesign& design, double time, std::uint64_t refused,
-                                      const std::string& message);
+                                      cueing::WashoutDesign& design, double time, const std::string& message);
 
 }  // namespace veridyn::live

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/enum_array.hpp"

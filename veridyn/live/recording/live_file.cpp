@@ -107,20 +107,6 @@ bool read_record(RecordReader& r, LiveRecord& record) {
   return false;
 }
 
-std::optional<LiveHead> read_head(std::string_view content) {
-  if (!content.starts_with(kHeadStart)) return std::nullopt;
-  RecordReader r(content.substr(kHeadStart.size()));
-  LiveHead head;
-  head.program = r.text<std::uint32_t>();
-  head.study_name = r.text<std::uint32_t>();
-  head.study = r.text<std::uint32_t>();
-  head.started = r.get<Nanoseconds>();
-  head.started_utc = r.get<std::int64_t>();
-  head.session = r.get<std::uint32_t>();
-  if (!r.ok()) return std::nullopt;
-  return head;
-}
-
 }  // namespace
 
 std::size_t encode(const LiveRecord& record, std::span<char> into) {
@@ -177,36 +163,52 @@ bool for_each_record(std::string_view content, const std::function<void(const Li
   return true;
 }
 
+std::optional<LiveHead> decode_head(std::string_view content) {
+  if (!content.starts_with(kHeadStart)) return std::nullopt;
+  RecordReader r(content.substr(kHeadStart.size()));
+  LiveHead head;
+  head.program = r.text<std::uint32_t>();
+  head.study_name = r.text<std::uint32_t>();
+  head.study = r.text<std::uint32_t>();
+  head.started = r.get<Nanoseconds>();
+  head.started_utc = r.get<std::int64_t>();
+  head.session = r.get<std::uint32_t>();
+  if (!r.ok()) return std::nullopt;
+  return head;
+}
+
+std::optional<std::string_view> next_block(std::string_view bytes, std::size_t& at, bool grows, std::size_t& damaged) {
+  while (at < bytes.size()) {
+    const std::string_view rest = bytes.substr(at);
+    if (rest.size() >= kFrame && rest.starts_with(kBlockStart)) {
+      const std::size_t length = number_at<std::uint32_t>(rest, 4);
+      const std::string_view content = rest.substr(kFrame, length);
+      if (length <= kLargestBlock && content.size() == length && crc32(content) == number_at<std::uint32_t>(rest, 8)) {
+        at += kFrame + length;
+        return content;
+      }
+      if (grows && length <= kLargestBlock && content.size() < length) return std::nullopt;
+    }
+    // Behind a damaged length the next block is looked for.
+    const std::size_t next = rest.find(kBlockStart, 1);
+    if (next == std::string_view::npos) break;
+    ++damaged;
+    at += next;
+  }
+  return std::nullopt;
+}
+
 LiveFile parse_live_file(std::string_view bytes, const std::string& name) {
   LiveFile file;
   bool has_head = false;
   std::size_t at = 0;
-  while (at < bytes.size()) {
-    const std::string_view rest = bytes.substr(at);
-    if (rest.size() < kFrame || !rest.starts_with(kBlockStart)) {
-      // Behind a damaged length the next block is looked for.
-      const std::size_t next = rest.find(kBlockStart, 1);
-      if (next == std::string_view::npos) break;
-      ++file.damaged;
-      at += next;
-      continue;
+  while (const std::optional<std::string_view> content = next_block(bytes, at, false, file.damaged)) {
+    if (auto head = has_head ? std::nullopt : decode_head(*content)) {
+      file.head = std::move(*head);
+      has_head = true;
+    } else {
+      file.blocks.emplace_back(*content);
     }
-    const std::size_t length = number_at<std::uint32_t>(rest, 4);
-    const std::string_view content = rest.substr(kFrame, length);
-    if (length <= kLargestBlock && content.size() == length && crc32(content) == number_at<std::uint32_t>(rest, 8)) {
-      if (auto head = has_head ? std::nullopt : read_head(content)) {
-        file.head = std::move(*head);
-        has_head = true;
-      } else {
-        file.blocks.emplace_back(content);
-      }
-      at += kFrame + length;
-      continue;
-    }
-    const std::size_t next = rest.find(kBlockStart, 1);
-    if (next == std::string_view::npos) break;
-    ++file.damaged;
-    at += next;
   }
   file.cut_bytes = bytes.size() - at;
   if (!has_head) throw InputError(name, "is no recording of a live run: it has no head");

@@ -43,6 +43,15 @@ std::size_t encode(const LiveRecord& record, std::span<char> into);
 /// The records of a block's content, in order. @return whether all of it could be read
 bool for_each_record(std::string_view content, const std::function<void(const LiveRecord&)>& use);
 
+/// The content of the next whole block. Blocks that are damaged are passed over and counted.
+/// @param at where in the bytes it is looked for; then behind it, or where the first one that is not whole begins
+/// @param grows bytes are still to come: what is cut off is waited for
+/// @return nothing where there is none
+[[nodiscard]] std::optional<std::string_view> next_block(std::string_view bytes, std::size_t& at, bool grows,
+                                                         std::size_t& damaged);
+/// The head that a block holds; nothing where it holds none.
+[[nodiscard]] std::optional<LiveHead> decode_head(std::string_view content);
+
 /// What a file holds.
 struct LiveFile {
   LiveHead head;

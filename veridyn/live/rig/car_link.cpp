@@ -92,4 +92,13 @@ std::size_t CarLink::command(Nanoseconds now, bool halt, CommandBytes& out) {
 
 std::optional<Nanoseconds> CarLink::take_pedal() { return std::exchange(sent_pedal_, std::nullopt); }
 
+CarStatus CarLink::status(Nanoseconds now) const {
+  CarStatus s{.link = quality(now), .command = last_, .state = {}, .battery = 0.0, .restarts = end_.car_restarts()};
+  if (const std::optional<ReceivedReport>& report = end_.report()) {
+    s.state = report->payload.state;
+    s.battery = report->payload.sensors.battery;
+  }
+  return s;
+}
+
 }  // namespace veridyn::live

@@ -11,6 +11,15 @@
 
 namespace veridyn::live {
 
+/// What the operator sees of a car.
+struct CarStatus {
+  LinkQuality link;
+  CarCommand command;             ///< the last one
+  std::optional<CarState> state;  ///< nothing before the first report
+  double battery = 0.0;           ///< [V], NaN where it is not measured
+  std::uint64_t restarts = 0;     ///< of the car
+};
+
 /// The operator's side of a scaled car without devices and clocks: bytes of the line and events of wheel and pedals in,
 /// commands and the car's motion out. The same in at the same times gives the same out, bit for bit. Nothing is
 /// allocated or thrown after construction.
@@ -35,6 +44,7 @@ class CarLink {
   /// The car's clock against ours.
   [[nodiscard]] const SenderClock& clock() const { return clock_; }
   [[nodiscard]] LinkQuality quality(Nanoseconds now) const { return end_.quality(now); }
+  [[nodiscard]] CarStatus status(Nanoseconds now) const;
   [[nodiscard]] const OperatorEnd& end() const { return end_; }
   /// Reports that held a motion, and those without one.
   [[nodiscard]] const PerPacketFate<std::uint64_t>& counts() const { return counts_; }

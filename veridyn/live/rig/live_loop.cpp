@@ -128,10 +128,10 @@ void LiveLoop::command(LiveLinks& links, Clock& clock, const RigStep& step, Live
     r.order = bytes;
     recorder->record(r);
   }
-  constexpr Nanoseconds kQualityApart = kSecond / 10;
-  if (sent - quality_at_ < kQualityApart) return;
-  quality_at_ = sent;
-  quality_ = rig_.car()->quality(step.time);
+  constexpr Nanoseconds kApart = kSecond / 10;
+  if (sent - car_at_ < kApart) return;
+  car_at_ = sent;
+  car_ = rig_.car()->status(step.time);
 }
 
 void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRecorder* recorder,
@@ -177,7 +177,7 @@ void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRec
     status.gaps = rig_.gaps();
     status.extrapolated = rig_.extrapolated();
     status.drift = rig_.clock().drift();
-    status.car = quality_;
+    status.car = car_;
     status.times = times_;
     control.status_.publish();
   }

@@ -35,8 +35,8 @@ struct RigStatus {
   PerPacketFate<std::uint64_t> packets = {};
   std::uint64_t drives = 0, gaps = 0;
   LiveRig::Extrapolated extrapolated;
-  double drift = 0.0;              ///< of the sender's clock, NaN where not known
-  std::optional<LinkQuality> car;  ///< of the line to the car, ten times a second
+  double drift = 0.0;            ///< of the sender's clock, NaN where not known
+  std::optional<CarStatus> car;  ///< ten times a second
   LoopTimes times;
 };
 
@@ -109,8 +109,8 @@ class LiveLoop {
   std::array<Nanoseconds, kArrivals> arrivals_{};  ///< of packets accepted since the last order
   std::size_t arrived_ = 0;
   Nanoseconds last_sent_ = 0, begun_ = 0;
-  std::optional<LinkQuality> quality_;
-  Nanoseconds quality_at_ = 0;
+  std::optional<CarStatus> car_;
+  Nanoseconds car_at_ = 0;
 };
 
 }  // namespace veridyn::live

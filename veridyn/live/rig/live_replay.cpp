@@ -3,71 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/live/link/crc32.hpp"
+#include "veridyn/live/rig/recorded_rig.hpp"
 
 namespace veridyn::live {
 namespace {
 
 constexpr double kLongestScored = 1200.0;  // [s]
 
-LiveStudy study_of(const LiveFile& file) {
-  const Study study = Study::parse(file.head.study, file.head.study_name);
-  LiveStudy s = read_live_study(study);
-  study.root().finish();
-  return s;
-}
-
 /// Feeds the records of a file to a rig and keeps what the replay says of the run.
 class Replayer {
  public:
-  Replayer(LiveReplay& into, Nanoseconds start, std::uint32_t session)
-      : r_(into),
-        rig_(into.study, session),
-        design_(into.study.cueing.algorithms.front().design->clone()),
-        start_(start) {
+  Replayer(LiveReplay& into, const LiveHead& head) : r_(into), rig_(into.study, head), start_(head.started) {
     if (into.study.car) into.car.emplace();
     apart_ = std::max(nanoseconds(1.0 / into.study.options.rate), kSecond / 100);
-    period_ = nanoseconds(1.0 / into.study.options.rate);
   }
 
   void take(const LiveRecord& record) {
-    switch (record.kind) {
-      case LiveRecord::Kind::kDatagram:
-        if (const auto t = rig_.take(record.link, record.datagram)) {
-          arrivals_.push_back(t->arrival);
-          if (r_.car) r_.car->drive.add(*t);
-        }
-        break;
-      case LiveRecord::Kind::kRequest:
-        rig_.request(record.request);
-        break;
-      case LiveRecord::Kind::kKnob:
-        turn(record);
-        break;
-      case LiveRecord::Kind::kStep:
-        step(record);
-        break;
-      case LiveRecord::Kind::kCommand:
-        command(record);
-        break;
+    const RigState before = rig_.rig().state();
+    const RecordedRig::Taken taken = rig_.take(record);
+    if (taken.telemetry && r_.car) r_.car->drive.add(*taken.telemetry);
+    if (taken.turned) r_.turns.push_back({seconds(record.time - start_), rig_.turned_to()});
+    if (taken.step != nullptr) step(record, *taken.step, before);
+    if (record.kind == LiveRecord::Kind::kCommand && r_.car) {
+      ++r_.car->commands;
+      r_.car->commands_different += taken.command_differs ? 1U : 0U;
     }
   }
 
   void end() {
-    r_.packets = rig_.packets();
-    r_.senders = rig_.intake().senders();
-    r_.drives = rig_.intake().drives();
-    r_.gaps = rig_.gaps();
-    r_.extrapolated = rig_.extrapolated();
-    r_.answers = rig_.answers();
-    r_.drift = rig_.clock().drift();
-    if (rig_.intake().layout() != nullptr) r_.layout = rig_.intake().layout()->sender;
-    r_.derived = rig_.intake().derived();
-    if (const CarLink* car = rig_.car()) {
+    const LiveRig& rig = rig_.rig();
+    r_.times = rig_.times();
+    r_.packets = rig.packets();
+    r_.senders = rig.intake().senders();
+    r_.drives = rig.intake().drives();
+    r_.gaps = rig.gaps();
+    r_.extrapolated = rig.extrapolated();
+    r_.answers = rig.answers();
+    r_.drift = rig.clock().drift();
+    if (rig.intake().layout() != nullptr) r_.layout = rig.intake().layout()->sender;
+    r_.derived = rig.intake().derived();
+    if (const CarLink* car = rig.car()) {
       r_.layout = "the car's reports";
       r_.car->quality = car->quality(last_time_);
       r_.car->restarts = car->end().car_restarts();
@@ -76,20 +55,7 @@ class Replayer {
   }
 
  private:
-  void turn(const LiveRecord& record) {
-    if (record.knob == 0) values_.clear();
-    values_.push_back(record.value);
-    if (values_.size() < record.count) return;
-    set_knob_values(*design_, values_);
-    static_cast<void>(rig_.take_over(design_->make(r_.study.cueing.platform)));
-    r_.turns.push_back({seconds(record.time - start_), values_});
-  }
-
-  void step(const LiveRecord& record) {
-    const RigState before = rig_.state();
-    const RigStep& s = rig_.step(record.time);
-    command_ = s.command;
-    command_size_ = s.command_size;
+  void step(const LiveRecord& record, const RigStep& s, RigState before) {
     const std::string_view order(s.order.data(), s.order.size());
     if (order != record.order) {
       ++r_.different;
@@ -105,35 +71,10 @@ class Replayer {
     std::memcpy(chained.data(), &fingerprint_, sizeof fingerprint_);
     std::copy(order.begin(), order.end(), chained.begin() + 4);
     fingerprint_ = crc32({chained.data(), chained.size()});
-    // As the loop does: what came before it began waited for that.
-    if (r_.times.steps == 0) begun_ = record.time - period_;
-    for (const Nanoseconds arrival : arrivals_) {
-      if (arrival >= begun_) r_.times.receive_to_send.add(record.sent - arrival);
-    }
-    arrivals_.clear();
-    if (r_.times.steps > 0) {
-      r_.times.jitter.add(std::abs(record.sent - last_sent_ - period_));
-      const Nanoseconds steps = (record.time - last_time_) / period_;
-      r_.times.left_out += steps > 1 ? static_cast<std::uint64_t>(steps - 1) : 0U;
-    }
-    r_.times.wake.add(record.sent - record.time);
-    ++r_.times.steps;
-    last_sent_ = record.sent;
     last_time_ = record.time;
     r_.duration = seconds(record.time - start_);
-    if (s.state != before || r_.changes.empty()) r_.changes.push_back({r_.duration, s.state, rig_.readiness()});
+    if (s.state != before || r_.changes.empty()) r_.changes.push_back({r_.duration, s.state, rig_.rig().readiness()});
     keep(s);
-  }
-
-  /// The rig made it with the step before.
-  void command(const LiveRecord& record) {
-    if (!r_.car) return;
-    ++r_.car->commands;
-    const std::string_view made(reinterpret_cast<const char*>(command_.data()), command_size_);
-    if (made != record.order) ++r_.car->commands_different;
-    command_size_ = 0;
-    if (const std::optional<Nanoseconds> pedal = rig_.car()->take_pedal())
-      r_.times.pedal_to_command.add(record.sent - *pedal);
   }
 
   /// For score and figures.
@@ -153,13 +94,8 @@ class Replayer {
   }
 
   LiveReplay& r_;
-  LiveRig rig_;
-  std::unique_ptr<cueing::WashoutDesign> design_;
-  std::vector<double> values_;
-  CarLink::CommandBytes command_ = {};
-  std::size_t command_size_ = 0;
-  std::vector<Nanoseconds> arrivals_;
-  Nanoseconds start_, apart_ = 0, period_ = 0, last_kept_ = 0, last_sent_ = 0, last_time_ = 0, begun_ = 0;
+  RecordedRig rig_;
+  Nanoseconds start_, apart_ = 0, last_kept_ = 0, last_time_ = 0;
   std::uint32_t last_sequence_ = 0, fingerprint_ = 0;
 };
 
@@ -167,11 +103,11 @@ class Replayer {
 
 LiveReplay replay(const LiveFile& file, const std::string& name, Progress& progress) {
   LiveReplay r;
-  r.study = study_of(file);
+  r.study = recorded_study(file.head);
   r.damaged = file.damaged;
   r.cut_bytes = file.cut_bytes;
   r.run.algorithm = r.study.cueing.algorithms.front().name;
-  Replayer replayer(r, file.head.started, file.head.session);
+  Replayer replayer(r, file.head);
   progress.stage(fmt::format("replaying {}", name));
   for (std::size_t i = 0; i < file.blocks.size(); ++i) {
     if (!for_each_record(file.blocks[i], [&](const LiveRecord& record) { replayer.take(record); })) ++r.damaged;

@@ -37,6 +37,7 @@ namespace veridyn::live {
 ///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
 ///     page = "127.0.0.1:8090"       # the run's page in a browser; none when left out
 ///     page_token = "token.txt"      # file of what a control needs; needed beyond loopback, else one is drawn
+///     page_rate = "20 Hz"           # how often it moves, 1 to 60 Hz
 ///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
@@ -49,6 +50,7 @@ struct LiveStudy {
   OrderFormatOptions format;
   std::optional<Sender> page;        ///< where the run's page is shown
   std::filesystem::path page_token;  ///< file of its token; empty: one is drawn and printed
+  double page_rate = 20.0;           ///< of its statuses [Hz]
   RigOptions options;
 };
 
