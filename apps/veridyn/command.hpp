@@ -89,6 +89,7 @@ struct Command {
 
 // Each command is made in the file of its name.
 [[nodiscard]] Command camera_command();
+[[nodiscard]] Command compare_command();
 [[nodiscard]] Command cue_command();
 [[nodiscard]] Command demo_command();
 [[nodiscard]] Command export_command();
@@ -96,6 +97,7 @@ struct Command {
 [[nodiscard]] Command init_command();
 [[nodiscard]] Command inspect_command();
 [[nodiscard]] Command reconstruct_command();
+[[nodiscard]] Command regress_command();
 [[nodiscard]] Command reproduce_command();
 [[nodiscard]] Command rig_command();
 [[nodiscard]] Command scale_command();
