@@ -185,7 +185,7 @@ int cue_live(const StudyRun& run) {
   {
     LiveRecorder recorder(
         recording, {.program = program_name(),
-                    .study = study.driver ? with_calibration(run.study, *study.driver).to_toml() : run.study.to_toml(),
+                    .study = self_contained(run.study, study).to_toml(),
                     .study_name = run.study.name(),
                     .started = start,
                     .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
@@ -209,7 +209,7 @@ int cue_live(const StudyRun& run) {
     running.end();
     if (!late.empty()) notes.push_back(late);
   }
-  return report_run(run.options(), run.record(study.cueing.seed, {}), folder, recording, notes, &loop.times(),
+  return report_run(run.options(), run.record(study.cueing.seed, study.cueing.inputs), folder, recording, notes, &loop.times(),
                     Interruption());  // the Ctrl-C that ended the run does not end its report; a second one does
 #endif
 }

@@ -95,26 +95,38 @@ int rig_platform(const Arguments& arguments) {
   return c.outside + c.jumps + c.too_hard > 0 ? kFailed : kDone;
 }
 
+/// The vehicle of a study and what it is called: on the circuit, or on the study's drive.
+std::pair<std::string, VirtualVehicle> driven_vehicle(const Study& file, const LiveStudy& study,
+                                                      const CommonOptions& options) {
+  const VirtualVehicleOptions sending = read_virtual_vehicle(file.root().table("live"));
+  if (study.circuit) {
+    const auto car = vehicle::read_vehicle(file.root().table("subject"), vehicle::VehicleNeeds::kFourWheel);
+    return {car.name + " on the circuit",
+            VirtualVehicle(circuit_drive(car, study.circuit, study.circuit_drive, study.options.sensor), sending)};
+  }
+  TerminalProgress progress = progress_of(options);
+  cueing::CueingStudy drive = cueing::read_study(file, progress);
+  if (progress.interrupted()) throw Interrupted();
+  file.root().finish();
+  if (drive.vehicle.size() < 2)
+    throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
+  // Packets say what happens where the sensor is.
+  for (recording::MotionSample& s : drive.vehicle) s = recording::at_place(s, drive.motion.place);
+  return {drive.drive, VirtualVehicle(std::move(drive.vehicle), sending)};
+}
+
 int rig_vehicle(const Arguments& arguments) {
   const CommonOptions& options = arguments.common;
   const Study file = Study::load(arguments.text("STUDY"), options.overrides);
   const LiveStudy study = read_live_study(file);
   file.root().finish();  // before the drive is read, which takes [live] as it is
-  TerminalProgress progress = progress_of(options);
-  cueing::CueingStudy drive = cueing::read_study(file, progress);
-  if (progress.interrupted()) throw Interrupted();
-  file.root().finish();
   ignore_broken_pipes();
-  if (drive.vehicle.size() < 2)
-    throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
-  // Packets say what happens where the sensor is.
-  for (recording::MotionSample& s : drive.vehicle) s = recording::at_place(s, drive.motion.place);
-  VirtualVehicle vehicle(std::move(drive.vehicle), read_virtual_vehicle(file.root().table("live")));
+  auto [name, vehicle] = driven_vehicle(file, study, options);
   UdpSocket socket = UdpSocket::connected(study.telemetry, "live.telemetry");
   RealClock clock;
   const Nanoseconds start = clock.now();
   const UntilOver until(arguments, start);
-  print_line(options, fmt::format("{} drives, packets to {}", drive.drive, to_string(study.telemetry)));
+  print_line(options, fmt::format("{} drives, packets to {}", name, to_string(study.telemetry)));
   static_cast<void>(make_thread_timely());  // a vehicle does not wait for other work on the machine
   std::uint64_t not_sent = 0;
   while (!until.over(clock.now())) {
@@ -134,6 +146,30 @@ int rig_vehicle(const Arguments& arguments) {
 int rig_platform(const Arguments&) {
   throw InputError("rig", "this program was built without sockets (see VERIDYN_SOCKETS)");
 }
+/// The vehicle of a study and what it is called: on the circuit, or on the study's drive.
+std::pair<std::string, VirtualVehicle> driven_vehicle(const Study& file, const LiveStudy& study,
+                                                      const CommonOptions& options) {
+  const StudyTable live = file.root().table("live");
+  const VirtualVehicleOptions sending = read_virtual_vehicle(live);
+  if (live.has("circuit")) {
+    const StudyTable table = live.table("circuit");
+    const auto car = vehicle::read_vehicle(file.root().table("subject"), vehicle::VehicleNeeds::kFourWheel);
+    auto drive = circuit_drive(car, vehicle::read_circuit(table, study.cueing.seed), read_circuit_drive(table),
+                               study.options.sensor);
+    file.root().finish();
+    return {car.name + " on the circuit", VirtualVehicle(std::move(drive), sending)};
+  }
+  TerminalProgress progress = progress_of(options);
+  cueing::CueingStudy drive = cueing::read_study(file, progress);
+  if (progress.interrupted()) throw Interrupted();
+  file.root().finish();
+  if (drive.vehicle.size() < 2)
+    throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
+  // Packets say what happens where the sensor is.
+  for (recording::MotionSample& s : drive.vehicle) s = recording::at_place(s, drive.motion.place);
+  return {drive.drive, VirtualVehicle(std::move(drive.vehicle), sending)};
+}
+
 int rig_vehicle(const Arguments& arguments) { return rig_platform(arguments); }
 
 #endif

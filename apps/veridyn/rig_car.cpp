@@ -77,14 +77,13 @@ class TruthSender {
   }
   void send(const VirtualCar& car, Nanoseconds now) {
     if (!socket_) return;
-    const vehicle::DriveState& s = car.state();
     const recording::MotionSample m = car.motion();
-    const double yaw = s.vehicle(vehicle::kYaw), u = s.vehicle(vehicle::kU), v = s.vehicle(vehicle::kV);
+    const vehicle::WorldMotion at = car.world();
     std::array<char, kMotionPacketBytes> packet{};
     encode_motion({.sequence = sequence_++,
                    .time = seconds(now),
-                   .position = {s.vehicle(vehicle::kX), s.vehicle(vehicle::kY), 0.0},
-                   .velocity = {u * std::cos(yaw) - v * std::sin(yaw), u * std::sin(yaw) + v * std::cos(yaw), 0.0},
+                   .position = at.position,
+                   .velocity = at.velocity,
                    .force = m.force,
                    .rate = m.rate,
                    .attitude = m.attitude},
@@ -132,7 +131,7 @@ int rig_car(const Arguments& arguments) {
   for (const std::string& warning : vehicle.warnings) print_line(options, "warning: " + warning);
   OutputFolder folder(options.out);
   VirtualCar car(vehicle, virtual_car_options(settings, study.cueing.seed),
-                 static_cast<std::uint16_t>(std::random_device()() & 0xffffU));
+                 static_cast<std::uint16_t>(std::random_device()() & 0xffffU), study.circuit);
   NoisyLine to_car(settings.flips, study.cueing.seed, settings.baud),
       to_operator(settings.flips, study.cueing.seed + 1, settings.baud);
   TruthSender sender(settings.truth);
@@ -174,7 +173,7 @@ int rig_car(const Arguments& arguments) {
   folder.write("truth.csv", truth.csv());
   Summary summary = summary_of(car);
   summary["folder"] = folder.path().string();
-  folder.publish(run.record(study.cueing.seed), options, summary);
+  folder.publish(run.record(study.cueing.seed, vehicle.inputs), options, summary);
   print_line(options, fmt::format("{} commands executed, {} frames damaged, link lost {} times; wrote truth.csv in {}",
                                   car.end().verdicts()[CommandVerdict::kExecuted], car.end().frames().damaged(),
                                   car.end().links_lost(), folder.path().string()));

@@ -3,8 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "tests/live/weaving_drive.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "veridyn/cueing/platform/platform_file.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -33,6 +38,35 @@ TEST(LiveStudy, LooksForEveryPacketThatHoldsAMotion) {
   const LiveStudy s = test::rig_study("");
   EXPECT_GE(s.layouts.size(), 8U);
   for (const io::PacketLayout& layout : s.layouts) EXPECT_NE(layout.name, "outgauge");
+}
+
+TEST(LiveStudy, ReadsTheCircuitOfTheVirtualRig) {
+  const LiveStudy s =
+      test::rig_study("[live.circuit]\nspeed = '2 m/s'\ndirection = 'clockwise'\nradius = '4 m'\nflat = true\n");
+  ASSERT_NE(s.circuit, nullptr);
+  EXPECT_EQ(s.circuit->options().radius, 4.0);
+  EXPECT_EQ(s.circuit_drive.speed, 2.0);
+  EXPECT_TRUE(s.circuit_drive.clockwise);
+  EXPECT_EQ(test::rig_study("").circuit, nullptr);
+  EXPECT_THAT(refusal("[live.circuit]\nradius = '1 m'\n"), HasSubstr("more than 1.5 widths"));
+}
+
+TEST(LiveStudy, ARecordingHoldsThePlatformOfAFileByItsNumbers) {
+  const veridyn::test::TemporaryFolder folder;
+  cueing::Platform measured = cueing::built_in_platform("three_axis");
+  measured.axis_actuators[cueing::PlatformAxis::kPitch] = cueing::ActuatorOptions{.omega = 21.5, .zeta = 0.9};
+  std::ofstream(folder.path() / "platform.toml") << cueing::platform_file(measured, "");
+  const Study study = Study::parse(
+      "[cue]\nalgorithms = ['classical']\n[platform]\nfile = 'platform.toml'\npitch_delay = 0.03\n"
+      "[live]\ntelemetry = '127.0.0.1:47123'\nplatform = '127.0.0.1:47124'\n",
+      "rig.toml", folder.path());
+  const LiveStudy live = read_live_study(study);
+  const std::string recorded = self_contained(study, live).to_toml();
+  std::filesystem::remove(folder.path() / "platform.toml");
+  const LiveStudy again = read_live_study(Study::parse(recorded, "run.vlr"));
+  EXPECT_EQ(cueing::platform_keys(again.cueing.platform), cueing::platform_keys(live.cueing.platform));
+  EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).omega, 21.5);
+  EXPECT_EQ(again.cueing.platform.response(cueing::PlatformAxis::kPitch).delay, 0.03);
 }
 
 TEST(LiveStudy, RefusesInOneLineWithItsPlace) {

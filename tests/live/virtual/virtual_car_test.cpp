@@ -8,6 +8,8 @@
 #include "tests/support/refusal.hpp"
 #include "veridyn/live/teleoperation/operator_end.hpp"
 #include "veridyn/live/virtual/noisy_line.hpp"
+#include "veridyn/numerics/rotation.hpp"
+#include "veridyn/vehicle/road/circuit.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -149,8 +151,31 @@ TEST(VirtualCar, KeepsTheTruth) {
   CarTruth truth;
   c.get_going();
   truth.add(c.now, c.car);
-  EXPECT_TRUE(truth.csv().starts_with("# frame: flu\ntime[s],pos_x[m],pos_y[m],yaw[rad],speed[m/s],"));
+  EXPECT_TRUE(
+      truth.csv().starts_with("# frame: flu\ntime[s],pos_x[m],pos_y[m],pos_z[m],roll[rad],pitch[rad],yaw[rad],"));
   EXPECT_NE(truth.csv().find("\n0.4,"), std::string::npos) << truth.csv();
+}
+
+TEST(VirtualCar, ClimbsTheRampOfACircuit) {
+  // 0.15 m up 7 deg within the first straight, with its brakes on while nobody drives.
+  const auto circuit = std::make_shared<vehicle::Circuit>();
+  VirtualCar car(test::one_to_five(), DrivenCar::quiet(), 77, circuit);
+  OperatorEnd driver({.range = DrivenCar::quiet().end.range}, 5);
+  std::array<std::uint8_t, kLongestFrame> frame{};
+  double highest = 0.0, steepest = 0.0;
+  for (Nanoseconds now = 0; now < 3 * kSecond; now += 10 * kMillisecond) {
+    car.receive(Bytes(frame).first(driver.command({.drive_force = now < kSecond / 2 ? 0.0 : 30.0}, now, frame)), now);
+    car.advance(now);
+    driver.receive(Bytes(frame).first(car.report(now, frame)), now);
+    highest = std::max(highest, car.world().position.z());
+    steepest = std::max(steepest, -numerics::euler_from_quaternion(car.motion().attitude).theta);
+    if (car.world().position.x() < 1.0) {
+      EXPECT_NEAR(car.world().position.z(), 0.0, 0.005);
+    }
+  }
+  EXPECT_NEAR(highest, 0.15, 0.01);
+  // At full throttle it squats by 2 deg on its soft springs.
+  EXPECT_NEAR(steepest, 9.0 * kDegree, 1.0 * kDegree);
 }
 
 TEST(VirtualCar, RefusesNumbersThatCannotBe) {

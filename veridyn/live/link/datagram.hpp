@@ -28,6 +28,7 @@ enum class LinkOf : std::uint8_t {
   kPlatform = 1,
   kCar = 2,     ///< bytes of a car's serial line
   kDriver = 3,  ///< records of wheel events; none: the driver is gone
+  kCamera = 4,  ///< poses of the car from a camera above the track
 };
 
 /// What arrived, and when.

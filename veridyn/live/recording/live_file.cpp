@@ -80,7 +80,7 @@ bool read_record(RecordReader& r, LiveRecord& record) {
   switch (record.kind) {
     case LiveRecord::Kind::kDatagram: {
       const auto link = r.get<std::uint8_t>();
-      if (link > static_cast<std::uint8_t>(LinkOf::kDriver)) return false;
+      if (link > static_cast<std::uint8_t>(LinkOf::kCamera)) return false;
       record.link = static_cast<LinkOf>(link);
       record.datagram.arrival = r.get<Nanoseconds>();
       record.datagram.sender.address = r.get<std::uint32_t>();

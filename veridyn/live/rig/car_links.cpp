@@ -31,6 +31,7 @@ CarLinks::CarLinks(const LiveStudy& study)
       driver_(source_of(*study.driver)),
       platform_(UdpSocket::connected(study.platform, "live.platform")) {
   if (study.telemetry.port != 0) stop_.emplace(study.telemetry, "live.stop");
+  if (study.camera) camera_.emplace(study.camera->address);
 }
 
 bool CarLinks::send_command(std::string_view command) {
@@ -76,10 +77,11 @@ std::optional<Incoming> CarLinks::from_driver(Nanoseconds now) {
 }
 
 void CarLinks::wait(Nanoseconds now, Nanoseconds until) {
-  std::array<pollfd, 4> all = {{{platform_.handle(), POLLIN, 0},
+  std::array<pollfd, 5> all = {{{platform_.handle(), POLLIN, 0},
                                 {line_ ? line_->descriptor() : -1, POLLIN, 0},
                                 {driver_gone_ ? -1 : driver_->descriptor(), POLLIN, 0},
-                                {stop_ ? stop_->handle() : -1, POLLIN, 0}}};
+                                {stop_ ? stop_->handle() : -1, POLLIN, 0},
+                                {camera_ ? camera_->handle() : -1, POLLIN, 0}}};
   const std::optional<Nanoseconds> due = driver_gone_ ? std::nullopt : driver_->due();
   const Nanoseconds left = std::max<Nanoseconds>((due ? std::min(*due, until) : until) - now, 0);
   const timespec timeout{left / kSecond, left % kSecond};
@@ -95,6 +97,9 @@ std::optional<Incoming> CarLinks::next(Clock& clock, Nanoseconds until) {
     if (const auto d = platform_.receive()) return Incoming{LinkOf::kPlatform, *d};
     if (stop_) {
       if (const auto d = stop_->receive()) return Incoming{LinkOf::kTelemetry, *d};
+    }
+    if (camera_) {
+      if (const auto d = camera_->next(now)) return Incoming{LinkOf::kCamera, *d};
     }
     open_again(now);
     wait(now, until);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "veridyn/live/camera/pose_client.hpp"
 #include "veridyn/live/driver/driver_source.hpp"
 #include "veridyn/live/link/live_links.hpp"
 #include "veridyn/live/link/udp_socket.hpp"
@@ -12,8 +13,9 @@
 
 namespace veridyn::live {
 
-/// A car on a serial line, its driver, the platform over UDP, and a socket for emergency stops where the study names
-/// one, waited for together. A line that hung up is opened again as soon as it is there, which is tried twice a second.
+/// A car on a serial line, its driver, the platform over UDP, a socket for emergency stops and poses of a camera where
+/// the study names them, waited for together. A line that hung up is opened again as soon as it is there, which is
+/// tried twice a second.
 class CarLinks final : public LiveLinks {
  public:
   /// @param study with a car
@@ -36,6 +38,7 @@ class CarLinks final : public LiveLinks {
   std::unique_ptr<DriverSource> driver_;
   UdpSocket platform_;
   std::optional<UdpSocket> stop_;
+  std::optional<PoseClient> camera_;
   std::array<std::uint8_t, 512> chunk_ = {};
   std::size_t begin_ = 0, end_ = 0;  ///< of what was read of the line and not handed over
   Nanoseconds read_at_ = 0, tried_at_ = 0;

@@ -85,6 +85,10 @@ std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
     last_answer_ = datagram.arrival;
     return std::nullopt;
   }
+  if (link == LinkOf::kCamera) {
+    take_pose(datagram);
+    return std::nullopt;
+  }
   if (datagram.bytes == kEmergencyPacket) {
     request(OperatorRequest::kEmergency);
     return std::nullopt;
@@ -103,6 +107,19 @@ std::optional<Telemetry> LiveRig::take(LinkOf link, const Datagram& datagram) {
   }
   if (t) accept(*t);
   return t;
+}
+
+void LiveRig::take_pose(const Datagram& datagram) {
+  const std::optional<CameraPose> pose = decode_pose(datagram.bytes);
+  if (!pose) {
+    ++camera_.unreadable;
+    return;
+  }
+  // They come in order: a clock that went back is another one.
+  if (camera_.poses > 0 && pose->stamp <= camera_.last.stamp) camera_.clock.reset();
+  ++camera_.poses;
+  camera_.last = *pose;
+  camera_.clock.add(seconds(pose->stamp), datagram.arrival);
 }
 
 void LiveRig::accept(Telemetry& t) {

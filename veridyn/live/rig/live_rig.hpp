@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "veridyn/cueing/chain/cueing_chain.hpp"
+#include "veridyn/live/camera/pose_packet.hpp"
 #include "veridyn/live/platform/platform_packet.hpp"
 #include "veridyn/live/recording/live_record.hpp"
 #include "veridyn/live/rig/car_link.hpp"
@@ -86,6 +87,13 @@ class LiveRig {
     Sender commander;  ///< who commands it, where another program does and it says so; port 0: not known
   };
   [[nodiscard]] const Answers& answers() const { return answers_; }
+  /// Poses of the camera above the track.
+  struct Camera {
+    std::uint64_t poses = 0, unreadable = 0;
+    CameraPose last;
+    SenderClock clock;  ///< of the camera against ours
+  };
+  [[nodiscard]] const Camera& camera() const { return camera_; }
   /// Steps, of those in which the platform followed the motion, for which it was continued beyond the last packet, and
   /// how far at most.
   struct Extrapolated {
@@ -106,6 +114,7 @@ class LiveRig {
   void watch_frozen(const Telemetry& telemetry);
   void count_extrapolated();
   void accept(Telemetry& telemetry);
+  void take_pose(const Datagram& datagram);
   [[nodiscard]] bool platform_follows(Nanoseconds time) const;
   void command_car(Nanoseconds time);
 
@@ -128,6 +137,7 @@ class LiveRig {
   Readiness readiness_ = Readiness::kNoTelemetry;
   RigStep step_;
   Answers answers_;
+  Camera camera_;
   std::uint64_t gaps_ = 0;
   Extrapolated extrapolated_;
   PerRigState<std::uint64_t> entered_ = {};

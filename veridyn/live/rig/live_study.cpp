@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/nearest.hpp"
+#include "veridyn/cueing/platform/platform_file.hpp"
 #include "veridyn/io/packets/known_packets.hpp"
 
 namespace veridyn::live {
@@ -163,12 +165,23 @@ LiveStudy read_live_study(const Study& study) {
   s.cueing.response.reset();  // `veridyn cue` without --live measures it
   const StudyTable live = root.table("live");
   static_cast<void>(read_virtual_vehicle(live));  // refused here too where it is wrong
+  if (live.has("circuit")) {
+    const StudyTable table = live.table("circuit");
+    s.circuit = vehicle::read_circuit(table, s.cueing.seed);
+    s.circuit_drive = read_circuit_drive(table);
+  }
   if (live.text("telemetry") == "car") {
     s.car = read_car(live);
     s.driver = read_driver(live, s.car->range);
+    if (live.has("camera")) {
+      const StudyTable camera = live.table("camera");
+      s.camera = CameraStudy{parse_address(camera.text("address"), camera.place("address"))};
+      camera.accept("fusion");  // read by whoever fuses
+    }
     if (live.has("stop")) s.telemetry = parse_address(live.text("stop"), live.place("stop"));
   } else {
     s.telemetry = parse_address(live.text("telemetry"), live.place("telemetry"));
+    if (live.has("camera")) live.fail("camera", "is for telemetry = \"car\", whose inertial sensors go with it");
     for (const char* key : {"car", "driver"}) live.accept(key);
   }
   read_platform(live, s);
@@ -176,7 +189,6 @@ LiveStudy read_live_study(const Study& study) {
     live.fail("platform", "is a serial line; with a car the platform takes orders at an address");
   if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
   if (live.has("page_token")) s.page_token = live.file("page_token");
-  s.page_rate = number_within(live, "page_rate", "Hz", s.page_rate, 1.0, 60.0);
   s.layouts = read_layouts(live);
   RigOptions& o = s.options;
   o.rate = number_within(live, "rate", "Hz", o.rate, 20.0, 4000.0);
@@ -206,6 +218,16 @@ LiveStudy read_live_study(const Study& study) {
     }
   }
   return s;
+}
+
+Study self_contained(const Study& study, const LiveStudy& live) {
+  Study out = live.driver ? with_calibration(study, *live.driver) : study;
+  if (!study.root().table("platform").has("file")) return out;
+  std::string keys;
+  for (const auto& [key, value] : cueing::platform_keys(live.cueing.platform))
+    keys += fmt::format("{}{} = {}", keys.empty() ? "" : ", ", key, value);
+  const std::array<std::string, 1> overrides = {"platform={" + keys + "}"};
+  return Study::parse(out.to_toml(), out.name(), out.folder(), overrides);
 }
 
 }  // namespace veridyn::live

@@ -12,9 +12,18 @@
 #include "veridyn/live/rig/car_study.hpp"
 #include "veridyn/live/rig/rig_options.hpp"
 #include "veridyn/live/serial/serial_line.hpp"
+#include "veridyn/live/virtual/circuit_drive.hpp"
 #include "veridyn/live/virtual/virtual_vehicle.hpp"
 
 namespace veridyn::live {
+
+/// A camera above the track, from `[live.camera]`:
+///
+///     address = "127.0.0.1:6123"   # of `veridyn camera track --serve`
+///     [live.camera.fusion]         # with the car's inertial sensors, see camera::FusionOptions::read
+struct CameraStudy {
+  Sender address;
+};
 
 /// A study of `veridyn cue --live`: platform, algorithm and rider as `veridyn cue` has them, and where motion comes
 /// from and goes to.
@@ -37,7 +46,7 @@ namespace veridyn::live {
 ///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
 ///     page = "127.0.0.1:8090"       # the run's page in a browser; none when left out
 ///     page_token = "token.txt"      # file of what a control needs; needed beyond loopback, else one is drawn
-///     page_rate = "20 Hz"           # how often it moves, 1 to 60 Hz
+///     [live.circuit]                # of the virtual rig, see vehicle::read_circuit and CircuitDriveOptions
 ///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
 struct LiveStudy {
   cueing::CueingStudy cueing;  ///< without a drive; one algorithm
@@ -45,12 +54,14 @@ struct LiveStudy {
   Sender telemetry;                   ///< where we listen; with a car, for emergency stops only; port 0: nowhere
   std::optional<CarStudy> car;        ///< its reports are the telemetry
   std::optional<DriverStudy> driver;  ///< of the car
+  std::optional<CameraStudy> camera;  ///< above its track
   Sender platform;                    ///< where orders go
   SerialOptions platform_line;        ///< or the serial line on which they go; its device is empty where there is none
   OrderFormatOptions format;
-  std::optional<Sender> page;        ///< where the run's page is shown
-  std::filesystem::path page_token;  ///< file of its token; empty: one is drawn and printed
-  double page_rate = 20.0;           ///< of its statuses [Hz]
+  std::shared_ptr<const vehicle::Circuit> circuit;  ///< of the virtual vehicle or car; null: none
+  CircuitDriveOptions circuit_drive;                ///< around it
+  std::optional<Sender> page;                       ///< where the run's page is shown
+  std::filesystem::path page_token;                 ///< file of its token; empty: one is drawn and printed
   RigOptions options;
 };
 
@@ -60,6 +71,9 @@ struct LiveStudy {
 /// All keys but those of a drive are read; [data], [drive], [subject], [road] are known and left alone.
 /// @throws InputError for anything that is wrong in it.
 [[nodiscard]] LiveStudy read_live_study(const Study& study);
+
+/// The same study without names of files that a replay needs: calibration of a wheel and platform by their numbers.
+[[nodiscard]] Study self_contained(const Study& study, const LiveStudy& live);
 
 /// How the virtual vehicle sends, from `[live.vehicle]`:
 ///     rate = "100 Hz", jitter = "20 ms", loss = 0.01, clock_drift = 50e-6, seed = 1

@@ -19,6 +19,9 @@ void SignChecker::add(const std::vector<recording::MotionSample>& samples) {
   for (const recording::MotionSample& s : samples) {
     if (!samples_.empty() && s.time <= samples_.back().time) continue;
     samples_.push_back(s);
+    // On a ramp gravity is felt forward: it is no change of speed.
+    if (s.attitude_from == recording::Origin::kMeasured)
+      samples_.back().force = recording::acceleration(s) + recording::force_at_rest(s.frame);
   }
   if (samples_.empty()) return;
   const double from = samples_.back().time - kLongest;

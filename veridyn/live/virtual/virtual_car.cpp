@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "veridyn/core/error.hpp"
+#include "veridyn/numerics/rotation.hpp"
+#include "veridyn/vehicle/simulation/surface_drive.hpp"
 
 namespace veridyn::live {
 namespace {
@@ -18,6 +20,14 @@ void disturb(CarSensors& s, numerics::RandomStream& random, const std::array<dou
   for (double& value : s.wheel_speeds) value += sizes[3] * random.normal();
 }
 
+std::unique_ptr<vehicle::SteppedVehicle> on_road(const vehicle::Vehicle& car,
+                                                 std::shared_ptr<const vehicle::RoadSurface> surface) {
+  const vehicle::FourWheelOptions options = vehicle::four_wheel_options(car);
+  const double usual_speed = car.speed.value_or(4.0);
+  if (surface) return vehicle::surface_vehicle(car, options, std::move(surface), usual_speed);
+  return vehicle::stepped_vehicle(car, options, nullptr, usual_speed);
+}
+
 }  // namespace
 
 void VirtualCarOptions::validate() const {
@@ -27,11 +37,11 @@ void VirtualCarOptions::validate() const {
     throw InputError("steering_lag", fmt::format("is {} s; must be from 0 to 1", steering_lag));
 }
 
-VirtualCar::VirtualCar(const vehicle::Vehicle& vehicle, const VirtualCarOptions& options, std::uint16_t run)
+VirtualCar::VirtualCar(const vehicle::Vehicle& vehicle, const VirtualCarOptions& options, std::uint16_t run,
+                       std::shared_ptr<const vehicle::RoadSurface> surface)
     : options_(options),
       wheel_radius_(vehicle.longitudinal.wheel_radius),
-      vehicle_(vehicle::stepped_vehicle(vehicle, vehicle::four_wheel_options(vehicle), nullptr,
-                                        vehicle.speed.value_or(4.0))),
+      vehicle_(on_road(vehicle, std::move(surface))),
       end_(options.end, run),
       random_(options.seed, "virtual car") {
   options_.validate();
@@ -85,15 +95,19 @@ std::size_t VirtualCar::report(Nanoseconds now, std::span<std::uint8_t> out) {
 void CarTruth::add(Nanoseconds time, const VirtualCar& car) {
   const vehicle::DriveState& s = car.state();
   const recording::MotionSample m = car.motion();
-  rows_.push_back(
-      {{seconds(time), s.vehicle(vehicle::kX), s.vehicle(vehicle::kY), s.vehicle(vehicle::kYaw), s.vehicle(vehicle::kU),
-        s.vehicle(vehicle::kV), s.vehicle(vehicle::kR), m.force.x(), m.force.y(), m.force.z(), s.controls.steer,
-        s.controls.drive_torque, s.controls.brake_torque, static_cast<double>(car.actuation().state)}});
+  const Eigen::Vector3d place = car.world().position;
+  const numerics::EulerAngles angles = numerics::euler_from_quaternion(m.attitude);
+  rows_.push_back({{seconds(time), place.x(), place.y(), place.z(), angles.phi, angles.theta, s.vehicle(vehicle::kYaw),
+                    s.vehicle(vehicle::kU), s.vehicle(vehicle::kV), s.vehicle(vehicle::kR), m.force.x(), m.force.y(),
+                    m.force.z(), s.controls.steer, s.controls.drive_torque, s.controls.brake_torque,
+                    static_cast<double>(car.actuation().state)}});
 }
 
 std::string CarTruth::csv() const {
   std::string text =
-      "# frame: flu\ntime[s],pos_x[m],pos_y[m],yaw[rad],speed[m/s],lateral_velocity[m/s],yaw_rate[rad/s],"
+      "# frame: "
+      "flu\ntime[s],pos_x[m],pos_y[m],pos_z[m],roll[rad],pitch[rad],yaw[rad],speed[m/s],lateral_velocity[m/"
+      "s],yaw_rate[rad/s],"
       "accel_x[m/s^2],accel_y[m/s^2],accel_z[m/s^2],steer[rad],drive_torque[N m],brake_torque[N m],state[1]\n";
   for (const Row& row : rows_) {
     for (std::size_t i = 0; i < row.values.size(); ++i)

@@ -6,6 +6,7 @@
 
 #include "veridyn/live/teleoperation/car_end.hpp"
 #include "veridyn/numerics/random.hpp"
+#include "veridyn/vehicle/road/road_surface.hpp"
 #include "veridyn/vehicle/simulation/stepped_vehicle.hpp"
 
 namespace veridyn::live {
@@ -43,7 +44,9 @@ class VirtualCar {
 
   /// @param run another number after each start @throws InputError as the options, and for a vehicle that cannot be
   /// stepped
-  VirtualCar(const vehicle::Vehicle& vehicle, const VirtualCarOptions& options, std::uint16_t run);
+  /// @param surface on which it drives; null: a level road
+  VirtualCar(const vehicle::Vehicle& vehicle, const VirtualCarOptions& options, std::uint16_t run,
+             std::shared_ptr<const vehicle::RoadSurface> surface = nullptr);
 
   /// Takes bytes of the line. @param now of the car's clock, as in every function here never going back
   void receive(Bytes bytes, Nanoseconds now);
@@ -55,6 +58,8 @@ class VirtualCar {
   /// Without errors of sensors.
   [[nodiscard]] const vehicle::DriveState& state() const { return vehicle_->state(); }
   [[nodiscard]] recording::MotionSample motion() const { return vehicle_->motion(options_.sensor); }
+  /// Where it is in the world, z up.
+  [[nodiscard]] vehicle::WorldMotion world() const { return vehicle_->world(); }
   [[nodiscard]] CarSensors true_sensors() const;
   [[nodiscard]] const CarActuation& actuation() const { return actuation_; }
   [[nodiscard]] const CarEnd& end() const { return end_; }
@@ -71,9 +76,9 @@ class VirtualCar {
   CarSensors bias_;
 };
 
-/// What really happened, row by row, as our CSV in frame flu: time, pos_x, pos_y, yaw, speed, lateral_velocity,
-/// yaw_rate, accel_x|y|z at the sensor, steer, drive_torque, brake_torque, state (of `CarState`). Rows 100 times a
-/// second.
+/// What really happened, row by row, as our CSV in frame flu: time, pos_x|y|z, roll, pitch, yaw, speed,
+/// lateral_velocity, yaw_rate, accel_x|y|z at the sensor (gravity in), steer, drive_torque, brake_torque, state (of
+/// `CarState`). Attitude against the world. Rows 100 times a second.
 class CarTruth {
  public:
   void add(Nanoseconds time, const VirtualCar& car);
@@ -82,7 +87,7 @@ class CarTruth {
 
  private:
   struct Row {
-    std::array<double, 14> values;
+    std::array<double, 17> values;
   };
   std::vector<Row> rows_;
 };

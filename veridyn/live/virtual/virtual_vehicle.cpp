@@ -20,12 +20,31 @@ Eigen::Vector3d velocity(const std::vector<MotionSample>& drive, std::size_t k) 
   return {v.x(), v.y(), 0.0};
 }
 
+std::vector<PacketedMotion> packeted(std::vector<MotionSample> drive) {
+  for (MotionSample& s : drive) s = recording::in_frame(s, Frame::kFlu);
+  std::vector<PacketedMotion> out;
+  out.reserve(drive.size());
+  for (std::size_t k = 0; k < drive.size(); ++k) {
+    const MotionSample& s = drive[k];
+    out.push_back({.sequence = 0,
+                   .time = s.time,
+                   .position = {s.position.x(), s.position.y(), 0.0},
+                   .velocity = velocity(drive, k),
+                   .force = s.force,
+                   .rate = s.rate,
+                   .attitude = s.attitude});
+  }
+  return out;
+}
+
 }  // namespace
 
 VirtualVehicle::VirtualVehicle(std::vector<MotionSample> drive, const VirtualVehicleOptions& options)
+    : VirtualVehicle(packeted(std::move(drive)), options) {}
+
+VirtualVehicle::VirtualVehicle(std::vector<PacketedMotion> drive, const VirtualVehicleOptions& options)
     : drive_(std::move(drive)), options_(options), random_(options.seed, "virtual vehicle") {
   VERIDYN_ASSERT(drive_.size() >= 2 && options.rate > 0.0);
-  for (MotionSample& s : drive_) s = recording::in_frame(s, Frame::kFlu);
   schedule();
 }
 
@@ -41,15 +60,14 @@ std::optional<std::string_view> VirtualVehicle::next() {
   const double at = drive_.front().time + std::fmod(passed, length);
   if (at < drive_[at_].time) at_ = 0;
   while (at_ + 2 < drive_.size() && drive_[at_ + 1].time <= at) ++at_;
-  const MotionSample &a = drive_[at_], &b = drive_[at_ + 1];
+  const PacketedMotion &a = drive_[at_], &b = drive_[at_ + 1];
   const double part = std::clamp((at - a.time) / (b.time - a.time), 0.0, 1.0);
   const auto line = [&](const auto& from, const auto& to) { return (from + part * (to - from)).eval(); };
-  const Eigen::Vector2d position = line(a.position, b.position);
   constexpr double kItsZero = 1000.0;  // [s]: its clock is not ours
   encode_motion({.sequence = static_cast<std::uint32_t>(number_ % 0xffffffffU),
                  .time = kItsZero + passed * (1.0 + options_.clock_drift),
-                 .position = {position.x(), position.y(), 0.0},
-                 .velocity = line(velocity(drive_, at_), velocity(drive_, at_ + 1)),
+                 .position = line(a.position, b.position),
+                 .velocity = line(a.velocity, b.velocity),
                  .force = line(a.force, b.force),
                  .rate = line(a.rate, b.rate),
                  .attitude = a.attitude.slerp(part, b.attitude)},

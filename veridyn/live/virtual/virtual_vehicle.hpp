@@ -30,6 +30,8 @@ class VirtualVehicle {
 
   /// @param drive stamps growing, frame flu or frd, two samples at least
   VirtualVehicle(std::vector<recording::MotionSample> drive, const VirtualVehicleOptions& options = {});
+  /// @param drive times growing, two motions at least
+  VirtualVehicle(std::vector<PacketedMotion> drive, const VirtualVehicleOptions& options = {});
 
   /// When the next packet is to be sent, from the beginning.
   [[nodiscard]] Nanoseconds due() const { return due_; }
@@ -40,7 +42,7 @@ class VirtualVehicle {
 
  private:
   void schedule();
-  std::vector<recording::MotionSample> drive_;
+  std::vector<PacketedMotion> drive_;
   VirtualVehicleOptions options_;
   std::array<char, kPacketBytes> packet_{};
   std::uint64_t number_ = 0, sent_ = 0, lost_ = 0;
