@@ -189,6 +189,7 @@ LiveStudy read_live_study(const Study& study) {
     live.fail("platform", "is a serial line; with a car the platform takes orders at an address");
   if (live.has("page")) s.page = parse_address(live.text("page"), live.place("page"));
   if (live.has("page_token")) s.page_token = live.file("page_token");
+  s.page_rate = number_within(live, "page_rate", "Hz", s.page_rate, 1.0, 60.0);
   s.layouts = read_layouts(live);
   RigOptions& o = s.options;
   o.rate = number_within(live, "rate", "Hz", o.rate, 20.0, 4000.0);

@@ -46,6 +46,7 @@ struct CameraStudy {
 ///     lost_after = 0.25             # [s], as frozen_after = 1, stale_after = 0.25, unanswered_after = 0.25
 ///     page = "127.0.0.1:8090"       # the run's page in a browser; none when left out
 ///     page_token = "token.txt"      # file of what a control needs; needed beyond loopback, else one is drawn
+///     page_rate = "20 Hz"           # how often it moves, 1 to 60 Hz
 ///     [live.circuit]                # of the virtual rig, see vehicle::read_circuit and CircuitDriveOptions
 ///     signs = "before"              # or "while" or "off": when the telemetry's signs are checked
 struct LiveStudy {
@@ -62,6 +63,7 @@ struct LiveStudy {
   CircuitDriveOptions circuit_drive;                ///< around it
   std::optional<Sender> page;                       ///< where the run's page is shown
   std::filesystem::path page_token;                 ///< file of its token; empty: one is drawn and printed
+  double page_rate = 20.0;                          ///< of its statuses [Hz]
   RigOptions options;
 };
 
