@@ -21,6 +21,9 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/study.hpp"
+#include "veridyn/live/camera/pose_packet.hpp"
+#include "veridyn/live/camera/pose_server.hpp"
+#include "veridyn/live/rig/live_study.hpp"
 #include "veridyn/report/document/html.hpp"
 
 namespace veridyn::app {
@@ -97,6 +100,33 @@ int calibrate(const Arguments& arguments) {
   return kDone;
 }
 
+/// Sends the poses of single frames over TCP, each when the frame would have come from a camera.
+class PoseSender {
+ public:
+  /// @param address empty: to nobody
+  explicit PoseSender(const std::string& address) : start_(clock_.now()) {
+    if (!address.empty()) server_.emplace(live::parse_address(address, "--serve"), "--serve");
+  }
+  void send(const TrackedPose& pose) {
+    if (!server_) return;
+    const live::Nanoseconds stamp = start_ + live::nanoseconds(pose.time);
+    clock_.sleep_until(stamp);
+    ++sequence_;
+    if (!pose.measured) return;
+    const live::PosePacket packet = live::encode({.sequence = sequence_,
+                                                  .stamp = stamp,
+                                                  .pose = pose.measured->pose,
+                                                  .covariance = pose.measured->covariance()});
+    server_->send({packet.data(), packet.size()});
+  }
+
+ private:
+  live::RealClock clock_;
+  live::Nanoseconds start_;
+  std::optional<live::PoseServer> server_;
+  std::uint32_t sequence_ = 0;
+};
+
 int track_video(const Arguments& arguments) {
   const CommonOptions& common = arguments.common;
   OutputFolder folder(common.out);
@@ -116,6 +146,7 @@ int track_video(const Arguments& arguments) {
   progress.stage("following the car");
   std::vector<TrackedPose> poses;
   std::size_t seen = 0, lost = 0;
+  PoseSender sender(arguments.text("--serve"));
   while (const auto frame = frames.next()) {
     stop_if_interrupted(arguments);
     const GreyView view = frame->image.view();
@@ -123,6 +154,7 @@ int track_video(const Arguments& arguments) {
                                   : tracker.add(frame->time, view));
     seen += poses.back().status == TrackStatus::kMeasured ? 1 : 0;
     lost += poses.back().status == TrackStatus::kLost ? 1 : 0;
+    sender.send(poses.back());
   }
   if (seen == 0)
     throw InputError(
@@ -215,7 +247,11 @@ Command camera_command() {
                 {.name = "--method",
                  .help = "bright markers, or what differs from the first frame, in which the track is empty",
                  .value = "markers",
-                 .choices = {"markers", "silhouette"}}},
+                 .choices = {"markers", "silhouette"}},
+                {.name = "--serve",
+                 .help = "send each pose over TCP to whoever connects there, at the video's own pace",
+                 .value = std::string(""),
+                 .type = "ADDRESS"}},
            .default_out = "out/camera_track",
            .example = "veridyn camera track drive.avi --calibration camera/calibration.toml --set "
                       "tracker.markers_x=[0.1,-0.08,-0.06] --set tracker.markers_y=[0,0.05,-0.04]",

@@ -1,4 +1,5 @@
 // veridyn camera, where the program was built without OpenCV.
+#include "apps/veridyn/camera_run.hpp"
 #include "apps/veridyn/command.hpp"
 #include "veridyn/core/error.hpp"
 
@@ -12,5 +13,12 @@ Command camera_command() {
             throw InputError("camera", "this program was built without it: OpenCV was missing (run tools/setup.sh)");
           }};
 }
+
+void check_camera(const Study& study) {
+  if (study.root().table("live").has("camera"))
+    study.root().table("live").fail("camera", "needs a program with OpenCV, which this one was built without");
+}
+
+std::optional<FusedRun> fused_run(const Study& /*study*/, const live::LiveReplay& /*run*/) { return std::nullopt; }
 
 }  // namespace veridyn::app

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "apps/veridyn/camera_run.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/live_drive.hpp"
 #include "apps/veridyn/live_operator.hpp"
@@ -56,6 +57,17 @@ std::string packets_csv(const LiveReplay& r) {
     for (std::size_t i = 0; i < kPacketFates; ++i)
       text += fmt::format("{},{},{}\n", to_string(s.sender), name_of(static_cast<PacketFate>(i)), s.counts[i]);
   }
+  if (!r.car) return text;
+  // The car's reports, and what became of others on the line.
+  const LinkQuality& q = r.car->quality;
+  for (std::size_t i = 0; i < kPacketFates; ++i) {
+    const auto fate = static_cast<PacketFate>(i);
+    const std::uint64_t count = fate == PacketFate::kRepeated     ? q.reports_duplicate
+                                : fate == PacketFate::kOutOfOrder ? q.reports_late
+                                                                  : r.packets[i];
+    text += fmt::format("car,{},{}\n", name_of(fate), count);
+  }
+  text += fmt::format("car,lost,{}\ncar,damaged frames,{}\n", q.reports_lost, q.frames_damaged);
   return text;
 }
 
@@ -87,6 +99,8 @@ Summary summary_of(const OutputFolder& folder, const LiveReplay& r, const std::f
     s["car"]["reports"] = r.car->quality.reports_received;
     s["car"]["report_loss"] = r.car->quality.report_loss();
     s["car"]["pedal_to_command_p99_s"] = r.times.pedal_to_command.quantile(0.99);
+    s["car"]["pedal_to_platform_s"]["p50"] = r.car->pedal_to_platform.whole.quantile(0.5);
+    s["car"]["pedal_to_platform_s"]["p99"] = r.car->pedal_to_platform.whole.quantile(0.99);
   }
   for (std::size_t i = 0; i < kPacketFates; ++i)
     s["packets"][std::string(name_of(static_cast<PacketFate>(i)))] = r.packets[i];
@@ -122,7 +136,8 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
                const std::filesystem::path& recording, const std::vector<std::string>& notes, const LoopTimes* measured,
                const Interruption& interruption) {
   TerminalProgress progress(options.quiet, options.threads, interruption);
-  LiveReplay r = replay(read_live_file(recording), recording.string(), progress);
+  const LiveFile recorded = read_live_file(recording);
+  LiveReplay r = replay(recorded, recording.string(), progress);
   if (measured != nullptr) {
     r.times.wait = measured->wait;
     r.times.work = measured->work;
@@ -136,9 +151,23 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
     folder.write("drive.csv", DriveTable::header() + r.car->drive.take_lines());
     folder.write("delays.toml", delays_toml(r));
   }
+  const auto fused = fused_run(Study::parse(recorded.head.study, recorded.head.study_name), r);
+  if (fused) folder.write("motion.csv", fused->motion_csv);
   folder.write("report.html", report::to_html(report::live_report(r, score, notes, program_name())));
   const std::string files = fmt::format("{}", fmt::join(folder.files(), ", "));
-  folder.publish(record, options, summary_of(folder, r, recording));
+  Summary summary = summary_of(folder, r, recording);
+  if (r.study.camera && r.car) {
+    summary["camera"]["poses"] = r.car->camera.poses;
+    summary["camera"]["unreadable"] = r.car->camera.unreadable;
+    if (fused) {
+      summary["camera"]["fused_samples"] = fused->samples;
+      summary["camera"]["frames"] = fused->frames;
+      summary["camera"]["frames_too_late"] = fused->late;
+      summary["camera"]["offset_s"] = fused->offset;
+      summary["camera"]["sigma_offset_s"] = fused->sigma_offset;
+    }
+  }
+  folder.publish(record, options, summary);
   print_line(options, fmt::format("{} orders in {:.1f} s, {} beyond limits, {} different when replayed", r.times.steps,
                                   r.duration, r.outside, r.different));
   if (r.times.receive_to_send.count() > 0)
@@ -147,6 +176,13 @@ int report_run(const CommonOptions& options, const RunRecord& record, OutputFold
                            1e3 * r.times.receive_to_send.quantile(0.5), 1e3 * r.times.receive_to_send.quantile(0.99),
                            1e3 * seconds(r.times.receive_to_send.largest())));
   if (r.car) print_line(options, car_line(r));
+  if (r.study.camera && r.car && !fused) print_line(options, "camera: no pose of it came in: nothing is fused");
+  if (fused)
+    print_line(options,
+               fmt::format("camera: {} poses, {} of them fused, {} too late; its stamps are {:+.1f} ms (95 %: +- "
+                           "{:.1f}) off the shortest way",
+                           r.car->camera.poses, fused->frames, fused->late, 1e3 * fused->offset,
+                           1960.0 * fused->sigma_offset));
   print_line(options, fmt::format("wrote {} in {}", files, folder.path().string()));
   if (r.car && r.car->commands_different > 0) return kFailed;
   if (r.different > 0 || r.outside > 0 || r.answers.outside_limits > 0) return kFailed;
@@ -161,6 +197,7 @@ int cue_live(const StudyRun& run) {
 #else
   OutputFolder folder(run.options().out);
   const LiveStudy study = read_live_study(run.study);
+  check_camera(run.study);
   run.study.root().finish();
   constexpr double kLongestToPark = 10.0;  // [s], on top of the fade
   const auto session = static_cast<std::uint32_t>(std::random_device()());
@@ -183,13 +220,12 @@ int cue_live(const StudyRun& run) {
                                   fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   std::vector<std::string> notes = study.cueing.notes;
   {
-    LiveRecorder recorder(
-        recording, {.program = program_name(),
-                    .study = self_contained(run.study, study).to_toml(),
-                    .study_name = run.study.name(),
-                    .started = start,
-                    .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
-                    .session = session});
+    LiveRecorder recorder(recording, {.program = program_name(),
+                                      .study = self_contained(run.study, study).to_toml(),
+                                      .study_name = run.study.name(),
+                                      .started = start,
+                                      .started_utc = std::chrono::duration_cast<std::chrono::nanoseconds>(utc).count(),
+                                      .session = session});
     LiveControl control;
     const LiveSignals signals(control);
     print_line(run.options(), fmt::format("listening at {}, orders to {} at {:g} Hz; recording {}",
@@ -209,7 +245,8 @@ int cue_live(const StudyRun& run) {
     running.end();
     if (!late.empty()) notes.push_back(late);
   }
-  return report_run(run.options(), run.record(study.cueing.seed, study.cueing.inputs), folder, recording, notes, &loop.times(),
+  return report_run(run.options(), run.record(study.cueing.seed, study.cueing.inputs), folder, recording, notes,
+                    &loop.times(),
                     Interruption());  // the Ctrl-C that ended the run does not end its report; a second one does
 #endif
 }

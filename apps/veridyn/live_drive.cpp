@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "veridyn/core/error.hpp"
 
@@ -44,6 +46,17 @@ void LiveDrive::add(const std::vector<Telemetry>& motions, double time) {
   write(table_.take_lines());
 }
 
+namespace {
+
+using Stage = PedalTrace::Stage;
+constexpr std::array<std::pair<Stage, const char*>, PedalTrace::kStages> kStageNames = {{{Stage::kInput, "input"},
+                                                                                         {Stage::kLine, "line"},
+                                                                                         {Stage::kCar, "car"},
+                                                                                         {Stage::kMotion, "motion"},
+                                                                                         {Stage::kPlatform, "answer"}}};
+
+}  // namespace
+
 std::string delays_toml(const LiveReplay& run) {
   std::string text =
       "# Delays of this run [s]: half of all, and 99 %; one way over the line only bounds can be known.\n[delays]\n";
@@ -64,6 +77,9 @@ std::string delays_toml(const LiveReplay& run) {
   bounds("report", q.report_delay);
   histogram("report_to_order", run.times.receive_to_send);
   text += fmt::format("motion = {}  # chosen: live.delay\n", run.study.options.even.delay);
+  const PedalTrace::Result& trace = run.car->pedal_to_platform;
+  histogram("pedal_to_platform", trace.whole);
+  for (const auto& [stage, name] : kStageNames) histogram(fmt::format("pedal_to_platform_{}", name), trace[stage]);
   if (run.answers.count > 0) text += fmt::format("platform_answer = {:.6f}\n", seconds(run.answers.round_trip));
   return text;
 }

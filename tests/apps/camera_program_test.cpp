@@ -2,17 +2,22 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "tests/apps/process.hpp"
 #include "tests/apps/program.hpp"
 #include "tests/camera/fusion/simulated_sensors.hpp"
 #include "tests/camera/rendered_drive.hpp"
 #include "veridyn/camera/tracking/pose_tables.hpp"
 #include "veridyn/camera/tracking/video_frames.hpp"
 #include "veridyn/io/tables/table.hpp"
+#include "veridyn/live/camera/pose_client.hpp"
 
 namespace veridyn {
 namespace {
@@ -49,6 +54,29 @@ TEST_F(CameraProgram, CalibratesAndFollowsACarInAVideo) {
   }
   EXPECT_FALSE(camera::read_poses(in_out("poses.csv")).empty());
 
+  // Served over TCP at the video's own pace, with the same poses.
+  const auto port = static_cast<std::uint16_t>(44000 + ::getpid() % 2000);
+  live::PoseClient client({0x7f000001, port});
+  Process served({"camera", "track", video, "--calibration", (folder_ / "camera/calibration.toml").string(), "--serve",
+                  fmt::format("127.0.0.1:{}", port), "--out", (folder_ / "served").string()},
+                 folder_ / "served.txt");
+  live::RealClock clock;
+  std::vector<live::CameraPose> received;
+  for (const live::Nanoseconds end = clock.now() + 5 * live::kSecond; clock.now() < end && received.size() < 15;) {
+    while (const auto d = client.next(clock.now())) received.push_back(live::decode_pose(d->bytes).value());
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(served.wait(), 0) << served.said();
+  ASSERT_GE(received.size(), 15U);
+  for (const live::CameraPose& p : received) {
+    const double time = (p.sequence - 1) / 30.0;
+    const auto same =
+        std::find_if(poses.begin(), poses.end(), [&](const auto& q) { return std::abs(q.time - time) < 1e-3; });
+    ASSERT_NE(same, poses.end());
+    EXPECT_LT((p.pose - same->pose).norm(), 1e-9);
+    EXPECT_NEAR(live::seconds(p.stamp - received.front().stamp), (p.sequence - received.front().sequence) / 30.0, 1e-6);
+  }
+
   // Its markers alone are no silhouette of a car.
   expect_refusal("camera track " + video + calibration + out() + " --method silhouette",
                  "the car was recognised in none of 30 frames: is the first frame empty");
@@ -61,6 +89,29 @@ TEST_F(CameraProgram, CalibratesAndFollowsACarInAVideo) {
   expect_refusal("camera track " + video + calibration + out() + " --set tracker.markers_x=[0.3,-0.3,0.1] " +
                      "--set tracker.markers_y=[0,0,0.2]",
                  "the car was recognised in none of 30 frames");
+}
+
+TEST_F(CameraProgram, SaysInOneLineThatAVideoChangesItsSize) {
+  // Motion JPEG one picture behind the other, of two sizes.
+  std::string stream;
+  for (const int width : {64, 96}) {
+    camera::GreyImage image{.width = width, .height = 48, .pixels = {}};
+    image.pixels.assign(static_cast<std::size_t>(width) * 48, 90);
+    const std::filesystem::path part = folder_ / "part.avi";
+    camera::write_video(part, std::vector<camera::GreyImage>(5, image), 25.0);
+    const std::string bytes = read_file(part);
+    for (std::size_t begin = 0; (begin = bytes.find("\xFF\xD8\xFF", begin)) != std::string::npos;) {
+      const std::size_t end = bytes.find("\xFF\xD9", begin) + 2;
+      stream += bytes.substr(begin, end - begin);
+      begin = end;
+    }
+  }
+  const std::string video = file("changes.mjpeg", stream);
+  const camera::TrackCamera truth = camera::testing::half_size_camera();
+  const std::string points = file("points.csv", camera::to_csv(camera::testing::grid_points(truth, 0.2, 0.15, 1)));
+  ASSERT_EQ(run("camera calibrate " + points + " --out " + (folder_ / "camera").string()).exit_code, 0);
+  expect_refusal("camera track " + video + " --calibration " + (folder_ / "camera/calibration.toml").string() + out(),
+                 video + ": frame 5 is 96 x 48 px, those before 64 x 48\n");
 }
 
 TEST_F(CameraProgram, RefusesPointsThatFitNoMapInOneLine) {

@@ -109,12 +109,22 @@ void LiveProgramTest::disturb(int times, std::uint64_t seed) {
   };
   auto p = platform();
   ASSERT_TRUE(p->says("takes orders", 20.0)) << p->said();
-  auto r = rig();
+  std::vector<std::string> runs = {"rig"};
+  auto r = rig(runs.back());
   auto v = vehicle();
   ASSERT_TRUE(r->says("running", 20.0)) << r->said();
   for (int k = 0; k < times; ++k) {
     const double what = random.uniform();
-    if (what < 0.3) {
+    if (what < 0.08) {
+      r.reset();  // SIGKILL: the platform leads itself to neutral, and takes orders of another run
+      pause(0.05, 3.0);
+      runs.push_back(fmt::format("rig{}", k));
+      r = rig(runs.back());
+    } else if (what < 0.16) {
+      expect_within_limits(*p);
+      pause(0.05, 2.0);
+      p = platform();
+    } else if (what < 0.3) {
       v->signal(SIGSTOP);
       pause(0.05, 3.0);
       v->signal(SIGCONT);
@@ -138,21 +148,31 @@ void LiveProgramTest::disturb(int times, std::uint64_t seed) {
   r->signal(SIGINT);
   EXPECT_EQ(r->wait(), 0) << r->said();
   expect_within_limits(*p);
-  const auto summary =
-      run("cue --replay " + recording().string() + " --quiet --json --out " + (folder_ / "replay").string());
-  ASSERT_EQ(summary.exit_code, 0) << summary.text;
-  const auto json = nlohmann::json::parse(summary.text);
-  EXPECT_EQ(json["orders_outside_limits"], 0);
-  EXPECT_EQ(json["orders_different_when_replayed"], 0);
+  // The recordings are whole, those of runs that were killed too.
+  nlohmann::json json;
+  for (const std::string& name : runs) {
+    const std::filesystem::path file = recording(name);
+    if (file.empty()) continue;  // killed before it began
+    const auto summary =
+        run("cue --replay " + file.string() + " --quiet --json --out " + (folder_ / "replay").string());
+    if (name != runs.back() && summary.text.find("holds no steps") != std::string::npos) continue;
+    ASSERT_EQ(summary.exit_code, 0) << name << ": " << summary.text;
+    json = nlohmann::json::parse(summary.text);
+    EXPECT_EQ(json["orders_outside_limits"], 0) << name;
+    EXPECT_EQ(json["orders_different_when_replayed"], 0) << name;
+  }
   // The last states: running, then the way to park that ended it.
   const auto& states = json["states"];
   ASSERT_GE(states.size(), 4U);
   EXPECT_EQ(states[states.size() - 3]["state"], "running") << states.dump();
 }
 
-TEST_F(LiveProgramTest, PlatformStaysWithinItsLimitsWhatIsKilledAndStopped) { disturb(6, 1); }
+TEST_F(LiveProgramTest, PlatformStaysWithinItsLimitsWhatIsKilledAndStopped) { disturb(10, 1); }
 
-TEST_F(LiveProgramTest, SoakOfTwoHundredKillsAndStops) { disturb(200, 2); }
+TEST_F(LiveProgramTest, SoakOfTwoHundredKillsAndStops) {
+  const char* times = std::getenv("VERIDYN_SOAK_KILLS");
+  disturb(times != nullptr ? std::stoi(times) : 200, 2);
+}
 
 TEST_F(LiveProgramTest, RecordingOfARigThatWasKilledIsReplayedToItsEnd) {
   auto p = platform();
@@ -370,7 +390,20 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   EXPECT_NEAR(pitch["gain"]["value"].get<double>(), 1.0, 0.1) << sweep.text;
   EXPECT_NEAR(pitch["omega_rad_s"]["value"].get<double>(), 30.0, 9.0) << sweep.text;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "sweep/told_and_reached.csv"));
-  EXPECT_THAT(read_file(folder_ / "sweep/platform.toml"), HasSubstr("subject = \"three_axis\""));
+  // What was measured is read by the study that names the file, axis by axis; run.json says which file that was.
+  const std::string measured = read_file(folder_ / "sweep/platform.toml");
+  for (const char* key : {"pitch_omega = ", "pitch_zeta = ", "pitch_delay = ", "omega = 30.0"})
+    EXPECT_THAT(measured, HasSubstr(key));
+  const std::string tuned = (folder_ / "tuned.toml").string();
+  std::ofstream(tuned) << "[platform]\nfile = \"sweep/platform.toml\"\n[subject]\nkind = \"vehicle\"\nbuiltin = "
+                          "\"reference\"\n[drive]\nmodel = \"four-wheel\"\nmanoeuvre = \"sine\"\nspeed = 20\n"
+                          "amplitude = 0.02\nfrequency = 0.25\nduration = 8\n";
+  const Outcome cued = run("cue " + tuned + " --quiet --out " + (folder_ / "tuned").string());
+  ASSERT_EQ(cued.exit_code, 0) << cued.text;
+  const auto record = nlohmann::json::parse(read_file(folder_ / "tuned/run.json"));
+  ASSERT_EQ(record["inputs"].size(), 1U) << record.dump();
+  EXPECT_THAT(record["inputs"][0]["file"].get<std::string>(), HasSubstr("platform.toml"));
+  EXPECT_EQ(record["inputs"][0]["sha1"].get<std::string>().size(), 40U);
   std::this_thread::sleep_for(until_another_may_command);
   const Outcome force = run(test_of("force", " --signal force --value 1m/s^2 --seconds 3"));
   ASSERT_EQ(force.exit_code, 0) << force.text;

@@ -150,12 +150,57 @@ Table way_table(const LiveReplay& run) {
   return t;
 }
 
+/// The same measured whole, one movement after the other.
+Table trace_table(const LiveReplay& run) {
+  const PedalTrace::Result& trace = run.car->pedal_to_platform;
+  const cueing::Platform& platform = run.study.cueing.platform;
+  Table t{
+      .title = "From pedal to platform, followed",
+      .caption = fmt::format(
+          "Of {} movements of wheel or pedals that were followed one by one: which command knew of it, which report "
+          "of that command, which order of that report, and the platform's answer to that. Stages follow one "
+          "another; their means add up to that of the whole.{} What moves only after it is told comes on top: the "
+          "car's servos and mass, the algorithm's filters, and the platform, whose axes come {} later (delay + "
+          "2 zeta/omega of [platform]).",
+          trace.whole.count(),
+          trace.given_up > 0 ? fmt::format(" {} were given up: the link was lost.", trace.given_up) : "", [&] {
+            double least = 1e9, most = 0.0;
+            for (const cueing::PlatformAxis axis : platform.limits.moving_axes()) {
+              const cueing::ActuatorOptions& a = platform.response(axis);
+              const double lag = a.delay + (a.omega > 0.0 ? 2.0 * a.zeta / a.omega : 0.0);
+              least = std::min(least, lag);
+              most = std::max(most, lag);
+            }
+            return most - least < 5e-4 ? fmt::format("{:.0f} ms", 1e3 * most)
+                                       : fmt::format("{:.0f} to {:.0f} ms", 1e3 * least, 1e3 * most);
+          }())};
+  t.columns = {{.name = "stage", .align = Align::kLeft},
+               {.name = "mean", .unit = "ms"},
+               {.name = "half", .unit = "ms"},
+               {.name = "99 %", .unit = "ms"},
+               {.name = "at most", .unit = "ms"}};
+  t.sortable = false;
+  const auto row = [&](const std::string& name, const LatencyHistogram& h) {
+    t.rows.push_back({.cells = {text_cell(name), milliseconds(h.mean()), milliseconds(h.quantile(0.5)),
+                                milliseconds(h.quantile(0.99)), milliseconds(seconds(h.largest()))}});
+  };
+  using Stage = PedalTrace::Stage;
+  row("wheel or pedal moved, to command sent", trace[Stage::kInput]);
+  row("command and report on the line, both ways", trace[Stage::kLine]);
+  row("at the car, to the report that knows of it", trace[Stage::kCar]);
+  row("report's arrival, to the order that holds its motion", trace[Stage::kMotion]);
+  row("order, to the platform's answer", trace[Stage::kPlatform]);
+  row("the whole", trace.whole);
+  return t;
+}
+
 /// Of a run with a car: how long it takes from pedal to motion, and how good the line was.
 Section car_section(const LiveReplay& run) {
   const CarReplay& car = *run.car;
   const LinkQuality& q = car.quality;
   Section section{.title = "The car"};
   section.blocks.emplace_back(way_table(run));
+  if (car.pedal_to_platform.whole.count() > 0) section.blocks.emplace_back(trace_table(run));
   const auto share = [](double lost) { return fmt::format("{:.1f} %", 100.0 * lost); };
   FactList facts{
       {{"Commands", fmt::format("{} sent, {} lost, {} different when replayed", q.commands_sent,

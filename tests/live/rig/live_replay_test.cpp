@@ -20,9 +20,7 @@ using test::CarRun;
 using test::LiveLoopTest;
 using test::MemoryLinks;
 
-const std::string kStudy =
-    "[cue]\nalgorithms = ['classical']\n[platform]\nsubject = 'three_axis'\n"
-    "[live]\ntelemetry = '127.0.0.1:47123'\nplatform = '127.0.0.1:47124'\nsigns = 'off'\n";
+const std::string& kStudy = test::kRecordedStudy;
 
 TEST_F(LiveLoopTest, RecordedRunIsReplayedBitForBitWithItsKnobs) {
   const LiveStudy study = read_live_study(Study::parse(kStudy, "rig.toml"));
@@ -122,6 +120,19 @@ TEST(CarLink, IsReplayedBitForBitWithItsCommands) {
   EXPECT_EQ(replayed.car->commands_different, 0U);
   EXPECT_GT(replayed.car->drive.rows(), 200U);
   EXPECT_GT(replayed.times.pedal_to_command.count(), 400U);
+  // From pedal to platform: the stages, each measured, add up to the whole.
+  const PedalTrace::Result& way = replayed.car->pedal_to_platform;
+  EXPECT_GT(way.whole.count(), 50U);
+  double sum = 0.0;
+  for (const LatencyHistogram& stage : way.stages) {
+    EXPECT_EQ(stage.count(), way.whole.count());
+    sum += stage.mean();
+  }
+  EXPECT_NEAR(sum, way.whole.mean(), 1e-9);
+  // The study's delay of 20 ms is in it, and the bits of both frames at 250 kbit/s: 3.16 ms.
+  EXPECT_GT(way[PedalTrace::Stage::kMotion].mean(), 0.018);
+  EXPECT_GT(way[PedalTrace::Stage::kLine].mean(), 3.0e-3);
+  EXPECT_LT(way.whole.mean(), 0.06);
 }
 
 TEST(CarLink, ReplayFindsACommandThatDiffers) {

@@ -5,6 +5,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <optional>
 
 #include "veridyn/camera/tracking/video_library.hpp"
 
@@ -14,7 +15,25 @@ namespace {
 struct Reader {
   cv::VideoCapture capture;
   cv::Mat frame, grey;  // kept, so that frames of equal size do not allocate
+  // OpenCV scales frames of another size to the first one's without a word: of Motion JPEG the pictures themselves are
+  // looked at, too.
+  cv::VideoCapture pictures;
+  cv::Mat picture;
 };
+
+/// Size that the head of a JPEG says; nothing where it is none.
+std::optional<cv::Size> jpeg_size(const cv::Mat& bytes) {
+  const std::size_t size = bytes.total() * bytes.elemSize();
+  const unsigned char* b = bytes.data;
+  if (size < 4 || b[0] != 0xFF || b[1] != 0xD8) return std::nullopt;
+  for (std::size_t at = 2; at + 9 <= size && b[at] == 0xFF;) {
+    const unsigned marker = b[at + 1];
+    const bool of_frame = marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (of_frame) return cv::Size(b[at + 7] * 256 + b[at + 8], b[at + 5] * 256 + b[at + 6]);
+    at += 2U + b[at + 2] * 256U + b[at + 3];
+  }
+  return std::nullopt;
+}
 
 struct Writer {
   cv::VideoWriter writer;
@@ -29,6 +48,7 @@ void* open_reader(const char* path, VideoProperties& properties, std::string& er
   try {
     // By this library only: for a file that it cannot read OpenCV goes on to look for cameras on the USB.
     if (!reader->capture.open(path, cv::CAP_FFMPEG)) return nullptr;
+    reader->pictures.open(path, cv::CAP_FFMPEG, {cv::CAP_PROP_FORMAT, -1});
     properties = {.width = reader->capture.get(cv::CAP_PROP_FRAME_WIDTH),
                   .height = reader->capture.get(cv::CAP_PROP_FRAME_HEIGHT),
                   .rate_Hz = reader->capture.get(cv::CAP_PROP_FPS),
@@ -44,6 +64,8 @@ VideoRead read(void* of, DecodedFrame& frame, std::string& error) {
   Reader& r = *static_cast<Reader*>(of);
   try {
     if (!r.capture.read(r.frame) || r.frame.empty()) return VideoRead::kEnd;
+    if (r.pictures.isOpened() && !r.pictures.read(r.picture)) r.pictures.release();
+    if (r.pictures.isOpened() && !jpeg_size(r.picture)) r.pictures.release();  // of another kind
     if (r.frame.channels() == 1) {
       r.grey = r.frame;
     } else {
@@ -58,6 +80,10 @@ VideoRead read(void* of, DecodedFrame& frame, std::string& error) {
            .width = r.grey.cols,
            .height = r.grey.rows,
            .bits = static_cast<int>(8 * r.grey.elemSize1())};
+  if (const std::optional<cv::Size> size = r.pictures.isOpened() ? jpeg_size(r.picture) : std::nullopt) {
+    frame.width = size->width;
+    frame.height = size->height;
+  }
   return VideoRead::kFrame;
 }
 

@@ -17,7 +17,8 @@ constexpr double kLongestScored = 1200.0;  // [s]
 /// Feeds the records of a file to a rig and keeps what the replay says of the run.
 class Replayer {
  public:
-  Replayer(LiveReplay& into, const LiveHead& head) : r_(into), rig_(into.study, head), start_(head.started) {
+  Replayer(LiveReplay& into, const LiveHead& head)
+      : r_(into), rig_(into.study, head), start_(head.started), session_(head.session) {
     if (into.study.car) into.car.emplace();
     apart_ = std::max(nanoseconds(1.0 / into.study.options.rate), kSecond / 100);
   }
@@ -25,13 +26,18 @@ class Replayer {
   void take(const LiveRecord& record) {
     const RigState before = rig_.rig().state();
     const RecordedRig::Taken taken = rig_.take(record);
-    if (taken.telemetry && r_.car) r_.car->drive.add(*taken.telemetry);
+    if (taken.telemetry && r_.car) {
+      r_.car->drive.add(*taken.telemetry);
+      if (r_.study.camera) felt(*taken.telemetry);
+    }
+    if (r_.car && record.kind == LiveRecord::Kind::kDatagram && record.link == LinkOf::kCamera) seen();
     if (taken.turned) r_.turns.push_back({seconds(record.time - start_), rig_.turned_to()});
     if (taken.step != nullptr) step(record, *taken.step, before);
     if (record.kind == LiveRecord::Kind::kCommand && r_.car) {
       ++r_.car->commands;
       r_.car->commands_different += taken.command_differs ? 1U : 0U;
     }
+    if (r_.car) trace(record, taken);
   }
 
   void end() {
@@ -50,6 +56,8 @@ class Replayer {
       r_.layout = "the car's reports";
       r_.car->quality = car->quality(last_time_);
       r_.car->restarts = car->end().car_restarts();
+      r_.car->pedal_to_platform = trace_.result();
+      r_.car->camera = rig.camera();
     }
     r_.orders_fingerprint = fmt::format("{:08x}", fingerprint_);
   }
@@ -77,6 +85,41 @@ class Replayer {
     keep(s);
   }
 
+  void felt(const Telemetry& t) {
+    const double time = rig_.rig().clock().ours(t.sample.time);
+    std::vector<CarReplay::Inertial>& all = r_.car->inertial;
+    if (all.empty() || time > all.back().time) all.push_back({time, t.sample.rate, t.sample.force});
+  }
+  void seen() {
+    const LiveRig::Camera& camera = rig_.rig().camera();
+    if (camera.poses == poses_) return;
+    poses_ = camera.poses;
+    r_.car->seen.push_back({camera.clock.ours(seconds(camera.last.stamp)), camera.last.pose, camera.last.covariance,
+                            r_.car->inertial.size()});
+  }
+
+  /// From pedal to platform.
+  void trace(const LiveRecord& record, const RecordedRig::Taken& taken) {
+    switch (record.kind) {
+      case LiveRecord::Kind::kCommand:
+        trace_.command({reinterpret_cast<const std::uint8_t*>(record.order.data()), record.order.size()}, record.sent,
+                       taken.pedal);
+        break;
+      case LiveRecord::Kind::kDatagram:
+        if (record.link == LinkOf::kCar && rig_.rig().car()->end().report())
+          trace_.report(*rig_.rig().car()->end().report());
+        if (record.link != LinkOf::kPlatform) break;
+        if (const auto answer = decode_answer(record.datagram.bytes); answer && answer->session == session_)
+          trace_.answer(answer->sequence, record.datagram.arrival);
+        break;
+      case LiveRecord::Kind::kStep:
+        if (taken.step->motion) trace_.order(taken.step->sequence, taken.step->motion->sample.time, record.sent);
+        break;
+      default:
+        break;
+    }
+  }
+
   /// For score and figures.
   void keep(const RigStep& s) {
     if (!s.motion || s.state == RigState::kParked || s.time - last_kept_ < apart_ - 1000) return;
@@ -96,7 +139,9 @@ class Replayer {
   LiveReplay& r_;
   RecordedRig rig_;
   Nanoseconds start_, apart_ = 0, last_kept_ = 0, last_time_ = 0;
-  std::uint32_t last_sequence_ = 0, fingerprint_ = 0;
+  std::uint32_t last_sequence_ = 0, fingerprint_ = 0, session_;
+  PedalTrace trace_;
+  std::uint64_t poses_ = 0;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "veridyn/live/recording/drive_table.hpp"
 #include "veridyn/live/recording/live_file.hpp"
 #include "veridyn/live/rig/live_loop.hpp"
+#include "veridyn/live/rig/pedal_trace.hpp"
 
 namespace veridyn::live {
 
@@ -17,6 +18,21 @@ struct CarReplay {
   std::uint64_t restarts = 0;
   std::uint64_t commands = 0, commands_different = 0;  ///< sent, and of these those that differ in any bit
   DriveTable drive;                                    ///< what its sensors said
+  PedalTrace::Result pedal_to_platform;
+  /// What its inertial sensors felt and where a camera saw it, by our clock, in the order in which both came in.
+  struct Inertial {
+    double time = 0.0;  ///< [s]
+    Eigen::Vector3d rate, force;
+  };
+  struct Seen {
+    double stamp = 0.0;  ///< [s]
+    Eigen::Vector3d pose;
+    Eigen::Matrix3d covariance;
+    std::size_t after = 0;  ///< how many of `inertial` had come
+  };
+  std::vector<Inertial> inertial;
+  std::vector<Seen> seen;
+  LiveRig::Camera camera;
 };
 
 /// What a recorded run was, fed to a rig again.
