@@ -20,14 +20,12 @@ Section fit_section(const estimation::JudgedRegression& result) {
   section.blocks.emplace_back(XYPlot{.title = "Fit",
                                      .x = {.label = result.data.regressand_name},
                                      .y = {.label = "modelled"},
-                                     .series = {{.name = "rows", .x = modelled, .y = measured},
+                                     .series = {{.name = "rows", .x = measured, .y = modelled},
                                                 {.name = "modelled = measured",
                                                  .x = {low, high},
                                                  .y = {low, high},
                                                  .role = Role::kReference,
                                                  .style = Style::kLine}}});
-  std::get<XYPlot>(section.blocks.back()).series.front().x = measured;
-  std::get<XYPlot>(section.blocks.back()).series.front().y = modelled;
   std::vector<double> row, residual;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     row.push_back(static_cast<double>(i + 1));
