@@ -66,6 +66,8 @@ TEST_F(ServeProgramTest, BeyondLoopbackWithoutATokenOnlyShows) {
     control.send(body);
     EXPECT_THAT(control.read().substr(0, 20), HasSubstr(answer));
   }
+  // The page tells it with its next status.
+  for (int k = 0; k < 40 && status()["refused"] != 3; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(status()["refused"], 3);
   serve.signal(SIGINT);
   EXPECT_EQ(serve.wait(), 0) << serve.said();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kRing = 4U << 20U;    // [bytes]: more than a second of whatever comes in
 constexpr std::size_t kBlock = 64U << 10U;  // [bytes]
-constexpr std::chrono::milliseconds kPause(50), kLongestBlock(250);
+constexpr std::chrono::milliseconds kBetweenWrites(50), kLongestBlock(250);
 
 }  // namespace
 
@@ -94,7 +94,7 @@ struct LiveRecorder::Shared {
         last = now;
       }
       if (over) return;
-      std::this_thread::sleep_for(kPause);
+      std::this_thread::sleep_for(kBetweenWrites);
     }
   }
 };
