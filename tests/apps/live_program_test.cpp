@@ -395,13 +395,14 @@ TEST_F(LiveProgramTest, PlatformIsMeasuredByHandAndTheSecondProgramIsToldWhoComm
   for (const char* key : {"pitch_omega = ", "pitch_zeta = ", "pitch_delay = ", "omega = 30.0"})
     EXPECT_THAT(measured, HasSubstr(key));
   const std::string tuned = (folder_ / "tuned.toml").string();
-  std::ofstream(tuned) << "[platform]\nfile = \"sweep/platform.toml\"\n[subject]\nkind = \"vehicle\"\nbuiltin = "
+  std::ofstream(tuned) << "[cue]\nalgorithms = [\"classical\"]\n[platform]\nfile = "
+                          "\"sweep/platform.toml\"\n[subject]\nkind = \"vehicle\"\nbuiltin = "
                           "\"reference\"\n[drive]\nmodel = \"four-wheel\"\nmanoeuvre = \"sine\"\nspeed = 20\n"
                           "amplitude = 0.02\nfrequency = 0.25\nduration = 8\n";
   const Outcome cued = run("cue " + tuned + " --quiet --out " + (folder_ / "tuned").string());
   ASSERT_EQ(cued.exit_code, 0) << cued.text;
   const auto record = nlohmann::json::parse(read_file(folder_ / "tuned/run.json"));
-  ASSERT_EQ(record["inputs"].size(), 1U) << record.dump();
+  ASSERT_EQ(record["inputs"].size(), 2U) << record.dump();  // and the study
   EXPECT_THAT(record["inputs"][0]["file"].get<std::string>(), HasSubstr("platform.toml"));
   EXPECT_EQ(record["inputs"][0]["sha1"].get<std::string>().size(), 40U);
   std::this_thread::sleep_for(until_another_may_command);
