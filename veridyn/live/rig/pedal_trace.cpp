@@ -24,10 +24,11 @@ void PedalTrace::command(Bytes frame, Nanoseconds sent, std::optional<Nanosecond
     followed_.reset();
   }
   if (!moved || followed_) return;
-  followed_.emplace();
-  followed_->moved = *moved;
-  followed_->sent = sent;
-  followed_->sequence = sequence;
+  Followed begun;
+  begun.moved = *moved;
+  begun.sent = sent;
+  begun.sequence = sequence;
+  followed_ = begun;
 }
 
 void PedalTrace::report(const ReceivedReport& report) {
