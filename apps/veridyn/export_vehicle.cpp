@@ -42,14 +42,15 @@ std::vector<std::string> comments_on(const Vehicle& vehicle, const char* axle,
   std::vector<std::string> lines{fmt::format("{} tyre of {}, written by {}", axle, vehicle.name, program_name())};
   if (!estimate) return lines;
   lines.emplace_back("identified from a drive; value +- standard error (interval of 95 %):");
-  for (const char* name : {"C_f", "C_r", "mu", "C", "E", "load_transfer_loss"}) {
+  for (const char* name :
+       {"C_f", "C_r", "mu", "C", "E", "load_transfer", "load_transfer_loss", "load_transfer_balance"}) {
     const estimation::Parameter* p = estimate->find(name);
     if (p == nullptr) continue;
     lines.push_back(fmt::format("  {} = {:.5g} +- {:.2g} {} ({:.5g} to {:.5g}), {}", name, p->value, p->sigma, p->unit,
                                 p->low95, p->high95, estimation::to_string(p->status)));
   }
   if (estimate->find("load_transfer_loss") != nullptr)
-    lines.emplace_back("load_transfer_loss is the axles' and not in the coefficients below");
+    lines.emplace_back("load transfer is the axles' and not in the coefficients below");
   lines.emplace_back("driving and braking: stiffness 1.3 times that of cornering, assumed; the same curve");
   if (is_graded(estimate)) lines.push_back(estimation::sentence_of(estimate->judgement));
   return lines;

@@ -84,11 +84,12 @@ GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& st
   const double L = p.wheelbase();
   take("a", p.a);
   p.b = L - p.a;
-  for (const DriveUnknown u : {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature,
-                               DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping,
-                               DriveUnknown::kRollArm, DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
-                               DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale, DriveUnknown::kSteerDelay,
-                               DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+  for (const DriveUnknown u :
+       {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature, DriveUnknown::kRollGradient,
+        DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping, DriveUnknown::kRollArm,
+        DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer, DriveUnknown::kLoadTransferLoss,
+        DriveUnknown::kLoadTransferBalance, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
+        DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
     take(kDriveUnknownNames[u], given.options.start[u]);
   }
   if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;

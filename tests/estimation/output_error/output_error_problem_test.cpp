@@ -58,6 +58,57 @@ TEST(OutputErrorProblem, ItsTriangleHasTheNormalEquationsOfTheRows) {
   EXPECT_LT((root.transpose() * root - X.transpose() * X / 0.04).norm(), 1e-9);
 }
 
+// A search goes back by a step and weighs by another R: neither is a reason to simulate again.
+TEST(OutputErrorProblem, SimulatesNothingTwiceInARow) {
+  const StraightLine line;
+  const Static model(line.regressors);
+  const OutputErrorOptions options;
+  OutputErrorProblem problem(model, line.measured, options);
+  problem.start_noise();
+  problem.evaluate(true);
+  const RowMatrix first = problem.triangle(0).matrix;
+  const Eigen::Vector2d here = problem.shared();
+  problem.shared_block()[0] += 0.5;
+  problem.evaluate(true);
+  problem.evaluate(false);
+  EXPECT_EQ(problem.simulations().with_derivatives, 2U);
+  EXPECT_EQ(problem.simulations().values, 0U);
+  const double there = problem.triangle(0).squares;
+  Eigen::Vector2d::Map(problem.shared_block()) = here;
+  problem.evaluate(true);
+  EXPECT_EQ(problem.simulations().with_derivatives, 2U);
+  EXPECT_EQ(problem.triangle(0).matrix, first);
+  EXPECT_NE(problem.triangle(0).squares, there);
+  problem.update_noise();
+  problem.evaluate(true);
+  EXPECT_EQ(problem.simulations().with_derivatives, 2U);
+  EXPECT_GT((problem.triangle(0).matrix - first).norm(), 0.1 * first.norm());
+  problem.shared_block()[1] += 0.1;
+  problem.evaluate(false);
+  EXPECT_EQ(problem.simulations().values, 1U);
+}
+
+// The truth is (2, 0.5); from a bound above it the cost drives the first unknown beyond, from one below it does not.
+TEST(OutputErrorProblem, NamesUnknownsThatTheCostDrivesBeyondABound) {
+  const StraightLine line;
+  const OutputErrorOptions options = given_noise();
+  const auto pressed = [&](double low, double high, double start, double prior_sigma) {
+    Static model(line.regressors);
+    model.unknowns[0] = {.name = "offset", .start = start, .low = low, .high = high, .prior_sigma = prior_sigma};
+    model.unknowns[1] = {.name = "slope", .start = 0.5};
+    OutputErrorProblem problem(model, line.measured, options);
+    problem.start_noise();
+    problem.evaluate(true);
+    EXPECT_EQ(problem.reaches_bounds(), start == low || start == high);
+    return problem.pressed_on_bounds();
+  };
+  EXPECT_THAT(pressed(2.5, 4.0, 2.5, kInfinity), ::testing::ElementsAre(0));
+  EXPECT_THAT(pressed(0.0, 1.5, 1.5, kInfinity), ::testing::ElementsAre(0));
+  EXPECT_THAT(pressed(1.5, 4.0, 1.5, kInfinity), ::testing::IsEmpty());
+  EXPECT_THAT(pressed(0.0, 2.5, 2.5, kInfinity), ::testing::IsEmpty());
+  EXPECT_THAT(pressed(0.0, 4.0, 1.5, kInfinity), ::testing::IsEmpty());
+}
+
 TEST(OutputErrorProblem, MeasuresChangesInStandardDeviations) {
   const StraightLine line;
   const Static model(line.regressors);

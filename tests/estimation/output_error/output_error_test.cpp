@@ -300,6 +300,32 @@ TEST(OutputError, KeepsBoundsAndFixedParameters) {
   EXPECT_NEAR(e.theta(1), kB, 1e-9);
 }
 
+// Where the search presses on a bound the rest of the way is gone along it: to where it ends with that unknown held
+// there, and with about as many simulations.
+TEST(OutputError, GoesAlongABoundAsIfItsUnknownWereHeldThere) {
+  FirstOrder model(doublets(2, 120), 0.05);
+  std::vector<RowMatrix> z = truth_of(model);
+  std::mt19937_64 generator(7);
+  add_noise(z, generator, 0.01, 0.01);
+  const auto found = [&](ModelParameter a) {
+    model.unknowns[0] = std::move(a);
+    return output_error(model, z);
+  };
+  for (const double bound : {0.8, 1.5, 1.69}) {
+    const OutputErrorEstimate held = found({.name = "a", .start = bound, .fixed = true});
+    for (const double start : {0.7, bound}) {
+      const OutputErrorEstimate e = found({.name = "a", .start = start, .low = 0.1, .high = bound});
+      ASSERT_TRUE(e.usable()) << e.message;
+      EXPECT_EQ(e.parameters[0].status, ParameterStatus::kAtBound);
+      EXPECT_NEAR(e.theta(1), held.theta(1), 1e-3 * held.parameters[1].sigma) << bound;
+      EXPECT_LT(e.simulations.with_derivatives, held.simulations.with_derivatives + 2U * 12U) << bound;
+    }
+  }
+  // A search that begins at a bound leaves it where the data say so.
+  EXPECT_NEAR(found({.name = "a", .start = 0.5, .low = 0.5, .high = 3.0}).theta(0),
+              found({.name = "a", .start = 1.0}).theta(0), 1e-5);
+}
+
 TEST(OutputError, FindsTheBiasOfAnOutput) {
   const FirstOrder model(doublets(2, 150), 0.05);
   std::vector<RowMatrix> z = truth_of(model);

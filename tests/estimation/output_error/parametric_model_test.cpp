@@ -42,5 +42,55 @@ TEST(ParametricModel, SensitivitiesAreThoseOfCentralDifferences) {
   }
 }
 
+/// The same model, whose initial condition has a pass of its own that ends early.
+class Forgetful : public AutodiffModel<Forgetful, 2> {
+ public:
+  explicit Forgetful(const FirstOrder& whole) : whole_(whole) {}
+  std::span<const ModelParameter> parameters() const override { return whole_.parameters(); }
+  std::span<const ModelOutput> outputs() const override { return whole_.outputs(); }
+  std::size_t segments() const override { return whole_.segments(); }
+  Index samples(std::size_t s) const override { return whole_.samples(s); }
+  std::span<const ModelParameter> initial_conditions(std::size_t s) const override {
+    return whole_.initial_conditions(s);
+  }
+  template <typename Scalar>
+  bool simulate(std::size_t s, const Column<Scalar>& theta, Table<Scalar>& y) const {
+    ++whole_passes;
+    return whole_.simulate(s, theta, y);
+  }
+  bool simulate_transient(std::size_t s, const Column<ceres::Jet<double, 2>>& theta,
+                          Table<ceres::Jet<double, 2>>& y) const {
+    ++short_passes;
+    EXPECT_EQ(theta(0).v.norm() + theta(1).v.norm(), 0.0);
+    const bool done = whole_.simulate(s, theta, y);
+    y.bottomRows(y.rows() / 2).setConstant(ceres::Jet<double, 2>(0.0));
+    return done;
+  }
+  mutable int whole_passes = 0, short_passes = 0;
+
+ private:
+  const FirstOrder& whole_;
+};
+
+TEST(ParametricModel, InitialConditionsHaveAPassOfTheirOwnWhereThatSavesAWholeOne) {
+  const FirstOrder whole(doublets(1, 400), 0.05);
+  const Forgetful model(whole);
+  const VectorXd theta = Eigen::Vector3d(kA, kB, 0.4);
+  const std::vector<Index> all{2, 0, 1};
+  ModelResponse expected, made;
+  ASSERT_TRUE(whole.respond(0, theta, all, expected));
+  ASSERT_TRUE(model.respond(0, theta, all, made));
+  EXPECT_EQ(model.whole_passes, 1);
+  EXPECT_EQ(model.short_passes, 1);
+  EXPECT_EQ(made.output, expected.output);
+  EXPECT_LT((made.sensitivity - expected.sensitivity).cwiseAbs().maxCoeff(), 1e-6);  // exp(-1.7 * 10)
+  // Two unknowns fit into one pass anyway, and an initial condition alone is no transient of anything.
+  const std::vector<Index> two{2, 0}, alone{2};
+  ASSERT_TRUE(model.respond(0, theta, two, made));
+  ASSERT_TRUE(model.respond(0, theta, alone, made));
+  EXPECT_EQ(model.whole_passes, 3);
+  EXPECT_EQ(model.short_passes, 1);
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

@@ -117,11 +117,13 @@ TEST(DriveModelOptions, FreeTheUnknownsOfTheStructureAndNoOthers) {
   EXPECT_EQ(freed(DriveStructure::kRoll), "roll_gradient roll_arm roll_frequency roll_damping ");
   EXPECT_EQ(freed(DriveStructure::kRelaxation),
             "roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
-  EXPECT_EQ(freed(DriveStructure::kSaturation),
-            "mu roll_gradient roll_arm relaxation_length roll_frequency roll_damping ");
+  EXPECT_EQ(
+      freed(DriveStructure::kSaturation),
+      "mu roll_gradient roll_arm relaxation_length load_transfer load_transfer_balance roll_frequency roll_damping ");
   EXPECT_EQ(with_structure({}, DriveStructure::kSaturation).tyre, DriveTyre::kFiala);
   EXPECT_EQ(freed(DriveStructure::kMagicFormula),
-            "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss roll_frequency roll_damping ");
+            "mu C E roll_gradient roll_arm relaxation_length load_transfer_loss load_transfer_balance "
+            "roll_frequency roll_damping ");
   EXPECT_EQ(with_structure({}, DriveStructure::kMagicFormula).tyre, DriveTyre::kMagicFormula);
 }
 

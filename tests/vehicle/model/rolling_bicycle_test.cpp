@@ -225,10 +225,10 @@ TEST(RollingBicycle, MirroredSteeringAndStateGiveMirroredRates) {
             RollingState<4>(-model.rates<4>(RollingState<4>(-body), -0.07, kForwardSpeed).derivative));
 }
 
-// In steady cornering the body carries a_y: at 1 g the loss is load_transfer_loss, at half of it a quarter.
+// In steady cornering the body carries a_y: at 1 g it is what is given, at half of it a quarter.
 TEST(RollingBicycle, LosesForceWithTheSquareOfTheLoadThatMoves) {
   LinearRolling model = rolling_car();
-  model.load_transfer_loss = 0.2;
+  model.load_transfer = {.effect = LoadTransfer<double>::Effect::kLoss, .loss = 0.2};
   const std::array<double, 2> slip{0.03, 0.02};
   const std::array<double, 2> whole = model.bicycle.tyre_forces(slip);
   for (const double g : {-0.5, 0.0, 0.5, 1.0}) {
@@ -237,15 +237,46 @@ TEST(RollingBicycle, LosesForceWithTheSquareOfTheLoadThatMoves) {
     for (std::size_t axle = 0; axle < 2; ++axle)
       EXPECT_NEAR(left[axle], (1.0 - 0.2 * g * g) * whole[axle], 1e-9 * whole[axle]) << g;
   }
+  // What the balance adds in front it takes off behind.
+  model.load_transfer.balance = 0.3;
+  const std::array<double, 2> shared = model.axle_forces<4>(slip, {0.0, 0.0, kGravity * model.roll.gradient, 0.0});
+  EXPECT_NEAR(shared[0], (1.0 - 0.26) * whole[0], 1e-9 * whole[0]);
+  EXPECT_NEAR(shared[1], (1.0 - 0.14) * whole[1], 1e-9 * whole[1]);
   // A body without springs' travel to show it by, and two states, have none.
   model.roll.gradient = 0.0;
   EXPECT_EQ(model.axle_forces<4>(slip, {0.0, 0.0, 0.05, 0.0}), whole);
 }
 
+// Fiala's force S - S^2/(3 N) + S^3/(27 N^2) of two wheels with N (1 +- x): the mean of 1/(1 +- x) is 1/(1 - x^2), that
+// of its square (1 + x^2)/(1 - x^2)^2. At small slip nothing is lost.
+TEST(RollingBicycle, WheelsOfUnequalLoadReachTheFrictionLimitSooner) {
+  const LinearRolling linear = rolling_car();
+  const VehicleParameters<double>& p = linear.bicycle.parameters;
+  RollingBicycle<double, FialaTyre<double>> model{
+      .bicycle = {.parameters = p, .front = {.stiffness = p.C_f, .mu = 0.9}, .rear = {.stiffness = p.C_r, .mu = 0.9}},
+      .roll = linear.roll};
+  model.load_transfer = {.effect = LoadTransfer<double>::Effect::kLoads, .share = 0.7, .balance = 0.2};
+  const PerWheel<double> load = static_loads(p, kGravity);
+  const std::array<double, 2> C{p.C_f, p.C_r}, share{0.7 * 1.2, 0.7 * 0.8};
+  for (const double n : {0.0, 0.3, -0.6}) {
+    const RollingState<4> x{0.0, 0.0, n * kGravity * model.roll.gradient, 0.0};
+    for (const double slip : {1e-6, 0.02, -0.035}) {
+      const std::array<double, 2> force = model.axle_forces<4>({slip, slip}, x);
+      for (std::size_t axle = 0; axle < 2; ++axle) {
+        const double S = C[axle] * std::abs(slip), N = 0.9 * load[axle == 0 ? kFrontLeft : kRearLeft];
+        const double moved = share[axle] * n, rest = 1.0 - moved * moved;
+        const double closed =
+            S - S * S / (3.0 * N * rest) + S * S * S * (1.0 + moved * moved) / (27.0 * N * N * rest * rest);
+        EXPECT_NEAR(force[axle], std::copysign(closed, slip), 1e-9 * S) << n << ", " << slip;
+      }
+    }
+  }
+}
+
 // What dampers carry while the body is on its way counts as what springs carry: both press on the outer wheel.
 TEST(RollingBicycle, DampersMoveLoadAsSpringsDo) {
   LinearRolling model = rolling_car();
-  model.load_transfer_loss = 0.3;
+  model.load_transfer = {.effect = LoadTransfer<double>::Effect::kLoss, .loss = 0.3};
   const std::array<double, 2> slip{0.03, 0.02};
   const double rate = 0.04 * model.roll.frequency / (2.0 * model.roll.damping);
   EXPECT_EQ(model.axle_forces<4>(slip, {0.0, 0.0, 0.04, 0.0}), model.axle_forces<4>(slip, {0.0, 0.0, 0.0, rate}));

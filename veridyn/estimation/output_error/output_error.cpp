@@ -103,16 +103,26 @@ class EvaluateSegments : public ceres::EvaluationCallback {
   OutputErrorProblem& problem_;
 };
 
-/// View of the caller's progress: Ceres stops when it is interrupted.
+/// View of the caller's progress and of a problem: Ceres stops when it is interrupted, or where an unknown is pressed
+/// on a bound that it was free to leave. With a step that points beyond a bound Ceres searches along the line in vain,
+/// each time by twenty simulations.
 class Watch : public ceres::IterationCallback {
  public:
-  explicit Watch(Progress& progress) : progress_(progress) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return progress_.interrupted() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  Watch(Progress& progress, const OutputErrorProblem& problem, const std::vector<int>& held)
+      : progress_(progress), problem_(problem), held_(held) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (progress_.interrupted()) return ceres::SOLVER_ABORT;
+    if (iteration.iteration == 0 || !iteration.step_is_successful) return ceres::SOLVER_CONTINUE;
+    meets_bound_ = !std::ranges::includes(held_, problem_.pressed_on_bounds());
+    return meets_bound_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
+  [[nodiscard]] bool meets_bound() const { return meets_bound_; }
 
  private:
   Progress& progress_;
+  const OutputErrorProblem& problem_;
+  const std::vector<int>& held_;
+  bool meets_bound_ = false;
 };
 
 /// View of one call's model, measurements, options and progress, with what the search has found so far.
@@ -166,9 +176,27 @@ class Estimation {
     end(OutputErrorTermination::kRelaxations, "");
   }
 
-  /// One relaxation: parameters at fixed R.
+  /// One relaxation: parameters at fixed R. Where one meets a bound the rest of the way is gone without it.
   bool solve() {
     if (problem_.all_unknowns() == 0) return true;
+    std::vector<int> held;
+    if (problem_.reaches_bounds()) {
+      problem_.evaluate(true);
+      if (problem_.valid()) held = pressed_on_bounds();
+    }
+    for (;;) {
+      const Solved solved = solve(held);
+      if (solved != Solved::kMeetsBound) return solved == Solved::kDone;
+      const std::vector<int> pressed = pressed_on_bounds();
+      std::vector<int> all;
+      std::ranges::set_union(held, pressed, std::back_inserter(all));
+      held = std::move(all);
+    }
+  }
+
+  enum class Solved { kDone, kMeetsBound, kEnded };
+  /// Without some of the shared unknowns, by their place.
+  Solved solve(const std::vector<int>& held) {
     EvaluateSegments evaluate(problem_);
     ceres::Problem::Options problem_options;
     problem_options.evaluation_callback = &evaluate;
@@ -205,6 +233,10 @@ class Estimation {
       if (options_.hold_undetermined)
         internal::hold_undetermined(ceres_problem, shared, problem_.shared_unknowns(), information_root());
     }
+    if (!held.empty() && std::ssize(held) == problem_.shared_count())
+      ceres_problem.SetParameterBlockConstant(shared);
+    else if (!held.empty())
+      ceres_problem.SetManifold(shared, new ceres::SubsetManifold(static_cast<int>(problem_.shared_count()), held));
     ceres::Solver::Options o;
     o.linear_solver_ordering.reset(ordering);
     // QR keeps the digits of ill-conditioned problems; elimination of the segments' unknowns is for very many of them.
@@ -220,7 +252,8 @@ class Estimation {
     if (result_.relaxations > 1) o.initial_trust_region_radius = 1e12;
     o.num_threads = 1;
     o.logging_type = ceres::SILENT;
-    Watch watch(progress_);
+    Watch watch(progress_, problem_, held);
+    o.update_state_every_iteration = true;
     o.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(o, &ceres_problem, &summary);
@@ -229,13 +262,18 @@ class Estimation {
     result_.diverged_segment = problem_.diverged_segment();
     if (summary.termination_type == ceres::USER_FAILURE) {
       end(OutputErrorTermination::kInterrupted, "interrupted");
-      return false;
+      return Solved::kEnded;
     }
     if (summary.termination_type == ceres::FAILURE) {
       end(OutputErrorTermination::kSolverFailed, fmt::format("the optimiser could not go on: {}", summary.message));
-      return false;
+      return Solved::kEnded;
     }
-    return true;
+    return watch.meets_bound() ? Solved::kMeetsBound : Solved::kDone;
+  }
+
+  /// Directions that are held already are no matter of bounds.
+  [[nodiscard]] std::vector<int> pressed_on_bounds() const {
+    return options_.hold_undetermined ? std::vector<int>{} : problem_.pressed_on_bounds();
   }
 
   void finish() {

@@ -23,6 +23,11 @@ using Eigen::Index;
 /// Standard deviation of the noise, as a share of the signal's, below which a fit counts as perfect.
 constexpr double kNoiseFloor = 1e-8;
 
+/// Simulations with derivatives are kept, to be weighed by another R, where all of them together need no more.
+constexpr double kMostKeptBytes = 512.0 * 1024.0 * 1024.0;
+
+bool is_at_bound(double value, const ModelParameter& unknown) { return value <= unknown.low || value >= unknown.high; }
+
 void check_parameters(std::span<const ModelParameter> parameters, const char* what) {
   for (const ModelParameter& p : parameters) {
     const auto fail = [&](const char* which, double value, const std::string& rule) {
@@ -124,6 +129,7 @@ OutputErrorProblem::OutputErrorProblem(const ParametricModel& model, const std::
     const double rms = std::sqrt(squares(j) / count(j));
     if (rms > 0.0) noise_floor_(j) = std::max(1e-150, kNoiseFloor * rms);
   }
+  keeps_ = fits_in_memory();
   set_noise(Eigen::MatrixXd::Identity(outputs_, outputs_));
 }
 
@@ -173,17 +179,50 @@ Eigen::VectorXd OutputErrorProblem::theta_of(const Segment& segment) const {
   return theta;
 }
 
-bool OutputErrorProblem::linearise(std::size_t s, bool derivatives, RowMatrix& residual, RowMatrix& predicted,
-                                   RowMatrix& rows) const {
+bool OutputErrorProblem::fits_in_memory() const {
+  double bytes = 0.0;
+  for (std::size_t s = 0; s < segments_.size(); ++s)
+    bytes += static_cast<double>(measured_[s].size()) * static_cast<double>(segments_[s].active.size() + 1) * 8.0;
+  return 2.0 * bytes <= kMostKeptBytes;
+}
+
+bool OutputErrorProblem::recall(Segment& segment, const Eigen::VectorXd& theta) {
+  const auto found = std::ranges::find_if(
+      segment.simulated, [&](const Simulated& kept) { return kept.theta.size() > 0 && kept.theta == theta; });
+  if (found == segment.simulated.end()) return false;
+  std::rotate(segment.simulated.begin(), found, found + 1);
+  return true;
+}
+
+bool OutputErrorProblem::simulate(std::size_t s, ModelResponse& values) {
+  ++segments_[s].simulations.values;
+  return model_.respond(s, theta_of(segments_[s]), {}, values) && values.output.allFinite();
+}
+
+bool OutputErrorProblem::simulate_with_derivatives(std::size_t s) {
+  Segment& segment = segments_[s];
+  const Eigen::VectorXd theta = theta_of(segment);
+  if (recall(segment, theta)) return true;
+  std::swap(segment.simulated.front(), segment.simulated.back());
+  Simulated& now = segment.simulated.front();
+  now.theta.resize(0);
+  ++segment.simulations.with_derivatives;
+  if (!model_.respond(s, theta, segment.active, now.response) || !now.response.output.allFinite() ||
+      !now.response.sensitivity.allFinite())
+    return false;
+  now.theta = theta;
+  return true;
+}
+
+void OutputErrorProblem::forget(Segment& segment) { segment.simulated = {}; }
+
+void OutputErrorProblem::linearise(std::size_t s, bool derivatives, const ModelResponse& response, RowMatrix& residual,
+                                   RowMatrix& predicted, RowMatrix& rows) const {
   const Segment& segment = segments_[s];
   const RowMatrix& z = measured_[s];
-  ModelResponse response;
-  const std::span<const Index> active = derivatives ? std::span<const Index>(segment.active) : std::span<const Index>();
-  if (!model_.respond(s, theta_of(segment), active, response)) return false;
-  if (!response.output.allFinite() || (derivatives && !response.sensitivity.allFinite())) return false;
   const auto initial = static_cast<Index>(segment.free_initial.size());
   const auto biases = static_cast<Index>(biased_.size());
-  predicted = std::move(response.output);
+  predicted = response.output;
   for (Index b = 0; b < biases; ++b)
     predicted.col(biased_[static_cast<std::size_t>(b)]).array() += segment.local(initial + b);
   residual = z - predicted;
@@ -201,7 +240,6 @@ bool OutputErrorProblem::linearise(std::size_t s, bool derivatives, RowMatrix& r
     }
   }
   whiten(residual, rows);
-  return true;
 }
 
 void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) const {
@@ -241,15 +279,19 @@ void OutputErrorProblem::whiten(const RowMatrix& residual, RowMatrix& rows) cons
 }
 
 void OutputErrorProblem::evaluate(bool derivatives) {
-  (derivatives ? simulations_.with_derivatives : simulations_.values) += segments_.size();
   for_each_segment(model_, options_.threads, [&](std::size_t s) {
     Segment& segment = segments_[s];
-    RowMatrix rows;
     SegmentTriangle& t = segment.triangle;
-    t.valid = linearise(s, derivatives, segment.residual, segment.predicted, rows);
+    ModelResponse values;
+    const bool kept = !derivatives && recall(segment, theta_of(segment));
+    t.valid = derivatives ? simulate_with_derivatives(s) : kept || simulate(s, values);
     if (!t.valid) return;
+    RowMatrix rows;
+    linearise(s, derivatives, derivatives || kept ? segment.simulated.front().response : values, segment.residual,
+              segment.predicted, rows);
     t.squares = rows.rightCols(1).squaredNorm();
     if (!derivatives) return;
+    if (!keeps_) forget(segment);
     AugmentedQr qr(rows.cols());
     qr.append(rows);
     t.matrix = qr.triangle();
@@ -260,6 +302,12 @@ void OutputErrorProblem::evaluate(bool derivatives) {
     diverged_segment_ = model_.segment_name(s);
     break;
   }
+}
+
+SimulationCount OutputErrorProblem::simulations() const {
+  SimulationCount count;
+  for (const Segment& segment : segments_) count += segment.simulations;
+  return count;
 }
 
 bool OutputErrorProblem::valid() const {
@@ -344,6 +392,29 @@ double OutputErrorProblem::update_noise() {
   return change;
 }
 
+bool OutputErrorProblem::reaches_bounds() const {
+  const std::vector<const ModelParameter*> unknowns = shared_unknowns();
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    if (is_at_bound(shared_(signed_index(i)), *unknowns[i])) return true;
+  return false;
+}
+
+std::vector<int> OutputErrorProblem::pressed_on_bounds() const {
+  const std::vector<const ModelParameter*> unknowns = shared_unknowns();
+  std::vector<int> pressed;
+  for (Index i = 0; i < shared_.size(); ++i) {
+    const ModelParameter& p = *unknowns[at(i)];
+    if (!is_at_bound(shared_(i), p)) continue;
+    double slope = std::isfinite(p.prior_sigma) ? (shared_(i) - p.start) / (p.prior_sigma * p.prior_sigma) : 0.0;
+    for (const Segment& s : segments_) {
+      const RowMatrix& triangle = s.triangle.matrix;
+      slope += triangle.col(s.local.size() + i).dot(triangle.col(triangle.cols() - 1));
+    }
+    if (shared_(i) <= p.low ? slope > 0.0 : slope < 0.0) pressed.push_back(static_cast<int>(i));
+  }
+  return pressed;
+}
+
 double OutputErrorProblem::largest_change_in_sigma(const Eigen::VectorXd& before) const {
   return shared_.size() > 0 ? (shared_root() * (shared_ - before)).norm() : 0.0;
 }
@@ -383,12 +454,14 @@ std::vector<RowMatrix> OutputErrorProblem::whitened_residuals() const {
   return result;
 }
 
-Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spectrum) const {
+Eigen::MatrixXd OutputErrorProblem::spectral_filling(const ResidualSpectrum& spectrum) {
   const Index n = shared_.size();
   std::vector<Eigen::MatrixXd> parts(segments_.size(), Eigen::MatrixXd::Zero(n, n));
   for_each_segment(model_, options_.threads, [&](std::size_t s) {
     RowMatrix residual, predicted, rows;
-    if (!linearise(s, true, residual, predicted, rows)) return;
+    if (!simulate_with_derivatives(s)) return;
+    linearise(s, true, segments_[s].simulated.front().response, residual, predicted, rows);
+    if (!keeps_) forget(segments_[s]);
     const Index locals = segments_[s].local.size();
     RowMatrix sensitivity = rows.middleCols(locals, n);
     if (locals > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -52,24 +53,33 @@ class OutputErrorProblem {
   [[nodiscard]] const SegmentTriangle& triangle(std::size_t s) const { return segments_[s].triangle; }
   [[nodiscard]] int diverged_evaluations() const { return diverged_evaluations_; }
   [[nodiscard]] const std::string& diverged_segment() const { return diverged_segment_; }
-  [[nodiscard]] const SimulationCount& simulations() const { return simulations_; }
+  [[nodiscard]] SimulationCount simulations() const;
 
   void start_noise();
   /// R from the residuals; returns the largest relative change of a standard deviation.
   double update_noise();
   [[nodiscard]] const Eigen::MatrixXd& noise() const { return noise_; }
 
+  /// Whether a shared unknown is at a bound.
+  [[nodiscard]] bool reaches_bounds() const;
+  /// Of the shared unknowns that are at a bound, those that the cost would drive beyond it, by their place; the
+  /// triangles are those of the current unknowns.
+  [[nodiscard]] std::vector<int> pressed_on_bounds() const;
   /// |R^-1/2 S (now - before)|, an upper bound of every shared parameter's change in its own sigma.
   [[nodiscard]] double largest_change_in_sigma(const Eigen::VectorXd& before) const;
   /// A with A'A the information of the shared unknowns, the segments' local ones eliminated; priors are not in it.
   [[nodiscard]] RowMatrix shared_root() const;
   [[nodiscard]] std::vector<RowMatrix> whitened_residuals() const;
-  [[nodiscard]] Eigen::MatrixXd spectral_filling(const ResidualSpectrum& spectrum) const;
+  [[nodiscard]] Eigen::MatrixXd spectral_filling(const ResidualSpectrum& spectrum);
   [[nodiscard]] double negative_log_likelihood() const;
   [[nodiscard]] std::vector<OutputFit> output_fits() const;
   [[nodiscard]] const RowMatrix& predicted(std::size_t s) const { return segments_[s].predicted; }
 
  private:
+  struct Simulated {
+    ModelResponse response;
+    Eigen::VectorXd theta;  // that it is of; empty: none
+  };
   struct Segment {
     std::vector<Eigen::Index> free_initial;  // of the model's initial conditions
     Eigen::VectorXd initial;                 // all initial conditions, at their start
@@ -78,11 +88,24 @@ class OutputErrorProblem {
     SegmentTriangle triangle;
     RowMatrix residual;  // samples x outputs, NaN where missing
     RowMatrix predicted;
+    // The last two simulations with derivatives, where they are kept, the later one first: a search goes back by a
+    // step.
+    std::array<Simulated, 2> simulated;
+    SimulationCount simulations;
   };
 
   [[nodiscard]] Eigen::VectorXd theta_of(const Segment& segment) const;
-  /// Residual and, with derivatives, the whitened rows [-S_own, -S_shared | nu]; false when it diverged.
-  bool linearise(std::size_t s, bool derivatives, RowMatrix& residual, RowMatrix& predicted, RowMatrix& rows) const;
+  [[nodiscard]] bool fits_in_memory() const;
+  /// Brings a kept simulation of the current unknowns to the front; false where there is none.
+  static bool recall(Segment& segment, const Eigen::VectorXd& theta);
+  /// Outputs at the current unknowns; false when it diverges.
+  bool simulate(std::size_t s, ModelResponse& values);
+  /// The same with derivatives, to the front of those kept, where they are not there already.
+  bool simulate_with_derivatives(std::size_t s);
+  static void forget(Segment& segment);
+  /// Residual and, with derivatives, the whitened rows [-S_own, -S_shared | nu] of a simulation.
+  void linearise(std::size_t s, bool derivatives, const ModelResponse& response, RowMatrix& residual,
+                 RowMatrix& predicted, RowMatrix& rows) const;
   /// R^-1/2 times the rows of every sample, in place; missing ones become zero.
   void whiten(const RowMatrix& residual, RowMatrix& rows) const;
   void set_noise(const Eigen::MatrixXd& noise);
@@ -98,12 +121,12 @@ class OutputErrorProblem {
   std::vector<Eigen::Index> biased_;  // outputs with a bias
   std::vector<ModelParameter> bias_parameters_;
   std::vector<Segment> segments_;
+  bool keeps_ = false;  // simulations with derivatives, for another R
   Eigen::MatrixXd noise_;
   Eigen::MatrixXd whitener_;  // inverse of the Cholesky factor of R
   Eigen::VectorXd noise_floor_;
   int diverged_evaluations_ = 0;
   std::string diverged_segment_;
-  SimulationCount simulations_;
 };
 
 }  // namespace veridyn::estimation::internal

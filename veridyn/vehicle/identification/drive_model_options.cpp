@@ -14,13 +14,22 @@
 namespace veridyn::vehicle {
 namespace {
 
-constexpr std::array kRolls{DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,    DriveUnknown::kRollDamping,
-                            DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer};
-constexpr std::array kByGeometry{
-    DriveUnknown::kCf,          DriveUnknown::kCr,           DriveUnknown::kIz,
-    DriveUnknown::kA,           DriveUnknown::kRollGradient, DriveUnknown::kRollFrequency,
-    DriveUnknown::kRollDamping, DriveUnknown::kRollArm,      DriveUnknown::kRelaxationLength,
-    DriveUnknown::kLoadTransfer};
+constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRollFrequency,
+                            DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
+                            DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
+                            DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
+constexpr std::array kByGeometry{DriveUnknown::kCf,
+                                 DriveUnknown::kCr,
+                                 DriveUnknown::kIz,
+                                 DriveUnknown::kA,
+                                 DriveUnknown::kRollGradient,
+                                 DriveUnknown::kRollFrequency,
+                                 DriveUnknown::kRollDamping,
+                                 DriveUnknown::kRollArm,
+                                 DriveUnknown::kRelaxationLength,
+                                 DriveUnknown::kLoadTransfer,
+                                 DriveUnknown::kLoadTransferLoss,
+                                 DriveUnknown::kLoadTransferBalance};
 
 struct Knowledge {
   double mean = 0.0, sigma = 0.0;
@@ -49,10 +58,32 @@ Knowledge by_geometry(DriveUnknown unknown, const VehicleParameters<double>& veh
       return {0.3, 0.2};
     case DriveUnknown::kRollArm:
       return {0.85 * vehicle.cg_height, 0.25 * vehicle.cg_height};
-    case DriveUnknown::kLoadTransfer:
+    case DriveUnknown::kLoadTransfer: {
+      const double rigid = 4.0 * vehicle.cg_height / (vehicle.track_f + vehicle.track_r);
+      return {rigid, 0.25 * rigid};
+    }
+    case DriveUnknown::kLoadTransferLoss:
       return {0.2, 0.2};
+    case DriveUnknown::kLoadTransferBalance:
+      return {0.0, 0.4};
     default:
       return {0.12 * vehicle.wheelbase(), 0.06 * vehicle.wheelbase()};
+  }
+}
+
+/// Whether a structure frees an unknown of those that structures free.
+bool frees(DriveStructure structure, DriveUnknown unknown) {
+  switch (unknown) {
+    case DriveUnknown::kRelaxationLength:
+      return has_relaxation(structure);
+    case DriveUnknown::kLoadTransfer:
+      return structure == DriveStructure::kSaturation;
+    case DriveUnknown::kLoadTransferLoss:
+      return structure == DriveStructure::kMagicFormula;
+    case DriveUnknown::kLoadTransferBalance:
+      return saturates(structure);
+    default:
+      return has_roll(structure);
   }
 }
 
@@ -158,7 +189,11 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
     case DriveUnknown::kRollArm:
       return {0.0, wheelbase};
     case DriveUnknown::kLoadTransfer:
+      return {0.0, 2.0};
+    case DriveUnknown::kLoadTransferLoss:
       return {0.0, 1.0};
+    case DriveUnknown::kLoadTransferBalance:
+      return {-1.0, 1.0};
     case DriveUnknown::kRelaxationLength:
       return {kShortestRelaxation * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
@@ -176,10 +211,7 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
 DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure) {
   options.structure = structure;
   if (structure == DriveStructure::kScaledAccel) options.free[DriveUnknown::kAccelYScale] = true;
-  for (const DriveUnknown u : kRolls)
-    options.free[u] = u == DriveUnknown::kRelaxationLength ? has_relaxation(structure)
-                      : u == DriveUnknown::kLoadTransfer   ? has_load_transfer(structure)
-                                                           : has_roll(structure);
+  for (const DriveUnknown u : kRolls) options.free[u] = frees(structure, u);
   if (saturates(structure) && options.tyre == DriveTyre::kLinear) {
     const bool has_shape = structure == DriveStructure::kMagicFormula;
     options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;

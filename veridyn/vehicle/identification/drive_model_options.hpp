@@ -14,17 +14,19 @@ namespace veridyn::vehicle {
 
 /// Unknowns of the drive model, in this order.
 enum class DriveUnknown : std::size_t {
-  kCf,                ///< cornering stiffness of one front tyre [N/rad]
-  kCr,                ///< of one rear tyre
-  kIz,                ///< yaw inertia [kg m^2]
-  kA,                 ///< centre of gravity to front axle [m]; the wheelbase stays
-  kMu,                ///< peak friction coefficient D/F_z of the Magic Formula [-]
-  kShape,             ///< its shape factor C [-]
-  kCurvature,         ///< its curvature factor E [-]
-  kRollGradient,      ///< steady roll per lateral acceleration [rad/(m/s^2)]
-  kRollArm,           ///< centre of gravity above the roll axis [m]
-  kRelaxationLength,  ///< travel in which the slip angles follow by 63 % [m]
-  kLoadTransfer,      ///< share of the axles' force that is lost where the body leans as much as at 1 g [-]
+  kCf,                   ///< cornering stiffness of one front tyre [N/rad]
+  kCr,                   ///< of one rear tyre
+  kIz,                   ///< yaw inertia [kg m^2]
+  kA,                    ///< centre of gravity to front axle [m]; the wheelbase stays
+  kMu,                   ///< peak friction coefficient D/F_z of the Magic Formula [-]
+  kShape,                ///< its shape factor C [-]
+  kCurvature,            ///< its curvature factor E [-]
+  kRollGradient,         ///< steady roll per lateral acceleration [rad/(m/s^2)]
+  kRollArm,              ///< centre of gravity above the roll axis [m]
+  kRelaxationLength,     ///< travel in which the slip angles follow by 63 % [m]
+  kLoadTransfer,         ///< share of a wheel's static load that moves to the other side at 1 g [-]
+  kLoadTransferLoss,     ///< share of the axles' force that is lost where the body leans as much as at 1 g [-]
+  kLoadTransferBalance,  ///< by how much of it the front axle loses more than that, and the rear one less [-]
   /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
   /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
   /// alone has them.
@@ -42,7 +44,7 @@ enum class DriveUnknown : std::size_t {
   kAccelYDelay
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 23;
+inline constexpr std::size_t kDriveUnknowns = 25;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// A value for each of them.
@@ -59,7 +61,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "roll_gradient",
                                                                       "roll_arm",
                                                                       "relaxation_length",
+                                                                      "load_transfer",
                                                                       "load_transfer_loss",
+                                                                      "load_transfer_balance",
                                                                       "roll_frequency",
                                                                       "roll_damping",
                                                                       "steer_bias",
@@ -74,8 +78,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_y_delay"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad", "N/rad", "kg m^2", "m",     "1",     "1", "1",   "rad s^2/m", "m", "m", "1", "rad/s",
-    "1",     "rad",   "1",      "rad/s", "m/s^2", "1", "rad", "rad/s",     "s", "s", "s"};
+    "N/rad", "N/rad", "kg m^2", "m", "1",     "1",     "1", "rad s^2/m", "m",     "m", "1", "1", "1",
+    "rad/s", "1",     "rad",    "1", "rad/s", "m/s^2", "1", "rad",       "rad/s", "s", "s", "s"};
+static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
 
@@ -121,7 +126,7 @@ struct DriveModelOptions {
 /// roll frequency 10 rad/s +- 40 % on a wheelbase of 2.6 m (as the root of its inverse), damping ratio 0.3 +- 0.2, the
 /// centre of gravity 0.85 +- 0.25 of its height above the roll axis (roll axes lie up to 0.15 m above the road,
 /// Milliken & Milliken 1995, chapter 17), relaxation length 0.12 +- 0.06 of the wheelbase (0.3 m, Pacejka 2006, chapter
-/// 5).
+/// 5), load transfer that of a rigid car, twice the height of the centre of gravity over the track, within a quarter.
 [[nodiscard]] DriveModelOptions with_geometry(DriveModelOptions options, const VehicleParameters<double>& vehicle,
                                               double roll_gradient);
 

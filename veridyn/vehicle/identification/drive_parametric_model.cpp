@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
@@ -33,6 +34,27 @@ constexpr double kNoNoise = 1e-4;
 
 /// Speeds at which the whitening filter is computed.
 constexpr int kFilterSpeeds = 9;
+
+/// Derivatives with respect to initial conditions begin as one and count for nothing below this.
+constexpr double kForgotten = 1e-8;
+/// In samples.
+constexpr std::size_t kForgottenEvery = 25;
+
+template <typename State>
+bool depends_on_its_beginning(const State& x) {
+  if constexpr (std::is_same_v<typename State::Scalar, double>)
+    return true;
+  else
+    return std::ranges::any_of(x, [](const auto& state) { return state.v.cwiseAbs().maxCoeff() > kForgotten; });
+}
+
+template <typename Scalar>
+typename LoadTransfer<Scalar>::Effect load_transfer_of(DriveStructure structure) {
+  using Effect = typename LoadTransfer<Scalar>::Effect;
+  return structure == DriveStructure::kSaturation     ? Effect::kLoads
+         : structure == DriveStructure::kMagicFormula ? Effect::kLoss
+                                                      : Effect::kNone;
+}
 
 double rms_of(const std::vector<double>& x) {
   double power = 0.0, count = 0.0;
@@ -246,7 +268,7 @@ Scalar DriveParametricModel::recorded(DriveSignal signal, const Scalar& shown, c
 
 template <int kStates, typename Scalar, typename Tyre>
 bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Scalar, Tyre>& model,
-                                 const Parameters<Scalar>& theta, Outputs<Scalar>& output) const {
+                                 const Parameters<Scalar>& theta, Extent extent, Outputs<Scalar>& output) const {
   using State = Eigen::Matrix<Scalar, kStates, 1>;
   using Rates = RollingBicycleRates<Scalar, kStates>;
   const auto unknown = [&](DriveUnknown u) -> const Scalar& { return theta(static_cast<Eigen::Index>(u)); };
@@ -287,6 +309,10 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
     const bool plausible =
         x(0) < 2.0 * now.u && -x(0) < 2.0 * now.u && x(1) < kLargestYawRate && -x(1) < kLargestYawRate;
     if (!plausible) return false;
+    if (extent == Extent::kTransient && k % kForgottenEvery == 0 && !depends_on_its_beginning(x)) {
+      output.bottomRows(signed_index(n) - row).setConstant(Scalar(0.0));
+      break;
+    }
     for (int i = 0; i < segment.substeps; ++i) {
       const Rates k1 = model.rates(x, now.delta, now.u);
       if (i == 0) {
@@ -339,8 +365,10 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
                  .damping = unknown(DriveUnknown::kRollDamping),
                  .arm = unknown(DriveUnknown::kRollArm)},
         .relaxation_length = unknown(DriveUnknown::kRelaxationLength),
-        .load_transfer_loss =
-            has_load_transfer(options_.structure) ? unknown(DriveUnknown::kLoadTransfer) : Scalar(0.0)};
+        .load_transfer = {.effect = load_transfer_of<Scalar>(options_.structure),
+                          .share = unknown(DriveUnknown::kLoadTransfer),
+                          .loss = unknown(DriveUnknown::kLoadTransferLoss),
+                          .balance = unknown(DriveUnknown::kLoadTransferBalance)}};
     switch (options_.structure) {
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());
@@ -376,13 +404,24 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
 }
 
 template <typename Scalar>
-bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar>& theta,
+bool DriveParametricModel::simulate(const Segment& segment, const Parameters<Scalar>& theta, Extent extent,
                                     Outputs<Scalar>& output) const {
   return with_model(theta, [&](const auto& model, auto states) {
-    const bool drives = drive<decltype(states)::value>(segments_[segment], model, theta, output);
-    if (drives && !whitening_.empty()) whiten(segments_[segment], output);
+    const bool drives = drive<decltype(states)::value>(segment, model, theta, extent, output);
+    if (drives && !whitening_.empty()) whiten(segment, output);
     return drives;
   });
+}
+
+template <typename Scalar>
+bool DriveParametricModel::simulate(std::size_t segment, const Parameters<Scalar>& theta,
+                                    Outputs<Scalar>& output) const {
+  return simulate(segments_[segment], theta, Extent::kWhole, output);
+}
+
+bool DriveParametricModel::simulate_transient(std::size_t segment, const Parameters<ceres::Jet<double, 8>>& theta,
+                                              Outputs<ceres::Jet<double, 8>>& output) const {
+  return simulate(segments_[segment], theta, Extent::kTransient, output);
 }
 
 template bool DriveParametricModel::simulate(std::size_t, const Parameters<double>&, Outputs<double>&) const;

@@ -76,8 +76,13 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// Fills `output`; false where the motion diverged. Compiled for double and Jets of 8.
   template <typename Scalar>
   bool simulate(std::size_t segment, const Parameters<Scalar>& theta, Outputs<Scalar>& output) const;
+  /// Derivatives with respect to initial conditions, which are forgotten within seconds.
+  bool simulate_transient(std::size_t segment, const Parameters<ceres::Jet<double, 8>>& theta,
+                          Outputs<ceres::Jet<double, 8>>& output) const;
 
  private:
+  /// How far a drive is simulated.
+  enum class Extent { kWhole, kTransient };
   struct Segment {
     std::size_t begin = 0;  // into the signals' grid
     Eigen::Index samples = 0;
@@ -96,9 +101,12 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// Calls `work(model, states)` with the vehicle at `theta` and its number of states as a constant.
   template <typename Scalar, typename Work>
   auto with_model(const Parameters<Scalar>& theta, const Work& work) const;
+  /// `kTransient`: outputs are 0 once no state depends on where the segment began.
   template <int kStates, typename Scalar, typename Tyre>
   bool drive(const Segment& segment, const RollingBicycle<Scalar, Tyre>& model, const Parameters<Scalar>& theta,
-             Outputs<Scalar>& output) const;
+             Extent extent, Outputs<Scalar>& output) const;
+  template <typename Scalar>
+  bool simulate(const Segment& segment, const Parameters<Scalar>& theta, Extent extent, Outputs<Scalar>& output) const;
   /// What a sensor would show without errors at a state and its rates.
   template <int kStates, typename Scalar>
   [[nodiscard]] Scalar true_output(DriveSignal signal, const Eigen::Matrix<Scalar, kStates, 1>& state,

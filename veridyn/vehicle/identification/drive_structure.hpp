@@ -19,9 +19,11 @@ enum class DriveStructure : std::size_t {
   kScaledAccel,  ///< the same, and an accelerometer whose scale is wrong: what roll has to be told from
   kRoll,         ///< and the body's roll on its springs
   kRelaxation,   ///< and tyres whose slip follows after a relaxation length
-  kSaturation,   ///< and tyres whose stiffness falls with their force (Fiala); relaxation length 0: slip at once
-  /// The same with the reduced Magic Formula, whose stiffness falls later and more, and with what an axle loses when
-  /// its load moves from one wheel to the other
+  /// And tyres whose stiffness falls with their force (Fiala), with the load that moves from one wheel to the other;
+  /// relaxation length 0: slip at once
+  kSaturation,
+  /// The same with the reduced Magic Formula, whose stiffness falls later and more, and with what an axle loses by the
+  /// load that moves
   kMagicFormula
 };
 /// How many there are.
@@ -44,10 +46,6 @@ inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> k
   return structure >= DriveStructure::kRelaxation;
 }
 
-/// Whether its axles lose force where load moves from one wheel to the other.
-[[nodiscard]] constexpr bool has_load_transfer(DriveStructure structure) {
-  return structure == DriveStructure::kMagicFormula;
-}
 /// Whether its tyres have a friction limit.
 [[nodiscard]] constexpr bool saturates(DriveStructure structure) { return structure >= DriveStructure::kSaturation; }
 

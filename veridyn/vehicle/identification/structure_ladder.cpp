@@ -102,8 +102,8 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
   if (!has_roll(problem.options.model.structure) || !fit.raw.usable() || progress.interrupted()) return std::nullopt;
   VehicleIdentifyOptions options = problem.options;
   options.model.free[DriveUnknown::kSteerDelay] = true;
-  const OutputErrorResult delayed = estimate_by_output_error(with_options(problem, options), equation_error,
-                                                             fit.raw.theta, {}, SearchEffort::kToCompare, progress);
+  const OutputErrorResult delayed = estimate_by_output_error(
+      with_options(problem, options), equation_error, fit.raw.theta, fit.whitening, SearchEffort::kOnce, progress);
   if (!delayed.raw.usable()) return std::nullopt;
   return delayed.raw.parameters[static_cast<std::size_t>(DriveUnknown::kSteerDelay)];
 }

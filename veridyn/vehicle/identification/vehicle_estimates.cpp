@@ -18,6 +18,7 @@ constexpr int kMostWeighings = 3;
 constexpr double kSettled = 0.2;
 /// Of a search that only compares structures.
 constexpr int kRelaxationsToCompare = 4, kStepsToCompare = 10;
+constexpr double kToleranceToCompare = 0.1;
 /// Of a search [sigma]: a fiftieth of what is not known anyway.
 constexpr double kTolerance = 0.02;
 
@@ -352,9 +353,11 @@ OutputErrorResult estimate_by_output_error(const VehicleProblem& problem, const 
                                            SearchEffort effort, Progress& progress) {
   OutputErrorProblem given = output_error_problem(problem, equation_error);
   given.weigh(weighing);
+  if (effort == SearchEffort::kOnce) given.options.max_relaxations = 1;
   if (effort == SearchEffort::kToCompare) {
     given.options.max_relaxations = kRelaxationsToCompare;
     given.options.max_steps = kStepsToCompare;
+    given.options.tolerance = kToleranceToCompare;
   }
   OutputErrorResult out = fitted(problem, equation_error, std::move(given), search_start, progress);
   out.whitening = weighing;

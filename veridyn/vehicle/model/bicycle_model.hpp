@@ -72,6 +72,18 @@ struct BicycleModel {
             rear.forces(load[kRearLeft], none, slip_angle[1], none).Fy};
   }
 
+  /// The same where shares of the static loads have moved from one wheel of an axle to the other: mean of both [N].
+  [[nodiscard]] std::array<Scalar, 2> tyre_forces(const std::array<Scalar, 2>& slip_angle,
+                                                  const std::array<Scalar, 2>& moved) const {
+    const PerWheel<Scalar> load = static_loads(parameters, gravity);
+    const auto mean = [](const Tyre& tyre, const Scalar& at_rest, const Scalar& share, const Scalar& slip) -> Scalar {
+      const Scalar none(0.0), more = at_rest * (1.0 + share), less = at_rest * (1.0 - share);
+      return 0.5 * (tyre.forces(more, none, slip, none).Fy + tyre.forces(less, none, slip, none).Fy);
+    };
+    return {mean(front, load[kFrontLeft], moved[0], slip_angle[0]),
+            mean(rear, load[kRearLeft], moved[1], slip_angle[1])};
+  }
+
   /// The rates that forces of one tyre, front and rear, bring about; the slip angles only go with them.
   [[nodiscard]] BicycleRates<Scalar> rates_of_forces(const std::array<Scalar, 2>& slip_angle,
                                                      const std::array<Scalar, 2>& Fy, const Scalar& r,

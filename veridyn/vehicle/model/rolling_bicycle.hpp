@@ -22,6 +22,24 @@ struct BodyRoll {
   Scalar arm{0.0};        ///< h: centre of gravity above the roll axis, which the contact points move by [m]
 };
 
+/// What axles lose where springs and dampers move their load from one wheel to the other, n times as much as in steady
+/// cornering at 1 g.
+template <typename Scalar>
+struct LoadTransfer {
+  enum class Effect {
+    kNone,
+    /// Either wheel has the force of its own load, W (1 +- share n) of static loads W: a friction limit is reached
+    /// sooner by the inner one than later by the outer one.
+    kLoads,
+    /// The force at the static loads, times 1 - loss n^2: the stiffness of a tyre grows less than its load.
+    kLoss
+  };
+  Effect effect = Effect::kNone;
+  Scalar share{0.0};    ///< of both axles
+  Scalar loss{0.0};     ///< of both axles
+  Scalar balance{0.0};  ///< by how much of that the front axle has more, and the rear one less: -1 to 1
+};
+
 /// Rates of a `RollingBicycle` at one moment.
 template <typename Scalar, int kStates>
 struct RollingBicycleRates {
@@ -42,9 +60,7 @@ struct RollingBicycle {
   BicycleModel<Scalar, Tyre> bicycle;
   BodyRoll<Scalar> roll = {};
   Scalar relaxation_length{0.3};  ///< with six states; > 0 [m]
-  /// Share of both axles' force that is lost at 1 g of steady cornering, since the stiffness of a tyre grows less than
-  /// its load: it goes with the square of the load that springs and dampers move from wheel to wheel. 0 to 1.
-  Scalar load_transfer_loss{0.0};
+  LoadTransfer<Scalar> load_transfer = {};
 
   template <int kStates>
   [[nodiscard]] RollingBicycleRates<Scalar, kStates> rates(const Eigen::Matrix<Scalar, kStates, 1>& x,
@@ -74,17 +90,19 @@ struct RollingBicycle {
   template <int kStates>
   [[nodiscard]] std::array<Scalar, 2> axle_forces(const std::array<Scalar, 2>& slip,
                                                   const Eigen::Matrix<Scalar, kStates, 1>& x) const {
-    std::array<Scalar, 2> Fy = bicycle.tyre_forces(slip);
     if constexpr (kStates > 2) {
-      if (load_transfer_loss > 0.0 && roll.gradient > 0.0) {
-        // The lateral acceleration that springs and dampers carry, in g.
-        const Scalar carried = (x(2) + 2.0 * roll.damping / roll.frequency * x(3)) / (bicycle.gravity * roll.gradient);
-        const Scalar left = 1.0 - load_transfer_loss * carried * carried;
-        Fy[0] *= left;
-        Fy[1] *= left;
+      const LoadTransfer<Scalar>& t = load_transfer;
+      if (t.effect != LoadTransfer<Scalar>::Effect::kNone && roll.gradient > 0.0) {
+        const Scalar n = (x(2) + 2.0 * roll.damping / roll.frequency * x(3)) / (bicycle.gravity * roll.gradient);
+        const Scalar front = 1.0 + t.balance, rear = 1.0 - t.balance;
+        if (t.effect == LoadTransfer<Scalar>::Effect::kLoads)
+          return bicycle.tyre_forces(slip, {t.share * front * n, t.share * rear * n});
+        const Scalar lost = t.loss * n * n;
+        const std::array<Scalar, 2> Fy = bicycle.tyre_forces(slip);
+        return {Fy[0] * (1.0 - lost * front), Fy[1] * (1.0 - lost * rear)};
       }
     }
-    return Fy;
+    return bicycle.tyre_forces(slip);
   }
 
   /// Sideways, of the contact points below the centre of gravity [m/s].
