@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   const std::array commands = {demo_command(),        init_command(),        inspect_command(),   simulate_command(),
                                reconstruct_command(), identify_command(),    track_command(),     validate_command(),
                                scale_command(),       sensitivity_command(), reproduce_command(), export_command(),
-                               cue_command(),         rig_command(),         serve_command(),   camera_command(),
+                               cue_command(),         rig_command(),         serve_command(),     camera_command(),
                                regress_command(),     compare_command()};
   const veridyn::Interruption interruption;
   veridyn::request_on_signals(interruption);

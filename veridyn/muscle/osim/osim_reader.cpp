@@ -46,8 +46,7 @@ Eigen::Matrix3d read_inertia(Context& context, const Element& body) {
   const Eigen::Vector3d& moments = principal.eigenvalues();
   if (moments.minCoeff() >= -1e-9 * moments.cwiseAbs().maxCoeff()) return inertia;
   const Eigen::Vector3d raised = moments.cwiseMax(0.0);
-  Eigen::Matrix3d repaired =
-      principal.eigenvectors() * raised.asDiagonal() * principal.eigenvectors().transpose();
+  Eigen::Matrix3d repaired = principal.eigenvectors() * raised.asDiagonal() * principal.eigenvectors().transpose();
   context.warn(body, fmt::format("inertia is not positive semidefinite, so that no mass has it: its least principal "
                                  "moment, {:.4g} kg m^2, is taken as 0, which changes entries by up to {:.4g} kg m^2",
                                  moments.minCoeff(), (repaired - inertia).cwiseAbs().maxCoeff()));
