@@ -160,7 +160,8 @@ endfunction()
 # One test binary a module, veridyn_NAME_tests, of all sources below the folder; its cases are registered with CTest under the
 # label NAME; those of suites named *Soak* are long-running campaigns under the label `soak`, which `make soak` runs. Those
 # that tests/long_tests.txt names have the label `NAME.long` instead, and do not run under the sanitizers. Each takes a core
-# of those that `make test` distributes, but for those that tests/waiting_tests.txt names.
+# of those that `make test` distributes, but for those that tests/waiting_tests.txt names; nothing runs beside those of
+# tests/lone_tests.txt.
 function(veridyn_module_tests name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;WITHOUT" ${ARGN})
   set(target veridyn_${name}_tests)
@@ -173,7 +174,8 @@ function(veridyn_module_tests name)
   target_link_libraries(${target} PRIVATE ${ARG_DEPENDS} veridyn_test_build)
   target_precompile_headers(${target} REUSE_FROM veridyn_test_headers)
   veridyn_compile_together(${target} 24)
-  set(lists ${PROJECT_SOURCE_DIR}/tests/long_tests.txt ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt)
+  set(lists ${PROJECT_SOURCE_DIR}/tests/long_tests.txt ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt
+            ${PROJECT_SOURCE_DIR}/tests/lone_tests.txt)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${lists})
   file(STRINGS ${PROJECT_SOURCE_DIR}/tests/long_tests.txt long REGEX "^[^#]")
   list(TRANSFORM long REPLACE "(.+)" "*\\1*")
@@ -185,10 +187,14 @@ function(veridyn_module_tests name)
   # What CTest reads after the tests of this folder.
   file(STRINGS ${PROJECT_SOURCE_DIR}/tests/waiting_tests.txt waiting REGEX "^[^#]")
   list(JOIN waiting "|" waiting)
+  file(STRINGS ${PROJECT_SOURCE_DIR}/tests/lone_tests.txt lone REGEX "^[^#]")
+  list(JOIN lone "|" lone)
   set(file ${CMAKE_CURRENT_BINARY_DIR}/test_resources.cmake)
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT [[
 foreach(test IN LISTS @target@_short @target@_long)
-  if(test MATCHES "@waiting@")
+  if(test MATCHES "@lone@")
+    set_tests_properties(${test} PROPERTIES RUN_SERIAL TRUE)
+  elseif(test MATCHES "@waiting@")
     set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS waiting:1 COST 1000)
   else()
     set_tests_properties(${test} PROPERTIES RESOURCE_GROUPS cores:1)

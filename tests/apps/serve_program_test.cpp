@@ -75,7 +75,7 @@ TEST_F(ServeProgramTest, BeyondLoopbackWithoutATokenOnlyShows) {
 }
 
 TEST_F(ServeProgramTest, ShowsHowFarAnIdentificationIsAndWhatBecameOfIt) {
-  const std::string study = (test::source_folder() / "examples/studies/simulated_flight.toml").string();
+  const std::string study = (test::source_folder() / "examples/studies/muscle/posterior_arm.toml").string();
   Process serve({"serve", folder_.string(), "--page", "127.0.0.1:" + std::to_string(port())}, folder_ / "serve.txt");
   ASSERT_TRUE(serve.says("token:", 20.0)) << serve.said();
   const std::vector<std::string> words = {"identify", study, "--quiet", "--out", (folder_ / "out").string()};
@@ -84,7 +84,7 @@ TEST_F(ServeProgramTest, ShowsHowFarAnIdentificationIsAndWhatBecameOfIt) {
     const nlohmann::json work = work_until("goes on");
     ASSERT_EQ(work["state"], "goes on") << serve.said();
     EXPECT_EQ(work["command"], "identify");
-    EXPECT_THAT(work["study"].get<std::string>(), HasSubstr("simulated_flight.toml"));
+    EXPECT_THAT(work["study"].get<std::string>(), HasSubstr("posterior_arm.toml"));
     EXPECT_EQ(work["folder"], (folder_ / "out").string());
     EXPECT_GT(work["stages"], 0);
     killed.signal(SIGKILL);
@@ -104,7 +104,7 @@ TEST_F(ServeProgramTest, ShowsHowFarAnIdentificationIsAndWhatBecameOfIt) {
   for (nlohmann::json all = status(); all["work"][0]["state"] == "goes on"; all = status()) {
     stages = std::max(stages, all["work"][0]["stages"].get<int>());
     most = std::max(most, all["work"][0]["fraction"].get<double>());
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   EXPECT_EQ(identify.wait(), 0) << identify.said();
   EXPECT_GT(stages, 3);
