@@ -24,7 +24,7 @@ std::filesystem::path file_of(const std::filesystem::path& given) {
 /// "flight1" of flight1/estimate.json, else the file's name; numbered where names repeat.
 std::string name_of(const std::filesystem::path& file, const std::vector<NamedEstimate>& others) {
   const bool plain = file.filename() == "estimate.json" && file.has_parent_path();
-  const std::string name = plain ? file.parent_path().filename().string() : file.stem().string();
+  std::string name = plain ? file.parent_path().filename().string() : file.stem().string();
   const auto taken = [&](const std::string& n) {
     return std::ranges::find(others, n, &NamedEstimate::name) != others.end();
   };

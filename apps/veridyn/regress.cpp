@@ -221,7 +221,7 @@ Command regress_command() {
            {.name = "--bootstrap", .help = "replicates of a block bootstrap alongside", .value = 0.0, .type = "N"},
            {.name = "--no-constant", .help = "no constant term", .value = false}},
       .default_out = "out/regress",
-      .example = "veridyn regress table.csv --response CL --regressors alpha,q_n,de --segments run",
+      .example = "veridyn regress examples/tables/coast_down.csv --response deceleration --segments run",
       .run = regress};
 }
 

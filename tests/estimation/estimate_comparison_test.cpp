@@ -70,6 +70,29 @@ TEST(EstimateComparison, DiffersByChanceAsOftenAsItSays) {
   EXPECT_NEAR(differing, 50, 21);
 }
 
+// A third parameter that is the ratio of the first two, with the covariance of its linear terms: it curves, and adds
+// nothing.
+TEST(EstimateComparison, TakesNoFunctionOfOthersForAContradiction) {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] {
+    const Eigen::Vector2d x(10.0 + 0.3 * normal(generator), 5.0 + 0.1 * normal(generator));
+    Eigen::MatrixXd J(3, 2);
+    J << 1.0, 0.0, 0.0, 1.0, 1.0 / x(1), -x(0) / (x(1) * x(1));
+    const Eigen::Vector2d variance(0.09, 0.01);
+    return std::pair<Eigen::VectorXd, Eigen::MatrixXd>(Eigen::Vector3d(x(0), x(1), x(0) / x(1)),
+                                                       J * variance.asDiagonal() * J.transpose());
+  };
+  int differing = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto [a, P] = draw();
+    const auto [b, Q] = draw();
+    const std::vector<NamedEstimate> estimates{named("a", a, P), named("b", b, Q)};
+    differing += compare_estimates(estimates).pairs.at(0).p < 0.05 ? 1 : 0;
+  }
+  EXPECT_NEAR(differing, 50, 21);
+}
+
 TEST(EstimateComparison, SaysWhatContradictsAndWhatCannotBeCompared) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(2, 2);
   std::vector<NamedEstimate> estimates{named("a", Eigen::Vector2d(0.0, 0.0), one),

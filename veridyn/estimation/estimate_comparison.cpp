@@ -79,7 +79,12 @@ Eigen::MatrixXd covariance_of(const Estimate& estimate, const std::vector<std::s
   return P;
 }
 
-/// d' P^-1 d over the directions in which P is not zero.
+/// Of the variance that directions of parameters in units of their standard errors have: one that has less is a
+/// function of others (an understeer gradient of stiffnesses), which is linear only so far, and no more information
+/// than they are.
+constexpr double kOwn = 1e-2;
+
+/// d' P^-1 d over the directions in which P says something of its own.
 struct ChiSquare {
   double value = 0.0;
   double freedom = 0.0;
@@ -89,10 +94,9 @@ ChiSquare chi_square_of(const Eigen::VectorXd& d, const Eigen::MatrixXd& P) {
   const numerics::SymmetricEigen eigen =
       numerics::symmetric_eigen(Eigen::MatrixXd(scale.asDiagonal() * P * scale.asDiagonal()));
   const Eigen::VectorXd along = eigen.vectors.transpose() * (scale.asDiagonal() * d);
-  constexpr double kNothing = 1e-10;
   ChiSquare chi;
   for (Eigen::Index i = 0; i < along.size(); ++i) {
-    if (!(eigen.values(i) > kNothing)) continue;
+    if (!(eigen.values(i) > kOwn)) continue;
     chi.value += along(i) * along(i) / eigen.values(i);
     chi.freedom += 1.0;
   }
