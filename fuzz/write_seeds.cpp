@@ -25,6 +25,7 @@ int main(int count, char** arguments) {
     write("dataflash_text", veridyn::testing::small_dataflash_text());
     write("ulog", veridyn::testing::small_ulog());
     write("csv", veridyn::testing::small_csv());
+    write("number_table", "# of three runs\nrun,alpha[rad],CL,day\n1,0.1,0.4,Mon\n1,0.2,NaN,Mon\n2,-1e-1,,Tue\n");
     write("mat", veridyn::testing::small_mat());
     write("storage",
           "Coordinates\nversion=1\nnRows=2\nnColumns=3\ninDegrees=yes\nendheader\ntime\tshoulder\telbow\n0.0\t1.5\t-"
