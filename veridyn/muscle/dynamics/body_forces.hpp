@@ -30,6 +30,7 @@ struct MovingFrame {
   const SpatialVector<Scalar>* velocity = nullptr;
 };
 
+/// Where a frame of a body is, and the link that it moves with.
 template <typename Scalar>
 MovingFrame<Scalar> moving_frame(const Mechanism& mechanism, const Kinematics<Scalar>& kinematics, int body,
                                  const Placement& in_body) {

@@ -14,6 +14,7 @@ namespace veridyn::vehicle {
 /// deg, small bumps, curves banked by edges of 1, 1.8 and 2.8 cm on 20 cm (2.9, 5.1, 8 deg), asphalt and a rough part.
 /// Roughness is that of ISO 8608 at one fifth of the size (1/125 of class A and F).
 struct CircuitOptions {
+  /// Up, level, and down again.
   struct Ramp {
     double at = 0.0;      ///< distance along the circuit where it begins [m]
     double angle = 0.0;   ///< of its even part, up and down [rad]
@@ -26,9 +27,11 @@ struct CircuitOptions {
     /// Of the part of even slope [m].
     [[nodiscard]] double even() const;
   };
+  /// A hump across the track.
   struct Bump {
     double at = 0.0, height = 0.0, length = 0.0;  ///< across the whole width, a whole cosine [m]
   };
+  /// A stretch of another surface.
   struct Rough {
     double at = 0.0, length = 0.0;  ///< [m]
     double roughness = 0.0;         ///< G_d(0.1 cycle/m), see `Iso8608Options` [m^3]
