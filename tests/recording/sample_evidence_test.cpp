@@ -18,7 +18,7 @@ using estimation::Outcome;
 using ::testing::HasSubstr;
 
 const std::vector<SampledChannel> kChannels{
-    {"gyro", "gyro"}, {"vane", "vane"}, {"speed", "speed"}, {"rudder", "rudder", true}};
+    {"gyro", "gyro"}, {"vane", "vane"}, {"speed", "speed"}, {"rudder", "rudder", Rest::kLongOnly}};
 const std::vector<TimeSpan> kMinute{{0.0, 60.0}};
 
 /// A gyro at 100 Hz, a vane in steps of 0.1 at 50 Hz, a speed at 5 Hz, a rudder that moves now and then.
@@ -81,6 +81,21 @@ TEST(SampleEvidence, NamesAControlOnlyAfterLong) {
   numerics::RandomStream random(3, "rudder");
   expect(after("rudder", [&](double t, double) { return t > 21.0 ? 0.2 : random.normal(); }), "rudder",
          Outcome::kFailed, "rudder stands still");
+}
+
+TEST(SampleEvidence, LeavesTheRestOfAControlToThoseWhoKnowTheVehicle) {
+  Recording recording = moving(3);
+  Channel rudder = recording.at("rudder");
+  for (std::size_t i = 0; i < rudder.size(); ++i)
+    if (rudder.times()[i] > 21.0) rudder.value[i] = 0.2;
+  recording.set(std::move(rudder));
+  const auto rows = [&](Rest rest) {
+    const std::vector<SampledChannel> channels{
+        {"gyro", "gyro"}, {"vane", "vane"}, {"speed", "speed"}, {"rudder", "rudder", rest}};
+    return sample_evidence(recording, channels, kMinute);
+  };
+  EXPECT_FALSE(rows(Rest::kLongOnly).front().passed());
+  EXPECT_TRUE(rows(Rest::kNone).front().passed()) << rows(Rest::kNone).front().text;
 }
 
 TEST(SampleEvidence, NamesAValueThatIsHeld) {

@@ -102,7 +102,7 @@ bool others_move(const std::vector<Sampled>& all, const Sampled& still, double b
   constexpr double kOfItsRange = 0.1;
   std::size_t moving = 0, resting = 0;
   for (const Sampled& other : all) {
-    if (&other == &still || other.which->may_rest) continue;
+    if (&other == &still || other.which->may_rest()) continue;
     const auto first = std::ranges::lower_bound(other.runs, begin, {}, &Run::begin);
     const auto last = std::ranges::lower_bound(other.runs, end, {}, &Run::begin);
     const auto [low, high] = std::ranges::minmax(other.runs, {}, &Run::value);
@@ -118,10 +118,11 @@ bool others_move(const std::vector<Sampled>& all, const Sampled& still, double b
 
 std::optional<Flaw> stands_still(const Sampled& channel, const std::vector<Sampled>& all) {
   const SampledChannel& which = *channel.which;
+  if (which.rest == Rest::kNone) return std::nullopt;
   const Run& longest = *std::ranges::max_element(channel.runs, {}, &Run::samples);
-  const double limit = which.may_rest ? kControlRestsFor_s : kRestsFor_s;
+  const double limit = which.may_rest() ? kControlRestsFor_s : kRestsFor_s;
   if (!(longest.end - longest.begin > limit) || longest.samples < 10 * channel.typical) return std::nullopt;
-  if (which.may_rest && channel.typical >= kHeld) return std::nullopt;
+  if (which.may_rest() && channel.typical >= kHeld) return std::nullopt;
   // Exactly zero is what a simulated or decoupled motion may be.
   if (longest.value == 0.0) return std::nullopt;
   if (!others_move(all, channel, longest.begin, longest.end)) return std::nullopt;
@@ -156,7 +157,7 @@ std::optional<Flaw> is_held(const Sampled& channel) {
 
 std::optional<Flaw> is_clipped(const Sampled& channel) {
   const auto& [which, recorded, rate_Hz, runs, samples, typical] = channel;
-  if (which->may_rest || typical >= kHeld) return std::nullopt;
+  if (which->may_rest() || typical >= kHeld) return std::nullopt;
   const auto [low, high] = std::ranges::minmax(runs, {}, &Run::value);
   double share = 0.0, end = kNaN;
   for (const double value : {low.value, high.value}) {
@@ -193,7 +194,7 @@ double smallest_step(const std::vector<Run>& runs) {
 
 std::optional<Flaw> is_coarse(const Sampled& channel) {
   const std::vector<Run>& runs = channel.runs;
-  if (channel.which->may_rest) return std::nullopt;
+  if (channel.which->may_rest()) return std::nullopt;
   double sum = 0.0, squares = 0.0;
   for (const Run& run : runs) {
     sum += run.value;

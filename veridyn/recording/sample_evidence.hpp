@@ -9,11 +9,19 @@
 
 namespace veridyn::recording {
 
+/// Whether one value for long is a fault.
+enum class Rest {
+  kFault,     ///< of a sensor that is moved
+  kLongOnly,  ///< of a control only where it is very long
+  kNone       ///< of a control whose rest is judged by what the vehicle does
+};
+
 /// A channel whose samples are looked at.
 struct SampledChannel {
   std::string channel;
-  std::string about;      ///< what rows call it: "gyro"
-  bool may_rest = false;  ///< a control, which may stand still for long
+  std::string about;  ///< what rows call it: "gyro"
+  Rest rest = Rest::kFault;
+  [[nodiscard]] bool may_rest() const { return rest != Rest::kFault; }
 };
 
 /// What is wrong with the samples themselves inside `spans`, one row for each that is: a value that stands still while

@@ -115,9 +115,9 @@ std::vector<FlightEvidence> sample_rows(const Recording& recording, const Segmen
                                                                 {"airspeed", "airspeed"},
                                                                 {"alpha", "alpha"},
                                                                 {"beta", "beta"},
-                                                                {"elevator", "elevator", true},
-                                                                {"aileron", "aileron", true},
-                                                                {"rudder", "rudder", true}};
+                                                                {"elevator", "elevator", recording::Rest::kLongOnly},
+                                                                {"aileron", "aileron", recording::Rest::kLongOnly},
+                                                                {"rudder", "rudder", recording::Rest::kLongOnly}};
   std::vector<FlightEvidence> rows;
   for (Evidence& row : recording::sample_evidence(recording, kChannels, segments.airborne)) {
     const bool alpha = row.about == "alpha", beta = row.about == "beta";

@@ -112,11 +112,11 @@ std::vector<Evidence> drive_sample_rows(const Recording& recording, const DriveS
                                                                 {"sideslip", "sideslip"},
                                                                 {"yaw", "yaw"},
                                                                 {"course", "course"},
-                                                                {"speed", "speed", true},
-                                                                {"wheel_speed_rl", "speed", true},
-                                                                {"wheel_speed_rr", "speed", true},
-                                                                {"steer", "steer", true},
-                                                                {"steering_wheel", "steer", true}};
+                                                                {"speed", "speed", recording::Rest::kLongOnly},
+                                                                {"wheel_speed_rl", "speed", recording::Rest::kLongOnly},
+                                                                {"wheel_speed_rr", "speed", recording::Rest::kLongOnly},
+                                                                {"steer", "steer", recording::Rest::kNone},
+                                                                {"steering_wheel", "steer", recording::Rest::kNone}};
   return recording::sample_evidence(recording, kChannels, segments.usable);
 }
 
