@@ -29,7 +29,7 @@ Model on_a_slider(const std::string& forces) {
       .model();
 }
 
-constexpr const char* kPath =
+constexpr const char* kPathText =
     "<GeometryPath><PathPointSet><objects><PathPoint name=\"a\"><socket_parent_frame>/ground</socket_parent_frame>"
     "<location>0 1 0</location></PathPoint><PathPoint name=\"b\"><socket_parent_frame>/bodyset/mass"
     "</socket_parent_frame><location>0 0 0</location></PathPoint></objects></PathPointSet></GeometryPath>";
@@ -45,7 +45,7 @@ MuscleTrajectory released(const Model& model, double height, double end) {
 
 TEST(PassiveForces, AMassOnAPathSpringSwingsAsItsEquationSays) {
   // m y'' = -m g + k (1 - y - L0) while the spring is taut: about y0 with omega = sqrt(k/m).
-  const Model model = on_a_slider(std::string("<PathSpring name=\"s\">") + kPath +
+  const Model model = on_a_slider(std::string("<PathSpring name=\"s\">") + kPathText +
                                   "<resting_length>0.3</resting_length><stiffness>200</stiffness></PathSpring>");
   const double y0 = 1.0 - 0.3 - 2.0 * 10.0 / 200.0, omega = 10.0;
   const MuscleTrajectory t = released(model, y0 - 0.05, 1.0);
@@ -57,7 +57,7 @@ TEST(PassiveForces, AMassOnAPathSpringSwingsAsItsEquationSays) {
 TEST(PassiveForces, ALigamentHoldsAMassWhereItsCurveCarriesTheWeight) {
   // Curve strain: force 40 strain, against 20 N: strain 0.5, length 0.6, height 0.4, released there.
   const Model model =
-      on_a_slider(std::string("<Ligament name=\"l\">") + kPath +
+      on_a_slider(std::string("<Ligament name=\"l\">") + kPathText +
                   "<resting_length>0.4</resting_length><pcsa_force>40</pcsa_force><PiecewiseLinearFunction "
                   "name=\"force_length_curve\"><x>0 1 2</x><y>0 1 2</y></PiecewiseLinearFunction></Ligament>");
   const MuscleTrajectory t = released(model, 0.4, 0.5);
