@@ -146,29 +146,6 @@ int rig_vehicle(const Arguments& arguments) {
 int rig_platform(const Arguments&) {
   throw InputError("rig", "this program was built without sockets (see VERIDYN_SOCKETS)");
 }
-/// The vehicle of a study and what it is called: on the circuit, or on the study's drive.
-std::pair<std::string, VirtualVehicle> driven_vehicle(const Study& file, const LiveStudy& study,
-                                                      const CommonOptions& options) {
-  const StudyTable live = file.root().table("live");
-  const VirtualVehicleOptions sending = read_virtual_vehicle(live);
-  if (live.has("circuit")) {
-    const StudyTable table = live.table("circuit");
-    const auto car = vehicle::read_vehicle(file.root().table("subject"), vehicle::VehicleNeeds::kFourWheel);
-    auto drive = circuit_drive(car, vehicle::read_circuit(table, study.cueing.seed), read_circuit_drive(table),
-                               study.options.sensor);
-    file.root().finish();
-    return {car.name + " on the circuit", VirtualVehicle(std::move(drive), sending)};
-  }
-  TerminalProgress progress = progress_of(options);
-  cueing::CueingStudy drive = cueing::read_study(file, progress);
-  if (progress.interrupted()) throw Interrupted();
-  file.root().finish();
-  if (drive.vehicle.size() < 2)
-    throw InputError(file.name(), "the drive has fewer than two samples: nothing can be sent of it");
-  // Packets say what happens where the sensor is.
-  for (recording::MotionSample& s : drive.vehicle) s = recording::at_place(s, drive.motion.place);
-  return {drive.drive, VirtualVehicle(std::move(drive.vehicle), sending)};
-}
 
 int rig_vehicle(const Arguments& arguments) { return rig_platform(arguments); }
 

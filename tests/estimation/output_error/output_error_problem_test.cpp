@@ -91,7 +91,7 @@ TEST(OutputErrorProblem, SimulatesNothingTwiceInARow) {
 // The truth is (2, 0.5); from a bound above it the cost drives the first unknown beyond, from one below it does not.
 TEST(OutputErrorProblem, NamesUnknownsThatTheCostDrivesBeyondABound) {
   const StraightLine line;
-  const OutputErrorOptions options = given_noise();
+  OutputErrorOptions options = given_noise();
   const auto pressed = [&](double low, double high, double start, double prior_sigma) {
     Static model(line.regressors);
     model.unknowns[0] = {.name = "offset", .start = start, .low = low, .high = high, .prior_sigma = prior_sigma};
@@ -107,6 +107,8 @@ TEST(OutputErrorProblem, NamesUnknownsThatTheCostDrivesBeyondABound) {
   EXPECT_THAT(pressed(1.5, 4.0, 1.5, kInfinity), ::testing::IsEmpty());
   EXPECT_THAT(pressed(0.0, 2.5, 2.5, kInfinity), ::testing::IsEmpty());
   EXPECT_THAT(pressed(0.0, 4.0, 1.5, kInfinity), ::testing::IsEmpty());
+  options.hold_undetermined = true;
+  EXPECT_THAT(pressed(2.5, 4.0, 2.5, kInfinity), ::testing::IsEmpty());
 }
 
 TEST(OutputErrorProblem, MeasuresChangesInStandardDeviations) {

@@ -182,12 +182,12 @@ class Estimation {
     std::vector<int> held;
     if (problem_.reaches_bounds()) {
       problem_.evaluate(true);
-      if (problem_.valid()) held = pressed_on_bounds();
+      if (problem_.valid()) held = problem_.pressed_on_bounds();
     }
     for (;;) {
       const Solved solved = solve(held);
       if (solved != Solved::kMeetsBound) return solved == Solved::kDone;
-      const std::vector<int> pressed = pressed_on_bounds();
+      const std::vector<int> pressed = problem_.pressed_on_bounds();
       std::vector<int> all;
       std::ranges::set_union(held, pressed, std::back_inserter(all));
       held = std::move(all);
@@ -269,11 +269,6 @@ class Estimation {
       return Solved::kEnded;
     }
     return watch.meets_bound() ? Solved::kMeetsBound : Solved::kDone;
-  }
-
-  /// Directions that are held already are no matter of bounds.
-  [[nodiscard]] std::vector<int> pressed_on_bounds() const {
-    return options_.hold_undetermined ? std::vector<int>{} : problem_.pressed_on_bounds();
   }
 
   void finish() {

@@ -400,8 +400,9 @@ bool OutputErrorProblem::reaches_bounds() const {
 }
 
 std::vector<int> OutputErrorProblem::pressed_on_bounds() const {
-  const std::vector<const ModelParameter*> unknowns = shared_unknowns();
   std::vector<int> pressed;
+  if (options_.hold_undetermined) return pressed;
+  const std::vector<const ModelParameter*> unknowns = shared_unknowns();
   for (Index i = 0; i < shared_.size(); ++i) {
     const ModelParameter& p = *unknowns[at(i)];
     if (!is_at_bound(shared_(i), p)) continue;

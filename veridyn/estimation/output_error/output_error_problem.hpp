@@ -63,7 +63,7 @@ class OutputErrorProblem {
   /// Whether a shared unknown is at a bound.
   [[nodiscard]] bool reaches_bounds() const;
   /// Of the shared unknowns that are at a bound, those that the cost would drive beyond it, by their place; the
-  /// triangles are those of the current unknowns.
+  /// triangles are those of the current unknowns. None with `hold_undetermined`, whose directions are held already.
   [[nodiscard]] std::vector<int> pressed_on_bounds() const;
   /// |R^-1/2 S (now - before)|, an upper bound of every shared parameter's change in its own sigma.
   [[nodiscard]] double largest_change_in_sigma(const Eigen::VectorXd& before) const;
