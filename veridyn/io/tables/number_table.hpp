@@ -7,7 +7,7 @@
 
 namespace veridyn::io {
 
-/// A column of a plain table: numbers as they lie (NaN for an empty cell), or texts where some cell is no number.
+/// A column of a plain table: numbers as they lie (NaN for an empty cell), or texts where a cell is not a number.
 struct NumberColumn {
   std::string name;
   std::string unit = "1";  ///< as written; numbers are not converted
