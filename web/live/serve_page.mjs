@@ -1,68 +1,39 @@
 // `veridyn serve` in headless Chromium: a live run of the virtual rig is followed by its recording and stopped from the page, then
 // looked back at; progress of an identification is shown while it computes.
-//   node --test serve_page.mjs     VERIDYN=the program, STUDY=live.toml, FLIGHT=simulated_flight.toml
+//   node --test serve_page.mjs     VERIDYN=the program, STUDY=live.toml, WORK=posterior_arm.toml, whose stages last long enough to be seen
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { chromium } from 'playwright-core';
-
-const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const skip = existsSync(executablePath) ? false : `no Chromium at ${executablePath}`;
-if (skip) console.log(skip);
+import { end_all, make_folder, open_page, overrides, run, shows, skip, sleep, token_of } from './rig_in_browser.mjs';
 
 const port = 35000 + 3 * (process.pid % 5000);
-const sets = [`live.telemetry=127.0.0.1:${port}`, `live.platform=127.0.0.1:${port + 1}`, `live.page=127.0.0.1:${port + 3}`, 'live.signs=while', 'live.soft_start=1', 'live.rate=500', 'drive.duration=30'].flatMap((s) => ['--set', s]);
-const processes = [];
-let browser, page, folder, token, rig;
+const sets = overrides(
+  `live.telemetry=127.0.0.1:${port}`,
+  `live.platform=127.0.0.1:${port + 1}`,
+  `live.page=127.0.0.1:${port + 3}`,
+  'live.signs=while',
+  'live.soft_start=1',
+  'live.rate=500',
+  'drive.duration=30',
+);
+let page, folder, token, rig;
 
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-function run(...words) {
-  const p = spawn(process.env.VERIDYN, words, { stdio: ['ignore', 'ignore', 'pipe'] });
-  p.said = '';
-  p.stderr.on('data', (d) => (p.said += d));
-  p.ended = new Promise((done) => p.on('exit', done));
-  processes.push(p);
-  return p;
-}
-/** Waits until the page shows this. */
-async function shows(selector, wanted, ms = 20000) {
-  const end = Date.now() + ms;
-  let text = '';
-  while (Date.now() < end) {
-    text = (await page.textContent(selector).catch(() => '')) ?? '';
-    if (wanted.test(text)) return text;
-    await sleep(50);
-  }
-  assert.match(text, wanted);
-}
 const clock = async () => parseFloat(await page.textContent('#clock'));
 
 before(async () => {
   if (skip) return;
-  folder = mkdtempSync(join(tmpdir(), 'veridyn-serve-'));
+  folder = make_folder('serve');
   mkdirSync(join(folder, 'identify'));
   const serve = run('serve', folder, '--page', `127.0.0.1:${port + 2}`);
   run('rig', 'platform', process.env.STUDY, ...sets);
   run('rig', 'vehicle', process.env.STUDY, ...sets);
   rig = run('cue', process.env.STUDY, '--live', '--start', '--out', join(folder, 'run'), ...sets);
-  for (let k = 0; k < 400 && !token; ++k) {
-    token = /token: (\S+)/.exec(serve.said)?.[1];
-    await sleep(50);
-  }
-  assert.ok(token, serve.said);
-  browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-gpu', '--no-first-run'] });
-  page = await browser.newPage({ viewport: { width: 1300, height: 860 } });
-  await page.goto(`http://127.0.0.1:${port + 2}/`);
+  token = await token_of(serve);
+  page = await open_page(`http://127.0.0.1:${port + 2}/`);
 });
 
-after(async () => {
-  await browser?.close();
-  for (const p of processes) p.kill('SIGKILL');
-  if (folder) rmSync(folder, { recursive: true, force: true });
-});
+after(end_all);
 
 test('a run is found as it begins and followed as its recording grows', { skip }, async () => {
   await shows('#state', /running/);
@@ -110,13 +81,13 @@ test('the emergency stop needs the token, and then stops the run', { skip }, asy
 });
 
 test('the progress of an identification is shown while it computes', { skip }, async () => {
-  const identify = run('identify', process.env.FLIGHT, '--quiet', '--out', join(folder, 'identify'));
+  const identify = run('identify', process.env.WORK, '--quiet', '--out', join(folder, 'identify'));
   const work = '.work:has-text("identify")';
-  await shows(`${work} .head`, /simulated_flight.toml: goes on/);
+  await shows(`${work} .head`, /posterior_arm.toml: goes on/);
   const stages = new Set();
   while (identify.exitCode === null) {
     stages.add(await page.textContent(`${work} .stage`).catch(() => ''));
-    await sleep(100);
+    await sleep(20);
   }
   assert.equal(identify.exitCode, 0, identify.said);
   assert.ok(stages.size > 3, [...stages].join('; '));

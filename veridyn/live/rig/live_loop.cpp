@@ -39,6 +39,16 @@ struct LiveControl::Queues {
   Queues& operator=(const Queues&) = delete;
 };
 
+void RigStatus::take(const LiveRig& rig) {
+  readiness = rig.readiness();
+  answers = rig.answers();
+  packets = rig.packets();
+  drives = rig.intake().drives();
+  gaps = rig.gaps();
+  extrapolated = rig.extrapolated();
+  drift = rig.clock().drift();
+}
+
 LiveControl::LiveControl() : queues_(std::make_unique<Queues>()) {}
 LiveControl::~LiveControl() = default;
 
@@ -170,13 +180,7 @@ void LiveLoop::run(LiveLinks& links, Clock& clock, LiveControl& control, LiveRec
     times_.left_out = rate.left_out();
     RigStatus& status = control.status_.to_write();
     status.step = step;
-    status.readiness = rig_.readiness();
-    status.answers = rig_.answers();
-    status.packets = rig_.packets();
-    status.drives = rig_.intake().drives();
-    status.gaps = rig_.gaps();
-    status.extrapolated = rig_.extrapolated();
-    status.drift = rig_.clock().drift();
+    status.take(rig_);
     status.car = car_;
     status.times = times_;
     control.status_.publish();

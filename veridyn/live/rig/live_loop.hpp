@@ -38,6 +38,8 @@ struct RigStatus {
   double drift = 0.0;            ///< of the sender's clock, NaN where not known
   std::optional<CarStatus> car;  ///< ten times a second
   LoopTimes times;
+  /// All that the rig itself knows; the rest stays.
+  void take(const LiveRig& rig);
 };
 
 /// Numbers of an algorithm, all of them, and the algorithm that is made of them.

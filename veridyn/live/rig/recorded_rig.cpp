@@ -89,13 +89,7 @@ void RecordedRig::command(const LiveRecord& record, Taken& taken) {
 RigStatus RecordedRig::status() const {
   RigStatus s;
   s.step = step_;
-  s.readiness = rig_.readiness();
-  s.answers = rig_.answers();
-  s.packets = rig_.packets();
-  s.drives = rig_.intake().drives();
-  s.gaps = rig_.gaps();
-  s.extrapolated = rig_.extrapolated();
-  s.drift = rig_.clock().drift();
+  s.take(rig_);
   s.car = car_;
   s.times = times_;
   return s;
