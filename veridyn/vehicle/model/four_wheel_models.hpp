@@ -1,10 +1,6 @@
 #pragma once
 
 #include "veridyn/vehicle/model/four_wheel_model.hpp"
-#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
-#include "veridyn/vehicle/tyre/four_magic_formula.hpp"
-#include "veridyn/vehicle/tyre/linear_tyre.hpp"
-#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
 
 /// The four-wheel model on the tyres of this library, compiled once in four_wheel_models.cpp: whoever includes this
 /// header does not compile it again.

@@ -67,4 +67,10 @@ template <typename Scalar>
   return brush_trail(Scalar(sqrt(squared) / (3.0 * tyre.mu * load))) * moment;
 }
 
+template <typename Tyre>
+class FourTyres;
+/// Declared wherever the tyre is known, so that the general one is never taken for it: see four_fiala_tyres.hpp.
+template <>
+class FourTyres<FialaTyre<double>>;
+
 }  // namespace veridyn::vehicle

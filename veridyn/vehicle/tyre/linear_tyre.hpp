@@ -40,4 +40,10 @@ template <typename Scalar>
   return -tyre.pneumatic_trail * tyre.forces(load, slip_ratio, slip_angle, camber).Fy;
 }
 
+template <typename Tyre>
+class FourTyres;
+/// Declared wherever the tyre is known, so that the general one is never taken for it: see four_linear_tyres.hpp.
+template <>
+class FourTyres<LinearTyre<double>>;
+
 }  // namespace veridyn::vehicle

@@ -92,4 +92,11 @@ template <typename Scalar>
   return brush_trail(Scalar(tyre.load_gain(x) * sqrt(squared) / (3.0 * limit))) * moment;
 }
 
+template <typename Tyre>
+class FourTyres;
+/// Declared wherever the tyre is known, so that the general one is never taken for it: see
+/// four_simple_magic_formula.hpp.
+template <>
+class FourTyres<SimpleMagicFormulaTyre<double>>;
+
 }  // namespace veridyn::vehicle
