@@ -9,6 +9,7 @@
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
 #include "apps/veridyn/version.hpp"
+#include "veridyn/aircraft/identification/flight_set.hpp"
 #include "veridyn/aircraft/model/jsbsim.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/results/estimate_json.hpp"
@@ -122,8 +123,10 @@ Recording validation_recording(const Validation& validation) {
 void print_identification(const FlightAnalysis& analysis, const std::filesystem::path& folder,
                           const CommonOptions& options) {
   print_judgement(options, analysis.estimate);
-  print_line(options, analysis.segments.longitudinal.text);
-  print_line(options, analysis.segments.lateral.text);
+  for (const PreparedFlight& flight : analysis.flights) {
+    for (const AxisSegments* axis : {&flight.segments.longitudinal, &flight.segments.lateral})
+      print_line(options, of_flight(flight.name, axis->text));
+  }
   for (const CoefficientResult& r : analysis.coefficients)
     print_line(options, fmt::format("  {:<12} {}", to_string(r.verdict), r.reason));
   for (const CoefficientResult& r : analysis.coefficients) {
@@ -161,14 +164,14 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
     if (k == 0)
       page = report::to_html(report::identification_report(study, analysis, context));
     else
-      flight = io::to_csv(thinned(analysis.reconstruction.smoothed, kFlightCsvRate_Hz));
+      flight = io::to_csv(thinned(analysis.flights.front().reconstruction.smoothed, kFlightCsvRate_Hz));
   });
   folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
   if (analysis.validation.available())
     folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
   folder.write("report.html", page);
   folder.write("flight.csv", flight);
-  write_filter_tables(folder, analysis.reconstruction);
+  write_filter_tables(folder, analysis.flights.front().reconstruction);
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
@@ -186,9 +189,9 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
 void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const FlightAnalysis& analysis) {
   folder.write("report.html",
                report::to_html(report::reconstruction_report(study, analysis, {.program = program_name()})));
-  folder.write("flight.csv", io::to_csv(analysis.reconstruction.smoothed));
-  folder.write("filter.csv", io::to_csv(analysis.reconstruction.filtered));
-  write_filter_tables(folder, analysis.reconstruction);
+  folder.write("flight.csv", io::to_csv(analysis.flights.front().reconstruction.smoothed));
+  folder.write("filter.csv", io::to_csv(analysis.flights.front().reconstruction.filtered));
+  write_filter_tables(folder, analysis.flights.front().reconstruction);
 }
 
 void publish_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,

@@ -54,11 +54,11 @@ int reconstruct_aircraft(const StudyRun& run) {
   if (analysis.interrupted) throw Interrupted();
   write_reconstruction(folder, flight, analysis);
   folder.publish(run.record(flight.seed, flight.inputs), run.options(),
-                 summary_of(analysis.reconstruction, folder.path()));
-  print_reconstruction(analysis.reconstruction, run.options());
+                 summary_of(analysis.flights.front().reconstruction, folder.path()));
+  print_reconstruction(analysis.flights.front().reconstruction, run.options());
   print_line(run.options(), fmt::format("report: {}", (folder.path() / "report.html").string()));
   // What could be reconstructed before the contradiction is in the files.
-  return analysis.reconstruction.contradiction ? kFailed : kDone;
+  return analysis.flights.front().reconstruction.contradiction ? kFailed : kDone;
 }
 
 Command reconstruct_command() {

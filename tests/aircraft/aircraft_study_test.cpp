@@ -29,9 +29,9 @@ TEST(AircraftStudy, IsNotChangedByItsAnalysis) {
   const FlightStudy study = calm_study(20.0, "[delays]\nautomatic = false\ngps = \"50 ms\"\n");
   Progress silent;
   const FlightAnalysis analysis = reconstruct(study, silent);
-  ASSERT_EQ(analysis.delays.size(), 1u);
+  ASSERT_EQ(analysis.flights.front().delays.size(), 1u);
   EXPECT_EQ(study.mapped.recording.at("vel_north").times().front(), 0.0);
-  EXPECT_DOUBLE_EQ(analysis.aligned.recording.at("vel_north").times().front(), -0.05);
+  EXPECT_DOUBLE_EQ(analysis.flights.front().aligned.recording.at("vel_north").times().front(), -0.05);
   EXPECT_FALSE(analysis.interrupted);
 }
 
@@ -55,7 +55,7 @@ TEST(AircraftStudy, IdentifiesWhatTheRecordedSensorsShow) {
   const FlightStudy study = calm_study(150.0, "");
   const std::vector<std::string> forces{"accel_x", "accel_y", "accel_z"};
   const FlightAnalysis moments = identify(stripped(study, forces), silent);
-  EXPECT_EQ(moments.reconstruction.filter, FilterKind::kNone);
+  EXPECT_EQ(moments.flights.front().reconstruction.filter, FilterKind::kNone);
   EXPECT_EQ(identified_in(moments), (std::vector<std::string>{"Cl", "Cm", "Cn"}));
   EXPECT_THAT(moments.estimate.warnings, ::testing::Contains(::testing::HasSubstr("no accelerometer")));
   const FlightAnalysis pitching =
@@ -82,7 +82,7 @@ TEST(AircraftStudy, ValidatesAndTracksWithoutMotionOverGround) {
                {"vel_north", "vel_east", "vel_down", "yaw"});
   const FlightAnalysis identified = identify(study, silent);
   EXPECT_EQ(identified_in(identified).size(), 2U);
-  EXPECT_FALSE(identified.signals.over_ground) << "output error takes the air to be calm";
+  EXPECT_FALSE(identified.flights.front().signals.over_ground) << "output error takes the air to be calm";
   EXPECT_FALSE(identified.others.parameters.empty());
   EXPECT_EQ(identified_in(validate(study, identified.estimate, silent)).size(), 2U);
   EXPECT_GT(track_flight(study, silent).flight.tracker().rows(), 0U);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "veridyn/aircraft/identification/identification.hpp"
 #include "veridyn/numerics/random.hpp"
@@ -54,6 +56,14 @@ inline FlightSignals pitching(const Subject& subject, const PitchingFlight& flig
   return s;
 }
 
+/// Signals and segments as the only flight of a study.
+inline std::vector<PreparedFlight> only_flight(FlightSignals signals, Segments segments) {
+  std::vector<PreparedFlight> one(1);
+  one.front().signals = std::move(signals);
+  one.front().segments = std::move(segments);
+  return one;
+}
+
 inline Segments pitching_segments() {
   Segments segments;
   segments.airborne = {{0.0, kPitchingEnd_s}};
@@ -72,7 +82,7 @@ inline CoefficientResult identified_cm(const Subject& subject, const FlightSigna
   options.coefficients = {Coefficient::kCm};
   options.method = method;
   Progress silent;
-  return identify_coefficients(signals, pitching_segments(), subject, options, silent).at(0);
+  return identify_coefficients(only_flight(signals, pitching_segments()), subject, options, silent).at(0);
 }
 
 }  // namespace veridyn::aircraft::testing

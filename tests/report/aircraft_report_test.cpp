@@ -106,7 +106,8 @@ TEST(IdentificationReport, OfAGivenEstimateHasNoParametersOfItsOwn) {
 
 TEST(IdentificationReport, SortsCoefficientsByWhatBecameOfThem) {
   aircraft::FlightAnalysis analysis;
-  analysis.reconstruction.contradiction.emplace();
+  analysis.flights.emplace_back();
+  analysis.flights.front().reconstruction.contradiction.emplace();
   analysis.coefficients = {test::drag_by_hand(), test::pitch_by_hand()};
   analysis.coefficients.push_back(test::pitch_by_hand());
   analysis.coefficients.back().coefficient = aircraft::Coefficient::kCn;
@@ -123,7 +124,7 @@ TEST(IdentificationReport, SortsCoefficientsByWhatBecameOfThem) {
 // Where two sensors contradict each other there is no motion to show.
 TEST(IdentificationReport, ShowsNoMotionThatContradictsItself) {
   AnalysedFlight f{.study = short_flight(), .analysis = identified_flight().analysis};
-  f.analysis.reconstruction.contradiction.emplace();
+  f.analysis.flights.front().reconstruction.contradiction.emplace();
   const Document document = identification_report(f.study, f.analysis, {.program = "veridyn test"});
   check(document);
   for (const char* title : {"The flight", "Excitation", "How it was done"})
@@ -140,13 +141,13 @@ TEST(ReconstructionReport, SaysWhatTheSensorsDoNotDetermine) {
     return q;
   };
   using aircraft::Observability;
-  f.analysis.reconstruction.quantities = {weak("airspeed", Observability::kObservable),
-                                          weak("gyro_bias_x", Observability::kNotObservable)};
+  f.analysis.flights.front().reconstruction.quantities = {weak("airspeed", Observability::kObservable),
+                                                          weak("gyro_bias_x", Observability::kNotObservable)};
   const Document good = reconstruction_report(f.study, f.analysis, {.program = "veridyn test"});
   check(good);
   EXPECT_EQ(good.verdict.level, Level::kGood) << "a bias of the gyro is no air data";
-  f.analysis.reconstruction.quantities.push_back(weak("beta", Observability::kWeak));
-  f.analysis.reconstruction.quantities.push_back(weak("wind_north", Observability::kNotObservable));
+  f.analysis.flights.front().reconstruction.quantities.push_back(weak("beta", Observability::kWeak));
+  f.analysis.flights.front().reconstruction.quantities.push_back(weak("wind_north", Observability::kNotObservable));
   const Document document = reconstruction_report(f.study, f.analysis, {.program = "veridyn test"});
   EXPECT_EQ(document.verdict.level, Level::kCaution);
   EXPECT_EQ(document.verdict.headline, "The sensors of this flight do not determine beta, wind_north: mind the bands.");
@@ -154,9 +155,10 @@ TEST(ReconstructionReport, SaysWhatTheSensorsDoNotDetermine) {
 
 TEST(ReconstructionReport, NamesAContradictionAndShowsAsFarAsItGot) {
   aircraft::FlightAnalysis analysis;
-  analysis.reconstruction.contradiction.emplace();
-  analysis.reconstruction.contradiction->statement = "vel_down contradicts the accelerometer";
-  analysis.reconstruction.warnings = {"ended at 12 s"};
+  analysis.flights.emplace_back();
+  analysis.flights.front().reconstruction.contradiction.emplace();
+  analysis.flights.front().reconstruction.contradiction->statement = "vel_down contradicts the accelerometer";
+  analysis.flights.front().reconstruction.warnings = {"ended at 12 s"};
   const Document document = reconstruction_report({}, analysis, {.program = "veridyn test"});
   check(document);
   EXPECT_EQ(document.verdict.level, Level::kBad);

@@ -9,34 +9,14 @@
 #include "veridyn/aircraft/identification/contradicted_flight.hpp"
 #include "veridyn/aircraft/identification/direct_air_data.hpp"
 #include "veridyn/aircraft/identification/excited_segments.hpp"
+#include "veridyn/aircraft/identification/flight_set.hpp"
 #include "veridyn/aircraft/identification/parameter_groups.hpp"
 #include "veridyn/aircraft/identification/recording_evidence.hpp"
-#include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/aircraft/reconstruction/filter_comparison.hpp"
-#include "veridyn/aircraft/sensors/air_data_calibration.hpp"
-#include "veridyn/aircraft/simulation/simulate_study.hpp"
-#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
-#include "veridyn/io/results/estimate_json.hpp"
-#include "veridyn/recording/study_data.hpp"
 
 namespace veridyn::aircraft {
 namespace {
-
-/// Lift coefficient that few wings exceed: at 0.8 of the speed that it gives, nothing flies.
-constexpr double kHighLift = 1.2;
-
-double least_flying_airspeed(const Subject& subject) {
-  return 0.8 * std::sqrt(2.0 * subject.mass * kGravity / (1.225 * subject.wing_area * kHighLift));
-}
-
-SurfaceThrows throws_of(const Subject& subject, const StudyTable& table) {
-  const bool known = table.has("builtin") || table.table_or_empty("actuators").has("elevator");
-  return {.elevator = subject.elevator.upper,
-          .aileron = subject.aileron.upper,
-          .rudder = subject.rudder.upper,
-          .known = known};
-}
 
 /// Highest airspeed, or ground speed where there is no pitot tube.
 std::pair<double, std::string> highest_speed(const Recording& recording) {
@@ -104,48 +84,58 @@ Reconstruction motion_of(const Recording& recording, const ReconstructOptions& o
 }
 
 /// Delays and motion through the air.
-FlightAnalysis reconstruct_with(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
+PreparedFlight reconstructed(const FlightStudy& study, const ReconstructOptions& options, Progress& progress) {
   check_flight(study);
   progress.stage("aligning sensor delays");
   AlignedRecording aligned = align_delays(study.mapped, study.delays, progress);
-  FlightAnalysis analysis;
-  analysis.aligned = std::move(aligned.mapped);
-  analysis.delays = std::move(aligned.delays);
-  analysis.interrupted = progress.interrupted();
-  if (analysis.interrupted) return analysis;
-  const Recording& recording = analysis.aligned.recording;
+  PreparedFlight flight;
+  flight.aligned = std::move(aligned.mapped);
+  flight.delays = std::move(aligned.delays);
+  flight.reconstruction.interrupted = progress.interrupted();
+  if (flight.reconstruction.interrupted) return flight;
+  const Recording& recording = flight.aligned.recording;
   const Subject& model = study.filter_subject ? *study.filter_subject : study.subject;
-  analysis.reconstruction = motion_of(recording, options, study.signals, progress, model);
+  flight.reconstruction = motion_of(recording, options, study.signals, progress, model);
   const bool by_model = options.filter == FilterKind::kModelBased || options.filter == FilterKind::kGuarded;
   if (study.truth && options.compare && by_model) {
     progress.stage("comparing the filters with the truth");
-    analysis.reconstruction.comparison = compare_filters(recording, *study.truth, options, model, progress);
+    flight.reconstruction.comparison = compare_filters(recording, *study.truth, options, model, progress);
   }
-  analysis.interrupted = analysis.reconstruction.interrupted;
-  return analysis;
+  return flight;
 }
 
-/// What identification and validation share: from recording to signals and segments.
-FlightAnalysis analyse_motion(const FlightStudy& study, Progress& progress) {
+/// From a recording to signals and segments.
+PreparedFlight prepared(const FlightStudy& study, Progress& progress) {
   ReconstructOptions options = study.reconstruct;
   // The filter's estimate is only compared with the truth, where there is one; an hour of it takes 150 MB.
   options.keep_filter = study.truth.has_value();
-  FlightAnalysis analysis = reconstruct_with(study, options, progress);
-  if (analysis.interrupted) return analysis;
-  if (analysis.reconstruction.contradiction) {
-    progress.stage("checking the recording");
-    analysis.segments = recorded_flight(analysis.aligned.recording, study.segments.min_airspeed_mps);
-    analysis.recording_evidence = recording_evidence(analysis.aligned.recording, analysis.reconstruction, options,
-                                                     analysis.segments, analysis.delays);
-    return analysis;
+  PreparedFlight flight = reconstructed(study, options, progress);
+  flight.name = study.run;
+  if (flight.reconstruction.interrupted) return flight;
+  if (flight.usable()) {
+    const bool data_sheet = options.sensors == NoiseSource::kReference;
+    flight.signals = prepare_signals(flight.aligned, flight.reconstruction.smoothed, study.subject, study.signals,
+                                     data_sheet ? &flight.reconstruction.sigma : nullptr);
+    flight.segments = excited_segments(flight.signals, study.segments);
+    if (study.held_out) flight.segments = all_held_out(std::move(flight.segments));
+  } else {
+    flight.segments = recorded_flight(flight.aligned.recording, study.segments.min_airspeed_mps);
   }
-  const bool data_sheet = options.sensors == NoiseSource::kReference;
-  analysis.signals = prepare_signals(analysis.aligned, analysis.reconstruction.smoothed, study.subject, study.signals,
-                                     data_sheet ? &analysis.reconstruction.sigma : nullptr);
-  analysis.segments = excited_segments(analysis.signals, study.segments);
   progress.stage("checking the recording");
-  analysis.recording_evidence = recording_evidence(analysis.aligned.recording, analysis.reconstruction, options,
-                                                   analysis.segments, analysis.delays);
+  flight.recording_evidence =
+      recording_evidence(flight.aligned.recording, flight.reconstruction, options, flight.segments, flight.delays);
+  return flight;
+}
+
+/// Every flight made ready by itself.
+FlightAnalysis prepared(std::span<const FlightStudy> studies, Progress& progress) {
+  FlightAnalysis analysis;
+  for (const FlightStudy& study : studies) {
+    analysis.flights.push_back(prepared(study, progress));
+    analysis.interrupted = analysis.flights.back().reconstruction.interrupted;
+    if (analysis.interrupted) return analysis;
+  }
+  if (studies.size() > 1) analysis.flights = side_by_side(std::move(analysis.flights));
   return analysis;
 }
 
@@ -170,13 +160,18 @@ std::string verdict_text(std::span<const CoefficientResult> results) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::vector<std::string> warnings_of(const FlightStudy& study, const FlightAnalysis& analysis) {
-  std::vector<std::string> warnings;
-  for (const auto* texts : {&study.subject.warnings, &study.mapped.recording.warnings, &study.mapped.notes,
-                            &analysis.reconstruction.warnings, &analysis.signals.notes}) {
-    warnings.insert(warnings.end(), texts->begin(), texts->end());
+std::vector<std::string> warnings_of(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
+  const Subject& subject = studies.front().subject;
+  std::vector<std::string> warnings = subject.warnings;
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    const PreparedFlight& flight = analysis.flights[i];
+    const MappedRecording& mapped = studies[i].mapped;
+    for (const auto* texts :
+         {&mapped.recording.warnings, &mapped.notes, &flight.reconstruction.warnings, &flight.signals.notes}) {
+      for (const std::string& text : *texts) warnings.push_back(of_flight(flight.name, text));
+    }
   }
-  if (!study.subject.inertia) {
+  if (!subject.inertia) {
     warnings.emplace_back(
         "without subject.inertia the moments are identified per unit inertia (Cl/Jx, Cm/Jy, Cn/Jz), with the inertial "
         "coupling of a flat body (Jz = Jx + Jy, Jx = Jy, Jxz = 0) and the moments of the thrust left in");
@@ -222,9 +217,11 @@ std::vector<estimation::Evidence> flown_evidence(const Validation& validation) {
   return rows;
 }
 
-std::vector<estimation::Evidence> rows_of(std::span<const FlightEvidence> evidence) {
+/// The checks of all recordings.
+std::vector<estimation::Evidence> recording_rows(std::span<const PreparedFlight> flights) {
   std::vector<estimation::Evidence> rows;
-  for (const FlightEvidence& e : evidence) rows.push_back(e.row);
+  for (const PreparedFlight& flight : flights)
+    for (const FlightEvidence& e : flight.recording_evidence) rows.push_back(e.row);
   return rows;
 }
 
@@ -241,15 +238,15 @@ estimation::Judgement judgement_of(const FlightAnalysis& analysis, std::span<con
 }
 
 /// What estimate.json will say of an analysis that is complete but for it.
-estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& analysis) {
-  estimation::Estimate estimate = make_estimate(study.subject, analysis.coefficients);
+estimation::Estimate summarise(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
+  estimation::Estimate estimate = make_estimate(studies.front().subject, analysis.coefficients);
   for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
   estimate.verdict = verdict_text(analysis.coefficients);
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   }
-  estimate.warnings = warnings_of(study, analysis);
-  std::vector<estimation::Evidence> of_all = rows_of(analysis.recording_evidence);
+  estimate.warnings = warnings_of(studies, analysis);
+  std::vector<estimation::Evidence> of_all = recording_rows(analysis.flights);
   const std::vector<estimation::Evidence> flown = flown_evidence(analysis.validation);
   of_all.insert(of_all.end(), flown.begin(), flown.end());
   estimate.judgement = judgement_of(analysis, of_all);
@@ -264,8 +261,9 @@ estimation::Estimate summarise(const FlightStudy& study, const FlightAnalysis& a
 }
 
 /// The results in the terms that all domains share.
-FlightAnalysis with_results(FlightAnalysis analysis, const FlightStudy& study, const Progress& progress) {
-  analysis.estimate = summarise(study, analysis);
+FlightAnalysis with_results(FlightAnalysis analysis, std::span<const FlightStudy> studies, const Progress& progress) {
+  const FlightStudy& study = studies.front();
+  analysis.estimate = summarise(studies, analysis);
   analysis.groups = parameter_groups(analysis.coefficients, analysis.others);
   analysis.predictions = predictions(analysis.validation.quantities, analysis.coefficients);
   if (study.true_subject) analysis.truth = true_values(*study.true_subject, study.subject, analysis.coefficients);
@@ -273,117 +271,76 @@ FlightAnalysis with_results(FlightAnalysis analysis, const FlightStudy& study, c
   return analysis;
 }
 
-/// What is left to say where the motion could not be reconstructed: the rows of the recording.
-FlightAnalysis without_motion(FlightAnalysis analysis, const FlightStudy& study, const Progress& progress) {
-  analysis.coefficients = not_identified(study.subject, study.identify, *analysis.reconstruction.contradiction,
-                                         analysis.recording_evidence);
+/// What is left to say where the motion of no flight could be reconstructed: the rows of the recordings.
+FlightAnalysis without_motion(FlightAnalysis analysis, std::span<const FlightStudy> studies, const Progress& progress) {
+  const FlightStudy& study = studies.front();
+  const PreparedFlight& flight = analysis.flights.front();
+  analysis.coefficients =
+      not_identified(study.subject, study.identify, *flight.reconstruction.contradiction, flight.recording_evidence);
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
-  return with_results(std::move(analysis), study, progress);
+  return with_results(std::move(analysis), studies, progress);
+}
+
+/// Whether the motion of any flight is known.
+bool any_motion(const FlightAnalysis& analysis) {
+  return std::ranges::any_of(analysis.flights, &PreparedFlight::usable);
 }
 
 }  // namespace
 
-FlightStudy read_study(const Study& study, Progress& progress) {
-  const StudyTable& root = study.root();
-  FlightStudy result;
-  result.name = study.name();
-  result.seed = static_cast<std::uint64_t>(root.integer_or("seed", 1));
-  static_cast<void>(root.text_or("title", ""));
-  const StudyTable subject = root.table("subject");
-  result.subject = read_subject(subject);
-  result.delays = DelayAlignment::read(root.table_or_empty("delays"));
-  result.reconstruct = ReconstructOptions::read(root.table_or_empty("reconstruct"));
-  if (const std::filesystem::path& estimate = result.reconstruct.estimate_file; !estimate.empty())
-    result.filter_subject = estimated_subject(result.subject, io::read_estimate(estimate), estimate.string());
-  result.signals = SignalOptions::read(root.table_or_empty("signals"));
-  result.segments = SegmentOptions::read(root.table_or_empty("segments"));
-  result.identify = IdentifyOptions::read(root.table_or_empty("identify"));
-  result.identify.seed = result.seed;
-  result.validate = ValidationOptions::read(root.table_or_empty("validate"));
-  result.track = TrackOptions::read(root.table_or_empty("track"));
-  result.uncertainty = UncertaintyOptions::read(root.table_or_empty("uncertainty"));
-  if (!(result.segments.min_airspeed_mps > 0.0))
-    result.segments.min_airspeed_mps = least_flying_airspeed(result.subject);
-
-  const StudyTable data = root.table_or_empty("data");
-  const StudyTable map = data.table_or_empty("map");
-  Recording log;
-  if (!root.has("data")) {
-    if (!root.has("flight")) root.fail("data", "is missing: the study names no recording, and no [flight] to simulate");
-    const SimulationOptions simulation = read_simulation(root);
-    root.finish();
-    progress.stage("simulating the flight");
-    SimulatedFlight flight = simulate(simulation, progress);
-    if (!flight.usable()) throw InputError(study.name(), flight.message());
-    log = std::move(flight.measured);
-    log.source = study.name();
-    result.truth = std::move(flight.truth);
-    result.true_subject = result.subject;
-    result.true_changes = simulation.changes;
-  } else {
-    // A study may carry the flight that its recording was simulated from.
-    if (root.has("flight")) static_cast<void>(read_simulation(root));
-    progress.stage("reading the recording");
-    log = recording::read_study_data(data);
-    result.inputs = data.files(data.has("file") ? "file" : "files");
-  }
-  if (!result.reconstruct.estimate_file.empty()) result.inputs.push_back(result.reconstruct.estimate_file);
-  result.mapped = map_channels(log, map, throws_of(result.subject, subject));
-  if (data.has("calibration")) {
-    const std::filesystem::path file = data.file("calibration");
-    apply_calibration(read_calibration(file), result.mapped);
-    result.inputs.push_back(file);
-  }
-  root.finish();
-  return result;
-}
-
 FlightAnalysis reconstruct(const FlightStudy& study, Progress& progress) {
-  return reconstruct_with(study, study.reconstruct, progress);
+  FlightAnalysis analysis;
+  analysis.flights.push_back(reconstructed(study, study.reconstruct, progress));
+  analysis.interrupted = analysis.flights.front().reconstruction.interrupted;
+  return analysis;
 }
 
-FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
-  FlightAnalysis analysis = analyse_motion(study, progress);
+FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress) {
+  const FlightStudy& study = studies.front();
+  FlightAnalysis analysis = prepared(studies, progress);
   if (analysis.interrupted) return analysis;
-  if (analysis.reconstruction.contradiction) return without_motion(std::move(analysis), study, progress);
-  const FlightSignals& signals = analysis.signals;
-  const Segments& segments = analysis.segments;
-  analysis.coefficients =
-      identify_coefficients(signals, segments, study.subject, study.identify, progress, analysis.recording_evidence);
+  if (!any_motion(analysis)) return without_motion(std::move(analysis), studies, progress);
+  analysis.coefficients = identify_coefficients(analysis.flights, study.subject, study.identify, progress);
   analysis.others =
-      compare_other_estimators(signals, segments, study.subject, analysis.coefficients, study.identify, progress);
+      compare_other_estimators(analysis.flights, study.subject, analysis.coefficients, study.identify, progress);
   progress.stage("uncertainty of the measured coefficients");
   if (study.uncertainty.enabled) {
     analysis.uncertainty = coefficient_uncertainty(
-        coefficient_inputs(signals, segments, study.subject, study.uncertainty, study.mapped.calibration_sigma),
+        coefficient_inputs(analysis.flights, study.subject, study.uncertainty, study.mapped.calibration_sigma),
         study.subject, study.uncertainty, study.seed, progress.threads());
   }
   progress.stage("validating on the hold-out");
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
-  analysis.validation =
-      validate_flight(signals, segments.longitudinal.holdout, segments.lateral.holdout, analysis.identified,
-                      identified_coefficients(analysis.coefficients), study.validate);
-  return with_results(std::move(analysis), study, progress);
+  analysis.validation = validate_flights(analysis.flights, RowUse::kHoldout, analysis.identified,
+                                         identified_coefficients(analysis.coefficients), study.validate);
+  return with_results(std::move(analysis), studies, progress);
 }
 
-FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
-  FlightAnalysis analysis = analyse_motion(study, progress);
+FlightAnalysis identify(const FlightStudy& study, Progress& progress) {
+  return identify(std::span<const FlightStudy>(&study, 1), progress);
+}
+
+FlightAnalysis validate(std::span<const FlightStudy> studies, const estimation::Estimate& estimate,
+                        Progress& progress) {
+  const FlightStudy& study = studies.front();
+  FlightAnalysis analysis = prepared(studies, progress);
   if (analysis.interrupted) return analysis;
-  if (analysis.reconstruction.contradiction) return without_motion(std::move(analysis), study, progress);
-  const FlightSignals& signals = analysis.signals;
-  const Segments& segments = analysis.segments;
-  analysis.coefficients = evaluate_estimate(signals, segments, study.subject, study.identify, estimate);
+  if (!any_motion(analysis)) return without_motion(std::move(analysis), studies, progress);
+  analysis.coefficients = evaluate_estimate(analysis.flights, study.subject, study.identify, estimate);
   progress.stage("validating");
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
-  analysis.validation =
-      validate_flight(signals, segments.longitudinal.excited, segments.lateral.excited, analysis.identified,
-                      identified_coefficients(analysis.coefficients), study.validate);
-  analysis = with_results(std::move(analysis), study, progress);
+  analysis.validation = validate_flights(analysis.flights, RowUse::kExcited, analysis.identified,
+                                         identified_coefficients(analysis.coefficients), study.validate);
+  analysis = with_results(std::move(analysis), studies, progress);
   // The parameters are those that were given; only the judgement is new.
   analysis.estimate.parameters = estimate.parameters;
   analysis.estimate.covariance = estimate.covariance;
   analysis.estimate.method = estimate.method;
   return analysis;
+}
+
+FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate, Progress& progress) {
+  return validate(std::span<const FlightStudy>(&study, 1), estimate, progress);
 }
 
 }  // namespace veridyn::aircraft

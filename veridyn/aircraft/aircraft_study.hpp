@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,15 @@
 
 namespace veridyn::aircraft {
 
-/// A study of one flight, read and checked: the aircraft, the recording, what to do with it.
+/// A study of one flight, read and checked: the aircraft, the recording, what to do with it. A study that names several
+/// recordings (recording::read_study_recordings) is one of these a flight, which differ in their recording only.
 ///
 ///     seed = 1
 ///     [subject]      see read_subject
-///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest: recording::read_study_data;
-///                    `[data.map]`: see map_channels. Without it the study must have a `[flight]`, which is then
-///                    simulated
+///     [data]         `calibration = "calibration.toml"`: see read_calibration; the rest:
+///                    recording::read_study_recordings; `[data.map]`: see map_channels. Without it the study must have
+///                    a `[flight]`, which is then simulated. `[[data.run]]` has `calibration`, `longitudinal` and
+///                    `lateral` (see SegmentOptions) too
 ///     [delays]       see DelayAlignment          [signals]   see SignalOptions
 ///     [reconstruct]  see ReconstructOptions      [segments]  see SegmentOptions
 ///     [identify]     see IdentifyOptions         [validate]  see ValidationOptions
@@ -32,6 +35,8 @@ namespace veridyn::aircraft {
 struct FlightStudy {
   std::string name;
   std::uint64_t seed = 0;
+  std::string run = {};   ///< name of its recording among those of the study; empty: the only one
+  bool held_out = false;  ///< none of it is for identification
   Subject subject;
   MappedRecording mapped;
   std::optional<Recording> truth;  ///< of a simulated flight
@@ -49,18 +54,19 @@ struct FlightStudy {
   std::vector<std::filesystem::path> inputs;  ///< files that were read
 };
 
-/// Reads every table of the study and its recording.
+/// Reads every table of the study and its recordings: a study a flight, in the order of the study.
+///
+/// Of several, all get the rate of the slowest (`signals.rate`), so that their rows may be regressed together; where
+/// some are held out as a whole, the others are for identification as a whole.
 /// @throws InputError for anything that is wrong in either.
+[[nodiscard]] std::vector<FlightStudy> read_flights(const Study& study, Progress& progress);
+
+/// The same of a study with one recording. @throws InputError also where it names several.
 [[nodiscard]] FlightStudy read_study(const Study& study, Progress& progress);
 
-/// What the stages of the pipeline made of a flight, in their order.
+/// What the stages of the pipeline made of a flight, or of several together, in their order.
 struct FlightAnalysis : estimation::Analysis {
-  MappedRecording aligned;  ///< the study's recording with the delays taken off
-  std::vector<DelayReport> delays;
-  Reconstruction reconstruction;
-  FlightSignals signals;
-  Segments segments;
-  std::vector<FlightEvidence> recording_evidence;  ///< does the recording agree with itself and with physics?
+  std::vector<PreparedFlight> flights;  ///< in the order of the study, each made ready by itself
   std::vector<CoefficientResult> coefficients;
   OtherEstimators others;         ///< output error, frequency domain, bootstrap, where the study has them
   UncertaintyReport uncertainty;  ///< of the measured coefficients
@@ -72,13 +78,21 @@ struct FlightAnalysis : estimation::Analysis {
 /// @throws InputError when a channel that it needs is missing.
 [[nodiscard]] FlightAnalysis reconstruct(const FlightStudy& study, Progress& progress);
 
-/// The full pipeline: delays, state estimation, segments, coefficients, validation on the hold-out, verdict.
-/// @throws InputError when a channel that it needs is missing, or the aircraft never flies.
+/// The full pipeline: delays, state estimation, segments, coefficients, validation on the hold-out, verdict. Several
+/// flights are each reconstructed by themselves, in their own wind and with their own delays and errors of sensors; the
+/// coefficients are those of all.
+/// @param studies  from `read_flights`, at least one
+/// @throws InputError when a channel that it needs is missing, or the aircraft never flies, naming the recording.
+[[nodiscard]] FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress);
+/// One flight alone.
 [[nodiscard]] FlightAnalysis identify(const FlightStudy& study, Progress& progress);
 
 /// An estimate validated on the flight of a study, which it was not identified from: coefficients and trajectory on
 /// every excited segment.
 /// @throws InputError as `identify`, and when the estimate has no parameter of the study's model.
+[[nodiscard]] FlightAnalysis validate(std::span<const FlightStudy> studies, const estimation::Estimate& estimate,
+                                      Progress& progress);
+/// One flight alone.
 [[nodiscard]] FlightAnalysis validate(const FlightStudy& study, const estimation::Estimate& estimate,
                                       Progress& progress);
 

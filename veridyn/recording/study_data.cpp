@@ -120,21 +120,26 @@ std::optional<io::PacketLayout> read_packet(const StudyTable& data) {
 
 }  // namespace
 
-Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
-  const StudyTable time = data.table_or_empty("time");
+namespace {
+
+/// One file, with the keys that `own` has and else those of `shared`.
+Recording read_file(const std::filesystem::path& path, const StudyTable& own, const StudyTable& shared) {
+  const StudyTable time = table_with("time", own, shared).table_or_empty("time");
+  const StudyTable& columns = table_with("columns", own, shared);
   const std::string name = table_name(path);
   io::ReadOptions options;
-  if (data.has("columns")) options.csv.columns = data.texts("columns");
+  if (columns.has("columns")) options.csv.columns = columns.texts("columns");
   if (time.has(name)) {
     read_time(time.table(name), options.csv);
   } else {
     read_time(time, options.csv);
   }
-  options.packet = read_packet(data);
+  options.packet = read_packet(table_with("packet", own, shared));
   return io::read_recording(path, options);
 }
 
-void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard) {
+/// Reads the keys of one recording, or of all, without opening a file.
+void check_recording_keys(const StudyTable& data, std::span<const StandardChannel> standard) {
   for (const char* key : {"file", "files", "columns"}) {
     if (data.has(key)) static_cast<void>(data.texts(key));
   }
@@ -153,7 +158,8 @@ void check_study_data(const StudyTable& data, std::span<const StandardChannel> s
   check_channel_map(data.table_or_empty("map"), standard);
 }
 
-Recording read_study_data(const StudyTable& data) {
+/// The recording that `file` or `files` of a table name, with the keys of `shared` that the table lacks.
+Recording read_one(const StudyTable& data, const StudyTable& shared) {
   if (data.has("file") == data.has("files")) {
     data.fail(data.has("file") ? "files" : "file",
               "is missing: give `file`, or `files` for the tables of one flight (not both)");
@@ -165,7 +171,7 @@ Recording read_study_data(const StudyTable& data) {
   for (const std::filesystem::path& path : paths) names.push_back(path.filename().string());
   whole.source = paths.size() == 1 ? paths.front().string() : fmt::format("{}", fmt::join(names, ", "));
   for (const std::filesystem::path& path : paths) {
-    const Recording part = read_study_file(data, path);
+    const Recording part = read_file(path, data, shared);
     if (paths.size() == 1) {
       const std::string source = whole.source;
       whole = part;
@@ -181,6 +187,114 @@ Recording read_study_data(const StudyTable& data) {
   const double to = data.number_or("to", "s", kInfinity);
   if (!(from < to)) data.fail("to", fmt::format("= {} s must be later than from = {} s", to, from));
   return cut(whole, {from, to});
+}
+
+/// The files of a table, and what they are called together: "flight1.csv", "IMU.csv, GPS.csv".
+StudyRecording named_files(std::vector<std::filesystem::path> files) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) names.push_back(file.filename().string());
+  StudyRecording run;
+  run.name = fmt::format("{}", fmt::join(names, ", "));
+  run.files = std::move(files);
+  return run;
+}
+
+/// What `runs`, `[[data.run]]` and `holdout_runs` name, nothing read yet.
+std::vector<StudyRecording> named_runs(const StudyTable& data) {
+  for (const char* key : {"file", "files", "from", "to"}) {
+    if (!data.has(key)) continue;
+    data.fail(key, "is of one recording, but there are `runs`: write [[data.run]] with it for the recording it is of");
+  }
+  std::vector<StudyRecording> runs;
+  const auto add_all = [&](const char* key, bool held_out) {
+    if (!data.has(key)) return;
+    const std::vector<std::filesystem::path> paths = data.files(key);
+    if (paths.empty()) data.fail(key, "is empty");
+    for (const std::filesystem::path& path : paths) {
+      runs.push_back(named_files({path}));
+      runs.back().held_out = held_out;
+    }
+  };
+  add_all("runs", false);
+  for (const StudyTable& table : data.tables("run")) {
+    if (table.has("file") == table.has("files"))
+      table.fail(table.has("file") ? "files" : "file", "is missing: give `file`, or `files` of one run (not both)");
+    runs.push_back(named_files(table.files(table.has("file") ? "file" : "files")));
+    runs.back().own = table;
+    runs.back().held_out = table.flag_or("holdout", false);
+  }
+  add_all("holdout_runs", true);
+  return runs;
+}
+
+/// Names that differ: with the part of the file that a run is of, or the folder, where file names alone do not.
+void distinguish(std::vector<StudyRecording>& runs, const StudyTable& data) {
+  const auto count = [&](const std::string& name) { return std::ranges::count(runs, name, &StudyRecording::name); };
+  std::vector<std::string> longer;
+  for (const StudyRecording& run : runs) {
+    std::string name = run.name;
+    if (count(name) > 1 && run.own.has("from"))
+      name += fmt::format(" from {:g} s", run.own.number("from", "s"));
+    else if (count(name) > 1)
+      name = (run.files.front().parent_path().filename() / run.files.front().filename()).string();
+    longer.push_back(std::move(name));
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) runs[i].name = longer[i];
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      if (runs[i].name == runs[j].name)
+        data.fail(data.has("runs") ? "runs" : "run", fmt::format("names {} twice", runs[i].name));
+  }
+}
+
+}  // namespace
+
+const StudyTable& table_with(std::string_view key, const StudyTable& own, const StudyTable& shared) {
+  return own.has(key) ? own : shared;
+}
+
+bool names_runs(const StudyTable& data) { return data.has("runs") || data.has("holdout_runs") || data.has("run"); }
+
+Recording read_study_file(const StudyTable& data, const std::filesystem::path& path) {
+  return read_file(path, data, data);
+}
+
+Recording read_study_data(const StudyTable& data) { return read_one(data, data); }
+
+void check_study_data(const StudyTable& data, std::span<const StandardChannel> standard) {
+  check_recording_keys(data, standard);
+  for (const StudyTable& run : data.tables("run")) {
+    check_recording_keys(run, standard);
+    static_cast<void>(run.flag_or("holdout", false));
+  }
+}
+
+std::vector<StudyRecording> read_study_recordings(const StudyTable& data) {
+  if (!names_runs(data)) {
+    StudyRecording only;
+    only.recording = read_study_data(data);
+    only.files = data.files(data.has("file") ? "file" : "files");
+    std::vector<StudyRecording> one;
+    one.push_back(std::move(only));
+    return one;
+  }
+  std::vector<StudyRecording> runs = named_runs(data);
+  if (std::ranges::all_of(runs, &StudyRecording::held_out))
+    data.fail(data.has("runs")  ? "runs"
+              : data.has("run") ? "run"
+                                : "holdout_runs",
+              "leaves no recording to identify from: every one is held out");
+  distinguish(runs, data);
+  for (StudyRecording& run : runs) {
+    if (run.own.has("file") || run.own.has("files")) {
+      run.recording = read_one(run.own, data);
+    } else {
+      run.recording = without_missing(read_study_file(data, run.files.front()));
+      run.recording.source = run.files.front().string();
+    }
+  }
+  if (runs.size() == 1) runs.front().name.clear();
+  return runs;
 }
 
 }  // namespace veridyn::recording

@@ -2,6 +2,9 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "veridyn/core/recording.hpp"
 #include "veridyn/core/study.hpp"
@@ -28,6 +31,36 @@ namespace veridyn::recording {
 /// modules in `[data]` are left for them.
 /// @throws InputError for unreadable files, or a part of the recording that holds nothing.
 [[nodiscard]] Recording read_study_data(const StudyTable& data);
+
+/// One of the recordings of a study, with the table that says what is its own.
+struct StudyRecording {
+  std::string name;  ///< of its file, distinct among those of the study; empty where it is the only one
+  Recording recording;
+  std::vector<std::filesystem::path> files;
+  StudyTable own;         ///< `[[data.run]]`, or empty: keys that it lacks are those of `[data]`
+  bool held_out = false;  ///< never used by identification
+};
+
+/// All recordings that `[data]` names: one, as `read_study_data` reads it, or several of the same thing:
+///
+///     runs = ["flight1.csv", "flight2.csv"]   # alike: every key of [data] and [data.map] is for each of them
+///     holdout_runs = ["flight3.csv"]          # the same, never used by identification
+///     [[data.run]]                            # one that needs keys of its own
+///     file = "flight4.csv"                    # or files, as above
+///     from = 12, to = 300                     # [s] on its own clock
+///     holdout = true                          # as holdout_runs
+///     columns, time, packet, map, ...         # in place of those of [data]
+///
+/// in the order `runs`, `[[data.run]]`, `holdout_runs`.
+/// @throws InputError as `read_study_data`, naming the file; for a recording that is named twice, and where no
+/// recording is left to identify from
+[[nodiscard]] std::vector<StudyRecording> read_study_recordings(const StudyTable& data);
+
+/// Whether `[data]` names recordings by `runs`, `holdout_runs` or `[[data.run]]`.
+[[nodiscard]] bool names_runs(const StudyTable& data);
+
+/// `own` where it has the key, else `shared`.
+[[nodiscard]] const StudyTable& table_with(std::string_view key, const StudyTable& own, const StudyTable& shared);
 
 /// Reads the same keys, and those of `[data.map]`, without opening a file: for commands that have no use for the
 /// recording, so that they refuse a misspelt key too. @throws InputError for values of the wrong kind.

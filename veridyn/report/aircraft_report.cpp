@@ -49,21 +49,22 @@ Verdict top_of(const FlightAnalysis& analysis) {
 }
 
 std::vector<Fact> facts_of(const FlightStudy& study, const FlightAnalysis& analysis) {
+  const PreparedFlight& flight = analysis.flights.front();
   std::vector<Fact> facts{
       {"Aircraft", study.subject.name},
       {"Recording", study.truth ? "simulated from the study"
                                 : std::filesystem::path(study.mapped.recording.source).filename().string()},
       {"Log", study.mapped.log_kind},
       {"Mass", fmt::format("{:.4g} kg", study.subject.mass)}};
-  const TimeSpan span = analysis.aligned.recording.span();
+  const TimeSpan span = flight.aligned.recording.span();
   facts.push_back({"Recorded", fmt::format("{:.0f} s", span.duration())});
   double airborne = 0.0;
-  for (const TimeSpan& s : analysis.segments.airborne) airborne += s.duration();
+  for (const TimeSpan& s : flight.segments.airborne) airborne += s.duration();
   if (airborne > 0.0) {
     facts.push_back({"In the air", fmt::format("{:.0f} s", airborne)});
     facts.push_back(
-        {"Excited", fmt::format("{:.0f} s longitudinal, {:.0f} s lateral", analysis.segments.longitudinal.excited_s(),
-                                analysis.segments.lateral.excited_s())});
+        {"Excited", fmt::format("{:.0f} s longitudinal, {:.0f} s lateral", flight.segments.longitudinal.excited_s(),
+                                flight.segments.lateral.excited_s())});
   }
   if (!study.subject.sign_convention.empty()) facts.push_back({"Signs", study.subject.sign_convention});
   return facts;
@@ -71,7 +72,7 @@ std::vector<Fact> facts_of(const FlightStudy& study, const FlightAnalysis& analy
 
 Section method_section(const FlightStudy& study, const FlightAnalysis& analysis) {
   Section section{.title = "How it was done", .id = "method", .folded = true};
-  const FlightSignals& s = analysis.signals;
+  const FlightSignals& s = analysis.flights.front().signals;
   std::vector<Fact> facts{
       {"Study", study.name},
       {"Seed", std::to_string(study.seed)},
@@ -114,7 +115,8 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   const auto add = [&](Section section, bool shown = true) {
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
-  const bool motion = !analysis.reconstruction.contradiction;
+  const PreparedFlight& first = analysis.flights.front();
+  const bool motion = first.usable();
   add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
   add(evidence_section(analysis.estimate));
@@ -123,7 +125,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(structure_section(analysis));
   add(validation_section(analysis));
   if (motion) {
-    Section flight = flight_section(study, analysis);
+    Section flight = flight_section(study, first);
     flight.folded = true;
     add(std::move(flight));
   }
@@ -131,7 +133,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(excitation_section(analysis), !given && motion);
   add(residual_section(analysis), !given);
   add(uncertainty_section(analysis.uncertainty), analysis.uncertainty.available());
-  add(sensors_section(study, analysis));
+  add(sensors_section(first));
   add_warnings(document, analysis.estimate.warnings);
   add(rejected_section(analysis));
   if (motion) add(method_section(study, analysis));
@@ -143,32 +145,32 @@ Document reconstruction_report(const FlightStudy& study, const FlightAnalysis& a
   Document document = started_document(fmt::format("{}: motion through the air", study.subject.name),
                                        "Airspeed, flow angles and wind from the recording", context.program);
   document.facts = facts_of(study, analysis);
-  if (const std::optional<Contradiction>& contradiction = analysis.reconstruction.contradiction) {
+  const PreparedFlight& flight = analysis.flights.front();
+  if (const std::optional<Contradiction>& contradiction = flight.reconstruction.contradiction) {
     document.verdict.level = Level::kBad;
     document.verdict.word = "Contradiction";
     document.verdict.headline = contradiction->statement + ".";
-    if (!analysis.reconstruction.smoothed.channels().empty())
-      document.sections.push_back(flight_section(study, analysis));
-    document.sections.push_back(sensors_section(study, analysis));
-    add_warnings(document, analysis.reconstruction.warnings);
+    if (!flight.reconstruction.smoothed.channels().empty()) document.sections.push_back(flight_section(study, flight));
+    document.sections.push_back(sensors_section(flight));
+    add_warnings(document, flight.reconstruction.warnings);
     return document;
   }
   std::vector<std::string> weak;
-  for (const QuantityReport& q : analysis.reconstruction.quantities) {
+  for (const QuantityReport& q : flight.reconstruction.quantities) {
     const bool air_data =
         q.quantity == "airspeed" || q.quantity == "alpha" || q.quantity == "beta" || q.quantity.starts_with("wind");
     if (air_data && q.observability != Observability::kObservable) weak.push_back(q.quantity);
   }
-  if (!analysis.reconstruction.smoothed.has("wind_north")) weak.emplace_back("wind");
+  if (!flight.reconstruction.smoothed.has("wind_north")) weak.emplace_back("wind");
   document.verdict.level = weak.empty() ? Level::kGood : Level::kCaution;
   document.verdict.word = weak.empty() ? "Observable" : "Partly observable";
   document.verdict.headline =
       weak.empty()
           ? "Airspeed, flow angles and wind are determined by the sensors of this flight."
           : fmt::format("The sensors of this flight do not determine {}: mind the bands.", fmt::join(weak, ", "));
-  document.sections.push_back(flight_section(study, analysis));
-  document.sections.push_back(sensors_section(study, analysis));
-  add_warnings(document, analysis.reconstruction.warnings);
+  document.sections.push_back(flight_section(study, flight));
+  document.sections.push_back(sensors_section(flight));
+  add_warnings(document, flight.reconstruction.warnings);
   return document;
 }
 

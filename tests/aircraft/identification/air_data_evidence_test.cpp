@@ -31,7 +31,7 @@ std::vector<FlightEvidence> evidence_with(const char* channel, double factor, co
   Channel changed = study.mapped.recording.at(channel);
   for (double& v : changed.value) v *= factor;
   study.mapped.recording.set(std::move(changed));
-  return aircraft::testing::identified(study).analysis.recording_evidence;
+  return aircraft::testing::identified(study).analysis.flights.front().recording_evidence;
 }
 
 double doubt_about(const std::vector<FlightEvidence>& rows, FlightSignal signal) {

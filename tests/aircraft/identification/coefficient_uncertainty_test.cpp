@@ -43,9 +43,17 @@ Segments all_airborne() {
   return segments;
 }
 
+/// The only flight of a study.
+std::vector<PreparedFlight> only_made_flight(FlightSignals signals, Segments segments = all_airborne()) {
+  std::vector<PreparedFlight> flights(1);
+  flights.front().signals = std::move(signals);
+  flights.front().segments = std::move(segments);
+  return flights;
+}
+
 TEST(CoefficientUncertainty, TakesRangesAndCorrelationFromTheFlight) {
   const Subject subject = builtin_subject("thor");
-  const auto inputs = coefficient_inputs(made_signals(), all_airborne(), subject, {});
+  const auto inputs = coefficient_inputs(only_made_flight(made_signals()), subject, {});
   ASSERT_EQ(inputs.names.size(), kCoefficientInputs);
   const auto at = [](F f) { return static_cast<Eigen::Index>(f); };
   EXPECT_NEAR(inputs.low(at(F::kAirspeed)), 18.0, 0.01);
@@ -62,7 +70,7 @@ TEST(CoefficientUncertainty, AgreesWithTheLinearLawWhereErrorsAreSmallAndSplitsI
   Subject subject = builtin_subject("thor");
   subject.sigma.mass = 0.02;
   subject.sigma.Jy = 0.004;
-  const auto inputs = coefficient_inputs(made_signals(), all_airborne(), subject, {});
+  const auto inputs = coefficient_inputs(only_made_flight(made_signals()), subject, {});
   const UncertaintyReport report = coefficient_uncertainty(inputs, subject, {}, 3);
   ASSERT_EQ(report.coefficients.size(), 6U);
   for (const CoefficientUncertainty& c : report.coefficients) {
@@ -83,7 +91,7 @@ TEST(CoefficientUncertainty, AgreesWithTheLinearLawWhereErrorsAreSmallAndSplitsI
 TEST(CoefficientUncertainty, IsReproducibleAndLeavesOutWhatCannotBeMeasured) {
   Subject subject = builtin_subject("thor");
   subject.inertia.reset();
-  const auto inputs = coefficient_inputs(made_signals(), all_airborne(), subject, {});
+  const auto inputs = coefficient_inputs(only_made_flight(made_signals()), subject, {});
   UncertaintyOptions options;
   options.draws = 5000;
   const UncertaintyReport a = coefficient_uncertainty(inputs, subject, options, 3, 1);
@@ -91,7 +99,8 @@ TEST(CoefficientUncertainty, IsReproducibleAndLeavesOutWhatCannotBeMeasured) {
   ASSERT_EQ(a.coefficients.size(), 3U);
   EXPECT_EQ(to_csv(a), to_csv(b));
   EXPECT_FALSE(
-      coefficient_uncertainty(coefficient_inputs(made_signals(), {}, subject, {}), subject, {}, 1).available());
+      coefficient_uncertainty(coefficient_inputs(only_made_flight(made_signals(), {}), subject, {}), subject, {}, 1)
+          .available());
 }
 
 TEST(CoefficientUncertainty, ReadsItsTableAndRefusesNonsense) {
@@ -101,7 +110,7 @@ TEST(CoefficientUncertainty, ReadsItsTableAndRefusesNonsense) {
   EXPECT_EQ(options.draws, 1000U);
   EXPECT_NEAR(*options.sigma[0], M_PI / 180.0, 1e-15);
   FlightSignals signals = made_signals();
-  const auto inputs = coefficient_inputs(signals, all_airborne(), builtin_subject("thor"), options);
+  const auto inputs = coefficient_inputs(only_made_flight(signals), builtin_subject("thor"), options);
   EXPECT_EQ(inputs.error_covariance(15, 15), 0.25);
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {"[uncertainty]\ndraws = 5\n", "s.toml:2: uncertainty.draws: = 5 must be from 100 to 100000000"},

@@ -40,7 +40,7 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
     const Identified flight = aircraft::testing::identified(faulty);
     ASSERT_FALSE(flight.refused) << name << flight.message;
     const FlightAnalysis& analysis = flight.analysis;
-    ASSERT_TRUE(analysis.reconstruction.contradiction.has_value()) << name;
+    ASSERT_TRUE(analysis.flights.front().reconstruction.contradiction.has_value()) << name;
     const estimation::Estimate& estimate = analysis.estimate;
     EXPECT_EQ(estimate.judgement.data.grade, estimation::Grade::kNo) << name;
     EXPECT_EQ(estimate.judgement.parameters.grade, estimation::Grade::kNo) << name;
@@ -49,7 +49,8 @@ TEST(ContradictedFlight, IsGradedNoWithTheSensorThatIsWrongAndIdentifiesNothing)
     const estimation::Evidence& row = estimate.evidence.front();
     EXPECT_EQ(row.name, "dead reckoning");
     EXPECT_EQ(row.about, about) << name << ": " << row.text;
-    EXPECT_LT(largest_speed(analysis.reconstruction.smoothed), 1.2 * largest_speed(faulty.mapped.recording) + 10.0)
+    EXPECT_LT(largest_speed(analysis.flights.front().reconstruction.smoothed),
+              1.2 * largest_speed(faulty.mapped.recording) + 10.0)
         << name;
   }
 }
@@ -58,7 +59,7 @@ TEST(ContradictedFlight, IsNoneOfTheBuiltInAircrafts) {
   for (const std::string& name : builtin_subject_names()) {
     FlightStudy study = campaign_flight(name, 2, 60.0);
     Progress silent;
-    const Reconstruction r = reconstruct(study, silent).reconstruction;
+    const Reconstruction r = reconstruct(study, silent).flights.front().reconstruction;
     EXPECT_FALSE(r.contradiction.has_value()) << name << ": " << r.contradiction->statement;
     for (const SensorReport& sensor : r.sensors) EXPECT_LT(sensor.innovations.unsupported_s, 0.5) << name;
   }

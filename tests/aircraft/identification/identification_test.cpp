@@ -107,7 +107,9 @@ TEST(IdentificationRows, FindAnElevatorThatMovesWithAlpha) {
 CoefficientResult evaluated(const estimation::Estimate& estimate) {
   Subject subject = builtin_subject("thor");
   const FlightSignals signals = aircraft::testing::pitching(subject);
-  return evaluate_estimate(signals, aircraft::testing::pitching_segments(), subject, {}, estimate).front();
+  return evaluate_estimate(aircraft::testing::only_flight(signals, aircraft::testing::pitching_segments()), subject, {},
+                           estimate)
+      .front();
 }
 
 estimation::Estimate cm_estimate() {

@@ -74,7 +74,7 @@ TEST(OtherEstimators, InCalmAirOutputErrorHoldsTheTruthAndIsSharperThanRegressio
 
 TEST(OtherEstimators, AreNotRunByDefault) {
   const IdentifyOptions options;
-  EXPECT_TRUE(compare_other_estimators({}, {}, {}, {}, options, *std::make_unique<Progress>()).empty());
+  EXPECT_TRUE(compare_other_estimators({}, {}, {}, options, *std::make_unique<Progress>()).empty());
 }
 
 }  // namespace

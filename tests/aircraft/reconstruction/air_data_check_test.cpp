@@ -38,8 +38,9 @@ TEST(AirDataCheck, DoesNotMoveACleanFlightsAnswer) {
       ++compared;
     }
     EXPECT_GT(compared, 10u);
-    EXPECT_THAT(asked.analysis.reconstruction.warnings, Contains(HasSubstr("pitot_scale: not corrected")));
-    for (const SensorErrorReport& e : asked.analysis.reconstruction.sensor_errors)
+    EXPECT_THAT(asked.analysis.flights.front().reconstruction.warnings,
+                Contains(HasSubstr("pitot_scale: not corrected")));
+    for (const SensorErrorReport& e : asked.analysis.flights.front().reconstruction.sensor_errors)
       EXPECT_LT(std::abs(e.value), 4.0 * e.sigma) << aircraft << " " << e.name;
   }
 }
@@ -64,7 +65,7 @@ TEST(AirDataCheck, CorrectsWhatTheFlightShows) {
   EXPECT_GE(grade_of(unasked), estimation::Grade::kWithCare);
   EXPECT_EQ(grade_of(study), estimation::Grade::kYes);
   Progress silent;
-  const Reconstruction r = reconstruct(study, silent).reconstruction;
+  const Reconstruction r = reconstruct(study, silent).flights.front().reconstruction;
   ASSERT_EQ(r.sensor_errors.size(), 2u);
   for (const auto& [name, truth] : {std::pair{"pitot_scale", 0.69}, {"alpha_bias", 0.14}}) {
     const auto e = std::ranges::find(r.sensor_errors, name, &SensorErrorReport::name);

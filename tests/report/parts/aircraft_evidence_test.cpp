@@ -27,8 +27,9 @@ FlightAnalysis excited_pitch() {
   e.unexcited = {{.combination = {}, .bound95 = 0.0, .text = "0.71 Cm_q + 0.70 Cm_de"}};
   r.comparison.estimates = {e};
   analysis.coefficients = {r, test::drag_by_hand()};
-  analysis.segments.longitudinal.text = "12 s are excited";
-  analysis.segments.lateral.text = "nothing is excited";
+  analysis.flights.emplace_back();
+  analysis.flights.front().segments.longitudinal.text = "12 s are excited";
+  analysis.flights.front().segments.lateral.text = "nothing is excited";
   return analysis;
 }
 

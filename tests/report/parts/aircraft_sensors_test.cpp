@@ -9,9 +9,8 @@
 namespace veridyn::report {
 namespace {
 
-using aircraft::FlightAnalysis;
-using aircraft::FlightStudy;
 using aircraft::Observability;
+using aircraft::PreparedFlight;
 using testing::ElementsAre;
 
 std::vector<std::string> table_titles(const Section& section) {
@@ -21,27 +20,26 @@ std::vector<std::string> table_titles(const Section& section) {
 }
 
 TEST(SensorsSection, LeavesOutWhatThisFlightDoesNotHave) {
-  const Section section = sensors_section({}, {});
+  const Section section = sensors_section({});
   check({.sections = {section}});
   EXPECT_THAT(table_titles(section), ElementsAre("Channels", "Innovations", "What the sensors determine"));
   EXPECT_EQ(test::fact_of(test::blocks_of<FactList>(section.blocks).at(0).facts, "Guard"), "");
 }
 
 TEST(SensorsSection, SaysWhereEachChannelIsFromAndByHowMuchItIsLate) {
-  FlightStudy study;
-  study.mapped.origins.resize(1);
-  study.mapped.origins[0].channel = "airspeed";
-  study.mapped.origins[0].source = "ARSP.Airspeed";
-  study.mapped.origins[0].rate_Hz = 10.0;
-  study.mapped.origins[0].note = "zero taken off";
-  FlightAnalysis analysis;
-  analysis.delays = {{.group = "attitude",
-                      .reference = "gyro",
-                      .delay_s = 0.0204,
-                      .sigma_s = 0.001,
-                      .correlation = 0.98,
-                      .text = "applied"}};
-  const Section section = sensors_section(study, analysis);
+  PreparedFlight flight;
+  flight.aligned.origins.resize(1);
+  flight.aligned.origins[0].channel = "airspeed";
+  flight.aligned.origins[0].source = "ARSP.Airspeed";
+  flight.aligned.origins[0].rate_Hz = 10.0;
+  flight.aligned.origins[0].note = "zero taken off";
+  flight.delays = {{.group = "attitude",
+                    .reference = "gyro",
+                    .delay_s = 0.0204,
+                    .sigma_s = 0.001,
+                    .correlation = 0.98,
+                    .text = "applied"}};
+  const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table channels = test::table_of(section.blocks, "Channels");
   EXPECT_THAT(test::shown_row(channels, 0), ElementsAre("airspeed", "ARSP.Airspeed", "10.0", "zero taken off"));
@@ -50,8 +48,8 @@ TEST(SensorsSection, SaysWhereEachChannelIsFromAndByHowMuchItIsLate) {
 }
 
 TEST(SensorsSection, ShowsAnglesInDegrees) {
-  FlightAnalysis analysis;
-  aircraft::Reconstruction& rec = analysis.reconstruction;
+  PreparedFlight flight;
+  aircraft::Reconstruction& rec = flight.reconstruction;
   rec.sensors = {{.channel = "alpha",
                   .unit = "rad",
                   .sigma = 0.5 * kDegree,
@@ -63,7 +61,7 @@ TEST(SensorsSection, ShowsAnglesInDegrees) {
                      .sigma = 1.0 * kDegree,
                      .observability = Observability::kWeak,
                      .statement = "beta is weak"}};
-  const Section section = sensors_section({}, analysis);
+  const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table innovations = test::table_of(section.blocks, "Innovations");
   EXPECT_THAT(test::shown_row(innovations, 0), ElementsAre("alpha", "0.500", "deg", "1000", "7", "1.50", "0.10"));
@@ -74,7 +72,7 @@ TEST(SensorsSection, ShowsAnglesInDegrees) {
 }
 
 TEST(SensorsSection, SaysHowMuchOfASensorsErrorTheFlightDetermines) {
-  FlightAnalysis analysis;
+  PreparedFlight flight;
   aircraft::SensorErrorReport bias, scale;
   bias.name = "alpha_bias";
   bias.unit = "rad";
@@ -87,8 +85,8 @@ TEST(SensorsSection, SaysHowMuchOfASensorsErrorTheFlightDetermines) {
   bias.observability = Observability::kObservable;
   scale.name = "pitot_scale";
   scale.unit = "1";
-  analysis.reconstruction.sensor_errors = {bias, scale};
-  const Section section = sensors_section({}, analysis);
+  flight.reconstruction.sensor_errors = {bias, scale};
+  const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table table = test::table_of(section.blocks, "Errors of the sensors and of the model");
   EXPECT_THAT(test::shown_row(table, 0),
@@ -98,7 +96,7 @@ TEST(SensorsSection, SaysHowMuchOfASensorsErrorTheFlightDetermines) {
 }
 
 TEST(SensorsSection, ComparesFiltersOnlyWhereThereAreNumbers) {
-  FlightAnalysis analysis;
+  PreparedFlight flight;
   aircraft::FilterError e;
   e.quantity = "alpha";
   e.unit = "rad";
@@ -107,8 +105,8 @@ TEST(SensorsSection, ComparesFiltersOnlyWhereThereAreNumbers) {
   e.model_free.smoother_rms = 0.4 * kDegree;
   e.model_based.filter_rms = 0.6 * kDegree;
   e.model_based.smoother_rms = 0.2 * kDegree;
-  analysis.reconstruction.comparison = {e};
-  const Section section = sensors_section({}, analysis);
+  flight.reconstruction.comparison = {e};
+  const Section section = sensors_section(flight);
   check({.sections = {section}});
   const Table table = test::table_of(section.blocks, "Model-free against model-based filter");
   // Shares of the variance: (0.4 / 2)^2 and (0.2 / 2)^2. There is no bound.

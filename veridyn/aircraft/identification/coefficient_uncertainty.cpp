@@ -38,20 +38,29 @@ Eigen::MatrixXd jacobian_at(const Eigen::VectorXd& x, const Subject& subject) {
   return J;
 }
 
-std::vector<std::size_t> airborne_samples(const FlightSignals& signals, const Segments& segments) {
-  std::vector<std::size_t> rows;
-  for (const TimeSpan& span : segments.airborne) {
-    const auto [begin, end] = signals.indices(span);
-    for (std::size_t k = begin; k < end; ++k) {
-      const FlightSample<double> s = signals.sample(k);
-      if (std::all_of(s.value.begin(), s.value.end(), [](double v) { return std::isfinite(v); }) &&
-          s[FlightSignal::kAirspeed] > 0.0) {
-        rows.push_back(k);
+/// A moment of one of the flights.
+struct FlightMoment {
+  const FlightSignals* signals;
+  std::size_t at;
+};
+
+std::vector<FlightMoment> airborne_samples(std::span<const PreparedFlight> flights) {
+  std::vector<FlightMoment> rows;
+  for (const PreparedFlight& flight : flights) {
+    if (!flight.usable()) continue;
+    for (const TimeSpan& span : flight.segments.airborne) {
+      const auto [begin, end] = flight.signals.indices(span);
+      for (std::size_t k = begin; k < end; ++k) {
+        const FlightSample<double> s = flight.signals.sample(k);
+        if (std::all_of(s.value.begin(), s.value.end(), [](double v) { return std::isfinite(v); }) &&
+            s[FlightSignal::kAirspeed] > 0.0) {
+          rows.push_back({&flight.signals, k});
+        }
       }
     }
   }
   const std::size_t step = std::max<std::size_t>(1, rows.size() / kRangeSamples);
-  std::vector<std::size_t> thinned;
+  std::vector<FlightMoment> thinned;
   for (std::size_t i = 0; i < rows.size(); i += step) thinned.push_back(rows[i]);
   return thinned;
 }
@@ -81,9 +90,8 @@ UncertaintyOptions UncertaintyOptions::read(const StudyTable& table) {
   return options;
 }
 
-estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, const Segments& segments,
-                                               const Subject& subject, const UncertaintyOptions& options,
-                                               const CalibrationSigma& calibration) {
+estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> flights, const Subject& subject,
+                                               const UncertaintyOptions& options, const CalibrationSigma& calibration) {
   const auto n = static_cast<Eigen::Index>(kCoefficientInputs);
   const auto measured = static_cast<Eigen::Index>(kFlightSignals + 1);
   estimation::UncertainInputs inputs;
@@ -92,18 +100,24 @@ estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, con
   inputs.correlation = Eigen::MatrixXd::Identity(n, n);
   Eigen::VectorXd sigma = Eigen::VectorXd::Zero(n);
 
-  const std::vector<std::size_t> rows = airborne_samples(signals, segments);
+  const std::vector<FlightMoment> rows = airborne_samples(flights);
   Eigen::MatrixXd samples(signed_index(rows.size()), measured);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const FlightSample<double> s = signals.sample(rows[i]);
+    const FlightSample<double> s = rows[i].signals->sample(rows[i].at);
     for (std::size_t j = 0; j < kFlightSignals; ++j)
       samples(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = s.value[j];
-    samples(static_cast<Eigen::Index>(i), measured - 1) = signals.air_density[rows[i]];
+    samples(static_cast<Eigen::Index>(i), measured - 1) = rows[i].signals->air_density[rows[i].at];
   }
   for (std::size_t j = 0; j < kFlightSignals; ++j) {
     inputs.names.emplace_back(kFlightSignalNames[j]);
-    const GridSignal& signal = signals.signals[j];
-    if (signal.available()) sigma(static_cast<Eigen::Index>(j)) = options.sigma[j].value_or(signal.sigma);
+    double squares = 0.0, count = 0.0;
+    for (const PreparedFlight& flight : flights) {
+      const GridSignal& signal = flight.signals.signals[j];
+      if (!signal.available()) continue;
+      squares += signal.sigma * signal.sigma;
+      count += 1.0;
+    }
+    if (count > 0.0) sigma(static_cast<Eigen::Index>(j)) = options.sigma[j].value_or(std::sqrt(squares / count));
   }
   inputs.names.emplace_back("air_density");
   sigma(measured - 1) = options.sigma_air_density;

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/flight_signals.hpp"
-#include "veridyn/aircraft/identification/segments.hpp"
+#include "veridyn/aircraft/identification/prepared_flight.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/uncertainty/monte_carlo.hpp"
@@ -59,8 +59,9 @@ using CalibrationSigma = std::vector<std::pair<std::string, double>>;
 
 /// Ranges and rank correlation of the signals while airborne: uniform between the 0.5 and 99.5 % quantiles of each
 /// signal. Signals that the log has not are constant 0 without error. What a calibration leaves adds to the error of
-/// alpha, beta and airspeed.
-[[nodiscard]] estimation::UncertainInputs coefficient_inputs(const FlightSignals& signals, const Segments& segments,
+/// alpha, beta and airspeed. Of several flights the range is that of all, and an error the root of the mean square over
+/// the flights that have the signal.
+[[nodiscard]] estimation::UncertainInputs coefficient_inputs(std::span<const PreparedFlight> flights,
                                                              const Subject& subject, const UncertaintyOptions& options,
                                                              const CalibrationSigma& calibration = {});
 

@@ -7,13 +7,12 @@
 #include <cmath>
 
 #include "veridyn/aircraft/identification/body_error.hpp"
+#include "veridyn/aircraft/identification/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
-#include "veridyn/aircraft/identification/coefficient_rows.hpp"
 #include "veridyn/aircraft/identification/error_variance.hpp"
+#include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/aircraft/identification/sensor_doubt.hpp"
-#include "veridyn/aircraft/model/estimated_subject.hpp"
 #include "veridyn/core/constants.hpp"
-#include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/estimation/judgement/agreement.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -28,18 +27,11 @@ using estimation::RegressionData;
 using estimation::RegressionEstimate;
 using estimation::RegressionOptions;
 using estimation::StructureMethod;
-using internal::complete;
-using internal::needed_signals;
+using internal::fit_on;
+using internal::with_series;
 
 /// Factor on the standard deviation within which the noise of the sensors is known.
 constexpr double kNoiseTolerance = 2.0;
-
-/// Predicted and measured coefficient over rows.
-numerics::FitMeasures fit_on(const RegressionData& data, const Eigen::VectorXd& theta) {
-  const Eigen::VectorXd model = data.regressors * theta;
-  return numerics::fit_measures({data.regressand.data(), static_cast<std::size_t>(data.regressand.size())},
-                                {model.data(), static_cast<std::size_t>(model.size())});
-}
 
 /// The estimate by the given method, or the recommended one; null where there is none.
 const RegressionEstimate* choose(const RegressionComparison& comparison, std::optional<Method> method) {
@@ -63,14 +55,12 @@ estimation::Agreement agreement_of(const RegressionEstimate& a, const Regression
 
 /// View of what coefficients are identified from, and how.
 struct FlightView {
-  const FlightSignals& signals;
-  const Segments& segments;
+  std::span<const PreparedFlight> flights;
   const Subject& subject;
   const IdentifyOptions& options;
-  std::span<const FlightEvidence> recording = {};
 
-  [[nodiscard]] const AxisSegments& axis_of_model(const CoefficientModel& model) const {
-    return segments.of(axis_of(model.coefficient));
+  [[nodiscard]] FlightRows rows(const CoefficientModel& model, RowUse use) const {
+    return coefficient_rows(model, flights, use, subject);
   }
   [[nodiscard]] RegressionOptions regression_options() const {
     RegressionOptions regression;
@@ -79,19 +69,6 @@ struct FlightView {
     return regression;
   }
 };
-
-/// What is known of a coefficient before anything is estimated; `reason` is empty unless nothing can be.
-CoefficientResult describe_coefficient(const CoefficientModel& model, const FlightView& flight) {
-  CoefficientResult result;
-  result.coefficient = model.coefficient;
-  result.name = regressed_name(model.coefficient, flight.subject);
-  result.per_unit_inertia = per_unit_inertia(model.coefficient, flight.subject);
-  result.axis = axis_of(model.coefficient);
-  result.model = model;
-  result.row_interval_s = flight.signals.grid.step * static_cast<double>(flight.signals.stride);
-  result.reason = identification_obstacle(model, flight.signals, flight.subject);
-  return result;
-}
 
 /// A model whose terms were chosen among candidates; without a search where there was too little to choose from.
 struct ChosenTerms {
@@ -107,11 +84,10 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
   // What the log does not have cannot be chosen.
   std::erase_if(all.terms, [&](const Term& term) {
     const CoefficientModel single{c, {term}, {kNaN}};
-    return !identification_obstacle(single, flight.signals, flight.subject).empty();
+    return !identification_obstacle(single, flight.flights, flight.subject).empty();
   });
   all.values.assign(all.terms.size(), kNaN);
-  const RegressionData data =
-      coefficient_data(all, flight.signals, flight.axis_of_model(given).identification, flight.subject);
+  const RegressionData data = flight.rows(all, RowUse::kIdentification).data;
   if (all.terms.empty() || data.rows() < static_cast<Eigen::Index>(10 * all.size())) return {given, std::nullopt};
   estimation::StructureOptions options;
   options.method = method;
@@ -127,7 +103,7 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
 /// The parameters of a model by all methods on the identification rows.
 struct CoefficientFit {
   CoefficientModel model;  ///< values are the chosen estimate's, where there is one
-  RegressionData data;
+  FlightRows rows;
   RegressionComparison comparison;
   std::optional<RegressionEstimate> chosen;
   double error_ratio = 0.0;
@@ -137,16 +113,16 @@ struct CoefficientFit {
 CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& flight) {
   CoefficientFit fit;
   fit.model = std::move(model);
-  fit.data =
-      coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).identification, flight.subject);
-  fit.enough_rows = fit.data.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
+  fit.rows = flight.rows(fit.model, RowUse::kIdentification);
+  RegressionData& data = fit.rows.data;
+  fit.enough_rows = data.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
   if (!fit.enough_rows) return fit;
-  const auto n = fit.data.parameters();
-  const RegressionData by_sensors = fit.data;
-  const EquationError error = equation_error(fit.data);
-  fit.data.error_covariance(n, n) = error.variance;
+  const auto n = data.parameters();
+  const RegressionData by_sensors = data;
+  const EquationError error = equation_error(data);
+  data.error_covariance(n, n) = error.variance;
   fit.error_ratio = error.ratio;
-  fit.comparison = estimation::compare(fit.data, flight.regression_options());
+  fit.comparison = estimation::compare(data, flight.regression_options());
   if (const RegressionEstimate* chosen = choose(fit.comparison, flight.options.method)) {
     fit.chosen = *chosen;
     // The errors of the regressors explain all: then the residual is compared with theirs and the sensors' of z.
@@ -183,16 +159,16 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
   const RegressionEstimate& chosen = *fit.chosen;
   CoefficientChecks checks;
   checks.error_ratio = fit.error_ratio;
-  checks.identification_fit = fit_on(fit.data, chosen.theta);
+  checks.identification_fit = fit_on(fit.rows.data, chosen.theta);
   const double beyond_sensors = std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
   checks.unmodelled_share = (1.0 - checks.identification_fit.r2) * beyond_sensors;
-  const Eigen::VectorXd residual = fit.data.regressand - fit.data.regressors * chosen.theta;
+  const RegressionData& data = fit.rows.data;
+  const Eigen::VectorXd residual = data.regressand - data.regressors * chosen.theta;
   const auto lags = static_cast<std::size_t>(std::clamp(3.0 / row_interval_s, 10.0, 200.0));
   checks.residual_autocorrelation =
-      numerics::autocorrelation({residual.data(), static_cast<std::size_t>(residual.size())}, lags, fit.data.segment);
+      numerics::autocorrelation({residual.data(), static_cast<std::size_t>(residual.size())}, lags, data.segment);
 
-  RegressionData unseen =
-      coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).holdout, flight.subject);
+  RegressionData unseen = flight.rows(fit.model, RowUse::kHoldout).data;
   checks.has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
   if (!checks.has_holdout) return checks;
   checks.holdout_fit = fit_on(unseen, chosen.theta);
@@ -204,7 +180,7 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
     checks.error_over_start = checks.holdout_fit.rmse / fit_on(unseen, *start).rmse;
   const auto n = unseen.parameters();
   checks.holdout_ratio = residual_ratio(unseen, chosen.theta);
-  unseen.error_covariance(n, n) = fit.data.error_covariance(n, n);
+  unseen.error_covariance(n, n) = data.error_covariance(n, n);
   const RegressionEstimate again = estimation::estimate(unseen, chosen.method, flight.regression_options());
   if (again.usable()) {
     const estimation::Agreement agreement = agreement_of(chosen, again);
@@ -217,8 +193,7 @@ CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_
 /// See body_sensitivity: each of the aircraft's constants is changed and the parameters estimated again.
 Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView& flight) {
   return body_sensitivity(flight.subject, fit.chosen->theta.size(), [&](const Subject& changed) {
-    RegressionData data =
-        coefficient_data(fit.model, flight.signals, flight.axis_of_model(fit.model).identification, changed);
+    RegressionData data = coefficient_rows(fit.model, flight.flights, RowUse::kIdentification, changed).data;
     const auto n = data.parameters();
     data.error_covariance(n, n) = equation_error(data).variance;
     const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, flight.regression_options());
@@ -226,20 +201,30 @@ Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView&
   });
 }
 
-/// See doubt_sensitivity: of the doubts that are part of the interval, or of those alongside it.
-Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& flight, bool in_interval) {
-  std::vector<SignalDoubt> doubts;
-  for (const FlightEvidence& row : flight.recording)
-    if (row.doubt && row.doubt->in_interval == in_interval && row.bears_on(fit.model.coefficient))
-      doubts.push_back(*row.doubt);
-  return doubt_sensitivity(flight.signals, doubts, fit.chosen->theta, [&](const FlightSignals& changed) {
-    RegressionData data =
-        coefficient_data(fit.model, changed, flight.axis_of_model(fit.model).identification, flight.subject);
-    const auto n = data.parameters();
-    data.error_covariance(n, n) = equation_error(data).variance;
-    const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, flight.regression_options());
-    return estimate.usable() ? estimate.theta : Eigen::VectorXd();
-  });
+/// See doubt_sensitivity: of the doubts that are part of the interval, or of those alongside it. What one flight leaves
+/// in doubt is independent of what another does: a column each.
+Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& view, bool in_interval) {
+  Eigen::MatrixXd columns(fit.chosen->theta.size(), 0);
+  for (std::size_t i = 0; i < view.flights.size(); ++i) {
+    const PreparedFlight& flight = view.flights[i];
+    if (fit.rows.rows_of(i) == 0) continue;
+    std::vector<SignalDoubt> doubts;
+    for (const FlightEvidence& row : flight.recording_evidence)
+      if (row.doubt && row.doubt->in_interval == in_interval && row.bears_on(fit.model.coefficient))
+        doubts.push_back(*row.doubt);
+    const auto changed_estimate = [&](const FlightSignals& changed) {
+      RegressionData data =
+          coefficient_rows(fit.model, view.flights, RowUse::kIdentification, view.subject, &flight, &changed).data;
+      const auto n = data.parameters();
+      data.error_covariance(n, n) = equation_error(data).variance;
+      const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, view.regression_options());
+      return estimate.usable() ? estimate.theta : Eigen::VectorXd();
+    };
+    const Eigen::MatrixXd more = doubt_sensitivity(flight.signals, doubts, fit.chosen->theta, changed_estimate);
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
+    columns.rightCols(more.cols()) = more;
+  }
+  return columns;
 }
 
 /// A verdict and the sentence that explains it.
@@ -289,53 +274,18 @@ ExplainedVerdict explain(const CoefficientResult& described, const RegressionEst
   return {estimation::GroupVerdict::kIdentified, std::move(reason)};
 }
 
-ExplainedVerdict not_excited(const std::string& name, const CoefficientFit& fit, const AxisSegments& axis) {
+ExplainedVerdict not_excited(const std::string& name, const CoefficientFit& fit, const FlightView& flight, Axis axis) {
   return {estimation::GroupVerdict::kNotExcited,
-          axis.excited.empty() ? fmt::format("{} is not excited: {}", name, axis.text)
-                               : fmt::format("{} has only {} usable samples on its segments, {} are needed", name,
-                                             fit.data.rows(), 10 * fit.model.size())};
-}
-
-/// Measured and modelled coefficient while airborne; see CoefficientResult.
-struct CoefficientSeries {
-  std::vector<double> time, measured, modelled;
-};
-
-CoefficientSeries series_of(const CoefficientModel& model, const FlightView& flight) {
-  CoefficientSeries series;
-  const FlightSignals& signals = flight.signals;
-  const std::vector<FlightSignal> needed = needed_signals(model);
-  const bool estimated = model.known();
-  for (const TimeSpan& span : flight.segments.airborne) {
-    const auto [begin, end] = signals.indices(span);
-    for (std::size_t k = begin; k < end; k += signals.stride) {
-      const FlightSample<double> sample = signals.sample(k);
-      series.time.push_back(signals.grid.at(k));
-      if (!complete(sample, needed)) {
-        series.measured.push_back(kNaN);
-        series.modelled.push_back(kNaN);
-        continue;
-      }
-      const double torque = signals.torque.empty() ? 0.0 : signals.torque[k];
-      const double rho = signals.air_density[k];
-      series.measured.push_back(select(regressed_coefficients(sample, flight.subject, rho, torque), model.coefficient));
-      series.modelled.push_back(estimated ? model.linear(aero_variables(sample, flight.subject, rho)) : kNaN);
-    }
-  }
-  return series;
-}
-
-CoefficientResult with_series(CoefficientResult result, CoefficientSeries series) {
-  result.time = std::move(series.time);
-  result.measured = std::move(series.measured);
-  result.modelled = std::move(series.modelled);
-  return result;
+          any_excited(flight.flights, axis)
+              ? fmt::format("{} has only {} usable samples on its segments, {} are needed", name, fit.rows.data.rows(),
+                            10 * fit.model.size())
+              : fmt::format("{} is not excited: {}", name, segments_text(flight.flights, axis))};
 }
 
 /// One coefficient: terms, estimates, checks, verdict.
 CoefficientResult identify_coefficient(const CoefficientModel& given, const FlightView& flight) {
   const IdentifyOptions& options = flight.options;
-  CoefficientResult result = describe_coefficient(given, flight);
+  CoefficientResult result = internal::described(given, flight.flights, flight.subject);
   if (!result.reason.empty()) return result;
   ChosenTerms terms =
       options.structure ? choose_terms(given, *options.structure, flight) : ChosenTerms{given, std::nullopt};
@@ -348,7 +298,7 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
 
   ExplainedVerdict verdict{estimation::GroupVerdict::kRejected,
                            fmt::format("{}: {}", result.name, fit.comparison.reason)};
-  if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight.axis_of_model(given));
+  if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight, result.axis);
   if (fit.chosen) {
     const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
     estimation::widen(*fit.chosen, checks.scatter, options.significance);
@@ -356,8 +306,10 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     std::vector<estimation::Evidence> plausible;
     if (!result.per_unit_inertia) plausible = plausibility(given.coefficient, fit.chosen->parameters, flight.subject);
     result.evidence.insert(result.evidence.end(), plausible.begin(), plausible.end());
-    for (const FlightEvidence& of_recording : flight.recording)
-      if (of_recording.bears_on(given.coefficient)) result.evidence.push_back(of_recording.row);
+    for (const PreparedFlight& one : flight.flights) {
+      for (const FlightEvidence& of_recording : one.recording_evidence)
+        if (of_recording.bears_on(given.coefficient)) result.evidence.push_back(of_recording.row);
+    }
     result.judgement = estimation::judge(result.evidence);
     const estimation::GroupVerdict reached = estimation::verdict_of(result.judgement);
     if (reached == estimation::GroupVerdict::kIdentified) {
@@ -386,49 +338,11 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
   result.verdict = verdict.verdict;
   result.reason = std::move(verdict.reason);
   result.model = std::move(fit.model);
-  result.data = std::move(fit.data);
+  result.data = std::move(fit.rows.data);
   result.comparison = std::move(fit.comparison);
   result.chosen = std::move(fit.chosen);
   result.error_ratio = fit.error_ratio;
-  CoefficientSeries series = series_of(result.model, flight);
-  return with_series(std::move(result), std::move(series));
-}
-
-/// A given model against the excited segments of the flight.
-CoefficientResult evaluate_coefficient(const CoefficientModel& model, const FlightView& flight) {
-  CoefficientResult result = describe_coefficient(model, flight);
-  if (!result.reason.empty()) return result;
-  const std::string& name = result.name;
-  const AxisSegments& axis = flight.axis_of_model(model);
-  const RegressionData data = coefficient_data(model, flight.signals, axis.excited, flight.subject);
-  if (data.rows() < static_cast<Eigen::Index>(10 * model.size())) {
-    result.verdict = estimation::GroupVerdict::kNotExcited;
-    result.reason = fmt::format("{} cannot be judged: {}", name, axis.text);
-    return result;
-  }
-  result.holdout_fit = fit_on(data, Eigen::Map<const Eigen::VectorXd>(model.values.data(), signed_index(model.size())));
-  const double explained = 100.0 * std::max(0.0, result.holdout_fit.r2);
-  const double least = flight.options.min_holdout_r2;
-  const bool holds = result.holdout_fit.r2 >= least;
-  result.verdict = holds ? estimation::GroupVerdict::kIdentified : estimation::GroupVerdict::kRejected;
-  result.evidence = {
-      {.name = "another flight",
-       .about = name,
-       .outcome = estimation::passed_or(holds, estimation::Outcome::kFailed),
-       .value = result.holdout_fit.r2,
-       .limit = least,
-       .scale = "R2",
-       .text = fmt::format("it explains {:.0f} % of the coefficient's variance in this flight", explained),
-       .bears_on = estimation::Purpose::kPrediction}};
-  result.judgement = estimation::judge(result.evidence);
-  result.reason =
-      holds ? fmt::format("{} holds: it explains {:.0f} % of this flight", name, explained)
-            : fmt::format(
-                  "{} does not hold: it explains {:.0f} % of the coefficient's variance in this flight, less than "
-                  "{:.0f} %",
-                  name, explained, 100.0 * least);
-  CoefficientSeries series = series_of(model, flight);
-  return with_series(std::move(result), std::move(series));
+  return with_series(std::move(result), flight.flights, flight.subject);
 }
 
 }  // namespace
@@ -444,11 +358,10 @@ std::string unmodelled_text(double error_ratio, double unmodelled_share) {
       100.0 * unmodelled_share, times);
 }
 
-std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals, const Segments& segments,
-                                                     const Subject& subject, const IdentifyOptions& options,
-                                                     Progress& progress, std::span<const FlightEvidence> recording) {
+std::vector<CoefficientResult> identify_coefficients(std::span<const PreparedFlight> flights, const Subject& subject,
+                                                     const IdentifyOptions& options, Progress& progress) {
   std::vector<CoefficientResult> results;
-  const FlightView flight{signals, segments, subject, options, recording};
+  const FlightView flight{flights, subject, options};
   progress.stage("identifying coefficients");
   std::size_t done = 0;
   for (const Coefficient c : enumerators<Coefficient, kCoefficients>()) {
@@ -458,33 +371,6 @@ std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signal
     if (model == nullptr || (!some.empty() && std::find(some.begin(), some.end(), c) == some.end())) continue;
     results.push_back(identify_coefficient(*model, flight));
     if (!progress.update(static_cast<double>(done) / static_cast<double>(kCoefficients))) break;
-  }
-  return results;
-}
-
-std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
-                                                 const Subject& subject, const IdentifyOptions& options,
-                                                 const estimation::Estimate& estimate) {
-  std::vector<CoefficientResult> results;
-  const FlightView flight{signals, segments, subject, options, {}};
-  for (const Coefficient c : enumerators<Coefficient, kCoefficients>()) {
-    const CoefficientModel* structure = subject.model.find(c);
-    if (structure == nullptr) continue;
-    std::vector<std::string> names;
-    for (const Term& term : structure->terms)
-      names.push_back(regressed_parameter_name(structure->coefficient, term, subject));
-    const CoefficientModel model = estimated_coefficient(*structure, names, estimate);
-    if (model.size() > 0) {
-      results.push_back(evaluate_coefficient(model, flight));
-    } else if (std::ranges::any_of(names, [&](const std::string& n) { return estimate.find(n) != nullptr; })) {
-      CoefficientResult result = describe_coefficient(*structure, flight);
-      result.reason = fmt::format("{} is not validated: it was rejected where it was identified", result.name);
-      results.push_back(std::move(result));
-    }
-  }
-  if (std::ranges::all_of(results,
-                          [](const CoefficientResult& r) { return r.model.values.empty() || !r.model.known(); })) {
-    throw InputError(estimate.subject, "the estimate holds no usable parameter of the study's model");
   }
   return results;
 }

@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/flight_evidence.hpp"
-#include "veridyn/aircraft/identification/flight_signals.hpp"
-#include "veridyn/aircraft/identification/segments.hpp"
+#include "veridyn/aircraft/identification/prepared_flight.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/progress.hpp"
 #include "veridyn/core/study.hpp"
@@ -56,6 +54,12 @@ struct IdentifyOptions {
   [[nodiscard]] static IdentifyOptions read(const StudyTable& table);
 };
 
+/// How well a coefficient is predicted in one of several flights.
+struct FlightFit {
+  std::string flight;
+  numerics::FitMeasures fit = {};
+};
+
 /// One coefficient: the estimates of all methods, what was chosen, and whether it may be used.
 struct CoefficientResult {
   Coefficient coefficient = Coefficient::kCL;
@@ -80,8 +84,10 @@ struct CoefficientResult {
   Eigen::VectorXd air_data_doubt;
   numerics::FitMeasures identification_fit;
   numerics::FitMeasures holdout_fit;
-  double contradiction_p = 1.0;  ///< of identification against hold-out estimates
-  /// Measured and modelled coefficient at every stride-th grid point in the air, for the report; NaN outside.
+  std::vector<FlightFit> flight_fits;  ///< the same flight by flight, where there are several
+  double contradiction_p = 1.0;        ///< of identification against hold-out estimates
+  /// Measured and modelled coefficient at every stride-th grid point in the air, for the report; NaN outside. Of
+  /// several flights one after the other (PreparedFlight::shift_s).
   std::vector<double> time, measured, modelled;
   numerics::Autocorrelation residual_autocorrelation;  ///< on the identification rows
   double row_interval_s = 0.0;                         ///< between the rows of a segment
@@ -89,13 +95,12 @@ struct CoefficientResult {
   estimation::Judgement judgement;                     ///< of these; what was not estimated is not judged
 };
 
-/// Estimates every coefficient of `subject.model` on its axis's segments. Regressor errors are propagated from the
-/// signals' noise by automatic differentiation; the variance of z that they leave unexplained is equation error.
-/// `recording` are the checks of the recording, which bear on the coefficients too.
-[[nodiscard]] std::vector<CoefficientResult> identify_coefficients(const FlightSignals& signals,
-                                                                   const Segments& segments, const Subject& subject,
-                                                                   const IdentifyOptions& options, Progress& progress,
-                                                                   std::span<const FlightEvidence> recording = {});
+/// Estimates every coefficient of `subject.model` on its axis's segments of all flights together. Regressor errors are
+/// propagated from the signals' noise by automatic differentiation; the variance of z that they leave unexplained is
+/// equation error. The checks of the recordings bear on the coefficients too.
+[[nodiscard]] std::vector<CoefficientResult> identify_coefficients(std::span<const PreparedFlight> flights,
+                                                                   const Subject& subject,
+                                                                   const IdentifyOptions& options, Progress& progress);
 
 /// Why a coefficient is rejected whose residual is more than the sensors' noise: one clause, without its name. The
 /// arguments are those of CoefficientResult.
@@ -130,11 +135,11 @@ struct CoefficientResult {
 /// The coefficients that may be used.
 [[nodiscard]] std::vector<Coefficient> identified_coefficients(std::span<const CoefficientResult> results);
 
-/// An estimate from elsewhere against all excited segments of this flight: a coefficient is identified when it explains
-/// at least `min_holdout_r2` of the measured one there, else rejected. Parameters that the estimate rejected are not
-/// tried.
+/// An estimate from elsewhere against all excited segments of these flights: a coefficient is identified when it
+/// explains at least `min_holdout_r2` of the measured one there, else rejected. Parameters that the estimate rejected
+/// are not tried.
 /// @throws InputError when the estimate has no parameter that the subject's model names.
-[[nodiscard]] std::vector<CoefficientResult> evaluate_estimate(const FlightSignals& signals, const Segments& segments,
+[[nodiscard]] std::vector<CoefficientResult> evaluate_estimate(std::span<const PreparedFlight> flights,
                                                                const Subject& subject, const IdentifyOptions& options,
                                                                const estimation::Estimate& estimate);
 

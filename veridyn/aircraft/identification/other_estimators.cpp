@@ -42,9 +42,21 @@ std::string contradictions(std::span<const OtherParameter> parameters, const std
   return names.empty() ? "" : fmt::format("{} contradicts regression in {}", method, fmt::join(names, ", "));
 }
 
-AxisOutputError axis_output_error(Axis axis, const FlightSignals& signals, const Segments& segments,
-                                  const Subject& subject, std::span<const CoefficientResult> results,
-                                  const IdentifyOptions& options, Progress& progress) {
+/// The identification segments of the flights whose motion is known.
+std::vector<OutputErrorModel::FlownSpans> flown_spans(std::span<const PreparedFlight> flights, Axis axis,
+                                                      const IdentifyOptions& options) {
+  std::vector<OutputErrorModel::FlownSpans> flown;
+  for (const PreparedFlight& flight : flights) {
+    if (!flight.usable()) continue;
+    const bool gusts = options.output_error_gusts.value_or(flight.signals.over_ground);
+    flown.push_back({flight.signals, flight.segments.of(axis).identification, gusts, flight.name});
+  }
+  return flown;
+}
+
+AxisOutputError axis_output_error(Axis axis, std::span<const PreparedFlight> flights, const Subject& subject,
+                                  std::span<const CoefficientResult> results, const IdentifyOptions& options,
+                                  Progress& progress) {
   AxisOutputError run;
   run.axis = axis;
   std::vector<CoefficientModel> models;
@@ -56,8 +68,8 @@ AxisOutputError axis_output_error(Axis axis, const FlightSignals& signals, const
     names.emplace_back(name_of(r.coefficient));
   }
   const std::string label = fmt::format("output error, {}", to_string(axis));
-  const OutputErrorModel model(signals, segments.of(axis).identification, subject, models,
-                               options.output_error_gusts.value_or(signals.over_ground));
+  const std::vector<OutputErrorModel::FlownSpans> flown = flown_spans(flights, axis, options);
+  const OutputErrorModel model(flown, subject, models);
   if (models.empty() || model.segments() == 0) {
     run.text = fmt::format(
         "{}: not tried, {}", label,
@@ -142,7 +154,7 @@ MethodOutcome by_bootstrap(const CoefficientResult& r, const IdentifyOptions& op
 
 }  // namespace
 
-OtherEstimators compare_other_estimators(const FlightSignals& signals, const Segments& segments, const Subject& subject,
+OtherEstimators compare_other_estimators(std::span<const PreparedFlight> flights, const Subject& subject,
                                          std::span<const CoefficientResult> results, const IdentifyOptions& options,
                                          Progress& progress) {
   OtherEstimators others;
@@ -153,7 +165,7 @@ OtherEstimators compare_other_estimators(const FlightSignals& signals, const Seg
   if (options.output_error) {
     progress.stage("output error");
     for (const Axis axis : {Axis::kLongitudinal, Axis::kLateral}) {
-      AxisOutputError run = axis_output_error(axis, signals, segments, subject, results, options, progress);
+      AxisOutputError run = axis_output_error(axis, flights, subject, results, options, progress);
       add(output_error_parameters(run, results), run.text);
       others.output_error.push_back(std::move(run));
     }

@@ -40,9 +40,9 @@ struct OtherEstimators {
 };
 
 /// Runs the estimators that `options` names: output error per axis, started at the chosen regression; frequency-domain
-/// equation error and block bootstrap per coefficient. Nothing in `results` is changed.
-[[nodiscard]] OtherEstimators compare_other_estimators(const FlightSignals& signals, const Segments& segments,
-                                                       const Subject& subject,
+/// equation error and block bootstrap per coefficient. Of several flights output error has one set of parameters and
+/// each segment's own initial state (and biases), in its own flight's wind. Nothing in `results` is changed.
+[[nodiscard]] OtherEstimators compare_other_estimators(std::span<const PreparedFlight> flights, const Subject& subject,
                                                        std::span<const CoefficientResult> results,
                                                        const IdentifyOptions& options, Progress& progress);
 

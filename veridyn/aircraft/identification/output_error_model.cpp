@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "veridyn/core/index.hpp"
@@ -56,6 +57,10 @@ std::array<std::vector<double>, 3> air_acceleration(const FlightSignals& s) {
 
 OutputErrorModel::OutputErrorModel(const FlightSignals& signals, std::span<const TimeSpan> spans,
                                    const Subject& subject, std::span<const CoefficientModel> coefficients, bool gusts)
+    : OutputErrorModel(std::array{FlownSpans{signals, spans, gusts}}, subject, coefficients) {}
+
+OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
+                                   std::span<const CoefficientModel> coefficients)
     : subject_(subject), coefficients_(coefficients.begin(), coefficients.end()) {
   which_.fill(-1);
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
@@ -78,17 +83,23 @@ OutputErrorModel::OutputErrorModel(const FlightSignals& signals, std::span<const
   for (std::size_t i = 0; i < 3; ++i)
     if (forces_[i]) outputs_.push_back({kForceNames[i], "m/s^2"});
 
-  step_ = is_fast(signals) ? 2.0 * signals.grid.step : signals.grid.step;
-  const AirAcceleration air = gusts ? air_acceleration(signals) : AirAcceleration{};
-  for (const TimeSpan& span : spans) {
+  const FlightSignals& first = flights.front().signals;
+  step_ = is_fast(first) ? 2.0 * first.grid.step : first.grid.step;
+  for (const FlownSpans& flight : flights) add_flight(flight);
+}
+
+void OutputErrorModel::add_flight(const FlownSpans& flight) {
+  const FlightSignals& signals = flight.signals;
+  const AirAcceleration air = flight.gusts ? air_acceleration(signals) : AirAcceleration{};
+  for (const TimeSpan& span : flight.spans) {
     const auto [first, last] = signals.indices(span);
     std::size_t begin = first;
     for (std::size_t k = first; k < last; ++k) {
-      if (complete(inputs_at(signals, subject, air, k))) continue;
-      add_segment(signals, air, begin, k);
+      if (complete(inputs_at(signals, subject_, air, k))) continue;
+      add_segment(flight, air, begin, k);
       begin = k + 1;
     }
-    if (begin < last) add_segment(signals, air, begin, last);
+    if (begin < last) add_segment(flight, air, begin, last);
   }
 }
 
@@ -141,13 +152,15 @@ OutputErrorModel::GridInputs OutputErrorModel::middle(const GridInputs& a, const
   return m;
 }
 
-void OutputErrorModel::add_segment(const FlightSignals& signals, const AirAcceleration& air, std::size_t begin,
+void OutputErrorModel::add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin,
                                    std::size_t end) {
+  const FlightSignals& signals = flight.signals;
   if (static_cast<double>(end - begin) * signals.grid.step < kLeastDuration_s) return;
   const auto at = [&](std::size_t k) { return inputs_at(signals, subject_, air, k); };
   Segment segment;
   segment.begin = inputs_.size();
   segment.from_s = signals.grid.at(begin);
+  segment.flight = flight.name.empty() ? std::string() : " of " + flight.name;
   if (is_fast(signals)) {
     const std::size_t count = (end - begin - 1) / 2 + 1;
     for (std::size_t k = 0; k + 1 < 2 * count; ++k) inputs_.push_back(at(begin + k));
@@ -166,7 +179,7 @@ void OutputErrorModel::add_segment(const FlightSignals& signals, const AirAccele
   segment.to_s = segment.from_s + step_ * static_cast<double>(segment.samples - 1);
   for (std::size_t i = 0; i < kStates; ++i) {
     if (!simulated_[i]) continue;
-    segment.initial.push_back({.name = fmt::format("{} at {:.1f} s", kStateNames[i], segment.from_s),
+    segment.initial.push_back({.name = fmt::format("{} at {:.1f} s{}", kStateNames[i], segment.from_s, segment.flight),
                                .unit = kStateUnits[i],
                                .start = inputs_[segment.begin].state[i]});
   }
@@ -175,7 +188,7 @@ void OutputErrorModel::add_segment(const FlightSignals& signals, const AirAccele
 
 std::string OutputErrorModel::segment_name(std::size_t segment) const {
   const Segment& s = segments_[segment];
-  return fmt::format("the segment from {:.1f} to {:.1f} s", s.from_s, s.to_s);
+  return fmt::format("the segment from {:.1f} to {:.1f} s{}", s.from_s, s.to_s, s.flight);
 }
 
 std::vector<estimation::RowMatrix> OutputErrorModel::measured() const {

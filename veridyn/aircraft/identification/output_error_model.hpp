@@ -33,8 +33,19 @@ namespace veridyn::aircraft {
 /// samples. Diverged: Va below 2 m/s or an angle of 80 deg.
 class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
  public:
+  /// View of the parts of a flight that are simulated.
+  struct FlownSpans {
+    const FlightSignals& signals;
+    std::span<const TimeSpan> spans;
+    bool gusts = false;     ///< whether the reconstructed gust drives the simulation
+    std::string name = {};  ///< of the flight, where there are several
+  };
+  /// Several flights with the same parameters; each segment has its own initial state.
+  /// @param flights  on grids of one rate, at least one
   /// @param coefficients terms, with starting values; parameters in this order
-  /// @param gusts whether the reconstructed gust drives the simulation
+  OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
+                   std::span<const CoefficientModel> coefficients);
+  /// One flight alone.
   OutputErrorModel(const FlightSignals& signals, std::span<const TimeSpan> spans, const Subject& subject,
                    std::span<const CoefficientModel> coefficients, bool gusts);
 
@@ -71,6 +82,7 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
     std::size_t begin = 0;  // into inputs_
     Eigen::Index samples = 0;
     double from_s = 0.0, to_s = 0.0;
+    std::string flight;
     std::vector<estimation::ModelParameter> initial;
   };
   using AirAcceleration = std::array<std::vector<double>, 3>;  // empty in uniform air
@@ -85,7 +97,8 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   [[nodiscard]] static bool complete(const GridInputs& inputs);
   [[nodiscard]] static GridInputs middle(const GridInputs& a, const GridInputs& b);
   // A stretch of complete samples [begin, end) becomes a segment: its inputs at every half step.
-  void add_segment(const FlightSignals& signals, const AirAcceleration& air, std::size_t begin, std::size_t end);
+  void add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin, std::size_t end);
+  void add_flight(const FlownSpans& flight);
   template <typename Scalar>
   [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const GridInputs& inputs,
                                     std::span<const Scalar> parameters) const;

@@ -110,6 +110,38 @@ class Predictor {
   EnumArray<Coefficient, bool, kCoefficients> known_{};
 };
 
+/// What was done, in one sentence.
+std::string text_of(const Validation& v) {
+  if (!v.available()) return "no validation: neither CL nor CY was identified, or there was no hold-out";
+  return fmt::format(
+      "{} windows of {:.1f} s ({:.0f} s in all) flown by the model on data that identification did not see, each "
+      "started from the reconstructed state{}{}",
+      v.windows, v.period_s, v.simulated_s,
+      v.with_airspeed ? "" : "; airspeed was taken from the measurement, since CD was not identified",
+      v.diverged > 0 ? fmt::format("; {} diverged and were cut", v.diverged) : "");
+}
+
+/// A quantity in one more flight, after what there is of it.
+void append(std::vector<PredictedQuantity>& all, const PredictedQuantity& more, double shift_s) {
+  auto found = std::ranges::find(all, more.name, &PredictedQuantity::name);
+  if (found == all.end()) {
+    all.push_back({.name = more.name, .unit = more.unit});
+    found = all.end() - 1;
+  }
+  // Of all samples: squares add up.
+  const double before = std::pow(found->last_value_rmse, 2.0) * static_cast<double>(found->fit.count);
+  const double now = std::pow(more.last_value_rmse, 2.0) * static_cast<double>(more.fit.count);
+  for (const double t : more.time) found->time.push_back(t + shift_s);
+  found->measured.insert(found->measured.end(), more.measured.begin(), more.measured.end());
+  found->predicted.insert(found->predicted.end(), more.predicted.begin(), more.predicted.end());
+  const double scale = more.unit == "deg" ? 1.0 / kDegree : 1.0;
+  std::vector<double> measured = found->measured, predicted = found->predicted;
+  for (double& v : measured) v *= scale;
+  for (double& v : predicted) v *= scale;
+  found->fit = numerics::fit_measures(measured, predicted);
+  found->last_value_rmse = std::sqrt((before + now) / std::max(1.0, static_cast<double>(found->fit.count)));
+}
+
 }  // namespace
 
 ValidationOptions ValidationOptions::read(const StudyTable& table) {
@@ -189,17 +221,31 @@ Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpa
     predict(longitudinal, result.with_airspeed ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{1});
   }
   if (predictor.knows(Coefficient::kCY)) predict(lateral, {2});
-  if (result.available()) {
-    result.text = fmt::format(
-        "{} windows of {:.1f} s ({:.0f} s in all) flown by the model on data that identification did not see, each "
-        "started from the reconstructed state{}{}",
-        result.windows, result.period_s, result.simulated_s,
-        result.with_airspeed ? "" : "; airspeed was taken from the measurement, since CD was not identified",
-        result.diverged > 0 ? fmt::format("; {} diverged and were cut", result.diverged) : "");
-  } else {
-    result.text = "no validation: neither CL nor CY was identified, or there was no hold-out";
-  }
+  result.text = text_of(result);
   return result;
+}
+
+Validation validate_flights(std::span<const PreparedFlight> flights, RowUse use, const Subject& subject,
+                            std::span<const Coefficient> known, const ValidationOptions& options) {
+  const auto of = [&](const PreparedFlight& flight) {
+    return validate_flight(flight.signals, spans_of(flight.segments.longitudinal, use),
+                           spans_of(flight.segments.lateral, use), subject, known, options);
+  };
+  if (flights.size() == 1) return of(flights.front());
+  Validation all;
+  all.period_s = options.period_s;
+  all.with_airspeed = std::ranges::find(known, Coefficient::kCD) != known.end();
+  for (const PreparedFlight& flight : flights) {
+    if (!flight.usable()) continue;
+    Validation one = of(flight);
+    all.windows += one.windows;
+    all.diverged += one.diverged;
+    all.simulated_s += one.simulated_s;
+    for (const PredictedQuantity& q : one.quantities) append(all.quantities, q, flight.shift_s);
+    if (one.available()) all.by_flight.push_back({flight.name, std::move(one.quantities)});
+  }
+  all.text = text_of(all);
+  return all;
 }
 
 }  // namespace veridyn::aircraft

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "veridyn/aircraft/identification/flight_signals.hpp"
+#include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -30,6 +30,12 @@ struct PredictedQuantity {
   std::vector<double> predicted = {};  ///< SI; NaN between windows
 };
 
+/// What was predicted in one of several flights.
+struct FlightPrediction {
+  std::string flight;
+  std::vector<PredictedQuantity> quantities = {};
+};
+
 /// The identified model validated on held-out data.
 struct Validation {
   double period_s = 0.0;
@@ -37,8 +43,9 @@ struct Validation {
   std::size_t windows = 0;
   std::size_t diverged = 0;   ///< windows in which the prediction left the envelope and was cut
   bool with_airspeed = true;  ///< false: airspeed was taken from the measurement, since drag or thrust is not known
-  std::vector<PredictedQuantity> quantities;
-  std::string text;  ///< what was done, in one sentence
+  std::vector<PredictedQuantity> quantities;  ///< of several flights one after the other (PreparedFlight::shift_s)
+  std::vector<FlightPrediction> by_flight;    ///< the same flight by flight, where there are several
+  std::string text;                           ///< what was done, in one sentence
   [[nodiscard]] bool available() const { return windows > 0; }
 };
 
@@ -50,5 +57,9 @@ struct Validation {
 [[nodiscard]] Validation validate_flight(const FlightSignals& signals, std::span<const TimeSpan> longitudinal,
                                          std::span<const TimeSpan> lateral, const Subject& subject,
                                          std::span<const Coefficient> known, const ValidationOptions& options);
+
+/// The same over several flights together: all windows of all of them, and the scores of each.
+[[nodiscard]] Validation validate_flights(std::span<const PreparedFlight> flights, RowUse use, const Subject& subject,
+                                          std::span<const Coefficient> known, const ValidationOptions& options);
 
 }  // namespace veridyn::aircraft

@@ -93,7 +93,7 @@ bool same_windows(const std::vector<Window>& a, const std::vector<Window>& b) {
 }
 
 /// Errors of the state estimates of a simulated flight alongside the best that the sensors allow.
-Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
+Table bound_table(const FlightStudy& study, const PreparedFlight& flight) {
   Table table{.title = "Against the truth and the information bound",
               .caption =
                   "Root mean square errors. The bound is what no estimator that does not know the aircraft can "
@@ -105,12 +105,12 @@ Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
                           {.name = "Smoother", .digits = 3},
                           {.name = "Bound", .digits = 3},
                           {.name = "Unit"}}};
-  const Reconstruction& rec = analysis.reconstruction;
+  const Reconstruction& rec = flight.reconstruction;
   const Channel* airspeed = rec.smoothed.find("airspeed");
   if (airspeed == nullptr || airspeed->empty()) return table;
   double mean = 0.0;
   for (const double v : airspeed->value) mean += v / static_cast<double>(airspeed->size());
-  const Channel* vane = analysis.aligned.recording.find("alpha");
+  const Channel* vane = flight.aligned.recording.find("alpha");
   const double rate = vane != nullptr ? vane->rate_Hz() : 0.0;
   InformationBound bound;
   if (rate > 0.0) bound = information_bound(rec.turbulence, mean, rec.sigma.alpha, rate);
@@ -129,18 +129,18 @@ Table bound_table(const FlightStudy& study, const FlightAnalysis& analysis) {
 
 }  // namespace
 
-Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+Section flight_section(const FlightStudy& study, const PreparedFlight& flight) {
   Section section{.title = "The flight", .id = "flight"};
-  const Recording& smoothed = analysis.reconstruction.smoothed;
-  const Recording& measured = analysis.aligned.recording;
-  const bool filtered = analysis.reconstruction.filter != FilterKind::kNone;
+  const Recording& smoothed = flight.reconstruction.smoothed;
+  const Recording& measured = flight.aligned.recording;
+  const bool filtered = flight.reconstruction.filter != FilterKind::kNone;
   const char* const estimator = filtered ? "smoother" : "low-passed";
   TimeSeries air{.title = "Motion through the air",
                  .caption = fmt::format("{} Shaded: what was used to identify (longitudinal and lateral) and what was "
                                         "held out.",
                                         filtered ? "Estimates of the smoother with 95 % bands."
                                                  : "As recorded, without a filter, with 95 % bands of their noise.")};
-  air.spans = segment_spans(analysis.segments, true, true);
+  air.spans = segment_spans(flight.segments, true, true);
   const auto panel = [&](const char* channel, const char* label, const char* unit, double factor, const char* sensor) {
     Panel p{.label = label, .unit = unit};
     add_channel(p, measured, sensor, "measured", factor, Role::kMeasured);
@@ -157,7 +157,7 @@ Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis)
       wind.lines.push_back(estimate_line(smoothed, channel, axis, 1.0));
   if (!wind.lines.empty()) air.panels.push_back(std::move(wind));
   section.blocks.emplace_back(std::move(air));
-  if (study.truth) section.blocks.emplace_back(bound_table(study, analysis));
+  if (study.truth) section.blocks.emplace_back(bound_table(study, flight));
 
   TimeSeries inputs{.title = "Inputs and rates"};
   Panel surfaces{.label = "deflections", .unit = "deg"};
@@ -176,7 +176,7 @@ Section flight_section(const FlightStudy& study, const FlightAnalysis& analysis)
   for (const char* name : {"roll", "pitch"})
     add_channel(attitude, smoothed, name, name, 1.0 / kDegree, Role::kEstimate);
   if (!attitude.lines.empty()) inputs.panels.push_back(std::move(attitude));
-  inputs.spans = segment_spans(analysis.segments, true, true);
+  inputs.spans = segment_spans(flight.segments, true, true);
   section.blocks.emplace_back(std::move(inputs));
   return section;
 }
@@ -188,7 +188,8 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
                       .caption =
                           "Measured: from specific force, rates and dynamic pressure. Model: the chosen estimate, "
                           "where it is not rejected."};
-    figure.spans = segment_spans(analysis.segments, axis == Axis::kLongitudinal, axis == Axis::kLateral);
+    figure.spans =
+        segment_spans(analysis.flights.front().segments, axis == Axis::kLongitudinal, axis == Axis::kLateral);
     for (const CoefficientResult& r : analysis.coefficients) {
       if (r.axis != axis || r.time.empty()) continue;
       Panel panel{.label = r.name};

@@ -9,7 +9,7 @@ namespace veridyn::report {
 
 /// Airspeed, alpha, beta and wind with 95 % bands over what was measured (and the truth of a simulated flight), and
 /// the inputs, with the segments shaded; how far from the information bound, where the truth is known.
-[[nodiscard]] Section flight_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
+[[nodiscard]] Section flight_section(const aircraft::FlightStudy& study, const aircraft::PreparedFlight& flight);
 
 /// Measured and modelled coefficients over time.
 [[nodiscard]] Section coefficient_series_section(const aircraft::FlightAnalysis& analysis);

@@ -105,6 +105,30 @@ XYPlot path_figure(std::span<const ShownDrive> drives) {
   return plot;
 }
 
+std::vector<XYSeries> course_series(const vehicle::Manoeuvre& manoeuvre) {
+  std::vector<XYSeries> series;
+  if (manoeuvre.course) {
+    for (const vehicle::Lane& lane : manoeuvre.course->lanes) {
+      for (const double y : {lane.left, lane.right}) {
+        series.push_back({.name = "cones",
+                          .x = {lane.begin, lane.end},
+                          .y = {y, y},
+                          .role = Role::kReference,
+                          .style = Style::kLine});
+      }
+    }
+  }
+  if (manoeuvre.slalom) {
+    XYSeries cones{.name = "cones", .role = Role::kReference, .width = 5.0};
+    for (int i = 0; i < manoeuvre.slalom->cones; ++i) {
+      cones.x.push_back(manoeuvre.slalom->cone(i));
+      cones.y.push_back(0.0);
+    }
+    series.push_back(std::move(cones));
+  }
+  return series;
+}
+
 XYPlot g_g_figure(std::span<const ShownDrive> drives, double gravity) {
   XYPlot plot{.title = "g-g diagram",
               .x = {"lateral acceleration", "g"},

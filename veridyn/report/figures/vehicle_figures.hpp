@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/report/document/document.hpp"
+#include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
 
 namespace veridyn::report {
@@ -18,6 +19,10 @@ struct ShownDrive {
 
 /// The path on the plane, seen from above.
 [[nodiscard]] XYPlot path_figure(std::span<const ShownDrive> drives);
+
+/// The cones between which, or around which, a manoeuvre leads, in the plane of `path_figure`: the edges of lanes as
+/// lines, the cones of a slalom as points. Empty: it has none.
+[[nodiscard]] std::vector<XYSeries> course_series(const vehicle::Manoeuvre& manoeuvre);
 
 /// Lateral against longitudinal acceleration, in g. @param gravity [m/s^2] of the drives
 [[nodiscard]] XYPlot g_g_figure(std::span<const ShownDrive> drives, double gravity);

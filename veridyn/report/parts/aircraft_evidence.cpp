@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/report/figures/aircraft_figures.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
@@ -27,7 +28,8 @@ std::string unexcited_text(const RegressionEstimate& e) {
 
 Section excitation_section(const FlightAnalysis& analysis) {
   Section section{.title = "Excitation", .id = "excitation", .folded = true};
-  section.blocks.emplace_back(List{.items = {analysis.segments.longitudinal.text, analysis.segments.lateral.text}});
+  section.blocks.emplace_back(List{.items = {segments_text(analysis.flights, Axis::kLongitudinal),
+                                             segments_text(analysis.flights, Axis::kLateral)}});
   Table table{.title = "Excited directions",
               .caption =
                   "Singular values of the regressors in units of their noise; a direction counts as excited above the "

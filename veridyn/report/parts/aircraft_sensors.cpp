@@ -75,19 +75,19 @@ Table comparison_table(const Reconstruction& rec) {
   return table;
 }
 
-Table channel_table(const FlightStudy& study) {
+Table channel_table(const PreparedFlight& flight) {
   Table channels{
       .title = "Channels",
       .columns = {
           {.name = "Channel"}, {.name = "From"}, {.name = "Rate", .unit = "Hz", .digits = 3}, {.name = "Note"}}};
-  for (const ChannelOrigin& o : study.mapped.origins) {
+  for (const ChannelOrigin& o : flight.aligned.origins) {
     channels.rows.push_back(
         {.cells = {text_cell(o.channel), text_cell(o.source), number_cell(o.rate_Hz), text_cell(o.note)}});
   }
   return channels;
 }
 
-Table delay_table(const FlightAnalysis& analysis) {
+Table delay_table(const PreparedFlight& flight) {
   Table delays{.title = "Delays",
                .caption = "Positive: the sensor reports late.",
                .columns = {{.name = "Group"},
@@ -96,7 +96,7 @@ Table delay_table(const FlightAnalysis& analysis) {
                            {.name = "Sigma", .unit = "ms"},
                            {.name = "Correlation", .digits = 2},
                            {.name = "Result"}}};
-  for (const DelayReport& d : analysis.delays) {
+  for (const DelayReport& d : flight.delays) {
     delays.rows.push_back({.cells = {text_cell(d.group), text_cell(d.reference), number_cell(1e3 * d.delay_s, 1),
                                      number_cell(1e3 * d.sigma_s, 1), number_cell(d.correlation), text_cell(d.text)}});
   }
@@ -148,16 +148,16 @@ Table quantity_table(const Reconstruction& rec) {
 
 }  // namespace
 
-Section sensors_section(const FlightStudy& study, const FlightAnalysis& analysis) {
+Section sensors_section(const PreparedFlight& flight) {
   Section section{.title = "Sensors and state estimation", .id = "sensors", .folded = true};
-  const Reconstruction& rec = analysis.reconstruction;
+  const Reconstruction& rec = flight.reconstruction;
   FactList facts{{{"Filter", to_string(rec.filter)},
                   {"Turbulence assumed", rec.turbulence_origin},
                   {"Air density from", rec.density_origin}}};
   if (rec.guard) facts.facts.push_back({"Guard", rec.guard->statement});
   section.blocks.emplace_back(std::move(facts));
-  section.blocks.emplace_back(channel_table(study));
-  if (!analysis.delays.empty()) section.blocks.emplace_back(delay_table(analysis));
+  section.blocks.emplace_back(channel_table(flight));
+  if (!flight.delays.empty()) section.blocks.emplace_back(delay_table(flight));
   section.blocks.emplace_back(innovation_table(rec));
   section.blocks.emplace_back(quantity_table(rec));
   if (!rec.sensor_errors.empty()) section.blocks.emplace_back(sensor_error_table(rec));

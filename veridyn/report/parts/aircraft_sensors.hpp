@@ -7,6 +7,6 @@ namespace veridyn::report {
 
 /// The sensors of a flight and what they determine: channels, delays, innovations, observability, sensor errors, and
 /// the comparison with a filter that knows the aircraft.
-[[nodiscard]] Section sensors_section(const aircraft::FlightStudy& study, const aircraft::FlightAnalysis& analysis);
+[[nodiscard]] Section sensors_section(const aircraft::PreparedFlight& flight);
 
 }  // namespace veridyn::report
