@@ -33,7 +33,7 @@ std::string methods_csv(const estimation::Analysis& analysis) {
 }
 
 void print_judgement(const CommonOptions& options, const estimation::Estimate& estimate) {
-  print_line(options, estimation::sentence_of(estimate.judgement));
+  print_line(options, estimation::sentence_of(estimate));
   for (const estimation::Evidence& row : estimate.evidence) {
     if (row.outcome == estimation::Outcome::kPassed || row.bears_on.empty()) continue;
     const bool named = row.about.empty() || row.text.find(row.about) != std::string::npos;

@@ -15,7 +15,7 @@
 namespace veridyn::app {
 
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;      ///< the computation failed or was interrupted: the message says why
+inline constexpr int kFailed = 1;      ///< the computation failed or was interrupted: message or result say why
 inline constexpr int kWrongInput = 2;  ///< the input is wrong: the message says where
 
 /// Thrown by a command that a signal stopped, before it wrote anything.

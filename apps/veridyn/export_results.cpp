@@ -25,7 +25,7 @@ void publish_export(const StudyRun& run, OutputFolder& folder, std::vector<std::
   for (const std::string& name : files)
     print_line(run.options(), fmt::format("wrote {}", (folder.path() / name).string()));
   if (!note.empty()) print_line(run.options(), note);
-  if (is_graded(estimate)) print_line(run.options(), estimation::sentence_of(estimate->judgement));
+  if (is_graded(estimate)) print_line(run.options(), estimation::sentence_of(*estimate));
 }
 
 }  // namespace veridyn::app

@@ -52,7 +52,7 @@ std::vector<std::string> comments_on(const Vehicle& vehicle, const char* axle,
   if (estimate->find("load_transfer_loss") != nullptr)
     lines.emplace_back("load transfer is the axles' and not in the coefficients below");
   lines.emplace_back("driving and braking: stiffness 1.3 times that of cornering, assumed; the same curve");
-  if (is_graded(estimate)) lines.push_back(estimation::sentence_of(estimate->judgement));
+  if (is_graded(estimate)) lines.push_back(estimation::sentence_of(*estimate));
   return lines;
 }
 

@@ -46,9 +46,10 @@ int identify_vehicle(const StudyRun& run) {
   WorkProgress progress(run, &folder);
   PreparedDrive drive = prepare_drive(run.study, progress);
   const vehicle::VehicleAnalysis analysis = vehicle::identify(drive.study, progress);
-  if (analysis.interrupted) throw Interrupted();
+  // The best that was found by then is worth its files.
+  if (analysis.interrupted && analysis.identification.best() == nullptr) throw Interrupted();
   publish_drive(run, folder, drive, analysis);
-  return kDone;
+  return analysis.interrupted ? kFailed : kDone;
 }
 
 int identify_muscles(const StudyRun& asked) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <stdexcept>
 
@@ -34,6 +35,23 @@ bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
   return fs::equivalent(a, b, error) && !error;
 }
+
+/// While it lives SIGINT and SIGTERM do nothing.
+class SignalsIgnored {
+ public:
+  SignalsIgnored() = default;
+  SignalsIgnored(const SignalsIgnored&) = delete;
+  SignalsIgnored& operator=(const SignalsIgnored&) = delete;
+  ~SignalsIgnored() {
+    std::signal(SIGINT, on_interrupt_);
+    std::signal(SIGTERM, on_termination_);
+  }
+
+ private:
+  using Handler = void (*)(int);
+  Handler on_interrupt_ = std::signal(SIGINT, SIG_IGN);
+  Handler on_termination_ = std::signal(SIGTERM, SIG_IGN);
+};
 
 }  // namespace
 
@@ -105,6 +123,8 @@ void OutputFolder::publish(const RunRecord& run, const CommonOptions& options, c
   });
   check_names();
   print_summary(summary, options);
+  // A second Ctrl-C would end the program between the files of two runs.
+  const SignalsIgnored whole;
   for (const std::string& file : stale) {
     std::error_code ignored;
     fs::remove(path_ / file, ignored);

@@ -33,11 +33,18 @@ Outcome run_under(const std::string& before, const std::string& arguments) {
 }
 
 Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch) {
+  return run_interrupted_after("", 1, arguments, scratch);
+}
+
+Outcome run_interrupted_after(const std::string& words, int signals, const std::string& arguments,
+                              const std::filesystem::path& scratch) {
   const std::string said = (scratch / "stderr.txt").string();
   std::filesystem::remove(said);  // of the run before
-  return shell(std::string(VERIDYN_PROGRAM) + " " + arguments + " >/dev/null 2>" + said + " & pid=$!; " +
-               "while [ ! -s " + said + " ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done; sleep 0.1; " +
-               "kill -INT $pid 2>/dev/null; wait $pid; code=$?; cat " + said + "; exit $code");
+  std::string line = std::string(VERIDYN_PROGRAM) + " " + arguments + " >/dev/null 2>" + said + " & pid=$!; " +
+                     "while ! grep -q '" + words + "' " + said + " 2>/dev/null && kill -0 $pid 2>/dev/null; " +
+                     "do sleep 0.02; done; ";
+  for (int i = 0; i < signals; ++i) line += "sleep 0.1; kill -INT $pid 2>/dev/null; ";
+  return shell(line + "wait $pid; code=$?; cat " + said + "; exit $code");
 }
 
 }  // namespace veridyn

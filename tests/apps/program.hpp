@@ -31,6 +31,11 @@ struct Outcome {
 /// what it said on stderr.
 [[nodiscard]] Outcome run_interrupted(const std::string& arguments, const std::filesystem::path& scratch);
 
+/// The same, once it has said `words`, by `signals` a tenth of a second after each other; 130 where the signal ended
+/// it.
+[[nodiscard]] Outcome run_interrupted_after(const std::string& words, int signals, const std::string& arguments,
+                                            const std::filesystem::path& scratch);
+
 /// A scratch folder for each test, and what every refusal must look like.
 class ProgramTest : public testing::Test {
  protected:

@@ -198,6 +198,34 @@ TEST_F(VehicleProgram, SaysWhichStructureItTookAndWhatTheOthersMakeOfTheDrive) {
   EXPECT_THAT(fixed.text, HasSubstr("structure: bicycle, as the study says"));
 }
 
+// A drive that takes seconds, stopped while the third structure is fitted: the first two are there.
+TEST_F(VehicleProgram, AnInterruptedSearchLeavesTheBestSoFarAndSaysSo) {
+  const std::string arguments = "identify " + study("rolling_car") + " --set drive.length=200 --out " + in_out("").string();
+  const Outcome stopped = run_interrupted_after("structure: roll", 1, arguments, folder_);
+  EXPECT_EQ(stopped.exit_code, 1) << stopped.text;
+  EXPECT_THAT(stopped.text, HasSubstr("\nInterrupted: this is the best estimate found by then. "));
+  EXPECT_THAT(stopped.text, HasSubstr("the parameters must not be taken for physical constants"));
+  for (const char* name : {"estimate.json", "report.html", "subject.toml", "parameters.csv", "run.json"})
+    EXPECT_TRUE(std::filesystem::exists(in_out(name))) << name;
+  const auto estimate = nlohmann::json::parse(read_file(in_out("estimate.json")));
+  EXPECT_EQ(estimate["interrupted"], true);
+  EXPECT_EQ(estimate["grades"]["parameters"]["grade"], "no");
+  EXPECT_EQ(estimate["evidence"][0]["name"], "interruption");
+  EXPECT_GT(estimate["parameters"][0]["value"], 0.0);
+  EXPECT_THAT(read_file(in_out("report.html")), HasSubstr("Interrupted: this is the best estimate found by then. "));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+}
+
+TEST_F(VehicleProgram, ASecondInterruptionEndsAtOnceAndLeavesNoResults) {
+  // Ten minutes of drive, of which the prediction alone takes longer than the second Ctrl-C is away.
+  const std::string arguments = "identify " + study("rolling_car") + " --set drive.length=600 --out " + in_out("").string();
+  const Outcome stopped = run_interrupted_after("structure: roll", 2, arguments, folder_);
+  EXPECT_EQ(stopped.exit_code, 130) << stopped.text;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+    EXPECT_TRUE(entry.path().filename().string().starts_with(".veridyn-")) << entry.path();
+}
+
 TEST_F(VehicleProgram, AnotherDriveValidatesAnEstimate) {
   ASSERT_EQ(run("identify " + study("identify_sweep") + out()).exit_code, 0);
   const std::string estimate = file("estimate.json", read_file(in_out("estimate.json")));

@@ -21,5 +21,13 @@ TEST(Estimate, FindsAParameterByItsWholeName) {
   EXPECT_EQ(Estimate{}.find("Cm"), nullptr);
 }
 
+TEST(Estimate, SaysFirstThatItsSearchWasInterrupted) {
+  Estimate estimate;
+  EXPECT_EQ(sentence_of(estimate), sentence_of(estimate.judgement));
+  estimate.interrupted = true;
+  EXPECT_EQ(sentence_of(estimate),
+            "Interrupted: this is the best estimate found by then. " + sentence_of(estimate.judgement));
+}
+
 }  // namespace
 }  // namespace veridyn::estimation

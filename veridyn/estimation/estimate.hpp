@@ -54,6 +54,7 @@ struct StructureTrial {
 struct Estimate {
   std::string subject;
   std::string method;
+  bool interrupted = false;  ///< the best that was there when the search was interrupted
   std::vector<Parameter> parameters;
   Eigen::MatrixXd covariance;                 ///< in parameter order; zero between separately estimated groups
   std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
@@ -70,5 +71,8 @@ struct Estimate {
 
   [[nodiscard]] const Parameter* find(std::string_view name) const;
 };
+
+/// What it may be used for in one sentence, after one that says that its search was interrupted where it was.
+[[nodiscard]] std::string sentence_of(const Estimate& estimate);
 
 }  // namespace veridyn::estimation

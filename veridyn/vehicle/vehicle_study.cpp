@@ -9,6 +9,7 @@
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/vehicle/identification/drive_evidence.hpp"
+#include "veridyn/vehicle/identification/estimated_drive_model.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
 #include "veridyn/vehicle/model/vehicle.hpp"
 
@@ -58,48 +59,12 @@ std::vector<std::string> warnings_of(const VehicleStudy& study, const DriveSigna
   return warnings;
 }
 
-/// The vehicle and the drive model with the values of an estimate.
-struct GivenModel {
-  VehicleParameters<double> vehicle;
-  DriveModelOptions options;
-};
-
-GivenModel model_of(const estimation::Estimate& estimate, const VehicleStudy& study) {
-  GivenModel given{study.vehicle, study.identify.model};
-  const auto take = [&](std::string_view name, double& to) {
-    const estimation::Parameter* e = estimate.find(std::string(name));
-    const bool known = e != nullptr && std::isfinite(e->value);
-    if (known) to = e->value;
-    return known;
-  };
-  std::vector<std::string> missing;
-  VehicleParameters<double>& p = given.vehicle;
-  for (const auto& [name, to] : {std::pair{"C_f", &p.C_f}, std::pair{"C_r", &p.C_r}, std::pair{"I_z", &p.I_z}}) {
-    if (!take(name, *to)) missing.emplace_back(name);
-  }
-  if (!missing.empty()) {
+/// @throws InputError where it has not what a prediction needs.
+EstimatedDriveModel model_of(const estimation::Estimate& estimate, const VehicleStudy& study) {
+  EstimatedDriveModel given = estimated_drive_model(estimate, study.vehicle, study.identify.model);
+  if (!given.missing.empty()) {
     throw InputError("estimate",
-                     fmt::format("has no {}; without it no drive can be predicted", fmt::join(missing, ", ")));
-  }
-  const double L = p.wheelbase();
-  take("a", p.a);
-  p.b = L - p.a;
-  for (const DriveUnknown u :
-       {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature, DriveUnknown::kRollGradient,
-        DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping, DriveUnknown::kRollArm,
-        DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer, DriveUnknown::kLoadTransferLoss,
-        DriveUnknown::kLoadTransferBalance, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
-        DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
-    take(kDriveUnknownNames[u], given.options.start[u]);
-  }
-  if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;
-  if (estimate.find("relaxation_length") != nullptr) given.options.structure = DriveStructure::kRelaxation;
-  if (estimate.find("mu") != nullptr) {
-    const bool has_shape = estimate.find("C") != nullptr;
-    if (estimate.find("roll_gradient") != nullptr)
-      given.options.structure = has_shape ? DriveStructure::kMagicFormula : DriveStructure::kSaturation;
-    if (estimate.find("relaxation_length") == nullptr) given.options.start[DriveUnknown::kRelaxationLength] = 0.0;
-    given.options.tyre = has_shape ? DriveTyre::kMagicFormula : DriveTyre::kFiala;
+                     fmt::format("has no {}; without it no drive can be predicted", fmt::join(given.missing, ", ")));
   }
   return given;
 }
@@ -121,26 +86,6 @@ VehicleEstimate given_estimate(const estimation::Estimate& estimate) {
     given.parameters.push_back(std::move(q));
   }
   return given;
-}
-
-/// Of all DriveUnknowns, as far as the estimate has it.
-Eigen::MatrixXd drive_covariance(const estimation::Estimate& estimate) {
-  const auto n = static_cast<Eigen::Index>(kDriveUnknowns);
-  const auto at = [&](std::size_t k) {
-    return std::find(kDriveUnknownNames.begin(), kDriveUnknownNames.end(), estimate.parameters[k].name) -
-           kDriveUnknownNames.begin();
-  };
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    for (std::size_t j = 0; j < estimate.parameters.size(); ++j) {
-      const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(j);
-      if (at(i) >= n || at(j) >= n || row >= estimate.covariance.rows() || column >= estimate.covariance.cols())
-        continue;
-      const double c = estimate.covariance(row, column);
-      if (std::isfinite(c)) covariance(at(i), at(j)) = c;
-    }
-  }
-  return covariance;
 }
 
 /// Where an estimate is validated, by time.
@@ -209,7 +154,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   out.segments = find_drive_segments(out.signals, study.segments, study.log.holdout_runs);
   progress.stage("validating");
   const std::vector<TimeSpan> spans = validation_spans(out.segments, study.validate_on_holdout_only);
-  const GivenModel given = model_of(estimate, study);
+  const EstimatedDriveModel given = model_of(estimate, study);
   VehicleIdentification& id = out.identification;
   id.identified = given.vehicle;
   id.estimates.push_back(given_estimate(estimate));
@@ -219,7 +164,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
     id.reason = fmt::format("the estimate cannot be judged: {}", out.segments.text);
   } else {
     const DriveTheta theta{fit_drive_biases(out.signals, spans, given.vehicle, given.options, progress),
-                           drive_covariance(estimate)};
+                           given.covariance};
     id.validation = predict_drive(out.signals, spans, given.vehicle, given.options, theta, progress);
     const estimation::PredictedQuantity* r = id.validation.find("yaw_rate");
     // A vehicle is rejected as a whole; what was not excited, or given, keeps that status.
@@ -257,6 +202,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   out.estimate.parameters = estimate.parameters;
   out.estimate.covariance = estimate.covariance;
   out.estimate.method = estimate.method;
+  out.estimate.interrupted = estimate.interrupted;
   out.estimate.structure = to_string(given.options.structure);
   out.estimate.structure_reason = fmt::format("structure: {}, as the estimate has it", out.estimate.structure);
   return out;

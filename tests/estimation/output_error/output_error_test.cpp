@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/estimation/output_error/example_models.hpp"
+#include "veridyn/core/constants.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/regression/ordinary_least_squares.hpp"
 
@@ -378,6 +379,41 @@ TEST(OutputError, StopsWhenTheCallerAsks) {
   const OutputErrorEstimate e = output_error(model, truth_of(model), {}, progress);
   EXPECT_EQ(e.termination, OutputErrorTermination::kInterrupted);
   EXPECT_FALSE(e.usable());
+  EXPECT_FALSE(e.has_estimate());
+  EXPECT_EQ(e.message, "interrupted");
+}
+
+TEST(OutputError, LeavesWhereItStoodWhenItIsStoppedOnTheWay) {
+  class Patient : public Progress {
+   public:
+    explicit Patient(int questions) : left_(questions) {}
+    bool update(double) override { return !interrupted(); }
+    bool interrupted() const override { return --left_ < 0; }
+
+   private:
+    mutable int left_;
+  };
+  const FirstOrder model(doublets(2, 50), 0.05);
+  auto z = truth_of(model);
+  std::mt19937_64 generator(3);
+  add_noise(z, generator, 0.01, 0.02);
+  const OutputErrorEstimate whole = output_error(model, z);
+  double last = kInfinity;
+  // A question before any step, then one after each: every step has made the data likelier.
+  for (const int questions : {1, 2, 3, 4}) {
+    Patient progress(questions);
+    const OutputErrorEstimate e = output_error(model, z, {}, progress);
+    ASSERT_EQ(e.termination, OutputErrorTermination::kInterrupted) << questions;
+    EXPECT_FALSE(e.usable());
+    ASSERT_TRUE(e.has_estimate());
+    EXPECT_GT(e.accepted_steps, 0);
+    EXPECT_LT(e.negative_log_likelihood, last) << questions;
+    last = e.negative_log_likelihood;
+    EXPECT_TRUE(std::isfinite(e.parameters[0].sigma) && e.parameters[0].sigma > 0.0);
+    EXPECT_EQ(e.outputs.size(), whole.outputs.size());
+    EXPECT_THAT(e.message, ::testing::StartsWith("interrupted after 1 relaxation"));
+  }
+  EXPECT_GT(last, whole.negative_log_likelihood);
 }
 
 TEST(OutputError, SaysWhatIsWrongWithItsInput) {

@@ -116,6 +116,17 @@ TEST(EstimateJson, KeepsTheStructureAndTheOthersThatWereTried) {
   EXPECT_EQ(roll.parameters[0].sigma, 500.0);
 }
 
+TEST(EstimateJson, SaysOfWhatWasInterruptedThatItWas) {
+  estimation::Estimate e = two_parameters();
+  EXPECT_EQ(to_json(e).find("interrupted"), std::string::npos);
+  e.interrupted = true;
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(e);
+  EXPECT_NE(text.find("\"interrupted\": true"), std::string::npos);
+  EXPECT_TRUE(read_estimate(folder.write("estimate.json", text)).interrupted);
+  EXPECT_FALSE(read_estimate(folder.write("whole.json", to_json(two_parameters()))).interrupted);
+}
+
 TEST(EstimateJson, RefusesAStructureThatIsNeitherTakenNorNot) {
   estimation::Estimate e = two_parameters();
   e.structure = "roll";

@@ -1,5 +1,7 @@
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,6 +16,7 @@
 namespace veridyn::vehicle {
 namespace {
 
+using estimation::Parameter;
 using estimation::ParameterStatus;
 using testing::drive_bicycle;
 using testing::family_car;
@@ -165,18 +168,65 @@ TEST(VehicleIdentification, NoticesThatTheLinearModelIsWrongForSaturatingTyres) 
   EXPECT_FALSE(id.warnings.empty());
 }
 
-TEST(VehicleIdentification, StopsSoonWhereverItIsInterrupted) {
+TEST(VehicleIdentification, StopsSoonWhereverItIsInterruptedAndLeavesTheBestSoFar) {
   const VehicleTrajectory drive = lively_drive(family_car(), 1, 0.02, 30.0);
+  struct Asked {
+    long questions = 0;
+    VehicleIdentification id;
+  };
   const auto asked = [&](long n) {
     InterruptingProgress progress(n);
-    const VehicleIdentification id =
-        identify(drive, testing::perfect_sensors(), 1, {}, family_car(), std::move(progress));
-    EXPECT_EQ(id.interrupted, progress.questions() >= n);
-    return progress.questions();
+    VehicleIdentification id = identify(drive, reference_drive_sensors(), 1, {}, family_car(), std::move(progress));
+    return Asked{progress.questions(), std::move(id)};
   };
-  const long all = asked(1000000);
+  const Asked whole = asked(1000000);
+  const long all = whole.questions;
   ASSERT_GT(all, 20);
-  for (const long n : {1L, all / 4, all / 2, 3 * all / 4, all}) EXPECT_LE(asked(n), n + 8) << n << " of " << all;
+  EXPECT_FALSE(whole.id.interrupted);
+  const VehicleEstimate* const best = whole.id.best();
+  ASSERT_NE(best, nullptr);
+  const auto grade = [](const Asked& a) { return a.id.judgement.parameters.grade; };
+  ASSERT_LT(grade(whole), estimation::Grade::kNo) << whole.id.reason;
+  // Before the first step there is nothing.
+  EXPECT_EQ(asked(1).id.best(), nullptr);
+  EXPECT_TRUE(asked(1).id.interrupted);
+  for (const long n : {8L, all / 4, all / 2, 3 * all / 4}) {
+    SCOPED_TRACE(fmt::format("question {} of {}", n, all));
+    const Asked stopped = asked(n);
+    EXPECT_LE(stopped.questions, n + 16);
+    EXPECT_TRUE(stopped.id.interrupted);
+    const VehicleEstimate* const left = stopped.id.best();
+    ASSERT_NE(left, nullptr);
+    EXPECT_EQ(left->method, VehicleMethod::kOutputError);
+    EXPECT_FALSE(stopped.id.validation.quantities.empty());
+    EXPECT_GE(grade(stopped), estimation::Grade::kWithCare);
+    EXPECT_THAT(stopped.id.reason, ::testing::StartsWith("interrupted: "));
+    ASSERT_FALSE(stopped.id.checks.empty());
+    EXPECT_EQ(stopped.id.checks.front().name, "interruption");
+    const estimation::Estimate estimate = make_vehicle_estimate(stopped.id, "car");
+    EXPECT_TRUE(estimate.interrupted);
+    EXPECT_THAT(estimation::sentence_of(estimate), ::testing::StartsWith("Interrupted: "));
+  }
+  // Past its last search only parts of the drive are not compared; when all is done, nothing is missing.
+  long n = all;
+  Asked last = asked(n);
+  for (; !last.id.interrupted && n > all / 2; last = asked(--n)) EXPECT_EQ(grade(last), grade(whole)) << n;
+  ASSERT_TRUE(last.id.interrupted);
+  EXPECT_DOUBLE_EQ(last.id.best()->find("C_f")->value, best->find("C_f")->value);
+  EXPECT_EQ(grade(last), estimation::Grade::kWithCare);
+  EXPECT_THAT(last.id.checks.front().text, ::testing::EndsWith("converged: parts of the drive were not compared"));
+}
+
+TEST(VehicleIdentification, AnInterruptedSearchThatHadNotConvergedGivesNoPhysicalConstants) {
+  const VehicleTrajectory drive = lively_drive(family_car(), 1, 0.02, 30.0);
+  // Within the first relaxation of the bicycle's fit.
+  const VehicleIdentification id =
+      identify(drive, reference_drive_sensors(), 1, {}, family_car(), InterruptingProgress(8));
+  ASSERT_NE(id.best(), nullptr);
+  EXPECT_EQ(id.judgement.parameters.grade, estimation::Grade::kNo);
+  EXPECT_NE(id.verdict, estimation::GroupVerdict::kIdentified);
+  EXPECT_THAT(id.checks.front().text, ::testing::HasSubstr("not all structures were tried"));
+  for (const Parameter& p : id.best()->parameters) EXPECT_NE(p.status, ParameterStatus::kIdentified) << p.name;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "veridyn/core/nearest.hpp"
 #include "veridyn/estimation/output_error/output_error_problem.hpp"
 #include "veridyn/estimation/output_error/residual_spectrum.hpp"
+#include "veridyn/estimation/output_error/solver_views.hpp"
 #include "veridyn/estimation/output_error/undetermined_directions.hpp"
 #include "veridyn/numerics/linear_algebra/singular_values.hpp"
 
@@ -20,46 +21,14 @@ namespace veridyn::estimation {
 namespace {
 
 using Eigen::Index;
+using internal::EvaluateSegments;
 using internal::OutputErrorProblem;
+using internal::PriorCost;
+using internal::SegmentCost;
+using internal::Watch;
 
 /// Share of a parameter's unit vector in what is not identifiable above which it has no error bar.
 constexpr double kShareWithoutErrorBar = 1e-4;
-
-/// View of one segment of a problem, whose triangle it hands to Ceres.
-class SegmentCost : public ceres::CostFunction {
- public:
-  SegmentCost(const OutputErrorProblem& problem, std::size_t segment) : problem_(problem), segment_(segment) {
-    set_num_residuals(static_cast<int>(problem.unknowns(segment)) + 1);
-    if (problem.local_count(segment) > 0)
-      mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.local_count(segment)));
-    if (problem.shared_count() > 0)
-      mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.shared_count()));
-  }
-  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-    const internal::SegmentTriangle& t = problem_.triangle(segment_);
-    if (!t.valid) return false;
-    const Index rows = problem_.unknowns(segment_) + 1, locals = problem_.local_count(segment_);
-    Eigen::Map<Eigen::VectorXd> r(residuals, rows);
-    if (jacobians == nullptr) {
-      r.setZero();
-      r(0) = std::sqrt(t.squares);
-      return true;
-    }
-    r = t.matrix.rightCols(1);
-    std::size_t block = 0;
-    for (const auto& [first, count] : {std::pair{Index{0}, locals}, std::pair{locals, problem_.shared_count()}}) {
-      if (count == 0) continue;
-      if (jacobians[block] != nullptr)
-        Eigen::Map<RowMatrix>(jacobians[block], rows, count) = t.matrix.middleCols(first, count);
-      ++block;
-    }
-    return true;
-  }
-
- private:
-  const OutputErrorProblem& problem_;
-  std::size_t segment_;
-};
 
 /// Whether a search ended at the limit of what an unknown may be.
 bool ends_at_bound(double value, const ModelParameter& unknown) {
@@ -71,59 +40,6 @@ bool ends_at_bound(double value, const ModelParameter& unknown) {
   };
   return at(unknown.low) || at(unknown.high);
 }
-
-/// (x - start) / sigma of unknowns with a prior; zero rows for the others.
-class PriorCost : public ceres::CostFunction {
- public:
-  PriorCost(Eigen::VectorXd start, Eigen::VectorXd precision_root)
-      : start_(std::move(start)), root_(std::move(precision_root)) {
-    set_num_residuals(static_cast<int>(start_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
-  }
-  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    const Index n = start_.size();
-    for (Index i = 0; i < n; ++i) residuals[i] = root_(i) > 0.0 ? root_(i) * (x[0][i] - start_(i)) : 0.0;
-    if (jacobians != nullptr && jacobians[0] != nullptr)
-      Eigen::Map<RowMatrix>(jacobians[0], n, n) = RowMatrix(root_.asDiagonal());
-    return true;
-  }
-
- private:
-  Eigen::VectorXd start_, root_;
-};
-
-/// View of a problem that evaluates all segments at once, on our threads and in a fixed order: Ceres itself runs on
-/// one.
-class EvaluateSegments : public ceres::EvaluationCallback {
- public:
-  explicit EvaluateSegments(OutputErrorProblem& problem) : problem_(problem) {}
-  void PrepareForEvaluation(bool evaluate_jacobians, bool) override { problem_.evaluate(evaluate_jacobians); }
-
- private:
-  OutputErrorProblem& problem_;
-};
-
-/// View of the caller's progress and of a problem: Ceres stops when it is interrupted, or where an unknown is pressed
-/// on a bound that it was free to leave. With a step that points beyond a bound Ceres searches along the line in vain,
-/// each time by twenty simulations.
-class Watch : public ceres::IterationCallback {
- public:
-  Watch(Progress& progress, const OutputErrorProblem& problem, const std::vector<int>& held)
-      : progress_(progress), problem_(problem), held_(held) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    if (progress_.interrupted()) return ceres::SOLVER_ABORT;
-    if (iteration.iteration == 0 || !iteration.step_is_successful) return ceres::SOLVER_CONTINUE;
-    meets_bound_ = !std::ranges::includes(held_, problem_.pressed_on_bounds());
-    return meets_bound_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-  [[nodiscard]] bool meets_bound() const { return meets_bound_; }
-
- private:
-  Progress& progress_;
-  const OutputErrorProblem& problem_;
-  const std::vector<int>& held_;
-  bool meets_bound_ = false;
-};
 
 /// View of one call's model, measurements, options and progress, with what the search has found so far.
 class Estimation {
@@ -162,12 +78,18 @@ class Estimation {
     for (int relaxation = 0; relaxation < options_.max_relaxations; ++relaxation) {
       ++result_.relaxations;
       const Eigen::VectorXd before = problem_.shared();
-      if (!solve()) return;
+      if (!solve()) {
+        if (result_.has_estimate()) {
+          problem_.evaluate(true);
+          problem_.update_noise();
+        }
+        return;
+      }
       problem_.evaluate(true);
       const double noise_change = problem_.update_noise();
       const double moved = problem_.largest_change_in_sigma(before);
       if (!progress_.update(static_cast<double>(relaxation + 1) / options_.max_relaxations)) {
-        return end(OutputErrorTermination::kInterrupted, "interrupted");
+        return end(OutputErrorTermination::kInterrupted, "");
       }
       if (relaxation > 0 && moved < options_.tolerance && noise_change < 10.0 * options_.tolerance) {
         return end(OutputErrorTermination::kConverged, "");
@@ -260,8 +182,9 @@ class Estimation {
     result_.steps += summary.num_successful_steps + summary.num_unsuccessful_steps;
     result_.diverged_steps = problem_.diverged_evaluations();
     result_.diverged_segment = problem_.diverged_segment();
-    if (summary.termination_type == ceres::USER_FAILURE) {
-      end(OutputErrorTermination::kInterrupted, "interrupted");
+    result_.accepted_steps += watch.accepted_steps();
+    if (watch.interrupted()) {
+      end(OutputErrorTermination::kInterrupted, "");
       return Solved::kEnded;
     }
     if (summary.termination_type == ceres::FAILURE) {
@@ -290,7 +213,10 @@ class Estimation {
       p.high95 = p.value + p.sigma;
       p.status = parameters[i].fixed ? ParameterStatus::kFixed : ParameterStatus::kRejected;
     }
-    if (!result_.usable()) return;
+    if (!result_.has_estimate()) {
+      if (result_.message.empty()) result_.message = "interrupted";
+      return;
+    }
     problem_.evaluate(true);
     result_.negative_log_likelihood = problem_.negative_log_likelihood();
     error_bars();
@@ -303,7 +229,9 @@ class Estimation {
     }
     result_.outputs = problem_.output_fits();
     if (!result_.message.empty()) return;
-    const char* how = result_.termination == OutputErrorTermination::kConverged ? "converged" : "stopped";
+    const char* how = result_.termination == OutputErrorTermination::kConverged     ? "converged"
+                      : result_.termination == OutputErrorTermination::kInterrupted ? "interrupted"
+                                                                                    : "stopped";
     result_.message = fmt::format("{} after {} relaxations and {} steps over {} segments, {} values", how,
                                   result_.relaxations, result_.steps, problem_.segments(), result_.values);
     if (result_.diverged_steps > 0) {

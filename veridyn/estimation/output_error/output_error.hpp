@@ -19,7 +19,8 @@ enum class OutputNoise {
   kGiven      ///< R = diag(noise_start^2), known
 };
 
-/// How an output-error estimation ended. With the first two there is an estimate.
+/// How an output-error estimation ended. With the first two there is an estimate; with `kInterrupted` too, where the
+/// search had taken a step.
 enum class OutputErrorTermination {
   kConverged,  ///< a relaxation moved no parameter by more than `tolerance` sigma and no noise by ten times that share
   kRelaxations,        ///< `max_relaxations` were used up first
@@ -117,12 +118,18 @@ struct OutputErrorEstimate {
   Eigen::Index values = 0;               ///< measured values used
   int relaxations = 0;
   int steps = 0;                 ///< Levenberg-Marquardt steps, all relaxations
+  int accepted_steps = 0;        ///< of these, taken
   int diverged_steps = 0;        ///< of these, refused because a simulation diverged
   std::string diverged_segment;  ///< the segment that diverged last; empty when none did
   SimulationCount simulations;
 
   [[nodiscard]] bool usable() const {
     return termination == OutputErrorTermination::kConverged || termination == OutputErrorTermination::kRelaxations;
+  }
+  /// Whether values and error bars are there: of a search that ended, or of where an interrupted one stood. The error
+  /// bars of the latter are those of a minimum, which it had not reached.
+  [[nodiscard]] bool has_estimate() const {
+    return usable() || (termination == OutputErrorTermination::kInterrupted && accepted_steps > 0);
   }
   [[nodiscard]] const Parameter* find(std::string_view name) const;
 };

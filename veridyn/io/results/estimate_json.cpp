@@ -223,6 +223,7 @@ std::string to_json(const Estimate& estimate) {
   ordered_json root;
   root["subject"] = estimate.subject;
   root["method"] = estimate.method;
+  if (estimate.interrupted) root["interrupted"] = true;
   root["parameters"] = ordered_json::array();
   for (const Parameter& p : estimate.parameters) {
     root["parameters"].push_back({{"name", p.name},
@@ -295,6 +296,10 @@ Estimate read_estimate(const std::filesystem::path& path) {
   Estimate estimate;
   estimate.subject = read_text(root, "subject", name);
   estimate.method = read_text(root, "method", name);
+  if (root.contains("interrupted")) {
+    if (!root["interrupted"].is_boolean()) throw InputError(name + ": interrupted", "is neither true nor false");
+    estimate.interrupted = root["interrupted"].get<bool>();
+  }
   const ordered_json& parameters = require(root, "parameters", name);
   if (!parameters.is_array()) throw InputError(name, "'parameters' is not an array");
   for (const ordered_json& p : parameters) {

@@ -145,7 +145,7 @@ Section rejected_section(const Analysis& analysis) {
 Verdict verdict_of(const estimation::Estimate& estimate) {
   using estimation::Grade;
   const estimation::Judgement& j = estimate.judgement;
-  Verdict verdict{.headline = estimation::sentence_of(j)};
+  Verdict verdict{.headline = estimation::sentence_of(estimate)};
   const auto no = [](const estimation::PurposeGrade& g) {
     return g.grade == Grade::kNo || g.grade == Grade::kNotJudged;
   };

@@ -130,7 +130,8 @@ class Climb {
       climb_to_roll();
       if (takes_roll()) weigh();
       if (takes_roll()) climb_beyond_roll();
-      if (!progress_.interrupted()) doubt();
+      if (progress_.interrupted()) leave_out("not all structures were tried");
+      doubt();
     }
     finish();
     return std::move(ladder_);
@@ -178,16 +179,22 @@ class Climb {
   }
 
   /// All so far again, under the filter of the roll's fit: likelihoods of coloured residuals take chance for structure.
+  /// Interrupted, it leaves the fits as they were: only those under one filter can be compared.
   void weigh() {
     const std::size_t roll = ladder_.tried.size() - 1;
     weighing_ = output_error_problem(given(roll), equation_error_).model.whitening(fits_[roll].raw.theta);
     if (weighing_.empty()) return;
     progress_.stage("output error, all again with whitened residuals");
+    const std::vector<OutputErrorResult> fits = fits_;
+    const std::vector<TriedStructure> tried = ladder_.tried;
     for (std::size_t rung = 0; rung <= roll && !progress_.interrupted(); ++rung) {
       if (!fits_[rung].raw.usable()) continue;
       search_start_ = fits_[rung].raw.theta;
       fit_again(rung);
     }
+    if (!progress_.interrupted()) return;
+    fits_ = fits;
+    ladder_.tried = tried;
   }
 
   /// What tyres do beside rolling.
@@ -217,13 +224,29 @@ class Climb {
 
   void finish() {
     ladder_.chosen = choose_structure(ladder_.tried);
-    if (ladder_.empty() || progress_.interrupted()) return;
-    progress_.stage("output error");
+    if (ladder_.empty()) return;
+    // Of an interrupted search where it stood, where none ended.
+    for (std::size_t rung = 0; !fits_[ladder_.chosen].raw.has_estimate() && rung < fits_.size(); ++rung)
+      if (fits_[rung].raw.has_estimate()) ladder_.chosen = rung;
     ladder_.model = options_[ladder_.chosen].model;
     ladder_.fit = std::move(fits_[ladder_.chosen]);
-    ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
+    if (!progress_.interrupted()) {
+      progress_.stage("output error");
+      ladder_.fit = refined(std::move(ladder_.fit), given(ladder_.chosen), equation_error_, progress_);
+    }
+    if (progress_.interrupted()) {
+      // A structure that was not tried may move the values by more than their intervals.
+      ladder_.unfinished.converged = ladder_.unfinished.empty() &&
+                                     ladder_.fit.raw.termination == estimation::OutputErrorTermination::kConverged;
+      leave_out("its parameters were not refined to the end");
+      return;
+    }
+    ladder_.unfinished.converged = true;
     ladder_.steer_delay = steer_delay_of(given(ladder_.chosen), equation_error_, ladder_.fit, progress_);
+    if (progress_.interrupted()) leave_out("a delay of the steering was not looked for");
   }
+
+  void leave_out(const char* what) { ladder_.unfinished.left_out.emplace_back(what); }
 
   const VehicleProblem& problem_;
   const EquationErrorEstimates* equation_error_;
@@ -238,10 +261,14 @@ class Climb {
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   const TriedStructure& taken = ladder.tried[ladder.chosen];
   std::string reason = fmt::format("structure: {}", to_string(taken.structure));
-  if (ladder.chosen > 0) {
+  if (!ladder.unfinished.empty() && !taken.usable) {
+    reason += ", whose search was interrupted";
+  } else if (ladder.chosen > 0) {
     const TriedStructure& before = ladder.tried.front();
     reason += fmt::format(", which makes the drive likelier than {} does by a log-likelihood of {:.0f}",
                           to_string(before.structure), before.negative_log_likelihood - taken.negative_log_likelihood);
+  } else if (!ladder.unfinished.empty()) {
+    reason += ": none richer makes the drive likelier, of those tried before the interruption";
   } else if (ladder.tried.size() > 1) {
     reason += ": none richer makes the drive likelier";
   } else {

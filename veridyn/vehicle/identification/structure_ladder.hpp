@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "veridyn/core/progress.hpp"
+#include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/vehicle/identification/drive_structure.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 
@@ -21,6 +22,8 @@ struct StructureLadder {
   std::optional<estimation::Parameter> steer_delay = {};
   std::vector<StructureDoubt> doubts;  ///< what the structures that are left open would change
   std::string reason;                  ///< one sentence; empty where the study fixes the structure
+  /// What an interruption kept it from; `fit` is the best that was there by then.
+  estimation::UnfinishedSearch unfinished = {};
   [[nodiscard]] bool empty() const { return tried.empty(); }
 };
 
@@ -29,7 +32,8 @@ struct StructureLadder {
 /// the sensors do. Where roll is likelier all are fitted again under the filter that whitens the roll's residual, and
 /// compared by that; if roll is taken still, so is what tyres do beside (relaxation, saturation). One that is not taken
 /// leaves a doubt, by its probability. A recording that contradicts itself (a failed row) says nothing of the
-/// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors.
+/// structure: only the bicycle is fitted to it; nor is anything richer fitted to rounding errors. Interrupted, it takes
+/// the structure so of those whose fits had ended; of none, where the search of the first stood.
 [[nodiscard]] StructureLadder climb_structures(const VehicleProblem& problem,
                                                const EquationErrorEstimates* equation_error, Progress& progress);
 

@@ -239,7 +239,7 @@ VehicleEstimate estimate_of(const VehicleProblem& problem, const GeometrySlopes&
                             const estimation::OutputErrorEstimate& result) {
   VehicleEstimate e;
   e.method = VehicleMethod::kOutputError;
-  e.usable = result.usable();
+  e.usable = result.has_estimate();
   e.message = result.message;
   if (!e.usable) return e;
   e.degrees_of_freedom = std::max(1.0, result.degrees_of_freedom);

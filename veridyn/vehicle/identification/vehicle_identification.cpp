@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "veridyn/core/finishing_progress.hpp"
 #include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/structure_ladder.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
@@ -17,6 +18,7 @@ namespace veridyn::vehicle {
 namespace {
 
 using estimation::Parameter;
+using estimation::UnfinishedSearch;
 
 VehicleIdentification not_excited(const VehicleProblem& problem) {
   VehicleIdentification out;
@@ -67,7 +69,7 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
     out.output_error = output_error->raw;
     out.estimates.push_back(output_error->estimate);
   }
-  out.interrupted = progress.interrupted();
+  out.interrupted = progress.interrupted() && (output_error == nullptr || !output_error->raw.has_estimate());
   if (out.interrupted) return out;
   out.chosen =
       choose_method(out.estimates, by_regression ? &by_regression->regression : nullptr, problem.options.method);
@@ -78,9 +80,16 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
     return out;
   }
 
-  progress.stage("validating on the hold-out");
-  const std::optional<PartsAgreement> parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
-  DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, progress);
+  // What an interruption leaves is judged all the same: it takes little time.
+  FinishingProgress finishing(progress);
+  UnfinishedSearch unfinished = ladder.unfinished;
+  if (output_error == nullptr || out.chosen != VehicleMethod::kOutputError) unfinished.converged = true;
+  finishing.stage(unfinished.empty() ? "validating on the hold-out"
+                                     : "interrupted: validating the best estimate so far (Ctrl-C again ends at once)");
+  std::optional<PartsAgreement> parts;
+  if (!progress.interrupted()) parts = compare_parts(problem, out.chosen, by_regression, output_error, progress);
+  if (progress.interrupted() && !parts) unfinished.left_out.emplace_back("parts of the drive were not compared");
+  DriveTheta theta = theta_of(problem, *out.best(), out.output_error ? &*out.output_error : nullptr, finishing);
   const double widening = variance_factor(parts);
   theta.covariance *= widening;
   for (VehicleEstimate& e : out.estimates)
@@ -88,18 +97,18 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
   if (out.chosen == VehicleMethod::kOutputError) out.structure_doubts = ladder.doubts;
   for (VehicleEstimate& e : out.estimates)
     if (e.method == out.chosen) e = with_doubt(std::move(e), out.structure_doubts, problem.options.significance);
-  if (output_error != nullptr && !problem.options.profiles.empty()) {
+  if (output_error != nullptr && !problem.options.profiles.empty() && unfinished.empty()) {
     progress.stage(fmt::format("profile likelihood of {} parameters", problem.options.profiles.size()));
     const bool widened_too = out.chosen == VehicleMethod::kOutputError;
     out.profiles = profile_drive(problem, by_regression, *output_error, widened_too ? widening : 1.0, progress);
+    if (progress.interrupted()) unfinished.left_out.emplace_back("profiles were not followed to their ends");
   }
   const VehicleEstimate* const chosen = out.best();
   const DriveModelOptions& model = problem.options.model;
-  out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta, progress);
-  out.validation = predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta, progress);
-  const DriveValidation by_noise = with_noisier_inputs(problem, theta, out.fit, progress);
-  out.interrupted = progress.interrupted();
-  if (out.interrupted) return out;
+  out.fit = predict_drive(problem.signals, problem.segments.identification, problem.start, model, theta, finishing);
+  out.validation = predict_drive(problem.signals, problem.segments.holdout, problem.start, model, theta, finishing);
+  const DriveValidation by_noise = with_noisier_inputs(problem, theta, out.fit, finishing);
+  out.interrupted = !unfinished.empty();
   VehicleJudgement judgement = judge_vehicle(problem, {.chosen = *chosen,
                                                        .equation_error = by_regression,
                                                        .output_error = output_error,
@@ -108,9 +117,10 @@ VehicleIdentification identify_structure(const VehicleProblem& problem,
                                                        .by_noise = by_noise,
                                                        .parts = parts,
                                                        .steer_delay = ladder.steer_delay,
-                                                       .structure_doubts = out.structure_doubts});
+                                                       .structure_doubts = out.structure_doubts,
+                                                       .unfinished = unfinished});
   out.verdict = judgement.verdict;
-  out.reason = std::move(judgement.reason);
+  out.reason = (out.interrupted ? "interrupted: " : "") + judgement.reason;
   out.checks = std::move(judgement.checks);
   out.judgement = std::move(judgement.judgement);
   for (const estimation::Evidence& row : out.checks)
@@ -189,6 +199,7 @@ std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentifica
 estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identification, const std::string& subject) {
   estimation::Estimate out;
   out.subject = subject;
+  out.interrupted = identification.interrupted;
   if (const VehicleEstimate* best = identification.best()) {
     out.method = to_string(best->method);
     out.parameters = best->parameters;

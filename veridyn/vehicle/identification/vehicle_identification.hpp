@@ -89,6 +89,7 @@ struct VehicleIdentification {
   DriveValidation fit;                       ///< on the identification segments
   DriveValidation validation;                ///< on the hold-out
   std::vector<std::string> warnings;
+  /// Something was left out because of an interruption: without a `best()` all, else what the rows say.
   bool interrupted = false;
 
   /// Null where that method was not tried.

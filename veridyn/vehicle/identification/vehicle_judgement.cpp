@@ -221,6 +221,7 @@ VehicleJudgement judge_vehicle(const VehicleProblem& problem, const VehicleFindi
   const estimation::PredictedQuantity* there = findings.validation.find("yaw_rate");
   const estimation::PredictedQuantity* here = findings.fit.find("yaw_rate");
   VehicleJudgement out;
+  out.checks = estimation::unfinished_rows(findings.unfinished);
   // A contradiction in the recording is the cause of others.
   for (const Evidence& row : problem.recording)
     out.checks.push_back(

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "veridyn/estimation/judgement/unfinished_search.hpp"
 #include "veridyn/vehicle/identification/vehicle_agreement.hpp"
 #include "veridyn/vehicle/identification/vehicle_estimates.hpp"
 
@@ -20,6 +21,7 @@ struct VehicleFindings {
   std::optional<PartsAgreement> parts = {};
   std::optional<estimation::Parameter> steer_delay = {};  ///< see StructureLadder
   std::span<const StructureDoubt> structure_doubts = {};  ///< which the intervals of `chosen` have
+  estimation::UnfinishedSearch unfinished = {};           ///< by an interruption
 };
 
 /// The verdict on an identified vehicle and what it rests on.
