@@ -10,7 +10,7 @@
 #include "apps/veridyn/output_folder.hpp"
 #include "apps/veridyn/study_tables.hpp"
 #include "apps/veridyn/version.hpp"
-#include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/estimation/judgement/subject_grades.hpp"
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
@@ -41,8 +41,8 @@ Summary summary_of(const std::filesystem::path& folder, const SimulationStudy& s
   for (std::size_t i = 0; i < values.size(); ++i)
     s["characteristics"][kBicycleCharacteristicFields[i].name] = values[i];
   if (run.cornering) {
-    s["steady_cornering"]["understeer_gradient_deg_per_g"] = run.cornering->understeer_gradient * kGravity / kDegree;
-    s["steady_cornering"]["roll_gradient_deg_per_g"] = run.cornering->roll_gradient * kGravity / kDegree;
+    s["steady_cornering"]["understeer_gradient_deg_per_g"] = deg_per_g(run.cornering->understeer_gradient);
+    s["steady_cornering"]["roll_gradient_deg_per_g"] = deg_per_g(run.cornering->roll_gradient);
   }
   s["lift_offs"] = Summary::array();
   for (const LiftOff& l : run.trajectory.lift_offs)
@@ -83,8 +83,8 @@ int simulate_vehicle(const StudyRun& run) {
   if (driven.cornering) {
     print_line(run.options(), fmt::format("gentle steady turns: understeer gradient {:.2f} deg/g, roll gradient {:.2f} "
                                           "deg/g",
-                                          driven.cornering->understeer_gradient * kGravity / kDegree,
-                                          driven.cornering->roll_gradient * kGravity / kDegree));
+                                          deg_per_g(driven.cornering->understeer_gradient),
+                                          deg_per_g(driven.cornering->roll_gradient)));
   }
   print_line(run.options(), fmt::format("wrote {} in {}", files, folder.path().string()));
   return kDone;

@@ -45,8 +45,9 @@ TEST(VehicleReport, ShowsADriveWithItsMetricsAndItsLinearAnalysis) {
   EXPECT_EQ(document.title, "a drive");
   EXPECT_EQ(document.verdict.level, Level::kGood);
   EXPECT_EQ(document.verdict.word, "Driven");
-  EXPECT_THAT(test::titles_of(document), ElementsAre("Path and accelerations", "Time histories", "Tyres",
-                                                     "Body and wheels", "Metrics", "Linear analysis", "Vehicle"));
+  EXPECT_THAT(test::titles_of(document),
+              ElementsAre("Path and accelerations", "Time histories", "Tyres", "Body and wheels", "Steady cornering",
+                          "Metrics", "Linear analysis", "Vehicle"));
   EXPECT_EQ(test::fact_of(document.facts, "Speed"), "20 m/s (72 km/h)");
   EXPECT_EQ(test::fact_of(document.facts, "Model"), "four-wheel");
   EXPECT_EQ(test::fact_of(document.facts, "Gravity"), "") << "that of the earth goes without saying";
@@ -81,6 +82,42 @@ TEST(VehicleReport, DrawsTheConesOfACourse) {
   EXPECT_THAT(path.series[1].x, ElementsAre(lane.begin, lane.end));
   EXPECT_THAT(path.series[1].y, ElementsAre(lane.left, lane.left));
   EXPECT_THAT(path.series[2].y, ElementsAre(lane.right, lane.right));
+}
+
+TEST(VehicleReport, DrawsCoursesEnlargedSidewaysAndOtherPathsToScale) {
+  const auto path_of = [](const std::string& drive) {
+    return test::blocks_of<XYPlot>(report_of(simulated_car(drive)).sections.at(0).blocks).at(0);
+  };
+  const XYPlot slalom = path_of("model = \"bicycle\"\nmanoeuvre = \"slalom\"\nspeed = 12\nduration = 1\ncones = 3\n");
+  EXPECT_FALSE(slalom.equal_scale);
+  EXPECT_THAT(slalom.caption, HasSubstr("not to scale"));
+  ASSERT_EQ(slalom.series.size(), 2U);
+  EXPECT_EQ(slalom.series[1].x.size(), 3U) << "a point for each cone";
+  const XYPlot step = path_of("model = \"bicycle\"\nmanoeuvre = \"step steer\"\nspeed = 20\nduration = 1\n");
+  EXPECT_TRUE(step.equal_scale);
+  EXPECT_EQ(step.series.size(), 1U);
+}
+
+TEST(VehicleReport, SaysUndersteerAndRollOfTheFourWheelModelInDegPerG) {
+  SimulatedCar car = simulated_car("manoeuvre = \"step steer\"\nspeed = 20\nduration = 1\n");
+  ASSERT_TRUE(car.run.cornering.has_value());
+  car.run.cornering = {.understeer_gradient = 2.5 * kDegree / kGravity, .roll_gradient = 5.25 * kDegree / kGravity};
+  EXPECT_THAT(report_of(car).verdict.lines, Contains("With its suspension, in gentle turns: understeer gradient 2.5 "
+                                                     "deg/g, roll gradient 5.25 deg/g."));
+  car.run.cornering.reset();
+  EXPECT_THAT(report_of(car).verdict.lines, Not(Contains(HasSubstr("With its suspension"))));
+}
+
+TEST(VehicleReport, ShowsAMetricInSIWhereItStandsInDegPerGToo) {
+  SimulatedCar car = simulated_car("model = \"bicycle\"\nmanoeuvre = \"step steer\"\nspeed = 20\nduration = 1\n");
+  car.run.metrics = {{"roll_gradient", 0.01, "rad s^2/m", "ISO 4138"},
+                     {"roll_gradient_deg_per_g", 5.6188, "deg/g", "ISO 4138"},
+                     {"sideslip_gradient", 0.01, "rad s^2/m", "ISO 4138"}};
+  const Table table = test::table_of(test::section_of(report_of(car), "Metrics").blocks, "Metrics");
+  EXPECT_EQ(test::shown_in(table, test::row_of(table, "roll_gradient"), "unit"), "rad s^2/m");
+  EXPECT_EQ(test::shown_in(table, test::row_of(table, "roll_gradient"), "value"), "0.01000");
+  EXPECT_EQ(test::shown_in(table, test::row_of(table, "roll_gradient_deg_per_g"), "value"), "5.619");
+  EXPECT_EQ(test::shown_in(table, test::row_of(table, "sideslip_gradient"), "unit"), "deg/g") << "has no twin";
 }
 
 TEST(VehicleReport, SaysHowADriveEnded) {

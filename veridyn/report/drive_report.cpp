@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
@@ -164,7 +165,7 @@ Section cornering_section(const VehicleAnalysis& a, const VehicleParameters<doub
                                                 [&] {
                                                   XYSeries line{
                                                       .name = "identified", .style = Style::kLine, .width = 2.0};
-                                                  const double K = understeer_gradient(p) * kGravity / kDegree;
+                                                  const double K = deg_per_g(understeer_gradient(p));
                                                   double most = 0.0;
                                                   for (const double x : c.lateral)
                                                     if (std::abs(x) > most) most = std::abs(x);

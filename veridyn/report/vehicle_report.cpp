@@ -8,10 +8,12 @@
 #include <complex>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/report/document/number_format.hpp"
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/figures/vehicle_figures.hpp"
 #include "veridyn/report/parts/remarks.hpp"
+#include "veridyn/report/parts/steady_cornering_section.hpp"
 
 namespace veridyn::report {
 namespace {
@@ -51,13 +53,19 @@ Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
   }
   const BicycleCharacteristics<double>& c = run.characteristics;
   const double K = c.understeer_gradient;
-  const double per_g = K * kGravity / kDegree;
+  const double per_g = deg_per_g(K);
   v.lines.push_back(
       std::isfinite(c.critical_speed)
           ? fmt::format("Oversteering: {:.3g} deg/g; unstable above {:.4g} m/s.", per_g, c.critical_speed)
       : std::isfinite(c.characteristic_speed)
           ? fmt::format("Understeering: {:.3g} deg/g; characteristic speed {:.4g} m/s.", per_g, c.characteristic_speed)
           : std::string("Neutral steering: neither a characteristic nor a critical speed."));
+  if (run.cornering) {
+    v.lines.push_back(
+        fmt::format("With its suspension, in gentle turns: understeer gradient {:.3g} deg/g, roll "
+                    "gradient {:.3g} deg/g.",
+                    deg_per_g(run.cornering->understeer_gradient), deg_per_g(run.cornering->roll_gradient)));
+  }
   if (!study.vehicle.assumed.empty())
     v.lines.push_back(
         fmt::format("{} numbers that this model does not need were assumed.", study.vehicle.assumed.size()));
@@ -67,13 +75,17 @@ Verdict verdict(const SimulationStudy& study, const SimulationRun& run) {
 Table metric_table(std::span<const Metric> metrics) {
   Table table{.title = "Metrics",
               .caption = "As the named standard defines them; a dash where the drive does not show them."};
+  // What stands in deg/g in a row of its own stays in SI.
+  const auto also_per_g = [&](const Metric& m) {
+    return std::ranges::any_of(metrics, [&](const Metric& other) { return other.name == m.name + "_deg_per_g"; });
+  };
   table.columns = {{.name = "metric", .align = Align::kLeft},
                    {.name = "value"},
                    {.name = "unit", .align = Align::kLeft},
                    {.name = "source", .align = Align::kLeft},
                    {.name = "meaning", .align = Align::kLeft}};
   for (const Metric& m : metrics) {
-    const ReadableNumber r = readable(m.value, m.unit, m.name);
+    const ReadableNumber r = also_per_g(m) ? ReadableNumber{m.value, m.unit} : readable(m.value, m.unit, m.name);
     table.rows.push_back({.cells = {text_cell(m.name), number_cell(r.value), text_cell(r.unit), text_cell(m.source),
                                     text_cell(m.meaning)}});
   }
@@ -196,17 +208,13 @@ Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, 
   if (t.size() > 1) {
     Section path{.title = "Path and accelerations"};
     XYPlot seen = path_figure(drives);
-    if (study.manoeuvre.course) {
-      for (const Lane& lane : study.manoeuvre.course->lanes) {
-        for (const double y : {lane.left, lane.right}) {
-          seen.series.push_back({.name = "cones",
-                                 .x = {lane.begin, lane.end},
-                                 .y = {y, y},
-                                 .role = Role::kReference,
-                                 .style = Style::kLine});
-        }
-      }
+    std::vector<XYSeries> cones = course_series(study.manoeuvre);
+    if (!cones.empty()) {
+      // To scale, a course is a line: metres aside over hundreds ahead.
+      seen.equal_scale = false;
+      seen.caption = "The path of the centre of gravity, seen from above; enlarged sideways, not to scale.";
     }
+    for (XYSeries& one : cones) seen.series.push_back(std::move(one));
     path.blocks.emplace_back(std::move(seen));
     path.blocks.emplace_back(g_g_figure(drives, study.four_wheel.gravity));
     document.sections.push_back(std::move(path));
@@ -216,6 +224,7 @@ Document vehicle_report(const SimulationStudy& study, const SimulationRun& run, 
     if (!ride.panels.empty())
       document.sections.push_back({.title = "Body and wheels", .blocks = {std::move(ride)}, .folded = true});
   }
+  document.sections.push_back(steady_cornering_section(study, run));
   if (!run.metrics.empty()) document.sections.push_back({.title = "Metrics", .blocks = {metric_table(run.metrics)}});
 
   Section linear{.title = "Linear analysis", .folded = true};

@@ -52,6 +52,26 @@ TEST(PathFigure, IsToScaleAndHasALineForEachDrive) {
   EXPECT_EQ(plot.series[1].role, Role::kReference);
 }
 
+TEST(CourseSeries, AreTheEdgesOfLanesAndTheConesOfASlalom) {
+  vehicle::Manoeuvre manoeuvre;
+  EXPECT_THAT(course_series(manoeuvre), IsEmpty());
+  manoeuvre.slalom = vehicle::slalom_course(3, 18.0, 0.5, 1.75);
+  const std::vector<XYSeries> cones = course_series(manoeuvre);
+  ASSERT_EQ(cones.size(), 1U);
+  EXPECT_THAT(cones[0].x, ElementsAre(40.0, 58.0, 76.0));
+  EXPECT_THAT(cones[0].y, ElementsAre(0.0, 0.0, 0.0));
+  EXPECT_EQ(cones[0].style, Style::kMarkers);
+  manoeuvre.slalom.reset();
+  manoeuvre.course = vehicle::iso_obstacle_avoidance(1.8);
+  const std::vector<XYSeries> edges = course_series(manoeuvre);
+  ASSERT_EQ(edges.size(), 6U) << "left and right of three lanes";
+  const vehicle::Lane& second = manoeuvre.course->lanes[1];
+  EXPECT_THAT(edges[2].x, ElementsAre(second.begin, second.end));
+  EXPECT_THAT(edges[2].y, ElementsAre(second.left, second.left));
+  EXPECT_THAT(edges[3].y, ElementsAre(second.right, second.right));
+  for (const XYSeries& edge : edges) EXPECT_EQ(edge.style, Style::kLine);
+}
+
 TEST(GGFigure, CountsInTheGravityOfTheDriveAndLeavesOutModelsWithoutAccelerations) {
   const VehicleTrajectory drive = bicycle_motion();
   VehicleTrajectory without = bicycle_motion();

@@ -6,6 +6,7 @@
 
 #include "tests/vehicle/simulation/metric_value.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"
 
@@ -65,9 +66,9 @@ TEST(CourseDrives, RampSteerReachesTheLimitOfTheTyresAlikeToBothSides) {
   EXPECT_EQ(value(right.metrics, "peak_lateral_acceleration"), limit);
   EXPECT_EQ(value(right.metrics, "steer_at_peak"), -value(left.metrics, "steer_at_peak"));
   // Gentle turns are those of the linear model; the ramp lags, and the tyres saturate a little up to 4 m/s^2.
-  const double gentle = left.cornering->understeer_gradient * kGravity / kDegree;
+  const double gentle = deg_per_g(left.cornering->understeer_gradient);
   EXPECT_NEAR(value(left.metrics, "understeer_gradient_deg_per_g"), gentle, 0.25 * gentle);
-  EXPECT_NEAR(value(left.metrics, "roll_gradient_deg_per_g"), left.cornering->roll_gradient * kGravity / kDegree, 0.15);
+  EXPECT_NEAR(value(left.metrics, "roll_gradient_deg_per_g"), deg_per_g(left.cornering->roll_gradient), 0.15);
 }
 
 TEST(CourseDrives, BrakingInATurnBeginsOnItsCircleAndLosesSpeedAsItsBrakesSay) {

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 
 namespace veridyn::report {
 
@@ -99,8 +100,8 @@ ReadableNumber readable(double value, const std::string& unit, std::string_view 
       {"rad/s", "deg/s", 1.0 / kDegree},
       {"rad/s^2", "deg/s^2", 1.0 / kDegree},
       {"s rad", "s deg", 1.0 / kDegree},
-      {"rad s^2/m", "deg/g", kGravity / kDegree},
-      {"rad/(m/s^2)", "deg/g", kGravity / kDegree},
+      {"rad s^2/m", "deg/g", deg_per_g(1.0)},
+      {"rad/(m/s^2)", "deg/g", deg_per_g(1.0)},
       {"m/s^2/rad", "m/s^2/deg", kDegree},
       {"m/(s^2 rad)", "m/s^2/deg", kDegree},
   }};

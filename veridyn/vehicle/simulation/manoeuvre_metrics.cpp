@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
+#include "veridyn/vehicle/simulation/steady_turn.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -91,31 +93,6 @@ std::vector<Metric> step_metrics(const char* name, const char* unit, const Vehic
   return list;
 }
 
-/// Slope and intercept of y over x.
-struct Line {
-  double slope = kNone, intercept = kNone;
-  std::size_t count = 0;
-};
-Line fit(const std::vector<double>& x, const std::vector<double>& y) {
-  Line line{.count = x.size()};
-  if (x.size() < 3) return line;
-  double mx = 0.0, my = 0.0, xx = 0.0, xy = 0.0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mx += x[i] / n;
-    my += y[i] / n;
-  }
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mx) * (x[i] - mx);
-    xy += (x[i] - mx) * (y[i] - my);
-  }
-  if (xx > 0.0) {
-    line.slope = xy / xx;
-    line.intercept = my - line.slope * mx;
-  }
-  return line;
-}
-
 }  // namespace
 
 std::vector<Metric> step_steer_metrics(const VehicleTrajectory& t) {
@@ -175,30 +152,17 @@ std::vector<Metric> sine_with_dwell_metrics(const VehicleTrajectory& t) {
 
 std::vector<Metric> steady_state_metrics(const VehicleTrajectory& t, double wheelbase, double begin, double low,
                                          double high) {
-  std::vector<double> acceleration, beyond, sideslip, roll;
-  const bool rolls = t.roll.size() == t.size();
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double speed = std::hypot(t.u[i], t.v[i]);
-    const double centripetal = speed * t.r[i];
-    const double size = std::abs(centripetal);
-    if (!(size >= low && size <= high && t.time[i] >= begin)) continue;
-    const double sign = centripetal < 0.0 ? -1.0 : 1.0;
-    acceleration.push_back(size);
-    beyond.push_back(sign * (t.steer[i] - wheelbase * t.r[i] / speed));
-    sideslip.push_back(sign * std::atan2(t.v[i], t.u[i]));
-    if (rolls) roll.push_back(sign * t.roll[i]);
-  }
-  const Line understeer = fit(acceleration, beyond);
+  const TurnSamples turn = steady_turn(t, wheelbase, begin);
   const std::string range = fmt::format("over {:g} to {:g} m/s^2", low, high);
-  std::vector<Metric> list{
-      {"understeer_gradient", understeer.slope, "rad s^2/m", "ISO 4138", range},
-      {"understeer_gradient_deg_per_g", understeer.slope * kGravity * 180.0 / kPi, "deg/g", "ISO 4138", range},
-      {"sideslip_gradient", fit(acceleration, sideslip).slope, "rad s^2/m", "ISO 4138", range}};
-  if (rolls) {
-    const double slope = fit(acceleration, roll).slope;
-    list.push_back({"roll_gradient", slope, "rad s^2/m", "ISO 4138", range});
-    list.push_back({"roll_gradient_deg_per_g", slope * kGravity / kDegree, "deg/g", "ISO 4138", range});
-  }
+  std::vector<Metric> list;
+  const auto add = [&](const char* name, const std::vector<double>& shown, bool per_g) {
+    const double slope = turn_gradient(turn.acceleration, shown, low, high).slope;
+    list.push_back({name, slope, "rad s^2/m", "ISO 4138", range});
+    if (per_g) list.push_back({std::string(name) + "_deg_per_g", deg_per_g(slope), "deg/g", "ISO 4138", range});
+  };
+  add("understeer_gradient", turn.extra_steer, true);
+  add("sideslip_gradient", turn.sideslip, false);
+  if (t.roll.size() == t.size()) add("roll_gradient", turn.roll, true);
   return list;
 }
 
@@ -366,9 +330,7 @@ std::vector<Metric> manoeuvre_metrics(const VehicleTrajectory& t, const Manoeuvr
       }
       break;
     case ManoeuvreKind::kSteadyStateCircle:
-      // On a given circle the beginning is the driver's way onto it.
-      list = steady_state_metrics(t, parameters.wheelbase(),
-                                  manoeuvre.radius != 0.0 ? 0.15 * manoeuvre.default_duration : 0.0);
+      list = steady_state_metrics(t, parameters.wheelbase(), steady_turn_begin(manoeuvre));
       break;
     case ManoeuvreKind::kDoubleLaneChange:
     case ManoeuvreKind::kObstacleAvoidance:

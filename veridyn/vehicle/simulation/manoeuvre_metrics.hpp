@@ -9,6 +9,7 @@
 #include "veridyn/vehicle/manoeuvre/lane_change.hpp"
 #include "veridyn/vehicle/manoeuvre/manoeuvre.hpp"
 #include "veridyn/vehicle/model/vehicle_trajectory.hpp"
+#include "veridyn/vehicle/simulation/steady_turn.hpp"
 
 namespace veridyn::vehicle {
 
@@ -40,7 +41,8 @@ struct Metric {
 /// absolute lateral acceleration, from the time `begin` [s] on: understeer gradient d(delta - L/R)/d a_y, sideslip
 /// gradient, roll gradient (where there is a roll angle); understeer and roll also in deg/g.
 [[nodiscard]] std::vector<Metric> steady_state_metrics(const VehicleTrajectory& trajectory, double wheelbase,
-                                                       double begin = 0.0, double low = 0.5, double high = 4.0);
+                                                       double begin = 0.0, double low = kGentlestTurn,
+                                                       double high = kSharpestGentleTurn);
 
 /// ISO 3888-1: whether and by how much the body stayed within the lanes; entry speed and peaks.
 [[nodiscard]] std::vector<Metric> lane_change_metrics(const VehicleTrajectory& trajectory,
