@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "apps/veridyn/analysis_results.hpp"
 #include "apps/veridyn/console.hpp"
@@ -63,10 +64,10 @@ std::string filter_errors_csv(const Reconstruction& r) {
   return text;
 }
 
-/// The tables of a reconstruction that there are.
-void write_filter_tables(OutputFolder& folder, const Reconstruction& r) {
-  if (!r.sensor_errors.empty()) folder.write("sensor_errors.csv", sensor_errors_csv(r));
-  if (!r.comparison.empty()) folder.write("filter_errors.csv", filter_errors_csv(r));
+/// The tables of a reconstruction that there are; `number` of one of several flights: "_2".
+void write_filter_tables(OutputFolder& folder, const Reconstruction& r, const std::string& number = {}) {
+  if (!r.sensor_errors.empty()) folder.write("sensor_errors" + number + ".csv", sensor_errors_csv(r));
+  if (!r.comparison.empty()) folder.write("filter_errors" + number + ".csv", filter_errors_csv(r));
 }
 
 /// At most `rate_Hz` samples a second of each channel: an hour at 100 Hz with all its bands would be 300 MB of text.
@@ -133,6 +134,11 @@ void print_identification(const FlightAnalysis& analysis, const std::filesystem:
     if (r.structure)
       print_line(options, fmt::format("  structure    {}: {}", name_of(r.coefficient), r.structure->text));
   }
+  for (const estimation::RecordingUse& recording : analysis.estimate.recordings) {
+    std::string scores;
+    for (const auto& [name, v] : recording.validation) scores += fmt::format(", R2 of {} {:.2f}", name, v.r2);
+    print_line(options, fmt::format("  recording    {}: {}{}", recording.name, recording.use, scores));
+  }
   for (const std::string& note : analysis.others.notes) print_line(options, fmt::format("  alongside    {}", note));
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     print_line(options, fmt::format("  hold-out     {}: MAE {:.3g} {}, R2 {:.3f}, Theil {:.3f}", q.name, q.fit.mae,
@@ -159,19 +165,24 @@ void write_identification(const StudyRun& run, OutputFolder& folder, const Fligh
                           const FlightAnalysis& analysis) {
   report::AircraftReportContext context{.program = program_name()};
   context.command = run.command;
-  std::string page, flight;  // the large texts
-  numerics::parallel_for(2, run.options().threads, [&](std::size_t k) {
+  const std::size_t count = analysis.flights.size();
+  std::string page;  // the large texts
+  std::vector<std::string> flights(count);
+  numerics::parallel_for(1 + count, run.options().threads, [&](std::size_t k) {
     if (k == 0)
       page = report::to_html(report::identification_report(study, analysis, context));
     else
-      flight = io::to_csv(thinned(analysis.flights.front().reconstruction.smoothed, kFlightCsvRate_Hz));
+      flights[k - 1] = io::to_csv(thinned(analysis.flights[k - 1].reconstruction.smoothed, kFlightCsvRate_Hz));
   });
   folder.write("coefficients.csv", io::to_csv(coefficient_recording(analysis)));
   if (analysis.validation.available())
     folder.write("validation.csv", io::to_csv(validation_recording(analysis.validation)));
   folder.write("report.html", page);
-  folder.write("flight.csv", flight);
-  write_filter_tables(folder, analysis.flights.front().reconstruction);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string number = count == 1 ? std::string() : fmt::format("_{}", k + 1);
+    folder.write("flight" + number + ".csv", flights[k]);
+    write_filter_tables(folder, analysis.flights[k].reconstruction, number);
+  }
   folder.write("parameters.csv", parameters_csv(analysis.estimate));
   if (!analysis.others.empty()) folder.write("methods.csv", methods_csv(analysis));
   if (searched_structure(analysis)) folder.write("structure.csv", structure_csv(analysis));
@@ -194,10 +205,15 @@ void write_reconstruction(OutputFolder& folder, const FlightStudy& study, const 
   write_filter_tables(folder, analysis.flights.front().reconstruction);
 }
 
-void publish_identification(const StudyRun& run, OutputFolder& folder, const FlightStudy& study,
+void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const FlightStudy> studies,
                             const FlightAnalysis& analysis, const std::vector<std::filesystem::path>& more_inputs) {
-  write_identification(run, folder, study, analysis);
-  RunRecord record = run.record(study.seed, study.inputs);
+  write_identification(run, folder, studies.front(), analysis);
+  std::vector<std::filesystem::path> inputs;
+  for (const FlightStudy& study : studies) {
+    for (const std::filesystem::path& file : study.inputs)
+      if (std::ranges::find(inputs, file) == inputs.end()) inputs.push_back(file);
+  }
+  RunRecord record = run.record(studies.front().seed, std::move(inputs));
   record.inputs.insert(record.inputs.end(), more_inputs.begin(), more_inputs.end());
   folder.publish(record, run.options(), summary_of(analysis, folder.path()));
   print_identification(analysis, folder.path(), run.options());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,10 @@ namespace veridyn::app {
 
 /// Writes, publishes and prints an identification or validation: estimate.json, subject.toml, parameters.csv,
 /// flight.csv, coefficients.csv, validation.csv, report.html, run.json; jsbsim.xml where every coefficient was
-/// identified.
+/// identified. Of several flights flight_1.csv, flight_2.csv, ... in place of flight.csv.
+/// @param studies  a flight each
 /// @param more_inputs of the run record, beyond the study and what it names
-void publish_identification(const StudyRun& run, OutputFolder& folder, const aircraft::FlightStudy& study,
+void publish_identification(const StudyRun& run, OutputFolder& folder, std::span<const aircraft::FlightStudy> studies,
                             const aircraft::FlightAnalysis& analysis,
                             const std::vector<std::filesystem::path>& more_inputs = {});
 

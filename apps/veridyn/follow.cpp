@@ -38,6 +38,8 @@ FollowOptions FollowOptions::of(const Arguments& arguments) {
 std::vector<std::filesystem::path> followed_files(const StudyTable& root) {
   if (!root.has("data")) root.fail("data", "is missing: --live follows the recording that it names");
   const StudyTable data = root.table("data");
+  for (const char* key : {"runs", "run", "holdout_runs"})
+    if (data.has(key)) data.fail(key, "is for several recordings; --live follows one: data.file = \"flight.csv\"");
   return data.files(data.has("file") ? "file" : "files");
 }
 

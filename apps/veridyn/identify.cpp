@@ -32,11 +32,11 @@ int identify_aircraft(const StudyRun& run) {
   refuse_checkpoint(run);
   OutputFolder folder(run.options().out);
   WorkProgress progress(run, &folder);
-  const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::identify(flight, progress);
+  const std::vector<aircraft::FlightStudy> flights = aircraft::read_flights(run.study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::identify(flights, progress);
   if (analysis.interrupted) throw Interrupted();
   progress.stage("writing the results");
-  publish_identification(run, folder, flight, analysis);
+  publish_identification(run, folder, flights, analysis);
   return kDone;
 }
 

@@ -13,10 +13,10 @@ int validate_aircraft(const StudyRun& run) {
   const std::string& file = run.arguments.text("--estimate-file");
   const estimation::Estimate estimate = io::read_estimate(file);
   TerminalProgress progress = progress_of(run.options());
-  const aircraft::FlightStudy flight = aircraft::read_study(run.study, progress);
-  const aircraft::FlightAnalysis analysis = aircraft::validate(flight, estimate, progress);
+  const std::vector<aircraft::FlightStudy> flights = aircraft::read_flights(run.study, progress);
+  const aircraft::FlightAnalysis analysis = aircraft::validate(flights, estimate, progress);
   if (analysis.interrupted) throw Interrupted();
-  publish_identification(run, folder, flight, analysis, {file});
+  publish_identification(run, folder, flights, analysis, {file});
   return kDone;
 }
 

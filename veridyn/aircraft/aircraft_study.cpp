@@ -237,13 +237,33 @@ estimation::Judgement judgement_of(const FlightAnalysis& analysis, std::span<con
   return judgement;
 }
 
+estimation::ValidationMeasure measure_of(const numerics::FitMeasures& fit, const std::string& unit) {
+  return {fit.mae, fit.rmse, fit.r2, fit.theil, unit};
+}
+
+/// What each of several recordings was for, and how well it is predicted.
+std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analysis, bool tried) {
+  std::vector<estimation::RecordingUse> recordings = recording_uses(analysis.flights, tried);
+  for (estimation::RecordingUse& recording : recordings) {
+    for (const CoefficientResult& result : analysis.coefficients) {
+      for (const FlightFit& f : result.flight_fits)
+        if (f.flight == recording.name) recording.validation[result.name] = measure_of(f.fit, "1");
+    }
+    for (const FlightPrediction& flown : analysis.validation.by_flight) {
+      if (flown.flight != recording.name) continue;
+      for (const PredictedQuantity& q : flown.quantities) recording.validation[q.name] = measure_of(q.fit, q.unit);
+    }
+  }
+  return recordings;
+}
+
 /// What estimate.json will say of an analysis that is complete but for it.
 estimation::Estimate summarise(std::span<const FlightStudy> studies, const FlightAnalysis& analysis) {
   estimation::Estimate estimate = make_estimate(studies.front().subject, analysis.coefficients);
   for (const OtherParameter& other : analysis.others.parameters) estimate.other_methods.push_back(other.estimate);
   estimate.verdict = verdict_text(analysis.coefficients);
   for (const PredictedQuantity& q : analysis.validation.quantities) {
-    estimate.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
+    estimate.validation[q.name] = measure_of(q.fit, q.unit);
   }
   estimate.warnings = warnings_of(studies, analysis);
   std::vector<estimation::Evidence> of_all = recording_rows(analysis.flights);
@@ -264,6 +284,7 @@ estimation::Estimate summarise(std::span<const FlightStudy> studies, const Fligh
 FlightAnalysis with_results(FlightAnalysis analysis, std::span<const FlightStudy> studies, const Progress& progress) {
   const FlightStudy& study = studies.front();
   analysis.estimate = summarise(studies, analysis);
+  analysis.estimate.recordings = recordings_of(analysis, false);
   analysis.groups = parameter_groups(analysis.coefficients, analysis.others);
   analysis.predictions = predictions(analysis.validation.quantities, analysis.coefficients);
   if (study.true_subject) analysis.truth = true_values(*study.true_subject, study.subject, analysis.coefficients);
@@ -336,6 +357,7 @@ FlightAnalysis validate(std::span<const FlightStudy> studies, const estimation::
   analysis.estimate.parameters = estimate.parameters;
   analysis.estimate.covariance = estimate.covariance;
   analysis.estimate.method = estimate.method;
+  analysis.estimate.recordings = recordings_of(analysis, true);
   return analysis;
 }
 

@@ -27,6 +27,13 @@ struct ValidationMeasure {
   std::string unit = "1";
 };
 
+/// One of several recordings that an estimate was made from, or tried on.
+struct RecordingUse {
+  std::string name;                                       ///< of its file
+  std::string use;                                        ///< "identification", "hold-out", "left out", ...
+  std::map<std::string, ValidationMeasure> validation{};  ///< how well its held-out part is predicted
+};
+
 /// A measurement that was not made, and how wide the widest interval of 95 % would be with it (half of it over the
 /// value known before).
 struct NextMeasurement {
@@ -60,6 +67,7 @@ struct Estimate {
   std::vector<MethodEstimate> other_methods;  ///< alongside `parameters`; `other_methods` of estimate.json
   std::map<std::string, double> fit;
   std::map<std::string, ValidationMeasure> validation;
+  std::vector<RecordingUse> recordings = {};  ///< where there are several; `validation` is of all of them
   std::string verdict;
   Judgement judgement;             ///< of the whole; "not judged" where an estimate was read from an older file
   std::vector<Evidence> evidence;  ///< every check behind it

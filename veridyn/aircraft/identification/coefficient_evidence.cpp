@@ -162,6 +162,50 @@ std::vector<Evidence> coefficient_evidence(const std::string& name, const Coeffi
   return rows;
 }
 
+Evidence scatter_row(const std::string& name, const estimation::GroupScatter& scatter,
+                     const estimation::RegressionEstimate& chosen) {
+  Evidence row{.name = "scatter between flights",
+               .about = name,
+               .value = scatter.p,
+               .limit = estimation::GroupScatter::kLevel,
+               .scale = "p",
+               .bears_on = Purpose::kParameters};
+  if (!(scatter.freedom > 0.0)) {
+    row.outcome = Outcome::kNotVerified;
+    row.value = std::nan("");
+    row.text = fmt::format(
+        "{} of {} flights determine its parameters by themselves, so that nothing shows whether "
+        "these differ between flights; the intervals take them to be the same",
+        scatter.compared, scatter.groups);
+    row.advice = "fly every manoeuvre in at least two of the flights";
+    return row;
+  }
+  const std::string test =
+      fmt::format("Cochran's Q {:.0f} on {:.0f} degrees of freedom, p = {:.2g}", scatter.q, scatter.freedom, scatter.p);
+  if (!scatter.found()) {
+    row.outcome = Outcome::kPassed;
+    row.text = fmt::format("{} flights have the same parameters within their error bars ({})", scatter.compared, test);
+    return row;
+  }
+  // The relative scatter of what is not zero says most.
+  std::string most;
+  double largest = 0.0;
+  for (std::size_t j = 0; j < chosen.parameters.size(); ++j) {
+    const estimation::Parameter& p = chosen.parameters[j];
+    const double share = scatter.between_sigma(static_cast<Eigen::Index>(j)) / std::abs(p.value);
+    if (p.status != estimation::ParameterStatus::kIdentified || !(share > largest)) continue;
+    largest = share;
+    most = fmt::format(", most in {} (standard deviation between flights {:.2g} %)", p.name, 100.0 * share);
+  }
+  row.outcome = Outcome::kCare;
+  row.text = fmt::format(
+      "the flights differ by more than their error bars{}: {}; the intervals are those of the mean of "
+      "flights like these, from the scatter of {}",
+      most, test, scatter.compared);
+  row.advice = "find what differs between the flights, or fly more: the interval of a mean of few is wide";
+  return row;
+}
+
 std::vector<estimation::Parameter> weak_by_collinearity(std::vector<estimation::Parameter> parameters,
                                                         std::span<const Evidence> rows) {
   constexpr double kInflation = 10.0;  // as the row's

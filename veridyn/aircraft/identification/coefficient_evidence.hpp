@@ -12,6 +12,7 @@ namespace veridyn::aircraft {
 /// Figures by which the estimate of a coefficient is judged; see CoefficientResult.
 struct CoefficientChecks {
   numerics::FitMeasures identification_fit, holdout_fit;
+  std::vector<FlightFit> flight_fits;  ///< of several flights, on the hold-out of each
   double error_ratio = 0.0;
   double holdout_ratio = 0.0;  ///< residual variance on the hold-out over what the sensors' errors leave there
   double unmodelled_share = 0.0;
@@ -31,6 +32,12 @@ struct CoefficientChecks {
                                                                      const CoefficientChecks& checks,
                                                                      const estimation::RegressionComparison& comparison,
                                                                      const IdentifyOptions& options);
+
+/// The row "scatter between flights": do several flights have the same parameters within their error bars (Cochran's
+/// Q)? With care where they have not: the intervals of `chosen` are then those of the mean of flights like these, from
+/// the scatter. Not verified where no two flights determine the parameters by themselves.
+[[nodiscard]] estimation::Evidence scatter_row(const std::string& name, const estimation::GroupScatter& scatter,
+                                               const estimation::RegressionEstimate& chosen);
 
 /// The parameters with status weak for what is identified but collinear (a variance inflation above 10) where the row
 /// "collinearity" did not pass: what the residual holds beyond noise may be in any of them.

@@ -36,6 +36,18 @@ FlightEvidence nothing_excited(const PreparedFlight& flight) {
            .advice = fmt::format("take {} out of the study, or lower segments.min_input", flight.name)}};
 }
 
+std::string use_of(const PreparedFlight& flight, bool tried) {
+  const auto any = [&](std::vector<TimeSpan> recording::Segments::*spans) {
+    return !(flight.segments.longitudinal.*spans).empty() || !(flight.segments.lateral.*spans).empty();
+  };
+  if (!flight.usable()) return "left out";
+  if (!any(&recording::Segments::excited)) return "nothing excited";
+  if (tried) return "validation";
+  const bool identification = any(&recording::Segments::identification), holdout = any(&recording::Segments::holdout);
+  if (identification && holdout) return "identification and hold-out";
+  return identification ? "identification" : "hold-out";
+}
+
 }  // namespace
 
 std::string of_flight(std::string_view name, std::string_view text) {
@@ -48,6 +60,13 @@ Segments all_held_out(Segments segments) {
     axis->identification.clear();
   }
   return segments;
+}
+
+std::vector<estimation::RecordingUse> recording_uses(std::span<const PreparedFlight> flights, bool tried) {
+  std::vector<estimation::RecordingUse> uses;
+  if (flights.size() < 2) return uses;
+  for (const PreparedFlight& flight : flights) uses.push_back({.name = flight.name, .use = use_of(flight, tried)});
+  return uses;
 }
 
 std::vector<PreparedFlight> side_by_side(std::vector<PreparedFlight> flights) {

@@ -9,6 +9,7 @@
 #include "veridyn/aircraft/identification/body_error.hpp"
 #include "veridyn/aircraft/identification/coefficient_description.hpp"
 #include "veridyn/aircraft/identification/coefficient_evidence.hpp"
+#include "veridyn/aircraft/identification/coefficient_fit.hpp"
 #include "veridyn/aircraft/identification/error_variance.hpp"
 #include "veridyn/aircraft/identification/flight_rows.hpp"
 #include "veridyn/aircraft/identification/sensor_doubt.hpp"
@@ -27,48 +28,10 @@ using estimation::RegressionData;
 using estimation::RegressionEstimate;
 using estimation::RegressionOptions;
 using estimation::StructureMethod;
-using internal::fit_on;
+using internal::CoefficientFit;
+using internal::fit_coefficient;
+using internal::FlightView;
 using internal::with_series;
-
-/// Factor on the standard deviation within which the noise of the sensors is known.
-constexpr double kNoiseTolerance = 2.0;
-
-/// The estimate by the given method, or the recommended one; null where there is none.
-const RegressionEstimate* choose(const RegressionComparison& comparison, std::optional<Method> method) {
-  const auto usable = [&](Method m) {
-    const RegressionEstimate* estimate = comparison.find(m);
-    return estimate != nullptr && estimate->usable() ? estimate : nullptr;
-  };
-  if (method) return usable(*method);
-  if (const RegressionEstimate* best = comparison.best()) return best;
-  // What it would have been, so that the report can show it with the reason for its rejection.
-  for (const Method fallback : {Method::kPcaGtls, Method::kGtls, Method::kOls}) {
-    if (const RegressionEstimate* estimate = usable(fallback)) return estimate;
-  }
-  return nullptr;
-}
-
-/// Of two independent estimates of the same parameters.
-estimation::Agreement agreement_of(const RegressionEstimate& a, const RegressionEstimate& b) {
-  return estimation::agreement(a.theta - b.theta, a.covariance + b.covariance);
-}
-
-/// View of what coefficients are identified from, and how.
-struct FlightView {
-  std::span<const PreparedFlight> flights;
-  const Subject& subject;
-  const IdentifyOptions& options;
-
-  [[nodiscard]] FlightRows rows(const CoefficientModel& model, RowUse use) const {
-    return coefficient_rows(model, flights, use, subject);
-  }
-  [[nodiscard]] RegressionOptions regression_options() const {
-    RegressionOptions regression;
-    regression.significance = options.significance;
-    regression.signal_to_noise = options.signal_to_noise;
-    return regression;
-  }
-};
 
 /// A model whose terms were chosen among candidates; without a search where there was too little to choose from.
 struct ChosenTerms {
@@ -100,39 +63,6 @@ ChosenTerms choose_terms(const CoefficientModel& given, StructureMethod method, 
   return {std::move(chosen), std::move(search)};
 }
 
-/// The parameters of a model by all methods on the identification rows.
-struct CoefficientFit {
-  CoefficientModel model;  ///< values are the chosen estimate's, where there is one
-  FlightRows rows;
-  RegressionComparison comparison;
-  std::optional<RegressionEstimate> chosen;
-  double error_ratio = 0.0;
-  bool enough_rows = false;
-};
-
-CoefficientFit fit_coefficient(CoefficientModel model, const FlightView& flight) {
-  CoefficientFit fit;
-  fit.model = std::move(model);
-  fit.rows = flight.rows(fit.model, RowUse::kIdentification);
-  RegressionData& data = fit.rows.data;
-  fit.enough_rows = data.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
-  if (!fit.enough_rows) return fit;
-  const auto n = data.parameters();
-  const RegressionData by_sensors = data;
-  const EquationError error = equation_error(data);
-  data.error_covariance(n, n) = error.variance;
-  fit.error_ratio = error.ratio;
-  fit.comparison = estimation::compare(data, flight.regression_options());
-  if (const RegressionEstimate* chosen = choose(fit.comparison, flight.options.method)) {
-    fit.chosen = *chosen;
-    // The errors of the regressors explain all: then the residual is compared with theirs and the sensors' of z.
-    if (!(fit.error_ratio > 0.0)) fit.error_ratio = residual_ratio(by_sensors, chosen->theta);
-    for (std::size_t i = 0; i < fit.model.size(); ++i)
-      fit.model.values[i] = chosen->theta(static_cast<Eigen::Index>(i));
-  }
-  return fit;
-}
-
 /// The terms whose parameters are significant, the constant always among them.
 CoefficientModel significant_terms(const CoefficientModel& model, const RegressionEstimate& estimate) {
   CoefficientModel kept{model.coefficient, {}, {}};
@@ -143,51 +73,6 @@ CoefficientModel significant_terms(const CoefficientModel& model, const Regressi
     kept.values.push_back(kNaN);
   }
   return kept;
-}
-
-/// What the study gave for the terms of a model, where it gave all of them.
-std::optional<Eigen::VectorXd> start_values(const CoefficientModel& model, const Subject& subject) {
-  const CoefficientModel* given = subject.model.find(model.coefficient);
-  if (given == nullptr) return std::nullopt;
-  Eigen::VectorXd values(signed_index(model.size()));
-  for (std::size_t i = 0; i < model.size(); ++i)
-    values(static_cast<Eigen::Index>(i)) = given->value_of(model.terms[i].expression).value_or(kNaN);
-  return values.allFinite() ? std::optional(values) : std::nullopt;
-}
-
-CoefficientChecks check_estimate(const CoefficientFit& fit, double row_interval_s, const FlightView& flight) {
-  const RegressionEstimate& chosen = *fit.chosen;
-  CoefficientChecks checks;
-  checks.error_ratio = fit.error_ratio;
-  checks.identification_fit = fit_on(fit.rows.data, chosen.theta);
-  const double beyond_sensors = std::max(0.0, 1.0 - kNoiseTolerance * kNoiseTolerance / fit.error_ratio);
-  checks.unmodelled_share = (1.0 - checks.identification_fit.r2) * beyond_sensors;
-  const RegressionData& data = fit.rows.data;
-  const Eigen::VectorXd residual = data.regressand - data.regressors * chosen.theta;
-  const auto lags = static_cast<std::size_t>(std::clamp(3.0 / row_interval_s, 10.0, 200.0));
-  checks.residual_autocorrelation =
-      numerics::autocorrelation({residual.data(), static_cast<std::size_t>(residual.size())}, lags, data.segment);
-
-  RegressionData unseen = flight.rows(fit.model, RowUse::kHoldout).data;
-  checks.has_holdout = unseen.rows() >= static_cast<Eigen::Index>(10 * fit.model.size());
-  if (!checks.has_holdout) return checks;
-  checks.holdout_fit = fit_on(unseen, chosen.theta);
-  constexpr double kBand95 = 1.96;
-  const double band = kBand95 * std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
-  const Eigen::ArrayXd missed = (unseen.regressand - unseen.regressors * chosen.theta).array().abs();
-  checks.outside_bands = static_cast<double>((missed > band).count()) / static_cast<double>(missed.size());
-  if (const std::optional<Eigen::VectorXd> start = start_values(fit.model, flight.subject))
-    checks.error_over_start = checks.holdout_fit.rmse / fit_on(unseen, *start).rmse;
-  const auto n = unseen.parameters();
-  checks.holdout_ratio = residual_ratio(unseen, chosen.theta);
-  unseen.error_covariance(n, n) = data.error_covariance(n, n);
-  const RegressionEstimate again = estimation::estimate(unseen, chosen.method, flight.regression_options());
-  if (again.usable()) {
-    const estimation::Agreement agreement = agreement_of(chosen, again);
-    checks.contradiction_p = agreement.p;
-    checks.scatter = agreement.ratio;
-  }
-  return checks;
 }
 
 /// See body_sensitivity: each of the aircraft's constants is changed and the parameters estimated again.
@@ -204,7 +89,7 @@ Eigen::MatrixXd sensitivity_to_body(const CoefficientFit& fit, const FlightView&
 /// See doubt_sensitivity: of the doubts that are part of the interval, or of those alongside it. What one flight leaves
 /// in doubt is independent of what another does: a column each.
 Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& view, bool in_interval) {
-  Eigen::MatrixXd columns(fit.chosen->theta.size(), 0);
+  Eigen::MatrixXd columns(fit.of_rows.size(), 0);
   for (std::size_t i = 0; i < view.flights.size(); ++i) {
     const PreparedFlight& flight = view.flights[i];
     if (fit.rows.rows_of(i) == 0) continue;
@@ -220,7 +105,7 @@ Eigen::MatrixXd doubts_of_air_data(const CoefficientFit& fit, const FlightView& 
       const RegressionEstimate estimate = estimation::estimate(data, fit.chosen->method, view.regression_options());
       return estimate.usable() ? estimate.theta : Eigen::VectorXd();
     };
-    const Eigen::MatrixXd more = doubt_sensitivity(flight.signals, doubts, fit.chosen->theta, changed_estimate);
+    const Eigen::MatrixXd more = doubt_sensitivity(flight.signals, doubts, fit.of_rows, changed_estimate);
     columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
     columns.rightCols(more.cols()) = more;
   }
@@ -282,6 +167,15 @@ ExplainedVerdict not_excited(const std::string& name, const CoefficientFit& fit,
               : fmt::format("{} is not excited: {}", name, segments_text(flight.flights, axis))};
 }
 
+/// The parameters of each flight by itself, of those that determine them.
+std::vector<FlightEstimate> flight_estimates(const internal::FlightFits& each,
+                                             std::span<const PreparedFlight> flights) {
+  std::vector<FlightEstimate> estimates;
+  for (std::size_t i = 0; i < flights.size(); ++i)
+    if (each.fits[i].chosen) estimates.push_back({flights[i].name, each.fits[i].chosen->parameters});
+  return estimates;
+}
+
 /// One coefficient: terms, estimates, checks, verdict.
 CoefficientResult identify_coefficient(const CoefficientModel& given, const FlightView& flight) {
   const IdentifyOptions& options = flight.options;
@@ -300,9 +194,17 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
                            fmt::format("{}: {}", result.name, fit.comparison.reason)};
   if (!fit.enough_rows) verdict = not_excited(result.name, fit, flight, result.axis);
   if (fit.chosen) {
-    const CoefficientChecks checks = check_estimate(fit, result.row_interval_s, flight);
-    estimation::widen(*fit.chosen, checks.scatter, options.significance);
+    std::optional<internal::FlightFits> each;
+    if (flight.flights.size() > 1) each = internal::fit_each_flight(fit, flight);
+    const CoefficientChecks checks = internal::check_fit(fit, result.row_interval_s, each ? &*each : nullptr, flight);
+    const bool scatters = each && each->scatter.found();
+    if (!scatters) estimation::widen(*fit.chosen, checks.scatter, options.significance);
     result.evidence = coefficient_evidence(result.name, checks, fit.comparison, options);
+    if (each) {
+      result.evidence.push_back(scatter_row(result.name, each->scatter, *fit.chosen));
+      result.scatter = each->scatter;
+      result.flight_estimates = flight_estimates(*each, flight.flights);
+    }
     std::vector<estimation::Evidence> plausible;
     if (!result.per_unit_inertia) plausible = plausibility(given.coefficient, fit.chosen->parameters, flight.subject);
     result.evidence.insert(result.evidence.end(), plausible.begin(), plausible.end());
@@ -315,7 +217,8 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     if (reached == estimation::GroupVerdict::kIdentified) {
       result.body_sensitivity = sensitivity_to_body(fit, flight);
       widen(*fit.chosen, result.body_sensitivity, options.significance);
-      widen(*fit.chosen, doubts_of_air_data(fit, flight, true), options.significance);
+      // What each flight leaves in doubt is in their scatter.
+      if (!scatters) widen(*fit.chosen, doubts_of_air_data(fit, flight, true), options.significance);
       verdict =
           explain(result, *fit.chosen, checks, dominant_constant(*fit.chosen, result.body_sensitivity, flight.subject));
     } else {
@@ -331,6 +234,7 @@ CoefficientResult identify_coefficient(const CoefficientModel& given, const Flig
     }
     result.identification_fit = checks.identification_fit;
     result.holdout_fit = checks.holdout_fit;
+    result.flight_fits = checks.flight_fits;
     result.unmodelled_share = checks.unmodelled_share;
     result.contradiction_p = checks.contradiction_p;
     result.residual_autocorrelation = checks.residual_autocorrelation;

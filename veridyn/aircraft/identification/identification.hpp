@@ -13,6 +13,7 @@
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/estimate.hpp"
+#include "veridyn/estimation/regression/group_scatter.hpp"
 #include "veridyn/estimation/regression/regression.hpp"
 #include "veridyn/estimation/regression/structure_search.hpp"
 
@@ -60,6 +61,12 @@ struct FlightFit {
   numerics::FitMeasures fit = {};
 };
 
+/// The parameters of a coefficient by one of several flights alone.
+struct FlightEstimate {
+  std::string flight;
+  std::vector<estimation::Parameter> parameters = {};
+};
+
 /// One coefficient: the estimates of all methods, what was chosen, and whether it may be used.
 struct CoefficientResult {
   Coefficient coefficient = Coefficient::kCL;
@@ -72,6 +79,10 @@ struct CoefficientResult {
   estimation::RegressionData data;              ///< identification rows, for further analysis
   estimation::RegressionComparison comparison;  ///< OLS, TLS, GTLS, PCA-GTLS on the same rows
   std::optional<estimation::RegressionEstimate> chosen;
+  /// Of several flights: how much the parameters differ between them. Where they do, `chosen` is their mean, with error
+  /// bars from the scatter.
+  std::optional<estimation::GroupScatter> scatter;
+  std::vector<FlightEstimate> flight_estimates;          ///< of several flights, each by itself
   std::optional<estimation::StructureSearch> structure;  ///< how its terms were chosen, where they were
   double error_ratio = 0.0;  ///< residual variance over what sensor noise explains; 1 when the model is complete
   /// Share of the coefficient's variance that is neither modelled nor explained by twice the sensors' noise:

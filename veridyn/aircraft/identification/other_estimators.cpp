@@ -20,7 +20,22 @@ using estimation::RegressionEstimate;
 
 constexpr double kContradiction = 3.0;
 
-OtherParameter compared(const CoefficientResult& result, const std::string& method, const Parameter& p) {
+/// Where a parameter differs between flights, other methods on the same flights know its mean no better than
+/// regression.
+Parameter with_scatter(Parameter p, const CoefficientResult& result) {
+  if (!result.scatter || !result.scatter->found() || !result.chosen) return p;
+  const auto& all = result.chosen->parameters;
+  const auto found = std::ranges::find(all, p.name, &Parameter::name);
+  if (found == all.end()) return p;
+  const auto j = static_cast<Eigen::Index>(found - all.begin());
+  if (!(result.scatter->sigma(j) > p.sigma)) return p;
+  p.sigma = result.scatter->sigma(j);
+  estimation::set_interval(p, result.scatter->degrees_of_freedom());
+  return p;
+}
+
+OtherParameter compared(const CoefficientResult& result, const std::string& method, const Parameter& estimated) {
+  const Parameter p = with_scatter(estimated, result);
   OtherParameter row;
   row.coefficient = result.coefficient;
   row.estimate = {method, p};

@@ -41,7 +41,8 @@ struct OtherEstimators {
 
 /// Runs the estimators that `options` names: output error per axis, started at the chosen regression; frequency-domain
 /// equation error and block bootstrap per coefficient. Of several flights output error has one set of parameters and
-/// each segment's own initial state (and biases), in its own flight's wind. Nothing in `results` is changed.
+/// each segment's own initial state (and biases), in its own flight's wind; where parameters differ between flights, no
+/// method's error bar is below that of the scatter. Nothing in `results` is changed.
 [[nodiscard]] OtherEstimators compare_other_estimators(std::span<const PreparedFlight> flights, const Subject& subject,
                                                        std::span<const CoefficientResult> results,
                                                        const IdentifyOptions& options, Progress& progress);

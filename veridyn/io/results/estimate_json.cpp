@@ -217,6 +217,47 @@ void read_structure(const ordered_json& root, const std::string& file, Estimate&
         read_trial(trial, fmt::format("{}: tried_structures[{}]", file, estimate.tried_structures.size())));
 }
 
+ordered_json validation_of(const std::map<std::string, estimation::ValidationMeasure>& measures) {
+  ordered_json validation = ordered_json::object();
+  for (const auto& [name, v] : measures) {
+    validation[name] = {{"mae", number(v.mae)},
+                        {"rmse", number(v.rmse)},
+                        {"r2", number(v.r2)},
+                        {"theil", number(v.theil)},
+                        {"unit", v.unit}};
+  }
+  return validation;
+}
+
+std::map<std::string, estimation::ValidationMeasure> read_validation(const ordered_json& root,
+                                                                     const std::string& name) {
+  std::map<std::string, estimation::ValidationMeasure> validation;
+  if (!root.contains("validation") || !root["validation"].is_object()) return validation;
+  for (const auto& [key, value] : root["validation"].items()) {
+    const std::string place = fmt::format("{}: validation.{}", name, key);
+    validation[key] = {.mae = read_number(require(value, "mae", place), place),
+                       .rmse = read_number(require(value, "rmse", place), place),
+                       .r2 = read_number(require(value, "r2", place), place),
+                       .theil = read_number(require(value, "theil", place), place),
+                       .unit = read_text(value, "unit", place)};
+  }
+  return validation;
+}
+
+/// Of an estimate from several recordings.
+std::vector<estimation::RecordingUse> read_recordings(const ordered_json& root, const std::string& file) {
+  std::vector<estimation::RecordingUse> recordings;
+  if (!root.contains("recordings")) return recordings;
+  if (!root["recordings"].is_array()) throw InputError(file, "'recordings' is not an array");
+  for (const ordered_json& recording : root["recordings"]) {
+    const std::string place = fmt::format("{}: recordings[{}]", file, recordings.size());
+    recordings.push_back({.name = read_text(recording, "name", place),
+                          .use = read_text(recording, "use", place),
+                          .validation = read_validation(recording, place)});
+  }
+  return recordings;
+}
+
 }  // namespace
 
 std::string to_json(const Estimate& estimate) {
@@ -255,14 +296,10 @@ std::string to_json(const Estimate& estimate) {
   }
   root["fit"] = ordered_json::object();
   for (const auto& [name, value] : estimate.fit) root["fit"][name] = number(value);
-  root["validation"] = ordered_json::object();
-  for (const auto& [name, v] : estimate.validation) {
-    root["validation"][name] = {{"mae", number(v.mae)},
-                                {"rmse", number(v.rmse)},
-                                {"r2", number(v.r2)},
-                                {"theil", number(v.theil)},
-                                {"unit", v.unit}};
-  }
+  root["validation"] = validation_of(estimate.validation);
+  for (const estimation::RecordingUse& recording : estimate.recordings)
+    root["recordings"].push_back(
+        {{"name", recording.name}, {"use", recording.use}, {"validation", validation_of(recording.validation)}});
   root["verdict"] = estimate.verdict;
   root["grades"] = grades_of(estimate.judgement);
   root["evidence"] = ordered_json::array();
@@ -332,16 +369,8 @@ Estimate read_estimate(const std::filesystem::path& path) {
     for (const auto& [key, value] : root["fit"].items())
       estimate.fit[key] = read_number(value, fmt::format("{}: fit.{}", name, key));
   }
-  if (root.contains("validation") && root["validation"].is_object()) {
-    for (const auto& [key, value] : root["validation"].items()) {
-      const std::string place = fmt::format("{}: validation.{}", name, key);
-      estimate.validation[key] = {.mae = read_number(require(value, "mae", place), place),
-                                  .rmse = read_number(require(value, "rmse", place), place),
-                                  .r2 = read_number(require(value, "r2", place), place),
-                                  .theil = read_number(require(value, "theil", place), place),
-                                  .unit = read_text(value, "unit", place)};
-    }
-  }
+  estimate.validation = read_validation(root, name);
+  estimate.recordings = read_recordings(root, name);
   estimate.verdict = read_text(root, "verdict", name);
   estimate.judgement = read_grades(root, name);
   estimate.evidence = read_evidence(root, name);
