@@ -108,8 +108,8 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const FlightStu
   summary["changes"] = Summary::array();
   for (const FlightChange& c : tracker.changes()) {
     const std::string_view name = name_of(c.coefficient);
-    changes += fmt::format("{},{},{},{},{}\n", name, c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread",
-                           c.change.detected_s, c.change.began_s, c.change.shift);
+    changes += fmt::format("{},{},{},{},{}\n", name, estimation::kChangeKindNames[c.change.kind], c.change.detected_s,
+                           c.change.began_s, c.change.shift);
     summary["changes"].push_back(Summary::object({{"coefficient", name}, {"detected_s", c.change.detected_s}}));
   }
   summary["warnings"] = estimate.warnings;

@@ -52,9 +52,8 @@ void publish_tracking(const StudyRun& run, OutputFolder& folder, const PreparedD
     count = tracker->changes().size();
     for (const DriveChange& c : tracker->changes()) {
       const std::string_view name = kTrackedAxleNames[c.axle];
-      changes +=
-          fmt::format("{},{},{},{},{}\n", name, c.change.kind == estimation::ChangeKind::kMean ? "mean" : "spread",
-                      c.change.detected_s, c.change.began_s, c.change.shift);
+      changes += fmt::format("{},{},{},{},{}\n", name, estimation::kChangeKindNames[c.change.kind], c.change.detected_s,
+                             c.change.began_s, c.change.shift);
       summary["changes"].push_back(Summary::object({{"what", name}, {"detected_s", c.change.detected_s}}));
     }
   }

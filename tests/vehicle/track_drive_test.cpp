@@ -36,7 +36,7 @@ TEST(TrackedDrive, DoesNotDependOnThePiecesInWhichARecordingComes) {
   Progress silent;
   const DriveTracking at_once = track(study, silent);
   TrackedDrive pieces(study);
-  for (const double until : {5.0, 21.0, 21.5, 40.0, 77.3}) {
+  for (const double until : {5.0, 21.0, 60.2, 61.0, 77.3}) {
     static_cast<void>(pieces.advance(mapped(cut_at(whole, until)), false, silent));
   }
   static_cast<void>(pieces.advance(mapped(whole), true, silent));
@@ -47,17 +47,24 @@ TEST(TrackedDrive, DoesNotDependOnThePiecesInWhichARecordingComes) {
   }
 }
 
-TEST(TrackedDrive, HasNoTrackerBeforeItKnowsTheNoise) {
-  const Recording whole = drive_with_drop(4, 30.0, 1e9);
+TEST(TrackedDrive, HasNoTrackerBeforeItKnowsNoiseAndBody) {
+  const Recording whole = drive_with_drop(4, 70.0, 1e9);
   const VehicleStudy study = study_of(whole);
   Progress silent;
-  TrackedDrive drive(study);
-  EXPECT_TRUE(drive.advance(mapped(cut_at(whole, 19.0)), false, silent).empty());
-  EXPECT_EQ(drive.tracker(), nullptr);
-  EXPECT_TRUE(drive.estimate().parameters.empty());
-  static_cast<void>(drive.advance(mapped(cut_at(whole, 21.0)), false, silent));
-  ASSERT_NE(drive.tracker(), nullptr);
-  EXPECT_EQ(drive.estimate().parameters.size(), kTrackedAxles);
+  // 20 s for the noise, and for the body as long as the study says.
+  for (const double learning : {0.0, 60.0}) {
+    VehicleStudy learning_study = study;
+    learning_study.track.learning_s = learning;
+    TrackedDrive drive(learning_study);
+    const double begins = std::max(20.0, learning);
+    EXPECT_TRUE(drive.advance(mapped(cut_at(whole, begins - 1.0)), false, silent).empty());
+    EXPECT_EQ(drive.tracker(), nullptr) << learning;
+    EXPECT_TRUE(drive.estimate().parameters.empty());
+    static_cast<void>(drive.advance(mapped(cut_at(whole, begins + 1.0)), false, silent));
+    ASSERT_NE(drive.tracker(), nullptr) << learning;
+    EXPECT_EQ(drive.estimate().parameters.size(), kTrackedAxles);
+    EXPECT_EQ(drive.tracker()->body().source, learning > 0.0 ? BodySource::kLearned : BodySource::kNone);
+  }
 }
 
 TEST(TrackedDrive, RefusesADriveWithoutALateralAcceleration) {

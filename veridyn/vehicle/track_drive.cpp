@@ -1,5 +1,6 @@
 #include "veridyn/vehicle/track_drive.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "veridyn/core/constants.hpp"
@@ -8,6 +9,7 @@
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/modulating_kernel.hpp"
 #include "veridyn/recording/study_data.hpp"
+#include "veridyn/vehicle/identification/drive_evidence.hpp"
 
 namespace veridyn::vehicle {
 namespace {
@@ -34,6 +36,11 @@ void require_accel(const DriveSignals& signals) {
   throw InputError(signals.source, "has no accel_y, which tracking needs");
 }
 
+/// What the accelerometer shows of a lean.
+LeaningSensor leaning_sensor(const DriveSignals& signals, double gravity) {
+  return {.gravity = signals.gravity_removed ? 0.0 : gravity, .height = signals.accel_position[2]};
+}
+
 }  // namespace
 
 TrackedDrive::TrackedDrive(const VehicleStudy& study)
@@ -41,8 +48,36 @@ TrackedDrive::TrackedDrive(const VehicleStudy& study)
       start_(study.vehicle),
       options_(study.track),
       signals_(study.signals),
-      min_speed_(study.segments.min_speed_mps) {
+      segments_(study.segments),
+      identify_(study.identify) {
   if (!options_.estimate_file.empty()) begin_ = io::read_estimate(options_.estimate_file);
+}
+
+bool TrackedDrive::learns_body() const {
+  return options_.learning_s > 0.0 && !(begin_ && begin_->find("roll_gradient") != nullptr);
+}
+
+void TrackedDrive::begin(const recording::MappedRecording& mapped, Progress& progress) {
+  const double from = mapped.recording.span().begin;
+  recording::MappedRecording part = mapped;
+  part.recording = recording::cut(mapped.recording, {from, from + kLearn_s});
+  const DriveSignals first = prepare_drive_signals(part, signals_);
+  require_accel(first);
+  notes_ = first.notes;
+  // The rate is kept, whatever later parts would suggest.
+  signals_.rate_Hz = first.grid.rate_Hz();
+  DriveTrackStart start{.vehicle = start_, .sensor = leaning_sensor(first, signals_.gravity)};
+  if (begin_) {
+    start.estimate = &*begin_;
+    start.body = known_body(*begin_, start_, identify_.model);
+  }
+  if (learns_body()) {
+    part.recording = recording::cut(mapped.recording, {from, from + options_.learning_s});
+    start.body = learned_body(prepare_drive_signals(part, signals_), segments_, start_, signals_, identify_, progress);
+  }
+  const std::array<double, 4> noise{first[DriveSignal::kSteer].sigma, first[DriveSignal::kSpeed].sigma,
+                                    first[DriveSignal::kYawRate].sigma, first[DriveSignal::kAccelY].sigma};
+  tracker_.emplace(start, options_, segments_.min_speed_mps, signals_.rate_Hz, noise);
 }
 
 std::vector<DriveChange> TrackedDrive::advance(const recording::MappedRecording& mapped, bool finished,
@@ -50,17 +85,9 @@ std::vector<DriveChange> TrackedDrive::advance(const recording::MappedRecording&
   std::vector<DriveChange> found;
   const TimeSpan span = mapped.recording.span();
   if (!tracker_) {
-    if (!finished && span.duration() < kLearn_s) return found;
-    recording::MappedRecording first = mapped;
-    first.recording = recording::cut(mapped.recording, {span.begin, span.begin + kLearn_s});
-    const DriveSignals signals = prepare_drive_signals(first, signals_);
-    require_accel(signals);
-    notes_ = signals.notes;
-    // The rate is kept, whatever later parts would suggest.
-    signals_.rate_Hz = signals.grid.rate_Hz();
-    const std::array<double, 4> noise{signals[DriveSignal::kSteer].sigma, signals[DriveSignal::kSpeed].sigma,
-                                      signals[DriveSignal::kYawRate].sigma, signals[DriveSignal::kAccelY].sigma};
-    tracker_.emplace(start_, options_, min_speed_, signals_.rate_Hz, noise, begin_ ? &*begin_ : nullptr);
+    const double needed = learns_body() ? std::max(kLearn_s, options_.learning_s) : kLearn_s;
+    if (!finished && span.duration() < needed) return found;
+    begin(mapped, progress);
   }
   const double last = tracker_->last_time();
   recording::MappedRecording part = mapped;
@@ -85,12 +112,37 @@ std::vector<DriveChange> TrackedDrive::advance(const recording::MappedRecording&
     found.insert(found.end(), more.begin(), more.end());
     if (k % 10000 == 0 && !progress.update(static_cast<double>(k) / static_cast<double>(signals.size()))) break;
   }
+  if (finished && !progress.interrupted()) check(mapped, progress);
   return found;
+}
+
+void TrackedDrive::check(const recording::MappedRecording& mapped, const Progress& progress) {
+  const DriveSignals signals = prepare_drive_signals(mapped, signals_);
+  DriveSegments segments;
+  try {
+    segments = find_drive_segments(signals, segments_);
+  } catch (const InputError&) {
+    // Nothing of it is usable: that no axle is excited says so.
+    return;
+  }
+  const KnownBody& body = tracker_->body();
+  const estimation::Parameter lean{.name = "roll_gradient", .value = body.roll.gradient};
+  const bool leans = body.roll.gradient > 0.0;
+  recording_.clear();
+  for (estimation::Evidence& row : drive_evidence(mapped, signals, segments, tracker_->start(), signals_, progress)) {
+    row = explained_by_roll(std::move(row), leans ? &lean : nullptr, signals_.gravity);
+    if (leans && row.name == kOrderInTime && !row.passed()) {
+      row.outcome = estimation::Outcome::kNotVerified;
+      row.text = "what a lean of the body delays cannot be told here from stamps that are late";
+      row.advice = "`veridyn identify` tells them apart";
+    }
+    recording_.push_back(std::move(row));
+  }
 }
 
 estimation::Estimate TrackedDrive::estimate() const {
   if (tracker_) {
-    estimation::Estimate out = tracker_->estimate(subject_);
+    estimation::Estimate out = tracker_->estimate(subject_, recording_);
     out.warnings.insert(out.warnings.end(), notes_.begin(), notes_.end());
     return out;
   }

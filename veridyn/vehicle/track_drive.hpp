@@ -22,22 +22,30 @@ class TrackedDrive {
   /// @return the changes found. @throws InputError when channels are missing
   std::vector<DriveChange> advance(const recording::MappedRecording& mapped, bool finished, Progress& progress);
 
-  /// Null before the first 20 s of the drive: noise and rate are learned from them.
+  /// Null before the beginning of the drive, from which rate, noise and body are learned, is there: 20 s, or
+  /// `DriveTrackOptions::learning_s` where no estimate has the body.
   [[nodiscard]] const DriveTracker* tracker() const { return tracker_ ? &*tracker_ : nullptr; }
   /// What was assumed of the signals.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  /// As DriveTracker::estimate; without parameters before the first 20 s of the drive.
+  /// As DriveTracker::estimate, judged with the rows of the recording where it has ended; without parameters before
+  /// there is a tracker.
   [[nodiscard]] estimation::Estimate estimate() const;
 
  private:
+  [[nodiscard]] bool learns_body() const;
+  void begin(const recording::MappedRecording& mapped, Progress& progress);
+  void check(const recording::MappedRecording& mapped, const Progress& progress);
+
   std::string subject_;
   VehicleParameters<double> start_;
   DriveTrackOptions options_;
   DriveSignalOptions signals_;
-  double min_speed_;
+  DriveSegmentOptions segments_;
+  VehicleIdentifyOptions identify_;
   std::optional<estimation::Estimate> begin_;
   std::optional<DriveTracker> tracker_;
   std::vector<std::string> notes_;
+  std::vector<estimation::Evidence> recording_;
 };
 
 /// A tracked drive.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,30 +15,43 @@
 namespace veridyn::vehicle::testing {
 namespace {
 
-constexpr double kDriveDuration_s = 90.0;
+struct DrivenAt {
+  std::function<Controls(double)> controls;
+  double speed = 20.0;
+  RollingDriveOptions options;
+};
 
 template <typename Tyre>
-VehicleTrajectory driven(const RollingCar& car, const Tyre& front, const Tyre& rear,
-                         const std::function<Controls(double)>& controls, double speed) {
-  FourWheelOptions options;
-  options.relaxation_length = car.relaxation_length;
-  const FourWheelModel<double, Tyre> model(car.parameters, {front, front, rear, rear}, options);
-  SignalDriver driver(controls);
-  Progress silent;
-  SimulationOptions simulation;
-  simulation.speed = speed;
-  simulation.duration = kDriveDuration_s;
-  return simulate(model, driver, nullptr, simulation, silent);
+Tyre with_grip(Tyre tyre, double grip) {
+  tyre.stiffness *= grip;
+  if constexpr (requires { tyre.mu; }) tyre.mu *= grip;
+  return tyre;
 }
 
-VehicleTrajectory driven(const RollingCar& car, CarTyre tyre, const std::function<Controls(double)>& controls,
-                         double speed) {
+template <typename Tyre>
+VehicleTrajectory driven(const RollingCar& car, const Tyre& front, const Tyre& rear, const DrivenAt& how) {
+  using Model = FourWheelModel<double, Tyre>;
+  FourWheelOptions options;
+  options.relaxation_length = car.relaxation_length;
+  const auto on = [&](double grip) {
+    const Tyre f = with_grip(front, grip), r = with_grip(rear, grip);
+    return Model(car.parameters, {f, f, r, r}, options);
+  };
+  SignalDriver driver(how.controls);
+  Progress silent;
+  SimulationOptions simulation;
+  simulation.speed = how.speed;
+  simulation.duration = how.options.duration_s;
+  const std::array change{ModelChange<Model>{.time = how.options.change_s, .model = on(how.options.grip)}};
+  return simulate(on(1.0), driver, nullptr, simulation, silent, std::span<const ModelChange<Model>>(change));
+}
+
+VehicleTrajectory driven(const RollingCar& car, CarTyre tyre, const DrivenAt& how) {
   const VehicleParameters<double>& p = car.parameters;
   const PerWheel<double> load = static_loads(p, kGravity);
   switch (tyre) {
     case CarTyre::kFiala:
-      return driven(car, FialaTyre<double>{.stiffness = p.C_f, .mu = 1.0}, {.stiffness = p.C_r, .mu = 1.0}, controls,
-                    speed);
+      return driven(car, FialaTyre<double>{.stiffness = p.C_f, .mu = 1.0}, {.stiffness = p.C_r, .mu = 1.0}, how);
     case CarTyre::kMagicFormula: {
       SimpleMagicFormulaTyre<double> front{.stiffness = p.C_f, .mu = 1.0, .C = 1.35, .nominal_load = load[kFrontLeft]};
       // The slope over load halves its growth at 1.6 times the static load; friction falls by a tenth.
@@ -46,12 +60,12 @@ VehicleTrajectory driven(const RollingCar& car, CarTyre tyre, const std::functio
       SimpleMagicFormulaTyre<double> rear = front;
       rear.stiffness = p.C_r;
       rear.nominal_load = load[kRearLeft];
-      return driven(car, front, rear, controls, speed);
+      return driven(car, front, rear, how);
     }
     case CarTyre::kLinear:
       break;
   }
-  return driven(car, LinearTyre<double>{.stiffness = p.C_f}, {.stiffness = p.C_r}, controls, speed);
+  return driven(car, LinearTyre<double>{.stiffness = p.C_f}, {.stiffness = p.C_r}, how);
 }
 
 }  // namespace
@@ -95,7 +109,8 @@ RollingCar rolling_car(std::size_t number) {
   return car;
 }
 
-VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t drive, std::uint64_t seed) {
+VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t drive, std::uint64_t seed,
+                           const RollingDriveOptions& options) {
   constexpr std::array kSpeeds{15.0, 20.0, 25.0};
   const VehicleParameters<double>& p = car.parameters;
   const double speed = kSpeeds[drive % 3];
@@ -104,8 +119,11 @@ VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t driv
   const double L = p.wheelbase();
   const double per_lateral = L / (speed * speed) + std::max(0.0, understeer_gradient(p));
   const WanderingSteer steer(seed, lateral * per_lateral, gentle ? 0.05 : 0.1, gentle ? 0.8 : 1.2);
-  const VehicleTrajectory trajectory = driven(
-      car, tyre, [&](double t) { return Controls{.steer = steer(t)}; }, speed);
+  const auto wanted = [&](double t) {
+    const double wider = 1.0 + std::clamp(t - options.livelier_s, 0.0, 1.0);
+    return Controls{.steer = wider * steer(t)};
+  };
+  const VehicleTrajectory trajectory = driven(car, tyre, {.controls = wanted, .speed = speed, .options = options});
   const std::string text = fmt::format(
       "seed = {}\n[subject]\nkind = \"vehicle\"\nname = \"rolling car\"\nmass = {}\na = {}\nb = {}\n[segments]\n"
       "min_speed = 1\n",

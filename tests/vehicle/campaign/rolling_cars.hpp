@@ -29,8 +29,18 @@ struct RollingCar {
 
 inline constexpr std::size_t kRollingDrives = 6;
 
-/// A drive of 90 s with reference sensors at 15, 20 or 25 m/s, gentle (0.05 to 0.8 Hz, 0.8 m/s^2 rms) or livelier (0.1
-/// to 1.2 Hz, 1.6 m/s^2 rms); mass, a and b are known.
-[[nodiscard]] VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t drive, std::uint64_t seed);
+/// How long is driven, and what changes on the way: from `change_s` on every tyre pushes `grip` times as much at any
+/// slip, and from `livelier_s` on the steering is twice as wide.
+struct RollingDriveOptions {
+  double duration_s = 90.0;
+  double change_s = 1e9;
+  double grip = 1.0;
+  double livelier_s = 1e9;
+};
+
+/// A drive with reference sensors at 15, 20 or 25 m/s, gentle (0.05 to 0.8 Hz, 0.8 m/s^2 rms) or livelier (0.1 to
+/// 1.2 Hz, 1.6 m/s^2 rms); mass, a and b are known.
+[[nodiscard]] VehicleStudy rolling_drive(const RollingCar& car, CarTyre tyre, std::size_t drive, std::uint64_t seed,
+                                         const RollingDriveOptions& options = {});
 
 }  // namespace veridyn::vehicle::testing

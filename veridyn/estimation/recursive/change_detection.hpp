@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+
+#include "veridyn/core/enum_array.hpp"
 
 namespace veridyn::estimation {
 
@@ -41,17 +45,22 @@ struct ChangeDetectionOptions {
 };
 
 /// What changed in the innovations.
-enum class ChangeKind {
-  kMean,   ///< the innovation has a mean: a bias, a jump of the constant term
-  kSpread  ///< the innovation has grown: other derivatives, more noise
+enum class ChangeKind : std::size_t {
+  kMean,      ///< the innovation has a mean: a bias, a jump of the constant term
+  kSpread,    ///< the innovation has grown: other derivatives, more noise
+  kParameter  ///< the innovation goes with a regressor: its parameter is another one; see ParameterWatch
 };
+/// Their names in results, in the order of the enum.
+inline constexpr EnumArray<ChangeKind, std::string_view, 3> kChangeKindNames{"mean", "spread", "parameter"};
 
 /// A detected change.
 struct Change {
   ChangeKind kind = ChangeKind::kMean;
   double detected_s = 0.0;  ///< time of the alarm
   double began_s = 0.0;     ///< estimated time of the change: when the sum that raised it last left zero
-  double shift = 0.0;       ///< mean of the whitened block innovations since then [sd] (kMean), their rms (kSpread)
+  /// Mean of the whitened block innovations since then [sd] (kMean), their rms (kSpread), the parameter's change
+  /// (kParameter).
+  double shift = 0.0;
 };
 
 /// Watches normalised innovations for a change, with a stated rate of false alarms.

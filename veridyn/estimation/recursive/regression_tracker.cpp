@@ -98,6 +98,11 @@ RegressionTracker::RegressionTracker(std::vector<std::string> names, const Eigen
       regression_(std::move(names), regression_options(error_covariance, options, rate_Hz)),
       detector_(detection_options(options, rate_Hz)) {
   const auto n = static_cast<std::size_t>(regression_.parameters());
+  if (options.watch.share > 0.0) {
+    ParameterWatchOptions watch = options.watch;
+    watch.false_alarm_interval_s = options.detection.false_alarm_interval_s;
+    watch_.emplace(watch, rate_Hz);
+  }
   history_.value.resize(n);
   history_.sigma.resize(n);
   history_.unexcited_share.resize(n);
@@ -265,6 +270,10 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
       // value. They are not where the row moves along a combination of parameters that is not known now.
       if (options_.detect_changes && watching_ && !moves_held) {
         change = detector_.update(t, options_.watch_against_W ? against_W(u.innovation, row_W) : normalised);
+        if (watch_) {
+          const std::optional<Change> moved = watch_->update(t, x[0], u.innovation, regression_.theta()(0));
+          if (!change) change = moved;
+        }
       }
     }
   }
@@ -279,6 +288,10 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
   first_ = false;
   if (t >= next_s_ - 1e-9) remember(t);
   return change;
+}
+
+double RegressionTracker::suspicion() const {
+  return std::max(detector_.suspicion(), watch_ ? watch_->suspicion() : 0.0);
 }
 
 void RegressionTracker::remember(double t) {
@@ -304,7 +317,7 @@ void RegressionTracker::remember(double t) {
   history_.threshold.push_back(regression_.threshold());
   history_.excited.push_back(static_cast<int>(regression_.excited_directions()));
   history_.lambda.push_back(least_lambda_);
-  history_.suspicion.push_back(detector_.suspicion());
+  history_.suspicion.push_back(suspicion());
   history_.innovation.push_back(innovations_ > 0 ? std::sqrt(innovation_power_ / static_cast<double>(innovations_))
                                                  : kNaN);
   least_lambda_ = 1.0;

@@ -9,6 +9,7 @@
 #include "veridyn/core/constants.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/estimation/recursive/change_detection.hpp"
+#include "veridyn/estimation/recursive/parameter_watch.hpp"
 #include "veridyn/estimation/recursive/recursive_regression.hpp"
 
 namespace veridyn::estimation {
@@ -32,6 +33,9 @@ struct TrackerOptions {
   /// at the moment: where the noise is small against the signal these grow with a change at once and would hide it. Not
   /// a key; domains choose.
   bool watch_against_W = false;
+  /// The first parameter is watched for a change of its own too; the rate of false alarms is that of `detection`. Not a
+  /// key; domains choose.
+  ParameterWatchOptions watch = {};
   double watch_after_s = 0.0;  ///< rows before this are not watched: the estimate finds itself. Not a key
   double history_Hz = 5.0;     ///< `history_rate`: of what is kept for the report
 
@@ -114,6 +118,8 @@ class RegressionTracker {
   [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
   [[nodiscard]] const TrackHistory& history() const { return history_; }
   [[nodiscard]] const std::vector<Change>& changes() const { return changes_; }
+  /// Of all that watches: 1 is an alarm.
+  [[nodiscard]] double suspicion() const;
   [[nodiscard]] double rate_Hz() const { return rate_Hz_; }
   [[nodiscard]] const TrackerOptions& options() const { return options_; }
   [[nodiscard]] const TrackedPower& power() const { return power_; }
@@ -148,6 +154,7 @@ class RegressionTracker {
   double least_noise_;
   RecursiveRegression regression_;
   ChangeDetector detector_;
+  std::optional<ParameterWatch> watch_;
   std::vector<Change> changes_;
   TrackHistory history_;
   double next_s_ = 0.0;

@@ -45,8 +45,15 @@ Cell outcome_cell(const estimation::Evidence& row) {
 }
 
 std::string change_words(const estimation::Change& change) {
-  return change.kind == estimation::ChangeKind::kMean ? fmt::format("innovation moved by {:.1f} sigma", change.shift)
-                                                      : fmt::format("innovation grew {:.1f} times", change.shift);
+  switch (change.kind) {
+    case estimation::ChangeKind::kMean:
+      return fmt::format("innovation moved by {:.1f} sigma", change.shift);
+    case estimation::ChangeKind::kSpread:
+      return fmt::format("innovation grew {:.1f} times", change.shift);
+    case estimation::ChangeKind::kParameter:
+      break;
+  }
+  return fmt::format("parameter moved to {:.2g} times", 1.0 + change.shift);
 }
 
 Row change_row(std::string what, const estimation::Change& change) {

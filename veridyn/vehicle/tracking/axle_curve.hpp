@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "veridyn/vehicle/model/rolling_bicycle.hpp"
+#include "veridyn/vehicle/tyre/fiala_tyre.hpp"
+#include "veridyn/vehicle/tyre/linear_tyre.hpp"
+#include "veridyn/vehicle/tyre/simple_magic_formula.hpp"
+
+namespace veridyn::vehicle {
+
+/// The rolling bicycle with any of the tyres that a drive is identified with.
+using AnyRollingBicycle =
+    std::variant<RollingBicycle<double, LinearTyre<double>>, RollingBicycle<double, FialaTyre<double>>,
+                 RollingBicycle<double, SimpleMagicFormulaTyre<double>>>;
+
+/// What tyres of the same cornering stiffness C and no limit would push with, front and rear, at the slips at which
+/// those of the vehicle push with `force` [N]: C alpha(F). A tyre beyond half of its stiffness counts as there: its
+/// slip says nothing of C any more.
+/// @param shifted how much load has moved, as times that of steady cornering at 1 g times `gravity` and the roll
+/// gradient: phi + 2 damping/frequency phi'
+[[nodiscard]] std::array<double, 2> forces_without_limit(const AnyRollingBicycle& vehicle,
+                                                         const std::array<double, 2>& force, double shifted);
+
+/// Cornering stiffnesses of one tyre, front and rear [N/rad].
+[[nodiscard]] std::array<double, 2> stiffnesses_of(const AnyRollingBicycle& vehicle);
+
+/// Whether they push with the same: nothing saturates.
+[[nodiscard]] bool is_linear(const AnyRollingBicycle& vehicle);
+
+}  // namespace veridyn::vehicle
