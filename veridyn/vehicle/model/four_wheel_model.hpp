@@ -13,6 +13,7 @@
 #include "veridyn/vehicle/model/four_wheel_state.hpp"
 #include "veridyn/vehicle/model/vehicle_parameters.hpp"
 #include "veridyn/vehicle/model/wheel_guidance.hpp"
+#include "veridyn/vehicle/model/wheel_steering.hpp"
 #include "veridyn/vehicle/tyre/aligning_moments.hpp"
 #include "veridyn/vehicle/tyre/four_fiala_tyres.hpp"
 #include "veridyn/vehicle/tyre/four_linear_tyres.hpp"
@@ -64,7 +65,9 @@ class FourWheelModel {
 
   /// Steer angles and torques of the wheels.
   [[nodiscard]] WheelControls<Scalar> wheel_controls(const Scalar& steer, double drive_torque = 0.0,
-                                                     double brake_torque = 0.0) const;
+                                                     double brake_torque = 0.0) const {
+    return controls_at_wheels(p_, options_, steer, drive_torque, brake_torque);
+  }
   [[nodiscard]] WheelControls<Scalar> wheel_controls(const Controls& controls) const {
     return wheel_controls(Scalar(controls.steer), controls.drive_torque, controls.brake_torque);
   }
@@ -240,42 +243,6 @@ template <typename Scalar, typename Tyre>
 std::array<Scalar, 2> FourWheelModel<Scalar, Tyre>::air_lift(const Scalar& speed) const {
   const Scalar pressure = 0.5 * options_.lift.air_density * speed * speed;
   return {options_.lift.area_f * pressure, options_.lift.area_r * pressure};
-}
-
-template <typename Scalar, typename Tyre>
-[[gnu::flatten]] WheelControls<Scalar> FourWheelModel<Scalar, Tyre>::wheel_controls(const Scalar& steer,
-                                                                                    double drive_torque,
-                                                                                    double brake_torque) const {
-  using std::atan2;
-  using std::tan;
-  WheelControls<Scalar> out;
-  const Scalar none(0.0), one(1.0);
-  Scalar left = steer, right = steer;
-  if (options_.ackermann != 0.0) {
-    // The wheel's axis through the turning centre, which lies L/tan(steer) to the left of the rear axle's middle.
-    const Scalar slope = tan(steer), across = p_.track_f / (2.0 * p_.wheelbase()) * slope;
-    left += options_.ackermann * (atan2(slope, Scalar(1.0 - across)) - steer);
-    right += options_.ackermann * (atan2(slope, Scalar(1.0 + across)) - steer);
-  }
-  out.steer << left, right, none, none;
-  out.cos.setConstant(one);
-  out.sin.setConstant(none);
-  if (options_.geometry == BicycleGeometry::kExact) {
-    const numerics::SineCosine<Scalar> at_left = numerics::sine_cosine(left);
-    const numerics::SineCosine<Scalar> at_right = options_.ackermann == 0.0 ? at_left : numerics::sine_cosine(right);
-    out.cos << at_left.cos, at_right.cos, one, one;
-    out.sin << at_left.sin, at_right.sin, none, none;
-  }
-  out.drive.setZero();
-  out.brake.setZero();
-  if (options_.longitudinal) {
-    const LongitudinalParameters& l = *options_.longitudinal;
-    const double drive_f = 0.5 * l.front_drive_share * drive_torque, drive_r = 0.5 * drive_torque - drive_f;
-    const double brake_f = 0.5 * l.front_brake_share * brake_torque, brake_r = 0.5 * brake_torque - brake_f;
-    out.drive << drive_f, drive_f, drive_r, drive_r;
-    out.brake << brake_f, brake_f, brake_r, brake_r;
-  }
-  return out;
 }
 
 template <typename Scalar, typename Tyre>
