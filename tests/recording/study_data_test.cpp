@@ -155,5 +155,69 @@ TEST_F(StudyData, HasItsKeysCheckedWithoutAFile) {
   EXPECT_THAT(check("from = 'noon'\n"), HasSubstr("is not a number with a unit"));
 }
 
+/// All that `[data]` names.
+std::vector<StudyRecording> recordings_of(const std::string& data, const std::filesystem::path& folder) {
+  const Study study = Study::parse("[data]\n" + data, "study.toml", folder);
+  const StudyTable table = study.root().table("data");
+  std::vector<StudyRecording> runs = read_study_recordings(table);
+  table.finish();
+  return runs;
+}
+
+TEST_F(StudyData, ReadsEveryRunByItself) {
+  write("a.csv", "time,v\n0,1\n1,2\n2,3\n");
+  write("b.csv", "T,v\n0,10\n1000,20\n2000,30\n");
+  write("c.csv", "time,v\n0,7\n1,8\n");
+  const std::vector<StudyRecording> runs = recordings_of(
+      "runs = ['a.csv']\nholdout_runs = ['c.csv']\n[[data.run]]\nfile = 'b.csv'\nfrom = 0.5\n"
+      "time = { column = 'T', unit = 'ms' }\nholdout = false\n",
+      folder);
+  ASSERT_EQ(runs.size(), 3U);
+  EXPECT_EQ(runs[0].name, "a.csv");
+  EXPECT_EQ(runs[1].name, "b.csv");
+  EXPECT_EQ(runs[2].name, "c.csv");
+  EXPECT_THAT(runs[1].recording.at("v").value, ElementsAre(20.0, 30.0)) << "from 0.5 s on its own clock";
+  EXPECT_THAT(runs[1].recording.at("v").times(), ElementsAre(1.0, 2.0));
+  EXPECT_FALSE(runs[1].held_out);
+  EXPECT_TRUE(runs[2].held_out);
+  EXPECT_EQ(runs[2].recording.source, (folder / "c.csv").string());
+}
+
+TEST_F(StudyData, CallsPartsOfOneFileByWhereTheyBegin) {
+  write("a.csv", "time,v\n0,1\n1,2\n2,3\n3,4\n");
+  const std::vector<StudyRecording> runs = recordings_of(
+      "[[data.run]]\nfile = 'a.csv'\nfrom = 0\nto = 1\n[[data.run]]\nfile = 'a.csv'\nfrom = 2\nto = 3\n", folder);
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[0].name, "a.csv from 0 s");
+  EXPECT_EQ(runs[1].name, "a.csv from 2 s");
+}
+
+TEST_F(StudyData, OfOneFileIsOneRecordingWithoutAName) {
+  write("a.csv", "time,v\n0,1\n1,2\n");
+  for (const char* data : {"file = 'a.csv'\n", "runs = ['a.csv']\n"}) {
+    const std::vector<StudyRecording> runs = recordings_of(data, folder);
+    ASSERT_EQ(runs.size(), 1U) << data;
+    EXPECT_EQ(runs[0].name, "") << data;
+    EXPECT_THAT(runs[0].recording.at("v").value, ElementsAre(1.0, 2.0)) << data;
+  }
+}
+
+TEST_F(StudyData, RefusesRunsThatMakeNoSenseByFileAndKey) {
+  write("a.csv", "time,v\n0,1\n1,2\n");
+  write("b.csv", "time,v\n0,1\n1,2\n");
+  const auto refusal = [&](const std::string& data) { return message_of([&] { (void)recordings_of(data, folder); }); };
+  EXPECT_THAT(refusal("runs = ['a.csv', 'b.csv']\nfrom = 1\n"),
+              HasSubstr("study.toml:3: data.from: is of one recording"));
+  EXPECT_THAT(refusal("file = 'a.csv'\nruns = ['b.csv']\n"), HasSubstr("study.toml:2: data.file: is of one recording"));
+  EXPECT_THAT(refusal("runs = []\n"), HasSubstr("study.toml:2: data.runs: is empty"));
+  EXPECT_THAT(refusal("runs = ['a.csv', 'a.csv']\n"), HasSubstr("data.runs: names"));
+  EXPECT_THAT(refusal("holdout_runs = ['a.csv', 'b.csv']\n"),
+              HasSubstr("data.holdout_runs: leaves no recording to identify from"));
+  EXPECT_THAT(refusal("[[data.run]]\nfrom = 1\n"), HasSubstr("data.run[0].file: is missing"));
+  EXPECT_THAT(refusal("[[data.run]]\nfile = 'a.csv'\nfrom = 5\n"), HasSubstr("a.csv: holds nothing from 5 s"));
+  EXPECT_THAT(refusal("runs = ['a.csv', 'none.csv']\n"), HasSubstr("none.csv"));
+  EXPECT_THAT(refusal("[[data.run]]\nfile = 'a.csv'\nhold_out = true\n"), HasSubstr("hold_out"));
+}
+
 }  // namespace
 }  // namespace veridyn::recording

@@ -14,6 +14,7 @@
 #include "veridyn/report/figures/curves.hpp"
 #include "veridyn/report/parts/aircraft_estimates.hpp"
 #include "veridyn/report/parts/aircraft_evidence.hpp"
+#include "veridyn/report/parts/aircraft_flights.hpp"
 #include "veridyn/report/parts/aircraft_sensors.hpp"
 #include "veridyn/report/parts/analysis_sections.hpp"
 #include "veridyn/report/parts/remarks.hpp"
@@ -48,38 +49,51 @@ Verdict top_of(const FlightAnalysis& analysis) {
   return verdict;
 }
 
+/// "flight1.csv, flight2.csv", or where the only flight is from.
+std::string recording_text(const FlightStudy& study, const FlightAnalysis& analysis) {
+  if (study.truth) return "simulated from the study";
+  if (analysis.flights.size() < 2) return std::filesystem::path(study.mapped.recording.source).filename().string();
+  std::vector<std::string> names;
+  for (const PreparedFlight& flight : analysis.flights) names.push_back(flight.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<Fact> facts_of(const FlightStudy& study, const FlightAnalysis& analysis) {
-  const PreparedFlight& flight = analysis.flights.front();
-  std::vector<Fact> facts{
-      {"Aircraft", study.subject.name},
-      {"Recording", study.truth ? "simulated from the study"
-                                : std::filesystem::path(study.mapped.recording.source).filename().string()},
-      {"Log", study.mapped.log_kind},
-      {"Mass", fmt::format("{:.4g} kg", study.subject.mass)}};
-  const TimeSpan span = flight.aligned.recording.span();
-  facts.push_back({"Recorded", fmt::format("{:.0f} s", span.duration())});
-  double airborne = 0.0;
-  for (const TimeSpan& s : flight.segments.airborne) airborne += s.duration();
+  std::vector<Fact> facts{{"Aircraft", study.subject.name},
+                          {"Recording", recording_text(study, analysis)},
+                          {"Log", study.mapped.log_kind},
+                          {"Mass", fmt::format("{:.4g} kg", study.subject.mass)}};
+  double recorded = 0.0, airborne = 0.0, longitudinal = 0.0, lateral = 0.0;
+  for (const PreparedFlight& flight : analysis.flights) {
+    recorded += flight.aligned.recording.span().duration();
+    for (const TimeSpan& s : flight.segments.airborne) airborne += s.duration();
+    longitudinal += flight.segments.longitudinal.excited_s();
+    lateral += flight.segments.lateral.excited_s();
+  }
+  facts.push_back({"Recorded", fmt::format("{:.0f} s", recorded)});
   if (airborne > 0.0) {
     facts.push_back({"In the air", fmt::format("{:.0f} s", airborne)});
-    facts.push_back(
-        {"Excited", fmt::format("{:.0f} s longitudinal, {:.0f} s lateral", flight.segments.longitudinal.excited_s(),
-                                flight.segments.lateral.excited_s())});
+    facts.push_back({"Excited", fmt::format("{:.0f} s longitudinal, {:.0f} s lateral", longitudinal, lateral)});
   }
   if (!study.subject.sign_convention.empty()) facts.push_back({"Signs", study.subject.sign_convention});
   return facts;
 }
 
+std::string holdout_text(const FlightStudy& study) {
+  if (!(study.segments.holdout > 0.0)) return "whole recordings, or none";
+  return fmt::format("{:.0f} % of the excited time, in blocks of {:.0f} s", 100.0 * study.segments.holdout,
+                     study.segments.block_s);
+}
+
 Section method_section(const FlightStudy& study, const FlightAnalysis& analysis) {
   Section section{.title = "How it was done", .id = "method", .folded = true};
-  const FlightSignals& s = analysis.flights.front().signals;
+  const FlightSignals& s = std::ranges::find_if(analysis.flights, &PreparedFlight::usable)->signals;
   std::vector<Fact> facts{
       {"Study", study.name},
       {"Seed", std::to_string(study.seed)},
       {"Common grid", fmt::format("{:.0f} Hz, every {}. sample regressed on", s.grid.rate_Hz(), s.stride)},
       {"Pass band", fmt::format("0 to {:.1f} Hz, zero phase", s.filter.pass_Hz)},
-      {"Hold-out", fmt::format("{:.0f} % of the excited time, in blocks of {:.0f} s", 100.0 * study.segments.holdout,
-                               study.segments.block_s)},
+      {"Hold-out", holdout_text(study)},
       {"Estimator", std::string(study.identify.method ? estimation::to_string(*study.identify.method) : "auto")}};
   for (const FlightSignal which : {FlightSignal::kAlpha, FlightSignal::kBeta, FlightSignal::kP, FlightSignal::kAz}) {
     const GridSignal& signal = s[which];
@@ -107,16 +121,26 @@ Section method_section(const FlightStudy& study, const FlightAnalysis& analysis)
 Document identification_report(const FlightStudy& study, const FlightAnalysis& analysis,
                                const AircraftReportContext& context) {
   const bool given = context.command == "validate";
-  Document document =
-      started_document(fmt::format("{}: aerodynamic model", study.subject.name),
-                       given ? "A given estimate tried on this flight" : "Identified from flight", context.program);
+  Document document = started_document(
+      fmt::format("{}: aerodynamic model", study.subject.name),
+      given ? (analysis.flights.size() > 1 ? "A given estimate tried on these flights"
+                                           : "A given estimate tried on this flight")
+            : (analysis.flights.size() > 1 ? "Identified from several flights" : "Identified from flight"),
+      context.program);
   document.verdict = top_of(analysis);
   document.facts = facts_of(study, analysis);
   const auto add = [&](Section section, bool shown = true) {
     if (shown && !section.blocks.empty()) document.sections.push_back(std::move(section));
   };
-  const PreparedFlight& first = analysis.flights.front();
-  const bool motion = first.usable();
+  const bool several = analysis.flights.size() > 1;
+  const bool motion = std::ranges::any_of(analysis.flights, &PreparedFlight::usable);
+  /// With the name of the recording in its title.
+  const auto of = [&](Section section, std::size_t flight) {
+    if (!several) return section;
+    section.title = fmt::format("{}: {}", section.title, analysis.flights[flight].name);
+    section.id = fmt::format("{}_{}", section.id, flight + 1);
+    return section;
+  };
   add(coefficients_section(analysis));
   add(parameters_section(analysis, ""), !given);
   add(evidence_section(analysis.estimate));
@@ -124,8 +148,10 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(other_estimators_section(analysis));
   add(structure_section(analysis));
   add(validation_section(analysis));
-  if (motion) {
-    Section flight = flight_section(study, first);
+  add(flights_section(analysis));
+  for (std::size_t i = 0; i < analysis.flights.size(); ++i) {
+    if (!analysis.flights[i].usable()) continue;
+    Section flight = of(flight_section(study, analysis.flights[i]), i);
     flight.folded = true;
     add(std::move(flight));
   }
@@ -133,7 +159,7 @@ Document identification_report(const FlightStudy& study, const FlightAnalysis& a
   add(excitation_section(analysis), !given && motion);
   add(residual_section(analysis), !given);
   add(uncertainty_section(analysis.uncertainty), analysis.uncertainty.available());
-  add(sensors_section(first));
+  for (std::size_t i = 0; i < analysis.flights.size(); ++i) add(of(sensors_section(analysis.flights[i]), i));
   add_warnings(document, analysis.estimate.warnings);
   add(rejected_section(analysis));
   if (motion) add(method_section(study, analysis));

@@ -45,18 +45,19 @@ void add_channel(Panel& panel, const Recording& recording, const char* channel, 
                          .role = role});
 }
 
-std::vector<Span> segment_spans(const Segments& segments, bool longitudinal, bool lateral) {
+/// @param shift_s  added to the times
+std::vector<Span> segment_spans(const Segments& segments, bool longitudinal, bool lateral, double shift_s = 0.0) {
   std::vector<Span> spans;
   const auto add = [&](const AxisSegments& axis) {
     for (const TimeSpan& s : axis.identification) {
-      spans.push_back({.from = s.begin,
-                       .to = s.end,
+      spans.push_back({.from = s.begin + shift_s,
+                       .to = s.end + shift_s,
                        .label = fmt::format("{} identification", to_string(axis.axis)),
                        .tone = SpanTone::kPrimary});
     }
     for (const TimeSpan& s : axis.holdout) {
-      spans.push_back({.from = s.begin,
-                       .to = s.end,
+      spans.push_back({.from = s.begin + shift_s,
+                       .to = s.end + shift_s,
                        .label = fmt::format("{} hold-out", to_string(axis.axis)),
                        .tone = SpanTone::kSecondary});
     }
@@ -188,8 +189,11 @@ Section coefficient_series_section(const FlightAnalysis& analysis) {
                       .caption =
                           "Measured: from specific force, rates and dynamic pressure. Model: the chosen estimate, "
                           "where it is not rejected."};
-    figure.spans =
-        segment_spans(analysis.flights.front().segments, axis == Axis::kLongitudinal, axis == Axis::kLateral);
+    for (const PreparedFlight& flight : analysis.flights) {
+      const std::vector<Span> spans =
+          segment_spans(flight.segments, axis == Axis::kLongitudinal, axis == Axis::kLateral, flight.shift_s);
+      figure.spans.insert(figure.spans.end(), spans.begin(), spans.end());
+    }
     for (const CoefficientResult& r : analysis.coefficients) {
       if (r.axis != axis || r.time.empty()) continue;
       Panel panel{.label = r.name};
