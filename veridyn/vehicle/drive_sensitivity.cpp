@@ -134,7 +134,7 @@ class ChangedDrives {
       throw std::runtime_error(fmt::format("the nominal drive ends early: {}", nominal.message()));
     for (const Metric& m : metrics_of(nominal, drive.vehicle.parameters)) {
       // The same as the one before in another unit.
-      if (!std::isfinite(m.value) || m.name == "understeer_gradient_deg_per_g") continue;
+      if (!std::isfinite(m.value) || m.unit == "deg/g") continue;
       responses_.push_back({m.name, m.unit, m.value, kRounding * std::abs(m.value)});
     }
     metrics_ = responses_.size();

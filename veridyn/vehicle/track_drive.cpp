@@ -72,6 +72,7 @@ void TrackedDrive::begin(const recording::MappedRecording& mapped, Progress& pro
     start.body = known_body(*begin_, start_, identify_.model);
   }
   if (learns_body()) {
+    progress.stage("learning the body from the beginning");
     part.recording = recording::cut(mapped.recording, {from, from + options_.learning_s});
     start.body = learned_body(prepare_drive_signals(part, signals_), segments_, start_, signals_, identify_, progress);
   }
@@ -131,10 +132,10 @@ void TrackedDrive::check(const recording::MappedRecording& mapped, const Progres
   recording_.clear();
   for (estimation::Evidence& row : drive_evidence(mapped, signals, segments, tracker_->start(), signals_, progress)) {
     row = explained_by_roll(std::move(row), leans ? &lean : nullptr, signals_.gravity);
-    if (leans && row.name == kOrderInTime && !row.passed()) {
+    if (!row.passed() && row.name == kOrderInTime && (leans || !tracker_->changes().empty())) {
       row.outcome = estimation::Outcome::kNotVerified;
-      row.text = "what a lean of the body delays cannot be told here from stamps that are late";
-      row.advice = "`veridyn identify` tells them apart";
+      row.text = "stamps that are late cannot be told here from a body that leans or tyres that change on the way";
+      row.advice = "`veridyn identify` of a part without a change tells them apart";
     }
     recording_.push_back(std::move(row));
   }

@@ -8,6 +8,7 @@
 
 #include "veridyn/core/assert.hpp"
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/estimation/analysis.hpp"
 #include "veridyn/estimation/recursive/tracking_evidence.hpp"
@@ -263,7 +264,7 @@ estimation::Evidence body_row(const KnownBody& body) {
   const bool known = body.source != BodySource::kNone;
   return {.name = "lean of the body",
           .outcome = estimation::passed_or(known, estimation::Outcome::kCare),
-          .value = body.roll.gradient * kGravity / kDegree,
+          .value = deg_per_g(body.roll.gradient),
           .scale = "deg per g",
           .text = body.text,
           .bears_on = estimation::Purpose::kParameters,

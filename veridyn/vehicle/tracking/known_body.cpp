@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "veridyn/core/constants.hpp"
+#include "veridyn/core/deg_per_g.hpp"
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
@@ -87,7 +88,7 @@ AnyRollingBicycle tyres_of(const estimation::Estimate& estimate, const Estimated
 std::string described(const KnownBody& body) {
   const std::string lean = body.roll.gradient > 0.0
                                ? fmt::format("a body that leans {:.2g} deg per g at {:.2g} Hz",
-                                             body.roll.gradient * kGravity / kDegree, body.roll.frequency / (2.0 * kPi))
+                                             deg_per_g(body.roll.gradient), body.roll.frequency / (2.0 * kPi))
                                : std::string("a body that does not lean");
   const std::string lag = body.relaxation_length > 0.0
                               ? fmt::format("tyres that follow after {:.2f} m", body.relaxation_length)
