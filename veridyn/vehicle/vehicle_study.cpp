@@ -203,7 +203,7 @@ VehicleAnalysis validate(const VehicleStudy& study, const estimation::Estimate& 
   out.estimate.covariance = estimate.covariance;
   out.estimate.method = estimate.method;
   out.estimate.interrupted = estimate.interrupted;
-  out.estimate.structure = to_string(given.options.structure);
+  out.estimate.structure = name_of(given.options.structure, given.options.effects);
   out.estimate.structure_reason = fmt::format("structure: {}, as the estimate has it", out.estimate.structure);
   return out;
 }

@@ -111,6 +111,21 @@ TEST(DriveStructure, NamesWhatEachHas) {
 }
 
 // Every tyre lags: beyond roll a probability of 95 % is enough, below roll it is not.
+TEST(DriveStructure, NamesWhatIsAddedToIt) {
+  EXPECT_EQ(name_of(DriveStructure::kRoll, {}), "roll");
+  EXPECT_EQ(name_of(DriveStructure::kBicycle, {true, false, true}), "bicycle, banked road, load moved by pedals");
+}
+
+TEST(DriveStructure, TakesNoEffectWhoseFitIsTheSimplerOneAtABound) {
+  TriedStructure taken{.structure = DriveStructure::kRoll, .usable = true, .negative_log_likelihood = 0.0};
+  TriedStructure more = taken;
+  more.effects[DriveEffect::kDownforce] = true;
+  more.negative_log_likelihood = -30.0;
+  EXPECT_GT(probability_against(more, taken), kProbable);
+  more.at_bound = true;
+  EXPECT_EQ(probability_against(more, taken), 0.0);
+}
+
 TEST(DriveStructure, TakesWhatIsProbableBeyondRoll) {
   std::vector<TriedStructure> tried = {fit(DriveStructure::kRoll, 0.0), fit(DriveStructure::kRelaxation, -3.0)};
   EXPECT_EQ(choose_structure(tried), 1U);

@@ -32,6 +32,39 @@ LinearRolling rolling_car(BicycleGeometry geometry = BicycleGeometry::kExact) {
           .relaxation_length = 0.3};
 }
 
+TEST(RollingBicycle, HoldsItselfOnABankedRoadByTheForceThatGravityTakes) {
+  const LinearRolling car = rolling_car();
+  RollingState<4> x = RollingState<4>::Zero();
+  const double bank = 0.05;
+  const auto level = car.rates<4>(x, 0.01, kForwardSpeed);
+  const auto banked = car.rates<4>(x, 0.01, kForwardSpeed, {.banked = true, .bank = bank});
+  // The sensor feels the tyres; the car slides to the lower, right side.
+  EXPECT_DOUBLE_EQ(banked.lateral_acceleration, level.lateral_acceleration);
+  EXPECT_NEAR(banked.derivative(0), level.derivative(0) - kGravity * std::sin(bank), 1e-12);
+  EXPECT_DOUBLE_EQ(banked.derivative(1), level.derivative(1));
+  EXPECT_DOUBLE_EQ(banked.derivative(3), level.derivative(3));
+}
+
+TEST(RollingBicycle, GripsByTheLoadOfItsAxles) {
+  LinearRolling car = rolling_car();
+  RollingState<2> x(0.1, 0.05);
+  const DriveConditions<double> braking{.longitudinal_acceleration = -5.0};
+  const auto at_rest = car.rates<2>(x, 0.02, kForwardSpeed);
+  car.axle_load = {.acts = true, .downforce_f = 4e-4, .downforce_r = 4e-4, .sensitivity = 1.0};
+  // Pressed down equally, both axles and so the whole car have the same more.
+  const auto pressed = car.rates<2>(x, 0.02, kForwardSpeed);
+  const double more = 1.0 + 4e-4 * kForwardSpeed * kForwardSpeed;
+  EXPECT_NEAR(pressed.lateral_acceleration, more * at_rest.lateral_acceleration, 1e-12);
+  EXPECT_NEAR(pressed.derivative(1), more * at_rest.derivative(1), 1e-12);
+  // What braking takes from the rear axle's static load goes to the front one: m a_x c/L of m g a/L and m g b/L.
+  const VehicleParameters<double>& p = car.bicycle.parameters;
+  car.axle_load = {.acts = true, .sensitivity = 1.0};
+  const auto forces = car.loaded({100.0, 100.0}, kForwardSpeed, braking);
+  const double moved = p.mass * 5.0 * p.cg_height / p.wheelbase();
+  EXPECT_NEAR(forces[0] / 100.0 - 1.0, moved / (p.mass * kGravity * p.b / p.wheelbase()), 1e-12);
+  EXPECT_NEAR(1.0 - forces[1] / 100.0, moved / (p.mass * kGravity * p.a / p.wheelbase()), 1e-12);
+}
+
 /// Half a second of straight driving, a sine of steering of one second, and what follows.
 double single_sine(double t, double amplitude) {
   return amplitude * std::sin(2.0 * kPi * std::clamp(t - 0.5, 0.0, 1.0));

@@ -18,6 +18,7 @@ constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRoll
                             DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
                             DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
                             DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
+constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity};
 constexpr std::array kByGeometry{DriveUnknown::kCf,
                                  DriveUnknown::kCr,
                                  DriveUnknown::kIz,
@@ -106,6 +107,10 @@ DriveModelOptions::DriveModelOptions() {
   for (const DriveUnknown u : {DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay})
     prior[u] = 0.1;
   for (const DriveUnknown u : kRolls) prior[u] = kNaN;
+  prior[DriveUnknown::kDownforceF] = prior[DriveUnknown::kDownforceR] = kDownforceSigma;
+  // Stiffness grows with load by 0.4 to 1 of what it would in proportion (Pacejka 2006, chapter 1).
+  start[DriveUnknown::kLoadSensitivity] = 0.0;
+  prior[DriveUnknown::kLoadSensitivity] = 0.7;
   prior[DriveUnknown::kRollBias] = prior[DriveUnknown::kRollRateBias] = kDegree;
   prior[DriveUnknown::kShape] = 0.2;
   prior[DriveUnknown::kCurvature] = 0.5;
@@ -129,6 +134,8 @@ void DriveModelOptions::read_keys(const StudyTable& table) {
       const auto unknown = static_cast<DriveUnknown>(at - names.begin());
       if (std::ranges::find(kRolls, unknown) != kRolls.end())
         table.fail("estimate", fmt::format("names {}, which identify.structure frees or not", name));
+      if (std::ranges::find(kOfEffects, unknown) != kOfEffects.end())
+        table.fail("estimate", fmt::format("names {}, which identify.effects frees or not", name));
       free[unknown] = true;
     }
   }
@@ -194,6 +201,11 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
       return {0.0, 1.0};
     case DriveUnknown::kLoadTransferBalance:
       return {-1.0, 1.0};
+    case DriveUnknown::kDownforceF:
+    case DriveUnknown::kDownforceR:
+      return {-2e-4, 1e-2};
+    case DriveUnknown::kLoadSensitivity:
+      return {-1.0, 3.0};
     case DriveUnknown::kRelaxationLength:
       return {kShortestRelaxation * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
@@ -220,6 +232,13 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
     // Dry road and gravel: 0.6 to 1.2.
     if (!std::isfinite(options.prior[DriveUnknown::kMu])) options.prior[DriveUnknown::kMu] = 0.3;
   }
+  return options;
+}
+
+DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects) {
+  options.effects = effects;
+  options.free[DriveUnknown::kDownforceF] = options.free[DriveUnknown::kDownforceR] = effects[DriveEffect::kDownforce];
+  options.free[DriveUnknown::kLoadSensitivity] = effects[DriveEffect::kPedals];
   return options;
 }
 

@@ -27,6 +27,9 @@ enum class DriveUnknown : std::size_t {
   kLoadTransfer,         ///< share of a wheel's static load that moves to the other side at 1 g [-]
   kLoadTransferLoss,     ///< share of the axles' force that is lost where the body leans as much as at 1 g [-]
   kLoadTransferBalance,  ///< by how much of it the front axle loses more than that, and the rear one less [-]
+  kDownforceF,           ///< growth of the front axle's forces per square of the speed [s^2/m^2]
+  kDownforceR,           ///< of the rear axle's
+  kLoadSensitivity,      ///< growth of an axle's forces over that of its load by braking and driving [-]
   /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
   /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
   /// alone has them.
@@ -44,7 +47,7 @@ enum class DriveUnknown : std::size_t {
   kAccelYDelay
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 25;
+inline constexpr std::size_t kDriveUnknowns = 28;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// A value for each of them.
@@ -64,6 +67,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "load_transfer",
                                                                       "load_transfer_loss",
                                                                       "load_transfer_balance",
+                                                                      "downforce_f",
+                                                                      "downforce_r",
+                                                                      "load_sensitivity",
                                                                       "roll_frequency",
                                                                       "roll_damping",
                                                                       "steer_bias",
@@ -78,8 +84,8 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_y_delay"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad", "N/rad", "kg m^2", "m", "1",     "1",     "1", "rad s^2/m", "m",     "m", "1", "1", "1",
-    "rad/s", "1",     "rad",    "1", "rad/s", "m/s^2", "1", "rad",       "rad/s", "s", "s", "s"};
+    "N/rad",   "N/rad", "kg m^2", "m", "1",   "1", "1",     "rad s^2/m", "m", "m",   "1",     "1", "1", "s^2/m^2",
+    "s^2/m^2", "1",     "rad/s",  "1", "rad", "1", "rad/s", "m/s^2",     "1", "rad", "rad/s", "s", "s", "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }
@@ -96,6 +102,8 @@ struct DriveModelOptions {
   DriveTyre tyre = DriveTyre::kLinear;  ///< `tyre = "linear"` or "magic formula"
   /// What moves; no key of its own: `VehicleIdentifyOptions::structure` chooses. Its unknowns are free.
   DriveStructure structure = DriveStructure::kBicycle;
+  /// No key of its own either: `VehicleIdentifyOptions::effects`.
+  DriveEffects effects{};
   /// `estimate = ["C_f", "C_r", ...]`: names of what is free besides the structure's unknowns. Default: C_f, C_r, I_z,
   /// the three biases, and with the Magic Formula mu and C. What is not free stays at its start.
   PerDriveUnknown<bool> free{};
@@ -140,5 +148,11 @@ inline constexpr double kLongestDelay_s = 0.5;
 
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);
+
+/// What is known of a road's bank [rad] and of downforce [s^2/m^2] before the data: crossfall and banked turns of
+/// public roads are 0.02 to 0.08; racing cars gain as much force as they have at rest at 35 to 70 m/s, 2e-4 to 8e-4.
+inline constexpr double kBankSigma = 0.06, kDownforceSigma = 5e-4;
+/// The options with these effects, whose unknowns are free, and no others.
+[[nodiscard]] DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects);
 
 }  // namespace veridyn::vehicle

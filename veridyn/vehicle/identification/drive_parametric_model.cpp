@@ -113,6 +113,10 @@ DriveParametricModel::DriveParametricModel(const DriveSignals& signals, std::spa
     steer_ = smoothed(steer.value, grid_.rate_Hz(), smoothing_Hz_);
   }
   speed_ = smoothed(signals[DriveSignal::kSpeed].value, grid_.rate_Hz(), smoothing_Hz_);
+  if (options_.effects[DriveEffect::kPedals] || options_.start[DriveUnknown::kLoadSensitivity] != 0.0)
+    speed_rate_ = numerics::filter(
+        signals[DriveSignal::kSpeed].value,
+        numerics::modulating_kernel(grid_.rate_Hz(), std::min(kPedalBand_Hz, 0.1 * grid_.rate_Hz())).first);
   const auto compare = [&](DriveSignal signal) {
     if (!signals[signal].available()) return;
     outputs_.push_back({std::string(kDriveSignalNames[signal]), std::string(kDriveSignalUnits[signal])});
@@ -163,6 +167,8 @@ DriveParametricModel::Segment DriveParametricModel::make_segment(std::size_t beg
     out.initial.push_back({.name = "slip_front", .unit = "rad", .prior_sigma = kInitialSlip});
     out.initial.push_back({.name = "slip_rear", .unit = "rad", .prior_sigma = kInitialSlip});
   }
+  if (options_.effects[DriveEffect::kBank])
+    out.initial.push_back({.name = std::string(kSegmentBank), .unit = "rad", .prior_sigma = kBankSigma});
   return out;
 }
 
@@ -290,19 +296,27 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
   struct Input {
     Scalar delta;
     Scalar u;
+    DriveConditions<Scalar> conditions;
   };
+  const auto first = signed_index(parameters_.size());
+  const bool banked = options_.effects[DriveEffect::kBank];
+  const Scalar bank = banked ? theta(first + signed_index(segment.initial.size()) - 1) : Scalar(0.0);
+  const bool by_pedals = !speed_rate_.empty();
+  const SampledInput speed_rate{
+      by_pedals ? std::span<const double>(speed_rate_).subspan(segment.begin, n) : std::span<const double>(), step};
   const auto input = [&](double position) -> Input {
     const Scalar at = steer_lead + position;
-    return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain, Scalar(speed.at(position))};
+    return {(steer.at(at) - unknown(DriveUnknown::kSteerBias)) * steer_gain,
+            Scalar(speed.at(position)),
+            {by_pedals ? speed_rate.at(position) : 0.0, banked, bank}};
   };
   const bool delayed = delays_outputs(sampled_value(unknown(DriveUnknown::kYawRateDelay)),
                                       sampled_value(unknown(DriveUnknown::kAccelYDelay)));
   std::vector<std::vector<Scalar>> shown(delayed ? compared_.size() : 0, std::vector<Scalar>(n));
 
   const double h = step / segment.substeps;
-  const auto first = signed_index(parameters_.size());
   Input now = input(0.0);
-  State x = model.template steady<kStates>(theta(first), theta(first + 1), now.delta, now.u);
+  State x = model.template steady<kStates>(theta(first), theta(first + 1), now.delta, now.u, now.conditions);
   for (Eigen::Index i = 2; i < kStates; ++i) x(i) += theta(first + i);
   for (std::size_t k = 0; k < n; ++k) {
     const auto row = signed_index(k);
@@ -314,7 +328,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
       break;
     }
     for (int i = 0; i < segment.substeps; ++i) {
-      const Rates k1 = model.rates(x, now.delta, now.u);
+      const Rates k1 = model.rates(x, now.delta, now.u, now.conditions);
       if (i == 0) {
         for (std::size_t j = 0; j < compared_.size(); ++j) {
           const auto column = signed_index(j);
@@ -329,7 +343,7 @@ bool DriveParametricModel::drive(const Segment& segment, const RollingBicycle<Sc
       const Input next = input(at + 1.0 / segment.substeps);
       const auto rate = [&](numerics::RungeKuttaMoment moment, const State& stage) -> State {
         const Input& there = moment == numerics::RungeKuttaMoment::kMiddle ? middle : next;
-        return model.rates(stage, there.delta, there.u).derivative;
+        return model.rates(stage, there.delta, there.u, there.conditions).derivative;
       };
       x = numerics::runge_kutta_4_from(k1.derivative, rate, x, h);
       now = next;
@@ -368,7 +382,11 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
         .load_transfer = {.effect = load_transfer_of<Scalar>(options_.structure),
                           .share = unknown(DriveUnknown::kLoadTransfer),
                           .loss = unknown(DriveUnknown::kLoadTransferLoss),
-                          .balance = unknown(DriveUnknown::kLoadTransferBalance)}};
+                          .balance = unknown(DriveUnknown::kLoadTransferBalance)},
+        .axle_load = {.acts = moves_loads(),
+                      .downforce_f = unknown(DriveUnknown::kDownforceF),
+                      .downforce_r = unknown(DriveUnknown::kDownforceR),
+                      .sensitivity = unknown(DriveUnknown::kLoadSensitivity)}};
     switch (options_.structure) {
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());
@@ -485,6 +503,11 @@ DriveWhitening DriveParametricModel::whitening(const Eigen::VectorXd& theta) con
     out.filter.push_back(whitening_filter(noise_at(out.speed.back(), theta)));
   }
   return out;
+}
+
+bool DriveParametricModel::moves_loads() const {
+  return !speed_rate_.empty() || options_.effects[DriveEffect::kDownforce] ||
+         options_.start[DriveUnknown::kDownforceF] != 0.0 || options_.start[DriveUnknown::kDownforceR] != 0.0;
 }
 
 DriveParametricModel::SpeedRange DriveParametricModel::speeds() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "veridyn/estimation/output_error/parametric_model.hpp"
@@ -16,10 +17,18 @@
 
 namespace veridyn::vehicle {
 
+/// The unknown of a segment that the bank of its road is.
+inline constexpr std::string_view kSegmentBank = "bank";
+/// Below it the derivative of the recorded speed moves loads: bodies pitch as slowly.
+inline constexpr double kPedalBand_Hz = 1.0;
+
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of
 /// roll, roll rate and lagging slips what they differ by from steady cornering. (Were they taken as steady, a transient
 /// of half a second a segment would move stiffnesses by 4 to 10 %.)
+///
+/// Effects of a racing car are added where the options have them: a bank of the road is one more unknown of each
+/// segment, axle loads move with the speed and with its derivative (the recorded speed's below kPedalBand_Hz).
 ///
 /// Outputs: yaw_rate; accel_y at the sensor's place, a_y + x r' - y r^2 - z phi'', with g phi where the body rolls and
 /// gravity's share was not taken off; lateral_velocity; and of a body that rolls roll and roll_rate; each where it is
@@ -117,6 +126,8 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   /// About straight driving at speed u.
   [[nodiscard]] LinearDrive linearized(double u, const Eigen::VectorXd& theta) const;
   [[nodiscard]] DriveNoise noise_at(double u, const Eigen::VectorXd& theta) const;
+  /// Whether loads of the axles change.
+  [[nodiscard]] bool moves_loads() const;
   struct SpeedRange {
     double slowest = 0.0, fastest = 0.0;  // [m/s]
   };
@@ -134,6 +145,7 @@ class DriveParametricModel : public estimation::AutodiffModel<DriveParametricMod
   double steer_sigma_ = 0.0;
   double steer_error_share_ = 0.0;  // of its variance, after the estimate of the steering
   std::vector<double> steer_, speed_;
+  std::vector<double> speed_rate_;  // empty: no load is moved by it
   std::vector<Compared> compared_;  // in the order of outputs_
   VehicleParameters<double> start_;
   DriveModelOptions options_;

@@ -1,14 +1,31 @@
 #include "veridyn/vehicle/identification/drive_structure.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace veridyn::vehicle {
+namespace {
+
+/// Whether it has more unknowns: of two structures that were tried one contains the other.
+bool is_richer(const TriedStructure& a, const TriedStructure& b) {
+  return a.structure > b.structure || (a.structure == b.structure && a.effects > b.effects);
+}
+
+}  // namespace
+
+std::string name_of(DriveStructure structure, const DriveEffects& effects) {
+  std::string name(to_string(structure));
+  for (const DriveEffect effect : kAllDriveEffects)
+    if (effects[effect]) name += fmt::format(", {}", kDriveEffectNames[effect]);
+  return name;
+}
 
 double probability_against(const TriedStructure& other, const TriedStructure& taken) {
-  if (!other.usable || (other.at_bound && other.structure > taken.structure)) return 0.0;
+  if (!other.usable || (other.at_bound && is_richer(other, taken))) return 0.0;
   const double gain = taken.negative_log_likelihood - other.negative_log_likelihood;
   // Of the richer one, which leaves less to be correlated.
-  const double inflation = (other.structure > taken.structure ? other : taken).inflation;
+  const double inflation = (is_richer(other, taken) ? other : taken).inflation;
   return 1.0 / (1.0 + std::exp(-gain / inflation - (other.log_prior_volume - taken.log_prior_volume)));
 }
 

@@ -39,6 +39,24 @@ inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> k
 /// As study files and estimates name it.
 [[nodiscard]] constexpr std::string_view to_string(DriveStructure structure) { return kDriveStructureNames[structure]; }
 
+/// What road, air and pedals of a racing car add to any structure, where the recording can tell.
+enum class DriveEffect : std::size_t {
+  kBank,       ///< a road that leans sideways, by an angle for each segment
+  kDownforce,  ///< axles whose forces grow with the square of the speed
+  kPedals      ///< and with the load that braking and driving move from one to the other
+};
+/// How many there are.
+inline constexpr std::size_t kDriveEffectCount = 3;
+/// All of them, in the order in which they are tried.
+inline constexpr auto kAllDriveEffects = enumerators<DriveEffect, kDriveEffectCount>();
+/// Which of them a model has.
+using DriveEffects = EnumArray<DriveEffect, bool, kDriveEffectCount>;
+/// Their names in studies and results, in the order of the enum.
+inline constexpr EnumArray<DriveEffect, std::string_view, kDriveEffectCount> kDriveEffectNames{
+    "banked road", "downforce", "load moved by pedals"};
+/// A structure with what is added to it: "roll, banked road".
+[[nodiscard]] std::string name_of(DriveStructure structure, const DriveEffects& effects);
+
 /// Whether its body rolls.
 [[nodiscard]] constexpr bool has_roll(DriveStructure structure) { return structure >= DriveStructure::kRoll; }
 /// Whether the slip of its tyres may lag.
@@ -52,6 +70,7 @@ inline constexpr EnumArray<DriveStructure, std::string_view, kDriveStructures> k
 /// One structure that was fitted to the identification segments and tried on the hold-out.
 struct TriedStructure {
   DriveStructure structure = DriveStructure::kBicycle;
+  DriveEffects effects = {};
   bool usable = false;
   bool at_bound = false;  ///< one of the unknowns that it adds is at a bound
   std::string message = {};
@@ -68,6 +87,7 @@ struct TriedStructure {
 /// A structure that the data neither ask for nor exclude, beside the one that is taken.
 struct StructureDoubt {
   DriveStructure structure = DriveStructure::kRelaxation;
+  DriveEffects effects = {};
   double probability = 0.0;  ///< against the one that is taken
   /// By how much it would move the parameters that both have; by name, each in its unit.
   std::vector<std::pair<std::string, double>> difference = {};

@@ -49,10 +49,16 @@ EstimatedDriveModel estimated_drive_model(const estimation::Estimate& estimate,
        {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature, DriveUnknown::kRollGradient,
         DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping, DriveUnknown::kRollArm,
         DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer, DriveUnknown::kLoadTransferLoss,
-        DriveUnknown::kLoadTransferBalance, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
+        DriveUnknown::kLoadTransferBalance, DriveUnknown::kDownforceF, DriveUnknown::kDownforceR,
+        DriveUnknown::kLoadSensitivity, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
         DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
     take(kDriveUnknownNames[u], given.options.start[u]);
   }
+  given.options.effects[DriveEffect::kDownforce] = estimate.find("downforce_f") != nullptr;
+  given.options.effects[DriveEffect::kPedals] = estimate.find("load_sensitivity") != nullptr;
+  // Its angles are each segment's own.
+  given.options.effects[DriveEffect::kBank] =
+      estimate.structure.find(kDriveEffectNames[DriveEffect::kBank]) != std::string::npos;
   if (estimate.find("roll_gradient") != nullptr) given.options.structure = DriveStructure::kRoll;
   if (estimate.find("relaxation_length") != nullptr) given.options.structure = DriveStructure::kRelaxation;
   if (estimate.find("mu") != nullptr) {

@@ -64,7 +64,8 @@ std::optional<estimation::Evidence> doubt_row(std::span<const StructureDoubt> do
   const double kLimit = std::sqrt(0.5);
   std::vector<std::string> structures, named;
   for (const StructureDoubt& doubt : doubts)
-    structures.push_back(fmt::format("{} (probability {:.2g})", to_string(doubt.structure), doubt.probability));
+    structures.push_back(
+        fmt::format("{} (probability {:.2g})", name_of(doubt.structure, doubt.effects), doubt.probability));
   double largest = 0.0;
   for (const estimation::Parameter& p : estimate.parameters) {
     if (!is_shown(p) || !(p.sigma > 0.0)) continue;

@@ -10,6 +10,7 @@
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/linear_algebra/cholesky.hpp"
 #include "veridyn/numerics/statistics.hpp"
+#include "veridyn/vehicle/identification/drive_effects.hpp"
 #include "veridyn/vehicle/identification/structure_doubt.hpp"
 #include "veridyn/vehicle/identification/vehicle_prediction.hpp"
 
@@ -60,8 +61,10 @@ bool ends_at_simpler(DriveStructure structure, const OutputErrorResult& fit) {
 
 /// How a fit does, on its own data and on the hold-out.
 TriedStructure tried(const VehicleProblem& problem, const OutputErrorResult& fit, Progress& progress) {
-  TriedStructure out{
-      .structure = problem.options.model.structure, .usable = fit.raw.usable(), .message = fit.raw.message};
+  TriedStructure out{.structure = problem.options.model.structure,
+                     .effects = problem.options.model.effects,
+                     .usable = fit.raw.usable(),
+                     .message = fit.raw.message};
   if (!out.usable) return out;
   out.negative_log_likelihood = fit.raw.negative_log_likelihood;
   out.log_prior_volume = log_prior_volume(problem, fit);
@@ -109,8 +112,9 @@ std::optional<estimation::Parameter> steer_delay_of(const VehicleProblem& proble
 }
 
 /// The options for a structure. Saturation has no relaxation length where the data did not ask for one.
-VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes) {
-  options.model = with_structure(options.model, structure);
+VehicleIdentifyOptions with_structure(VehicleIdentifyOptions options, DriveStructure structure, bool relaxes,
+                                      const DriveEffects& effects) {
+  options.model = with_effects(with_structure(options.model, structure), effects);
   if (!saturates(structure) || relaxes) return options;
   options.model.free[DriveUnknown::kRelaxationLength] = false;
   options.model.start[DriveUnknown::kRelaxationLength] = 0.0;
@@ -125,11 +129,12 @@ class Climb {
 
   StructureLadder run() {
     if (problem_.options.structure) {
-      fit(*problem_.options.structure, true);
+      fit(*problem_.options.structure, true, problem_.options.effects.value_or(DriveEffects{}));
     } else {
       climb_to_roll();
       if (takes_roll()) weigh();
       if (takes_roll()) climb_beyond_roll();
+      if (!problem_.options.effects) add_effects();
       if (progress_.interrupted()) leave_out("not all structures were tried");
       doubt();
     }
@@ -153,8 +158,11 @@ class Climb {
 
   /// Fits one more structure, from where the last one ended.
   void fit(DriveStructure structure, bool relaxes) {
-    progress_.stage(fmt::format("output error, structure: {}", to_string(structure)));
-    options_.push_back(with_structure(problem_.options, structure, relaxes));
+    fit(structure, relaxes, problem_.options.effects.value_or(DriveEffects{}));
+  }
+  void fit(DriveStructure structure, bool relaxes, const DriveEffects& effects) {
+    progress_.stage(fmt::format("output error, structure: {}", name_of(structure, effects)));
+    options_.push_back(with_structure(problem_.options, structure, relaxes, effects));
     fits_.emplace_back();
     ladder_.tried.emplace_back();
     fit_again(fits_.size() - 1);
@@ -210,15 +218,56 @@ class Climb {
     }
   }
 
+  /// What road, air and pedals add to the structure taken, one after the other; and where they do, whether a simpler
+  /// structure does with them, which without them was not enough.
+  void add_effects() {
+    if (ladder_.empty() || contradicts() || progress_.interrupted() || is_exact(fits_.back())) return;
+    const DriveEffects told = effects_told(problem_);
+    DriveEffects effects{};
+    for (const DriveEffect effect : kAllDriveEffects) {
+      if (!told[effect]) continue;
+      if (progress_.interrupted()) return;
+      const std::size_t before = choose_structure(ladder_.tried);
+      DriveEffects more = effects;
+      more[effect] = true;
+      search_start_ = fits_[before].raw.theta;
+      fit(ladder_.tried[before].structure, relaxes(before), more);
+      if (choose_structure(ladder_.tried) != before) effects = more;
+    }
+    if (effects == DriveEffects{}) return;
+    const std::size_t chosen = choose_structure(ladder_.tried);
+    const std::size_t without = ladder_.tried.size();
+    for (const DriveStructure simpler : {DriveStructure::kBicycle, DriveStructure::kRoll}) {
+      if (!(simpler < ladder_.tried[chosen].structure)) break;
+      if (progress_.interrupted()) return;
+      search_start_ = fits_[chosen].raw.theta;
+      fit(simpler, false, effects);
+    }
+    // They go before what they are simpler than: the choice is made from the simplest upward.
+    const auto place = [&](auto& rungs) {
+      std::rotate(rungs.begin() + signed_index(chosen), rungs.begin() + signed_index(without), rungs.end());
+    };
+    place(ladder_.tried);
+    place(fits_);
+    place(options_);
+  }
+
+  /// Whether the tyres of a rung lag.
+  [[nodiscard]] bool relaxes(std::size_t rung) const {
+    return options_[rung].model.free[DriveUnknown::kRelaxationLength];
+  }
+
   /// What the others leave in doubt.
   void doubt() {
     const std::size_t chosen = choose_structure(ladder_.tried);
     for (std::size_t other = 0; other < fits_.size(); ++other) {
       if (other == chosen) continue;
       const double probability = probability_against(ladder_.tried[other], ladder_.tried[chosen]);
-      if (probability > kExcluded)
+      if (probability > kExcluded) {
         ladder_.doubts.push_back(structure_doubt(ladder_.tried[other].structure, probability, fits_[other].estimate,
                                                  fits_[chosen].estimate));
+        ladder_.doubts.back().effects = ladder_.tried[other].effects;
+      }
     }
   }
 
@@ -236,8 +285,8 @@ class Climb {
     }
     if (progress_.interrupted()) {
       // A structure that was not tried may move the values by more than their intervals.
-      ladder_.unfinished.converged = ladder_.unfinished.empty() &&
-                                     ladder_.fit.raw.termination == estimation::OutputErrorTermination::kConverged;
+      ladder_.unfinished.converged =
+          ladder_.unfinished.empty() && ladder_.fit.raw.termination == estimation::OutputErrorTermination::kConverged;
       leave_out("its parameters were not refined to the end");
       return;
     }
@@ -260,13 +309,14 @@ class Climb {
 
 std::string reason_of(const StructureLadder& ladder, bool contradicts) {
   const TriedStructure& taken = ladder.tried[ladder.chosen];
-  std::string reason = fmt::format("structure: {}", to_string(taken.structure));
+  std::string reason = fmt::format("structure: {}", name_of(taken.structure, taken.effects));
   if (!ladder.unfinished.empty() && !taken.usable) {
     reason += ", whose search was interrupted";
   } else if (ladder.chosen > 0) {
     const TriedStructure& before = ladder.tried.front();
     reason += fmt::format(", which makes the drive likelier than {} does by a log-likelihood of {:.0f}",
-                          to_string(before.structure), before.negative_log_likelihood - taken.negative_log_likelihood);
+                          name_of(before.structure, before.effects),
+                          before.negative_log_likelihood - taken.negative_log_likelihood);
   } else if (!ladder.unfinished.empty()) {
     reason += ": none richer makes the drive likelier, of those tried before the interruption";
   } else if (ladder.tried.size() > 1) {

@@ -149,6 +149,7 @@ VehicleIdentification identify_parameters(const VehicleProblem& problem, Progres
       {problem.signals, problem.segments, problem.start, problem.signal_options, options, problem.recording},
       equation_error, ladder, progress);
   out.structure = options.model.structure;
+  out.effects = options.model.effects;
   out.tried_structures = std::move(ladder.tried);
   if (!ladder.reason.empty()) out.structure_reason = std::move(ladder.reason);
   return out;
@@ -171,7 +172,7 @@ std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentifica
   double first = kNaN;
   for (const TriedStructure& tried : identification.tried_structures) {
     estimation::StructureTrial& trial = trials.emplace_back();
-    trial.name = to_string(tried.structure);
+    trial.name = name_of(tried.structure, tried.effects);
     if (!tried.usable) {
       trial.obstacle = tried.message;
       continue;
@@ -179,7 +180,7 @@ std::vector<estimation::StructureTrial> structure_trials(const VehicleIdentifica
     const bool is_first = std::isnan(first);
     if (is_first) first = tried.negative_log_likelihood;
     if (tried.at_bound && !is_first) trial.obstacle = "an unknown that it adds is at a bound";
-    trial.taken = tried.structure == identification.structure;
+    trial.taken = tried.structure == identification.structure && tried.effects == identification.effects;
     trial.log_likelihood_gain = first - tried.negative_log_likelihood;
     if (!is_first) trial.needed_gain = kLikelier * tried.inflation;
     trial.holdout_quantity = kDriveSignalNames[DriveSignal::kYawRate];
@@ -212,6 +213,9 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   if (!identification.structure_doubts.empty())
     for (const Parameter& p : out.parameters)
       out.fit[p.name + ".structure_doubt"] = doubt_of(identification.structure_doubts, p.name);
+  if (identification.output_error)
+    for (const estimation::SegmentParameter& p : identification.output_error->segment_parameters)
+      if (p.name == kSegmentBank) out.fit[fmt::format("{}.segment_{}", kSegmentBank, p.segment + 1)] = p.value;
   for (const estimation::PredictedQuantity& q : identification.fit.quantities) {
     out.fit[q.name + ".r2"] = q.fit.r2;
     out.fit[q.name + ".rmse"] = q.fit.rmse;
@@ -220,7 +224,7 @@ estimation::Estimate make_vehicle_estimate(const VehicleIdentification& identifi
   for (const estimation::PredictedQuantity& q : identification.validation.quantities)
     out.validation[q.name] = {q.fit.mae, q.fit.rmse, q.fit.r2, q.fit.theil, q.unit};
   if (!identification.tried_structures.empty()) {
-    out.structure = to_string(identification.structure);
+    out.structure = name_of(identification.structure, identification.effects);
     out.structure_reason = identification.structure_reason;
     out.tried_structures = structure_trials(identification);
   }

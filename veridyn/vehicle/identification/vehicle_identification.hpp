@@ -30,6 +30,10 @@ struct VehicleIdentifyOptions {
   /// `structure`: "auto" (nothing) takes the richest that the data ask for, see `structure_ladder.hpp`; a name of
   /// kDriveStructureNames fixes it.
   std::optional<DriveStructure> structure = {};
+  /// `effects`: "auto" (nothing) adds what road, air and pedals do to the structure, where the drive tells
+  /// (`drive_effects.hpp`) and asks for it; a list of kDriveEffectNames, or [], fixes them. With a fixed structure
+  /// "auto" is [].
+  std::optional<DriveEffects> effects = {};
   /// `method`: "auto" (nothing) takes output error where it converged, else the equation error that its comparison
   /// recommends; "output error", "OLS", "TLS", "GTLS", "PCA-GTLS" fixes it.
   std::optional<VehicleMethod> method = {};
@@ -77,6 +81,7 @@ struct VehicleIdentification {
   std::vector<VehicleEstimate> estimates;                       ///< one per method, the chosen one among them
   VehicleMethod chosen = VehicleMethod::kNone;                  ///< its method
   DriveStructure structure = DriveStructure::kBicycle;          ///< of the model of output and filter error
+  DriveEffects effects = {};                                    ///< added to it
   std::vector<TriedStructure> tried_structures;                 ///< the simplest first
   std::vector<StructureDoubt> structure_doubts;                 ///< others that are left open; in the intervals
   std::string structure_reason;                                 ///< why this one; empty where the study fixes it

@@ -1,9 +1,28 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "veridyn/estimation/uncertainty/profile_choice.hpp"
 #include "veridyn/vehicle/identification/vehicle_identification.hpp"
 
 namespace veridyn::vehicle {
+namespace {
+
+/// Nothing for "auto".
+std::optional<DriveEffects> read_effects(const StudyTable& table) {
+  if (!table.has("effects") || (table.is_text("effects") && table.text("effects") == "auto")) return std::nullopt;
+  DriveEffects effects{};
+  for (const std::string& name : table.texts("effects")) {
+    const auto at = std::ranges::find(kDriveEffectNames, name);
+    if (at == kDriveEffectNames.end()) {
+      const std::vector<std::string> names(kDriveEffectNames.begin(), kDriveEffectNames.end());
+      table.fail("effects", fmt::format("names '{}', which is none of {}", name, fmt::join(names, ", ")));
+    }
+    effects[static_cast<DriveEffect>(at - kDriveEffectNames.begin())] = true;
+  }
+  return effects;
+}
+
+}  // namespace
 
 VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
   VehicleIdentifyOptions o;
@@ -26,6 +45,8 @@ VehicleIdentifyOptions VehicleIdentifyOptions::read(const StudyTable& table) {
     o.structure = static_cast<DriveStructure>(at - kDriveStructureNames.begin());
     o.model = with_structure(o.model, *o.structure);
   }
+  o.effects = read_effects(table);
+  if (o.effects) o.model = with_effects(o.model, *o.effects);
   std::vector<std::string> free;
   for (std::size_t i = 0; i < kDriveUnknowns; ++i)
     if (o.model.free[i]) free.emplace_back(kDriveUnknownNames[i]);

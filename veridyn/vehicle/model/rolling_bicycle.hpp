@@ -40,11 +40,37 @@ struct LoadTransfer {
   Scalar balance{0.0};  ///< by how much of that the front axle has more, and the rear one less: -1 to 1
 };
 
+/// What axles gain with their load: forces, and with them stiffness and friction limit, grow in front and behind by
+///
+///     1 + d_f u^2 - s a_x c/(g b),   1 + d_r u^2 + s a_x c/(g a)
+///
+/// of their static ones: the air presses the axles down, and braking and driving move load between them (c the height
+/// of the centre of gravity, u' = a_x). A tyre whose stiffness grows in proportion to its load has s = 1.
+template <typename Scalar>
+struct AxleLoad {
+  bool acts = false;
+  Scalar downforce_f{0.0}, downforce_r{0.0};  ///< d [s^2/m^2]
+  Scalar sensitivity{0.0};                    ///< s [-]
+
+  /// No axle loses more than this.
+  static constexpr double kLeast = 0.05;
+};
+
+/// What of road and pedals moves the vehicle besides its steering.
+template <typename Scalar>
+struct DriveConditions {
+  double longitudinal_acceleration = 0.0;  ///< u' [m/s^2]
+  bool banked = false;                     ///< else `bank` is not looked at
+  Scalar bank{0.0};                        ///< of the road, left side up [rad]
+};
+
 /// Rates of a `RollingBicycle` at one moment.
 template <typename Scalar, int kStates>
 struct RollingBicycleRates {
   Eigen::Matrix<Scalar, kStates, 1> derivative;
-  Scalar lateral_acceleration{0.0};  ///< v' + r u, of the centre of gravity [m/s^2]
+  /// Of the tyres' forces [m/s^2]: v' + r u of the centre of gravity, and g sin(bank), which an accelerometer shows
+  /// too.
+  Scalar lateral_acceleration{0.0};
 };
 
 /// The bicycle model with as many states as one asks for, in this order (ISO 8855: roll is left side up):
@@ -55,16 +81,22 @@ struct RollingBicycleRates {
 ///   arm h rolls the body (the linear form: Segel 1956, Proc. IMechE Automobile Division 10(1); here the wheels are
 ///   without mass of their own, as in the lateral motion of `FourWheelModel`);
 /// - 6: and the slip angles of front and rear tyres, which follow after `relaxation_length` of travel.
+///
+/// On a banked road gravity pulls by g sin(bank) to its lower side; the body rolls against the road by the tyres'
+/// forces alone.
 template <typename Scalar, typename Tyre>
 struct RollingBicycle {
   BicycleModel<Scalar, Tyre> bicycle;
   BodyRoll<Scalar> roll = {};
   Scalar relaxation_length{0.3};  ///< with six states; > 0 [m]
   LoadTransfer<Scalar> load_transfer = {};
+  AxleLoad<Scalar> axle_load = {};
 
   template <int kStates>
   [[nodiscard]] RollingBicycleRates<Scalar, kStates> rates(const Eigen::Matrix<Scalar, kStates, 1>& x,
-                                                           const Scalar& steer, const Scalar& u) const {
+                                                           const Scalar& steer, const Scalar& u,
+                                                           const DriveConditions<Scalar>& conditions = {}) const {
+    using std::sin;
     static_assert(kStates == 2 || kStates == 4 || kStates == 6);
     RollingBicycleRates<Scalar, kStates> out;
     std::array<Scalar, 2> slip = bicycle.slip_angles(contact_velocity(x), x(1), steer, u);
@@ -74,9 +106,11 @@ struct RollingBicycle {
       out.derivative(5) = per_time * (slip[1] - x(5));
       slip = {x(4), x(5)};
     }
-    const BicycleRates<Scalar> plane = bicycle.rates_of_forces(slip, axle_forces<kStates>(slip, x), x(1), steer, u);
+    const std::array<Scalar, 2> Fy = loaded(axle_forces<kStates>(slip, x), u, conditions);
+    const BicycleRates<Scalar> plane = bicycle.rates_of_forces(slip, Fy, x(1), steer, u);
     out.lateral_acceleration = plane.lateral_acceleration;
     out.derivative(0) = plane.dv;
+    if (conditions.banked) out.derivative(0) -= bicycle.gravity * sin(conditions.bank);
     out.derivative(1) = plane.dr;
     if constexpr (kStates > 2) {
       out.derivative(2) = x(3);
@@ -105,6 +139,19 @@ struct RollingBicycle {
     return bicycle.tyre_forces(slip);
   }
 
+  /// Forces at the static loads as they are at the loads of the moment.
+  [[nodiscard]] std::array<Scalar, 2> loaded(const std::array<Scalar, 2>& Fy, const Scalar& u,
+                                             const DriveConditions<Scalar>& conditions) const {
+    if (!axle_load.acts) return Fy;
+    const VehicleParameters<Scalar>& p = bicycle.parameters;
+    const Scalar moved = axle_load.sensitivity * (conditions.longitudinal_acceleration * p.cg_height / bicycle.gravity);
+    std::array<Scalar, 2> growth{1.0 + axle_load.downforce_f * u * u - moved / p.b,
+                                 1.0 + axle_load.downforce_r * u * u + moved / p.a};
+    for (Scalar& g : growth)
+      if (g < AxleLoad<Scalar>::kLeast) g = Scalar(AxleLoad<Scalar>::kLeast);
+    return {Fy[0] * growth[0], Fy[1] * growth[1]};
+  }
+
   /// Sideways, of the contact points below the centre of gravity [m/s].
   template <int kStates>
   [[nodiscard]] Scalar contact_velocity(const Eigen::Matrix<Scalar, kStates, 1>& x) const {
@@ -115,11 +162,14 @@ struct RollingBicycle {
   /// The states of steady cornering at lateral velocity v and yaw rate r: the body at rest in its roll.
   template <int kStates>
   [[nodiscard]] Eigen::Matrix<Scalar, kStates, 1> steady(const Scalar& v, const Scalar& r, const Scalar& steer,
-                                                         const Scalar& u) const {
+                                                         const Scalar& u,
+                                                         const DriveConditions<Scalar>& conditions = {}) const {
     Eigen::Matrix<Scalar, kStates, 1> x;
     x(0) = v;
     x(1) = r;
-    const BicycleRates<Scalar> plane = bicycle.rates(v, r, steer, u);
+    const std::array<Scalar, 2> slip = bicycle.slip_angles(v, r, steer, u);
+    const BicycleRates<Scalar> plane =
+        bicycle.rates_of_forces(slip, loaded(bicycle.tyre_forces(slip), u, conditions), r, steer, u);
     if constexpr (kStates > 2) {
       x(2) = roll.gradient * plane.lateral_acceleration;
       x(3) = Scalar(0.0);
