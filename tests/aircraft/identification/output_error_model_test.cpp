@@ -105,5 +105,32 @@ TEST(OutputErrorModel, DrivesWhatIsNotModelledByItsMeasurement) {
   EXPECT_EQ(model.initial_conditions(0).size(), 1u);
 }
 
+// One set of parameters; each segment its own initial state, and no segment of one flight in the inputs of another.
+TEST(OutputErrorModel, OfTwoFlightsSharesTheParameters) {
+  const Subject subject = builtin_subject("unatrap");
+  std::array<FlightSignals, 2> flights;
+  for (std::size_t f = 0; f < 2; ++f) {
+    FlightSignals& signals = flights[f];
+    signals.grid = {0.0, 0.02, 251};
+    for (auto& signal : signals.signals) signal.value.assign(signals.size(), 0.0);
+    signals[FlightSignal::kAirspeed].value.assign(signals.size(), 19.0 + static_cast<double>(f));
+    signals.air_density.assign(signals.size(), 1.2);
+    for (auto* angle : {&signals.roll, &signals.pitch, &signals.yaw}) angle->assign(signals.size(), 0.0);
+  }
+  const std::vector<TimeSpan> spans{{0.0, 4.0}};
+  const std::vector<CoefficientModel> models{*subject.model.find(Coefficient::kCL),
+                                             *subject.model.find(Coefficient::kCD)};
+  const std::array both{OutputErrorModel::FlownSpans{flights[0], spans, false, "a.csv"},
+                        OutputErrorModel::FlownSpans{flights[1], spans, false, "b.csv"}};
+  const OutputErrorModel model(both, subject, models), alone(flights[1], spans, subject, models, false);
+  ASSERT_EQ(model.segments(), 2u);
+  EXPECT_EQ(model.parameters().size(), alone.parameters().size());
+  EXPECT_EQ(model.segment_name(1), "the segment from 0.0 to 4.0 s of b.csv");
+  EXPECT_EQ(alone.segment_name(0), "the segment from 0.0 to 4.0 s");
+  EXPECT_EQ(model.initial_conditions(0)[0].start, 19.0);
+  EXPECT_EQ(model.initial_conditions(1)[0].start, 20.0);
+  EXPECT_EQ(model.measured()[1], alone.measured()[0]);
+}
+
 }  // namespace
 }  // namespace veridyn::aircraft

@@ -69,6 +69,24 @@ TEST(EstimateJson, KeepsGradesAndEvidence) {
   EXPECT_FALSE(read.evidence[0].bears_on.contains(estimation::Purpose::kParameters));
 }
 
+TEST(EstimateJson, KeepsTheRecordingsOfSeveral) {
+  estimation::Estimate e = two_parameters();
+  EXPECT_THAT(to_json(e), ::testing::Not(HasSubstr("recordings"))) << "of one recording";
+  e.recordings = {{.name = "a.csv", .use = "identification"},
+                  {.name = "b.csv", .use = "hold-out", .validation = {{"CL", {0.1, 0.2, 0.9, 0.05, "1"}}}}};
+  const testing::TemporaryFolder folder;
+  const std::string text = to_json(e);
+  const estimation::Estimate read = read_estimate(folder.write("estimate.json", text));
+  EXPECT_EQ(to_json(read), text);
+  ASSERT_EQ(read.recordings.size(), 2u);
+  EXPECT_EQ(read.recordings[1].name, "b.csv");
+  EXPECT_EQ(read.recordings[1].use, "hold-out");
+  EXPECT_EQ(read.recordings[1].validation.at("CL").r2, 0.9);
+  const auto broken = folder.write(
+      "broken.json", text.substr(0, text.find("\"a.csv\"")) + "7" + text.substr(text.find("\"a.csv\"") + 7));
+  EXPECT_THAT(message_of([&] { static_cast<void>(read_estimate(broken)); }), HasSubstr("recordings[0]: name"));
+}
+
 TEST(EstimateJson, KeepsWhatToMeasureNext) {
   estimation::Estimate e = two_parameters();
   EXPECT_EQ(to_json(e).find("next_measurements"), std::string::npos);
