@@ -54,7 +54,8 @@ TrackedDrive::TrackedDrive(const VehicleStudy& study)
 }
 
 bool TrackedDrive::learns_body() const {
-  return options_.learning_s > 0.0 && !(begin_ && begin_->find("roll_gradient") != nullptr);
+  // An estimate without a yaw inertia is that of a tracked drive.
+  return options_.learning_s > 0.0 && !(begin_ && begin_->find("I_z") != nullptr);
 }
 
 void TrackedDrive::begin(const recording::MappedRecording& mapped, Progress& progress) {
@@ -74,7 +75,9 @@ void TrackedDrive::begin(const recording::MappedRecording& mapped, Progress& pro
   if (learns_body()) {
     progress.stage("learning the body from the beginning");
     part.recording = recording::cut(mapped.recording, {from, from + options_.learning_s});
-    start.body = learned_body(prepare_drive_signals(part, signals_), segments_, start_, signals_, identify_, progress);
+    KnownBody learned =
+        learned_body(prepare_drive_signals(part, signals_), segments_, start_, signals_, identify_, progress);
+    if (learned.source != BodySource::kNone || !begin_) start.body = std::move(learned);
   }
   const std::array<double, 4> noise{first[DriveSignal::kSteer].sigma, first[DriveSignal::kSpeed].sigma,
                                     first[DriveSignal::kYawRate].sigma, first[DriveSignal::kAccelY].sigma};
@@ -134,7 +137,9 @@ void TrackedDrive::check(const recording::MappedRecording& mapped, const Progres
     row = explained_by_roll(std::move(row), leans ? &lean : nullptr, signals_.gravity);
     if (!row.passed() && row.name == kOrderInTime && (leans || !tracker_->changes().empty())) {
       row.outcome = estimation::Outcome::kNotVerified;
-      row.text = "stamps that are late cannot be told here from a body that leans or tyres that change on the way";
+      row.text =
+          "stamps that are late cannot be told here from a body that leans or tyres whose grip changed during the "
+          "drive";
       row.advice = "`veridyn identify` of a part without a change tells them apart";
     }
     recording_.push_back(std::move(row));

@@ -15,7 +15,7 @@ namespace veridyn::vehicle {
 /// of the same grid (whole multiples of its step), so the result does not depend on the pieces.
 class TrackedDrive {
  public:
-  /// @throws InputError when the estimate to begin with (`[track] estimate`) cannot be read
+  /// @throws InputError when the estimate to begin with (`track.estimate_file`) cannot be read
   explicit TrackedDrive(const VehicleStudy& study);
 
   /// Takes what the recording holds beyond what was taken before. `finished`: nothing will follow.

@@ -42,6 +42,7 @@ TEST(ChangeRow, TellsAMovedMeanFromGrownNoise) {
   const estimation::Change grown{estimation::ChangeKind::kSpread, 12.0, 10.5, 3.14};
   EXPECT_EQ(change_words(moved), "innovation moved by 3.1 sigma");
   EXPECT_EQ(change_words(grown), "innovation grew 3.1 times");
+  EXPECT_EQ(change_words({estimation::ChangeKind::kParameter, 12.0, 10.5, -0.4}), "moved to 0.6 times its value");
   EXPECT_EQ(change_row("C_f", moved).cells.size(), change_columns("what", "how").size());
 }
 

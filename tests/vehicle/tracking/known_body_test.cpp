@@ -17,7 +17,10 @@ using ::testing::HasSubstr;
 estimation::Estimate estimate_of(const std::vector<std::pair<std::string, double>>& values) {
   estimation::Estimate out;
   for (const auto& [name, value] : values)
-    out.parameters.push_back({.name = name, .value = value, .sigma = 0.1 * std::abs(value)});
+    out.parameters.push_back({.name = name,
+                              .value = value,
+                              .sigma = 0.1 * std::abs(value),
+                              .status = estimation::ParameterStatus::kIdentified});
   const auto n = static_cast<Eigen::Index>(values.size());
   out.covariance = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
@@ -77,6 +80,29 @@ TEST(KnownBody, SaysWhatItsOwnErrorMakesOfTheStiffnesses) {
   EXPECT_GT(body.sigma[2], 0.0);
   estimate.fit["C_f.structure_doubt"] = 0.06 * 50000.0;
   EXPECT_NEAR(known_body(estimate, family_car(), {}).sigma[0], 0.1, 1e-9);
+}
+
+TEST(KnownBody, SaysThatItsEstimateWasNotAccepted) {
+  estimation::Estimate estimate = estimate_of({{"C_f", 50000.0}, {"C_r", 60000.0}, {"I_z", 2500.0}});
+  EXPECT_TRUE(known_body(estimate, family_car(), {}).accepted);
+  estimate.parameters[0].status = estimation::ParameterStatus::kRejected;
+  const KnownBody body = known_body(estimate, family_car(), {});
+  EXPECT_FALSE(body.accepted);
+  EXPECT_THAT(body.text, HasSubstr("not accepted"));
+}
+
+TEST(KnownBody, DoesNotLeanByNumbersThatNoBodyHas) {
+  for (const double damping : {0.0, -0.2}) {
+    const KnownBody body = known_body(estimate_of({{"C_f", 50000.0},
+                                                   {"C_r", 60000.0},
+                                                   {"I_z", 2500.0},
+                                                   {"roll_gradient", 0.009},
+                                                   {"roll_frequency", 8.0},
+                                                   {"roll_damping", damping},
+                                                   {"roll_arm", 0.45}}),
+                                      family_car(), {});
+    EXPECT_EQ(body.roll.gradient, 0.0) << damping;
+  }
 }
 
 TEST(LearnedBody, LeansAsTheCarDoes) {

@@ -173,6 +173,10 @@ void ChangeDetector::pause_after_alarm() {
   const bool again = alarms_ > 1 && since_alarm_ < learn_blocks_;
   since_alarm_ = 0.0;
   if (again) return start_again();
+  pause();
+}
+
+void ChangeDetector::pause() {
   up_ = down_ = spread_ = {};
   pause_blocks_ = options_.settle_s * options_.rate_Hz / static_cast<double>(block_length_);
 }

@@ -58,8 +58,8 @@ struct Change {
   ChangeKind kind = ChangeKind::kMean;
   double detected_s = 0.0;  ///< time of the alarm
   double began_s = 0.0;     ///< estimated time of the change: when the sum that raised it last left zero
-  /// Mean of the whitened block innovations since then [sd] (kMean), their rms (kSpread), the parameter's change
-  /// (kParameter).
+  /// Mean of the whitened block innovations since then [sd] (kMean), their rms (kSpread), the relative change of
+  /// the parameter (kParameter).
   double shift = 0.0;
 };
 
@@ -80,6 +80,9 @@ class ChangeDetector {
   /// One innovation over its standard deviation, at `time_s`. Numbers that are not finite are left out. Does not
   /// allocate. @return the change when this sample raises the alarm
   std::optional<Change> update(double time_s, double normalised_innovation);
+
+  /// Not watched for `settle_s`, as after an alarm.
+  void pause();
 
   [[nodiscard]] bool watching() const;       ///< false while learning
   [[nodiscard]] double correlation() const;  ///< a, between neighbouring blocks

@@ -12,8 +12,10 @@ namespace {
 
 /// No block adds more of a threshold than this.
 constexpr double kMostOfThreshold = 0.6;
-/// A block with less than this share of the usual excitation says nothing of the noise.
-constexpr double kExcited = 0.05;
+/// Times the power of the regressor's noise from which driving is excited.
+constexpr double kExcited = 10.0;
+/// Over which its power is known [s].
+constexpr double kPowerMemory = 5.0;
 /// Standard deviations of S beyond which a block counts as one of so many.
 constexpr double kLargest = 3.0;
 
@@ -33,12 +35,14 @@ void ParameterWatchOptions::validate() const {
         "at least 20 blocks");
 }
 
-ParameterWatch::ParameterWatch(const ParameterWatchOptions& options, double rate_Hz) : options_(options) {
+ParameterWatch::ParameterWatch(const ParameterWatchOptions& options, double rate_Hz)
+    : options_(options), rate_Hz_(rate_Hz) {
   options_.validate();
   block_rows_ = std::max(1.0, std::round(options_.block_s * rate_Hz));
   const double block_s = block_rows_ / rate_Hz;
   learn_blocks_ = std::ceil(options_.learn_s / block_s);
   memory_blocks_ = options_.memory_s / block_s;
+  settle_blocks_ = std::ceil(options_.settle_s / block_s);
   constexpr double kSums = 2.0;
   threshold_ = std::log(kSums * options_.false_alarm_interval_s / block_s);
 }
@@ -55,7 +59,6 @@ void ParameterWatch::add(Sum& sum, double d, double variance) {
 
 /// The variance of S is taken as proportional to I.
 void ParameterWatch::learn() {
-  if (blocks_ > 0.0 && I_ < kExcited * mean_I_) return;
   blocks_ += 1.0;
   const double share = 1.0 / std::min(blocks_, memory_blocks_);
   double square = S_ * S_;
@@ -70,6 +73,8 @@ std::optional<Change> ParameterWatch::take_block(double theta) {
     pause_blocks_ -= 1.0;
     return std::nullopt;
   }
+  // The block too: where lively driving ends the power is still that of before.
+  if (!(std::min(power_, I_ / rows_) > kExcited * noise_)) return std::nullopt;
   std::optional<Change> change;
   if (watching() && mean_square_ > 0.0) {
     const double variance = mean_square_ / mean_I_;
@@ -80,24 +85,34 @@ std::optional<Change> ParameterWatch::take_block(double theta) {
       change = Change{.kind = ChangeKind::kParameter,
                       .detected_s = last_s_,
                       .began_s = larger.since_s,
-                      .shift = larger.S / larger.I};
+                      .shift = larger.S / (larger.I * theta)};
   }
   if (change) {
-    up_ = down_ = {};
-    pause_blocks_ = std::ceil(options_.settle_s / options_.block_s);
+    pause();
     return change;
   }
   learn();
   return change;
 }
 
-std::optional<Change> ParameterWatch::update(double time_s, double x, double innovation, double theta) {
+void ParameterWatch::pause() {
+  up_ = down_ = {};
+  pause_blocks_ = settle_blocks_;
+}
+
+std::optional<Change> ParameterWatch::update(double time_s, double x, double innovation, double theta,
+                                             const RowNoise& noise) {
   if (!std::isfinite(time_s) || !std::isfinite(x) || !std::isfinite(innovation) || !std::isfinite(theta))
     return std::nullopt;
+  // A block does not go over a hole.
+  if (rows_ > 0.0 && !(std::abs(time_s - last_s_) <= 1.5 / rate_Hz_)) rows_ = S_ = I_ = 0.0;
   if (rows_ == 0.0) began_s_ = time_s;
   last_s_ = time_s;
   rows_ += 1.0;
-  S_ += x * innovation;
+  power_rows_ = std::min(power_rows_ + 1.0, kPowerMemory * rate_Hz_);
+  power_ += (x * x - power_) / power_rows_;
+  noise_ += (noise.regressor - noise_) / power_rows_;
+  S_ += x * innovation - (power_ > 0.0 ? noise.shared * x * x / power_ : 0.0);
   I_ += x * x;
   if (rows_ < block_rows_) return std::nullopt;
   const std::optional<Change> change = take_block(theta);

@@ -40,6 +40,7 @@ RecursiveOptions regression_options(const Eigen::MatrixXd& W, const TrackerOptio
 ChangeDetectionOptions detection_options(const TrackerOptions& options, double rate_Hz) {
   ChangeDetectionOptions o = options.detection;
   o.rate_Hz = rate_Hz;
+  if (options.watch.share > 0.0) o.false_alarm_interval_s *= 2.0;
   return o;
 }
 
@@ -100,7 +101,10 @@ RegressionTracker::RegressionTracker(std::vector<std::string> names, const Eigen
   const auto n = static_cast<std::size_t>(regression_.parameters());
   if (options.watch.share > 0.0) {
     ParameterWatchOptions watch = options.watch;
-    watch.false_alarm_interval_s = options.detection.false_alarm_interval_s;
+    watch.false_alarm_interval_s = options.detection.false_alarm_interval_s * (options.watch_innovations ? 2.0 : 1.0);
+    watch.learn_s = std::max(options.detection.learn_s, 10.0 * watch.block_s);
+    watch.memory_s = std::max(options.detection.memory_s, watch.learn_s);
+    watch.settle_s = options.detection.settle_s;
     watch_.emplace(watch, rate_Hz);
   }
   history_.value.resize(n);
@@ -129,6 +133,8 @@ void RegressionTracker::restart(const Eigen::VectorXd& sigma) {
   regression_.set_equation_error(0.0);
   regression_ = RecursiveRegression(regression_.names(), regression_.options());
   regression_.start(theta, sigma.cwiseAbs2().asDiagonal());
+  detector_.pause();
+  if (watch_) watch_->pause();
   forget_parts();
 }
 
@@ -239,14 +245,17 @@ double RegressionTracker::variance_of(const SmallMatrix& W) const {
   return h.dot(W * h);
 }
 
+/// Of the first regressor, and with the innovation z - x theta: cov(x_0, z) - cov(x_0, x) theta.
+RowNoise RegressionTracker::row_noise(const Eigen::MatrixXd* row_W) const {
+  const SmallMatrix W = row_W != nullptr ? SmallMatrix(*row_W) : W_;
+  const Eigen::Index n = W.rows() - 1;
+  return {.regressor = W(0, 0), .shared = W(0, n) - W.row(0).head(n).dot(regression_.theta())};
+}
+
 /// Variance of the row's residual over that which W gives.
 double RegressionTracker::noise_ratio(const Eigen::MatrixXd& row_W) const {
   const double usual = variance_of(W_);
   return usual > 0.0 ? variance_of(row_W) / usual : 1.0;
-}
-
-double RegressionTracker::against_W(double innovation, const Eigen::MatrixXd* row_W) const {
-  return innovation / std::sqrt(variance_of(row_W != nullptr ? SmallMatrix(*row_W) : W_));
 }
 
 std::optional<Change> RegressionTracker::update(double t, std::span<const double> x, double z,
@@ -269,9 +278,10 @@ std::optional<Change> RegressionTracker::update(double t, std::span<const double
       // Innovations are informative once everything was excited: what was not is held at a prior, and later at its last
       // value. They are not where the row moves along a combination of parameters that is not known now.
       if (options_.detect_changes && watching_ && !moves_held) {
-        change = detector_.update(t, options_.watch_against_W ? against_W(u.innovation, row_W) : normalised);
+        if (options_.watch_innovations) change = detector_.update(t, normalised);
         if (watch_) {
-          const std::optional<Change> moved = watch_->update(t, x[0], u.innovation, regression_.theta()(0));
+          const std::optional<Change> moved =
+              watch_->update(t, x[0], u.innovation, regression_.theta()(0), row_noise(row_W));
           if (!change) change = moved;
         }
       }

@@ -29,12 +29,10 @@ struct TrackerOptions {
   /// `false_alarm_interval`, `detection_block`, `detection_memory`, `detection_learning`,
   /// `detection_settling`: see ChangeDetectionOptions.
   ChangeDetectionOptions detection = {};
-  /// Innovations are watched over the noise that W gives a row, whatever the residual and the estimate's error bar are
-  /// at the moment: where the noise is small against the signal these grow with a change at once and would hide it. Not
-  /// a key; domains choose.
-  bool watch_against_W = false;
-  /// The first parameter is watched for a change of its own too; the rate of false alarms is that of `detection`. Not a
-  /// key; domains choose.
+  /// Whether the innovations' mean and spread are watched. Not a key; domains choose.
+  bool watch_innovations = true;
+  /// The first parameter is watched for a change of its own; where the innovations are too, both share the rate of
+  /// false alarms of `detection`. Its times of learning, memory and settling hold for both. Not a key; domains choose.
   ParameterWatchOptions watch = {};
   double watch_after_s = 0.0;  ///< rows before this are not watched: the estimate finds itself. Not a key
   double history_Hz = 5.0;     ///< `history_rate`: of what is kept for the report
@@ -95,7 +93,7 @@ class RegressionTracker {
   void start(const Eigen::VectorXd& theta_0, const Eigen::MatrixXd& P_0, double rows, double residual_sd);
 
   /// Forgets the rows so far: theta stays, with standard deviations `sigma` (as a hybrid start). History, changes and
-  /// the detector go on. For a change that is known to have happened.
+  /// what watches goes on, after the time of settling. For a change that is known to have happened.
   void restart(const Eigen::VectorXd& sigma);
 
   /// What the residual shows beyond W, or less than it, becomes variance of z alone: an error of the equation (Fuller
@@ -146,7 +144,7 @@ class RegressionTracker {
   [[nodiscard]] bool moves_held_direction(std::span<const double> x) const;
   [[nodiscard]] double noise_ratio(const Eigen::MatrixXd& row_W) const;
   [[nodiscard]] double variance_of(const SmallMatrix& W) const;
-  [[nodiscard]] double against_W(double innovation, const Eigen::MatrixXd* row_W) const;
+  [[nodiscard]] RowNoise row_noise(const Eigen::MatrixXd* row_W) const;
 
   TrackerOptions options_;
   double rate_Hz_;

@@ -53,7 +53,7 @@ std::string change_words(const estimation::Change& change) {
     case estimation::ChangeKind::kParameter:
       break;
   }
-  return fmt::format("parameter moved to {:.2g} times", 1.0 + change.shift);
+  return fmt::format("moved to {:.2g} times its value", 1.0 + change.shift);
 }
 
 Row change_row(std::string what, const estimation::Change& change) {

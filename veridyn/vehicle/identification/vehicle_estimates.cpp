@@ -369,8 +369,11 @@ OutputErrorResult refined(OutputErrorResult estimate, const VehicleProblem& prob
   if (!estimate.raw.usable()) return estimate;
   const OutputErrorProblem given = output_error_problem(problem, equation_error);
   DriveWhitening whitening = given.model.whitening(estimate.raw.theta);
-  if (whitening.empty())
-    return estimate_by_output_error(problem, equation_error, estimate.raw.theta, {}, SearchEffort::kToTheEnd, progress);
+  if (whitening.empty()) {
+    OutputErrorResult next =
+        estimate_by_output_error(problem, equation_error, estimate.raw.theta, {}, SearchEffort::kToTheEnd, progress);
+    return next.raw.has_estimate() || !progress.interrupted() ? std::move(next) : std::move(estimate);
+  }
   for (int round = 0; round < kMostWeighings && !progress.interrupted(); ++round) {
     if (round > 0) whitening = given.model.whitening(estimate.raw.theta);
     OutputErrorProblem weighed = given;

@@ -9,8 +9,8 @@ TurnSamples steady_turn(const VehicleTrajectory& t, double wheelbase, double beg
   TurnSamples turn;
   const bool rolls = t.roll.size() == t.size();
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (!(t.time[i] >= begin)) continue;
     const double speed = std::hypot(t.u[i], t.v[i]), centripetal = speed * t.r[i];
+    if (!(t.time[i] >= begin && speed > 0.0)) continue;
     const double sign = centripetal < 0.0 ? -1.0 : 1.0;
     turn.acceleration.push_back(std::abs(centripetal));
     turn.extra_steer.push_back(sign * (t.steer[i] - wheelbase * t.r[i] / speed));

@@ -16,8 +16,8 @@ using AnyRollingBicycle =
                  RollingBicycle<double, SimpleMagicFormulaTyre<double>>>;
 
 /// What tyres of the same cornering stiffness C and no limit would push with, front and rear, at the slips at which
-/// those of the vehicle push with `force` [N]: C alpha(F). A tyre beyond half of its stiffness counts as there: its
-/// slip says nothing of C any more.
+/// those of the vehicle push with `force` [N]: C alpha(F). Where slip is more than twice F/C it is taken as twice: it
+/// says nothing of C any more.
 /// @param shifted how much load has moved, as times that of steady cornering at 1 g times `gravity` and the roll
 /// gradient: phi + 2 damping/frequency phi'
 [[nodiscard]] std::array<double, 2> forces_without_limit(const AnyRollingBicycle& vehicle,
@@ -26,7 +26,7 @@ using AnyRollingBicycle =
 /// Cornering stiffnesses of one tyre, front and rear [N/rad].
 [[nodiscard]] std::array<double, 2> stiffnesses_of(const AnyRollingBicycle& vehicle);
 
-/// Whether they push with the same: nothing saturates.
+/// Whether its tyres are linear, so that the two are the same.
 [[nodiscard]] bool is_linear(const AnyRollingBicycle& vehicle);
 
 }  // namespace veridyn::vehicle

@@ -67,7 +67,12 @@ BodyFollower::BodyFollower(const KnownBody& body, const LeaningSensor& sensor, d
 
 double BodyFollower::settling_s() const {
   const BodyRoll<double>& roll = body_.roll;
-  return roll.gradient > 0.0 ? kForgotten / (roll.damping * roll.frequency) : 0.0;
+  constexpr double kSlow = 5.0;  // [m/s]; below it tyres that lag are forgotten a little later
+  const double tyres = body_.relaxation_length / kSlow;
+  if (roll.gradient == 0.0) return kForgotten * tyres;
+  const double slowest = std::max(0.0, roll.damping * roll.damping - 1.0);
+  const double decay = roll.frequency * (roll.damping - std::sqrt(slowest)) / per_lean_;
+  return kForgotten * std::max(tyres, 1.0 / decay);
 }
 
 /// phi'' = w^2 (G a_y - phi) - 2 zeta w phi' with a_y = measured - g phi + z phi''.
@@ -102,7 +107,6 @@ BicycleSample BodyFollower::begin(const DriveSample& s) {
   const double G = body_.roll.gradient;
   lean_ = G * s.accel_y / (1.0 + sensor_.gravity * G);
   lean_rate_ = lean_acceleration_ = 0.0;
-  accel_y_ = s.accel_y;
   speed_ = s.speed;
   input_ = slip_ = slips(s);
   return corrected(s);
@@ -130,7 +134,6 @@ BicycleSample BodyFollower::next(const DriveSample& s) {
     slip_ = now;
   }
   input_ = now;
-  accel_y_ = s.accel_y;
   speed_ = s.speed;
   return corrected(s);
 }
@@ -140,6 +143,7 @@ AxleRows::AxleRows(const VehicleParameters<double>& vehicle, const KnownBody& bo
     : vehicle_(vehicle),
       tyres_(body.tyres),
       accel_scale_(body.accel_scale),
+      steer_scale_(body.steer_scale),
       rate_Hz_(rate_Hz),
       kernel_(numerics::modulating_kernel(rate_Hz, pass_Hz)),
       follower_(body, sensor, 1.0 / rate_Hz),
@@ -161,6 +165,7 @@ void AxleRows::empty() { since_hole_ = 0; }
 bool AxleRows::append(const DriveSample& given) {
   DriveSample s = given;
   s.accel_y /= 1.0 + accel_scale_;
+  s.steer /= 1.0 + steer_scale_;
   const bool hole = s.time - last_ > 1.5 / rate_Hz_;
   const bool whole =
       std::isfinite(s.steer) && std::isfinite(s.speed) && std::isfinite(s.yaw_rate) && std::isfinite(s.accel_y);

@@ -70,7 +70,7 @@ class BodyFollower {
   LeaningSensor sensor_;
   double step_;
   double per_lean_ = 1.0;  ///< 1 - frequency^2 gradient z
-  double lean_ = 0.0, lean_rate_ = 0.0, lean_acceleration_ = 0.0, accel_y_ = 0.0;
+  double lean_ = 0.0, lean_rate_ = 0.0, lean_acceleration_ = 0.0;
   double speed_ = 0.0;
   Slips input_{}, slip_{};
 };
@@ -108,7 +108,8 @@ class AxleRows {
   void empty();
   [[nodiscard]] AxleRowSet rows() const;
   /// Covariance of what white noise of steer, speed, yaw_rate and accel_y (standard deviations of a sample) does to a
-  /// row [x, z] at a speed.
+  /// row [x, z] at a speed. What body and tyres do to the noise within the pass band is neglected: near the frequency
+  /// of roll it changes the accelerometer's part by some ten per cent.
   [[nodiscard]] Eigen::MatrixXd noise_covariance(TrackedAxle axle, const std::array<double, 4>& noise,
                                                  double speed) const;
   [[nodiscard]] double speed() const;  ///< smoothed, of the rows' moment [m/s]
@@ -130,7 +131,7 @@ class AxleRows {
   VehicleParameters<double> vehicle_;
   AnyRollingBicycle tyres_;
   std::array<double, 2> grip_{1.0, 1.0};
-  double accel_scale_;
+  double accel_scale_, steer_scale_;
   double rate_Hz_;
   numerics::ModulatingKernel kernel_;
   BodyFollower follower_;

@@ -44,7 +44,12 @@ const estimation::Parameter* usable(const estimation::Estimate* estimate, const 
 /// Mass, a and b as given, I_z of the body, stiffnesses of the estimate where it has usable ones.
 VehicleParameters<double> known_vehicle(const DriveTrackStart& start) {
   VehicleParameters<double> vehicle = start.vehicle;
-  if (start.body.source != BodySource::kNone) vehicle.I_z = start.body.I_z;
+  if (start.body.source != BodySource::kNone) {
+    const double wheelbase = vehicle.wheelbase();
+    vehicle.I_z = start.body.I_z;
+    if (std::isfinite(start.body.a)) vehicle.a = start.body.a;
+    vehicle.b = wheelbase - vehicle.a;
+  }
   if (const estimation::Parameter* p = usable(start.estimate, "C_f")) vehicle.C_f = p->value;
   if (const estimation::Parameter* p = usable(start.estimate, "C_r")) vehicle.C_r = p->value;
   return vehicle;
@@ -54,17 +59,13 @@ VehicleParameters<double> known_vehicle(const DriveTrackStart& start) {
 
 DriveTrackOptions::DriveTrackOptions() {
   memory_s = 40.0;
-  // Shorter than half a period of quick steering, whose innovations would cancel within a block; what correlation the
-  // overlap of the filters leaves between blocks the detector follows.
-  detection.block_s = 0.2;
   detection.learn_s = 25.0;
-  watch_against_W = true;
   watch_after_s = 10.0;
   detection.memory_s = 200.0;
   // Grip that falls to two thirds; what a tyre loses as it is driven harder is less than half of that.
   watch.share = 0.5;
-  // Innovations of a car grow with how it is driven: their spread is no sign of a change.
-  detection.spread_factor = 0.0;
+  // Innovations of a car grow with how it is driven: neither their mean nor their spread is a sign of a change.
+  watch_innovations = false;
   // Once in 100 hours of driving.
   detection.false_alarm_interval_s = 360000.0;
 }
@@ -161,13 +162,13 @@ double DriveTracker::sigma(TrackedAxle axle) const {
 
 void DriveTracker::begin(double speed) {
   estimation::TrackerOptions options = options_;
-  // The stated rate of false alarms is that of all three together.
-  options.detection.false_alarm_interval_s *= static_cast<double>(kTrackedAxles);
+  // The stated rate of false alarms is that of both axles together.
+  options.detection.false_alarm_interval_s *= 2.0;
   options.detection.block_s = std::max(options.detection.block_s, 1.0 / row_rate_Hz());
   const auto add = [&](TrackedAxle axle, std::vector<std::string> names, const Eigen::VectorXd& theta,
                        const Eigen::VectorXd& sigma) {
     estimation::TrackerOptions own = options;
-    // An understeer gradient may be any share of its unit, or none: it has no size by which it changes.
+    // An understeer gradient may be any share of its unit, or none: there is no share by which it changes.
     if (axle == TrackedAxle::kUndersteer) own.watch.share = 0.0;
     trackers_.emplace_back(std::move(names), axle_rows_.noise_covariance(axle, noise_, speed), own, row_rate_Hz());
     trackers_.back().start(theta, sigma.cwiseAbs2().asDiagonal(), 0.0, 0.0);
@@ -211,7 +212,9 @@ void DriveTracker::take_rows(std::vector<DriveChange>& found) {
   const AxleRowSet rows = axle_rows_.rows();
   weigh_saturation(rows);
   const auto feed = [&](TrackedAxle axle, std::span<const double> x, double z) {
-    if (const auto change = trackers_[static_cast<std::size_t>(axle)].update(rows.time, x, z)) {
+    if (auto change = trackers_[static_cast<std::size_t>(axle)].update(rows.time, x, z)) {
+      // Of the stiffness, whose inverse is followed.
+      if (change->kind == estimation::ChangeKind::kParameter) change->shift = 1.0 / (1.0 + change->shift) - 1.0;
       changes_.push_back({axle, *change});
       found.push_back(changes_.back());
     }
@@ -224,6 +227,7 @@ void DriveTracker::take_rows(std::vector<DriveChange>& found) {
     trackers_[0].restart(Eigen::Vector2d(kAfterChange, kRateConstant));
     trackers_[1].restart(Eigen::Vector2d(kAfterChange, kRateConstant));
     trackers_[2].restart(Eigen::Vector3d(kAfterChange, kAfterChange, kSteerConstant));
+    force_power_ = saturated_power_ = {};
   }
   ++rows_;
   if (rows.time >= next_history_ - 1e-9) remember(rows.time);
@@ -261,7 +265,7 @@ std::vector<DriveChange> DriveTracker::append(const DriveSample& s) {
 namespace {
 
 estimation::Evidence body_row(const KnownBody& body) {
-  const bool known = body.source != BodySource::kNone;
+  const bool known = body.source != BodySource::kNone && body.accepted;
   return {.name = "lean of the body",
           .outcome = estimation::passed_or(known, estimation::Outcome::kCare),
           .value = deg_per_g(body.roll.gradient),

@@ -21,7 +21,7 @@ namespace veridyn::vehicle {
 /// How a vehicle is followed on line. Study table `[track]`: the keys of estimation::TrackerOptions and these.
 struct DriveTrackOptions : estimation::TrackerOptions {
   double pass_Hz = 2.0;       ///< `pass_band` of the causal filters' delayed rows [Hz]
-  std::string estimate_file;  ///< `estimate`: estimate.json to start from; without it the subject's C_f, C_r, I_z
+  std::string estimate_file;  ///< `estimate_file`: estimate.json to start from; without it the subject's C_f and C_r
   double start_sigma = 0.3;   ///< `start_sigma`: relative standard deviation of the subject's stiffnesses at the start
   /// `learning`: from so much of the drive's beginning its body is learned where no estimate has it [s]. 0: a body that
   /// does not lean, with the I_z of the subject.
@@ -72,11 +72,11 @@ struct DriveTrackStart {
 /// for changes. The constants are noise-free columns.
 ///
 /// What the body does is followed beside (`BodyFollower`): its lean phi from the accelerometer, whose share of it,
-/// g phi, is taken off a_y; and the left sides are as late as the tyres are. Of a car that leans by 5 deg per g the
-/// equations without that gave stiffnesses 10 to 35 % low in lively driving, and too large a residual to see a change
-/// in. Rows come from modulating kernels over the past: the estimate at time t is that of about `latency_s` earlier,
-/// and no later sample enters. Work and memory per sample are bounded (but for the history). A hole of missing or
-/// unusable samples (slower than `min_speed`) empties the filters; estimates stay.
+/// g phi, is taken off a_y; and the left sides are delayed as the tyres' forces are. Of a car that leans by 5 deg per g
+/// the equations without that gave stiffnesses 10 to 35 % low in lively driving, and too large a residual to see a
+/// change in. Rows come from modulating kernels over the past: the estimate at time t is that of about `latency_s`
+/// earlier, and no later sample enters. Work and memory per sample are bounded (but for the history). A hole of missing
+/// or unusable samples (slower than `min_speed`) empties the filters; estimates stay.
 class DriveTracker {
  public:
   /// @param noise standard deviation of one sample's white noise of steer, speed, yaw_rate, accel_y

@@ -22,7 +22,7 @@ constexpr auto place(DriveUnknown u) { return signed_index(static_cast<std::size
 /// All that is estimated beside the stiffnesses and is no bias of a sensor.
 bool is_body(DriveUnknown u) {
   return u == DriveUnknown::kIz || (u >= DriveUnknown::kMu && u <= DriveUnknown::kRollDamping) ||
-         u == DriveUnknown::kAccelYScale;
+         u == DriveUnknown::kA || u == DriveUnknown::kAccelYScale || u == DriveUnknown::kSteerScale;
 }
 
 /// What the covariance of the stiffnesses owes to the body's, S_cb S_bb^-1 S_bc: it would not be there if the body were
@@ -93,7 +93,8 @@ std::string described(const KnownBody& body) {
   const std::string lag = body.relaxation_length > 0.0
                               ? fmt::format("tyres that follow after {:.2f} m", body.relaxation_length)
                               : std::string("tyres that push at once");
-  return fmt::format("I_z {:.4g} kg m^2, {}, {}{}", body.I_z, lean, lag, is_linear(body.tyres) ? "" : " and saturate");
+  return fmt::format("I_z {:.4g} kg m^2, {}, {}{}{}", body.I_z, lean, lag, is_linear(body.tyres) ? "" : " and saturate",
+                     body.accepted ? "" : "; what it comes from was not accepted");
 }
 
 }  // namespace
@@ -102,14 +103,24 @@ KnownBody known_body(const estimation::Estimate& estimate, const VehicleParamete
                      const DriveModelOptions& options) {
   const EstimatedDriveModel model = estimated_drive_model(estimate, vehicle, options);
   const PerDriveUnknown<double>& value = model.options.start;
+  const auto has = [&](DriveUnknown u) {
+    const estimation::Parameter* p = estimate.find(std::string(kDriveUnknownNames[u]));
+    return p != nullptr && std::isfinite(p->value);
+  };
   KnownBody body{.source = BodySource::kEstimate, .I_z = model.vehicle.I_z};
-  if (estimate.find("roll_gradient") != nullptr)
-    body.roll = {.gradient = value[DriveUnknown::kRollGradient],
-                 .frequency = value[DriveUnknown::kRollFrequency],
-                 .damping = value[DriveUnknown::kRollDamping],
-                 .arm = value[DriveUnknown::kRollArm]};
-  if (estimate.find("relaxation_length") != nullptr) body.relaxation_length = value[DriveUnknown::kRelaxationLength];
-  if (estimate.find("accel_y_scale") != nullptr) body.accel_scale = value[DriveUnknown::kAccelYScale];
+  const BodyRoll<double> roll{.gradient = value[DriveUnknown::kRollGradient],
+                              .frequency = value[DriveUnknown::kRollFrequency],
+                              .damping = value[DriveUnknown::kRollDamping],
+                              .arm = value[DriveUnknown::kRollArm]};
+  const bool moves = roll.gradient > 0.0 && roll.frequency > 0.0 && roll.damping > 0.0 && std::isfinite(roll.arm);
+  if (has(DriveUnknown::kRollGradient) && moves) body.roll = roll;
+  if (has(DriveUnknown::kRelaxationLength)) body.relaxation_length = value[DriveUnknown::kRelaxationLength];
+  if (has(DriveUnknown::kAccelYScale)) body.accel_scale = value[DriveUnknown::kAccelYScale];
+  if (has(DriveUnknown::kSteerScale)) body.steer_scale = value[DriveUnknown::kSteerScale];
+  if (has(DriveUnknown::kA)) body.a = value[DriveUnknown::kA];
+  body.accepted = std::ranges::none_of(estimate.parameters, [](const estimation::Parameter& p) {
+    return p.status == estimation::ParameterStatus::kRejected || p.status == estimation::ParameterStatus::kImplausible;
+  });
   body.tyres = tyres_of(estimate, model, body.roll);
   body.sigma = body_sigma(estimate, model);
   body.text = fmt::format("from the estimate: {}", described(body));

@@ -20,10 +20,12 @@ enum class BodySource {
 /// What tracking takes as known of a vehicle beside mass, a and b: it does not change with the road.
 struct KnownBody {
   BodySource source = BodySource::kNone;
-  double I_z = 0.0;                ///< [kg m^2]
-  BodyRoll<double> roll = {};      ///< gradient 0: it does not lean
-  double relaxation_length = 0.0;  ///< of the tyres [m]
-  double accel_scale = 0.0;        ///< the accelerometer's, measured over true less 1
+  double I_z = 0.0;                             ///< [kg m^2]
+  BodyRoll<double> roll = {};                   ///< gradient 0: it does not lean
+  double relaxation_length = 0.0;               ///< of the tyres [m]
+  double a = kNaN;                              ///< where it was estimated [m]
+  double accel_scale = 0.0, steer_scale = 0.0;  ///< of the sensors, measured over true less 1
+  bool accepted = true;                         ///< whether the estimate that it comes from may be used
   /// How tyres saturate, by their own stiffnesses: shape only.
   AnyRollingBicycle tyres = {};
   /// What is not known of it makes of C_f, C_r and the understeer gradient: standard deviations, the stiffnesses' as a
@@ -36,7 +38,7 @@ struct KnownBody {
 [[nodiscard]] KnownBody known_body(const estimation::Estimate& estimate, const VehicleParameters<double>& vehicle,
                                    const DriveModelOptions& options);
 
-/// Learned from the beginning of a drive, which is identified (`identify_parameters`). Without a usable stretch, or
+/// Learned by identifying the beginning of the drive (`identify_parameters`). Without a usable stretch, or
 /// where no method gives an estimate: kNone.
 [[nodiscard]] KnownBody learned_body(const DriveSignals& signals, const DriveSegmentOptions& segment_options,
                                      const VehicleParameters<double>& vehicle, const DriveSignalOptions& signal_options,
