@@ -32,6 +32,10 @@ inline constexpr double kSmallAngleError = 0.01;
 ///     a_y = (2 C_f/m) alpha_f cos(delta) + (2 C_r/m) alpha_r + const                                             (1')
 ///     r'  = (2 a C_f/I_z) alpha_f cos(delta) - (2 b C_r/I_z) alpha_r + const                                     (2')
 ///
+/// A body that leans by phi moves the contact points by h phi': where its roll or roll rate is recorded, and gravity's
+/// share of it is not in accel_y (`DriveSignals::gravity_removed`), (2) has a column phi'' with the arm h, (1') and
+/// (2') one phi'/u, if they move by more than their noise; in (1) it drops out.
+///
 /// Every column goes through the same zero-phase filter after it was formed, so a relation between unfiltered signals
 /// stays one. W comes from the sensors' noise through the filters, products linearised about the mean speed. The small
 /// angles cost about alpha^2/3: 0.4 % at 6 deg; output error has no such error.
