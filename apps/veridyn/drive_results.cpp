@@ -18,7 +18,7 @@
 #include "veridyn/io/tables/csv.hpp"
 #include "veridyn/report/document/html.hpp"
 #include "veridyn/report/drive_report.hpp"
-#include "veridyn/vehicle/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
 #include "veridyn/vehicle/identification/vehicle_profiles.hpp"
 #include "veridyn/vehicle/simulation/trajectory_table.hpp"
 #include "veridyn/vehicle/simulation_study.hpp"

@@ -200,7 +200,8 @@ TEST_F(VehicleProgram, SaysWhichStructureItTookAndWhatTheOthersMakeOfTheDrive) {
 
 // A drive that takes seconds, stopped while the third structure is fitted: the first two are there.
 TEST_F(VehicleProgram, AnInterruptedSearchLeavesTheBestSoFarAndSaysSo) {
-  const std::string arguments = "identify " + study("rolling_car") + " --set drive.length=200 --out " + in_out("").string();
+  const std::string arguments =
+      "identify " + study("rolling_car") + " --set drive.length=200 --out " + in_out("").string();
   const Outcome stopped = run_interrupted_after("structure: roll", 1, arguments, folder_);
   EXPECT_EQ(stopped.exit_code, 1) << stopped.text;
   EXPECT_THAT(stopped.text, HasSubstr("\nInterrupted: this is the best estimate found by then. "));
@@ -219,7 +220,8 @@ TEST_F(VehicleProgram, AnInterruptedSearchLeavesTheBestSoFarAndSaysSo) {
 
 TEST_F(VehicleProgram, ASecondInterruptionEndsAtOnceAndLeavesNoResults) {
   // Ten minutes of drive, of which the prediction alone takes longer than the second Ctrl-C is away.
-  const std::string arguments = "identify " + study("rolling_car") + " --set drive.length=600 --out " + in_out("").string();
+  const std::string arguments =
+      "identify " + study("rolling_car") + " --set drive.length=600 --out " + in_out("").string();
   const Outcome stopped = run_interrupted_after("structure: roll", 2, arguments, folder_);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.text;
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))

@@ -1,4 +1,4 @@
-#include "veridyn/vehicle/estimated_vehicle.hpp"
+#include "veridyn/vehicle/identification/estimated_vehicle.hpp"
 
 #include <gtest/gtest.h>
 
