@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -18,7 +19,8 @@ using ::testing::HasSubstr;
 class ReadFlights : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder = std::filesystem::temp_directory_path() / "veridyn_read_flights";
+    // Of this process alone: tests run side by side.
+    folder = std::filesystem::temp_directory_path() / fmt::format("veridyn_read_flights_{}", ::getpid());
     std::filesystem::create_directories(folder);
     for (int k = 1; k <= 3; ++k) {
       Progress silent;
