@@ -149,9 +149,10 @@ inline constexpr double kLongestDelay_s = 0.5;
 /// The options for a structure, whose unknowns are free.
 [[nodiscard]] DriveModelOptions with_structure(DriveModelOptions options, DriveStructure structure);
 
-/// What is known of a road's bank [rad] and of downforce [s^2/m^2] before the data: crossfall and banked turns of
-/// public roads are 0.02 to 0.08; racing cars gain as much force as they have at rest at 35 to 70 m/s, 2e-4 to 8e-4.
-inline constexpr double kBankSigma = 0.06, kDownforceSigma = 5e-4;
+/// What is known of a road's bank before the data [rad]: crossfall and banked turns of public roads are 0.02 to 0.08.
+inline constexpr double kBankSigma = 0.06;
+/// And of downforce [s^2/m^2]: racing cars gain as much force as they have at rest at 35 to 70 m/s, 2e-4 to 8e-4.
+inline constexpr double kDownforceSigma = 5e-4;
 /// The options with these effects, whose unknowns are free, and no others.
 [[nodiscard]] DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects);
 

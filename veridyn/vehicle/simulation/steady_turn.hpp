@@ -9,8 +9,10 @@
 
 namespace veridyn::vehicle {
 
-/// Where ISO 4138 reads gradients: from hardly turning to where tyres begin to saturate [m/s^2].
-inline constexpr double kGentlestTurn = 0.5, kSharpestGentleTurn = 4.0;
+/// Where ISO 4138 reads gradients: from hardly turning [m/s^2],
+inline constexpr double kGentlestTurn = 0.5;
+/// to where tyres begin to saturate [m/s^2].
+inline constexpr double kSharpestGentleTurn = 4.0;
 
 /// What a drive that turns steadily, or slowly more and more, shows sample by sample, as if it turned to the left.
 struct TurnSamples {

@@ -28,7 +28,9 @@
 /// inlined, so that they become part of what is compiled for wider registers.
 namespace veridyn::vehicle::in_lanes {
 
+/// A number of each wheel.
 using Four = double __attribute__((vector_size(32)));
+/// Their bits, and what comparisons give.
 using FourBits = long long __attribute__((vector_size(32)));
 
 /// Numbers that do not change.
@@ -46,6 +48,7 @@ using FourBits = long long __attribute__((vector_size(32)));
   std::memcpy(&high, numbers + 2, sizeof high);
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
 }
+/// @cond arithmetic of lanes: each function is what its name says
 [[gnu::always_inline]] inline Four all(double x) { return Four{} + x; }
 [[gnu::always_inline]] inline FourBits bits_of(Four x) {
   FourBits bits;
@@ -99,13 +102,17 @@ using FourBits = long long __attribute__((vector_size(32)));
 #endif
 }
 
+/// @endcond
+
 /// Both directions of four tyres: two chains of operations, side by side, which the processor overlaps.
 struct Both {
   Four x, y;
 };
+/// Their bits, and what comparisons give.
 struct BothBits {
   FourBits x, y;
 };
+/// @cond the same arithmetic of both
 [[gnu::always_inline]] inline Both operator+(Both a, Both b) { return {a.x + b.x, a.y + b.y}; }
 [[gnu::always_inline]] inline Both operator-(Both a, Both b) { return {a.x - b.x, a.y - b.y}; }
 [[gnu::always_inline]] inline Both operator*(Both a, Both b) { return {a.x * b.x, a.y * b.y}; }
@@ -126,6 +133,8 @@ struct BothBits {
 [[gnu::always_inline]] inline Both with_sign_of(Both size, Both x) {
   return {with_sign_of(size.x, x.x), with_sign_of(size.y, x.y)};
 }
+/// @endcond
+
 /// The same number in all lanes.
 template <typename Lanes>
 [[gnu::always_inline]] inline Lanes number(double x) {
@@ -172,12 +181,15 @@ inline constexpr double kRounds = 6755399441055744.0;
   constexpr int kToSign = 62;
   return number_of(bits_of(x) ^ ((quarter & 2) << kToSign));
 }
+/// Cosines where the quarter is odd, else sines, with the sign of the quarter.
 [[gnu::always_inline]] inline Four cosine_in_odd_quarters(Four sine, Four cosine, FourBits quarter) {
   return turned((quarter & 1) != 0 ? cosine : sine, quarter);
 }
+/// The same of both.
 [[gnu::always_inline]] inline Both cosine_in_odd_quarters(Both sine, Both cosine, BothBits quarter) {
   return {cosine_in_odd_quarters(sine.x, cosine.x, quarter.x), cosine_in_odd_quarters(sine.y, cosine.y, quarter.y)};
 }
+/// The bits of both.
 [[gnu::always_inline]] inline BothBits bits_of(Both x) { return {bits_of(x.x), bits_of(x.y)}; }
 
 /// Sines of up to 1e5 rad, within 1 unit in the last place of 1 and odd to the last bit, see `numerics::sine_cosine`;
