@@ -273,7 +273,7 @@ estimation::Evidence body_row(const KnownBody& body) {
           .text = body.text,
           .bears_on = estimation::Purpose::kParameters,
           .advice = known ? ""
-                          : "give [track] estimate, the estimate.json of `veridyn identify`, or begin with a minute "
+                          : "give track.estimate_file, the estimate.json of `veridyn identify`, or begin with a minute "
                             "of lively driving"};
 }
 
