@@ -2,13 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
 #include "veridyn/core/files.hpp"
 
 namespace veridyn {
@@ -39,12 +39,6 @@ struct Outcome {
 /// A scratch folder for each test, and what every refusal must look like.
 class ProgramTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("veridyn_program_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::string file(const std::string& name, const std::string& content) const {
     write_file(folder_ / name, content);
     return (folder_ / name).string();
@@ -71,7 +65,11 @@ class ProgramTest : public testing::Test {
     return names;
   }
 
-  std::filesystem::path folder_;
+ private:
+  test::TemporaryFolder temporary_;
+
+ protected:
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 }  // namespace veridyn
