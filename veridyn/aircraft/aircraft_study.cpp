@@ -241,6 +241,23 @@ estimation::ValidationMeasure measure_of(const numerics::FitMeasures& fit, const
   return {fit.mae, fit.rmse, fit.r2, fit.theil, unit};
 }
 
+/// In estimate.json: "open_loop.alpha".
+std::string open_loop_name(const OpenLoopState& state) { return "open_loop." + state.name; }
+
+/// The scores of what was flown open loop, in the terms of estimate.json.
+void add_open_loop(const OpenLoop& flown, estimation::Estimate& estimate) {
+  for (const OpenLoopState& state : flown.states) {
+    const std::string name = open_loop_name(state);
+    estimate.validation[name] = measure_of(state.fit, state.unit);
+    estimate.fit[name + ".normalised_rmse"] = state.normalised_rmse;
+    estimate.fit[name + ".theil_bias"] = state.shares.bias;
+    estimate.fit[name + ".theil_variance"] = state.shares.variance;
+    estimate.fit[name + ".theil_covariance"] = state.shares.covariance;
+    estimate.fit[name + ".inside_bands"] = state.inside;
+    estimate.fit[name + ".horizon_s"] = state.horizon_s;
+  }
+}
+
 /// What each of several recordings was for, and how well it is predicted.
 std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analysis, bool tried) {
   std::vector<estimation::RecordingUse> recordings = recording_uses(analysis.flights, tried);
@@ -252,6 +269,11 @@ std::vector<estimation::RecordingUse> recordings_of(const FlightAnalysis& analys
     for (const FlightPrediction& flown : analysis.validation.by_flight) {
       if (flown.flight != recording.name) continue;
       for (const PredictedQuantity& q : flown.quantities) recording.validation[q.name] = measure_of(q.fit, q.unit);
+    }
+    for (const OpenLoopFlight& flown : analysis.open_loop.by_flight) {
+      if (flown.flight != recording.name) continue;
+      for (const OpenLoopState& state : flown.states)
+        recording.validation[open_loop_name(state)] = measure_of(state.fit, state.unit);
     }
   }
   return recordings;
@@ -265,10 +287,12 @@ estimation::Estimate summarise(std::span<const FlightStudy> studies, const Fligh
   for (const PredictedQuantity& q : analysis.validation.quantities) {
     estimate.validation[q.name] = measure_of(q.fit, q.unit);
   }
+  add_open_loop(analysis.open_loop, estimate);
   estimate.warnings = warnings_of(studies, analysis);
   std::vector<estimation::Evidence> of_all = recording_rows(analysis.flights);
-  const std::vector<estimation::Evidence> flown = flown_evidence(analysis.validation);
-  of_all.insert(of_all.end(), flown.begin(), flown.end());
+  for (const std::vector<estimation::Evidence>& rows :
+       {flown_evidence(analysis.validation), open_loop_evidence(analysis.open_loop)})
+    of_all.insert(of_all.end(), rows.begin(), rows.end());
   estimate.judgement = judgement_of(analysis, of_all);
   estimate.evidence = std::move(of_all);
   for (const CoefficientResult& result : analysis.coefficients) {
@@ -300,6 +324,15 @@ FlightAnalysis without_motion(FlightAnalysis analysis, std::span<const FlightStu
       not_identified(study.subject, study.identify, *flight.reconstruction.contradiction, flight.recording_evidence);
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
   return with_results(std::move(analysis), studies, progress);
+}
+
+/// The identified model from deflections and thrust alone, where the study asks for it.
+OpenLoop open_loop_of(const FlightAnalysis& analysis, RowUse use, const FlightStudy& study,
+                      const estimation::Estimate& estimate, Progress& progress) {
+  const OpenLoopOptions& options = study.validate.open_loop;
+  if (options.asked()) progress.stage("flying open loop");
+  return fly_open_loop(analysis.flights, use, analysis.identified, identified_coefficients(analysis.coefficients),
+                       estimate, options, progress);
 }
 
 /// Whether the motion of any flight is known.
@@ -334,6 +367,8 @@ FlightAnalysis identify(std::span<const FlightStudy> studies, Progress& progress
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
   analysis.validation = validate_flights(analysis.flights, RowUse::kHoldout, analysis.identified,
                                          identified_coefficients(analysis.coefficients), study.validate);
+  analysis.open_loop =
+      open_loop_of(analysis, RowUse::kHoldout, study, make_estimate(study.subject, analysis.coefficients), progress);
   return with_results(std::move(analysis), studies, progress);
 }
 
@@ -352,6 +387,7 @@ FlightAnalysis validate(std::span<const FlightStudy> studies, const estimation::
   analysis.identified = identified_subject(study.subject, analysis.coefficients);
   analysis.validation = validate_flights(analysis.flights, RowUse::kExcited, analysis.identified,
                                          identified_coefficients(analysis.coefficients), study.validate);
+  analysis.open_loop = open_loop_of(analysis, RowUse::kExcited, study, estimate, progress);
   analysis = with_results(std::move(analysis), studies, progress);
   // The parameters are those that were given; only the judgement is new.
   analysis.estimate.parameters = estimate.parameters;

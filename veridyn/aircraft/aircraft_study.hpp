@@ -7,6 +7,7 @@
 
 #include "veridyn/aircraft/identification/coefficient_uncertainty.hpp"
 #include "veridyn/aircraft/identification/identification.hpp"
+#include "veridyn/aircraft/identification/open_loop.hpp"
 #include "veridyn/aircraft/identification/other_estimators.hpp"
 #include "veridyn/aircraft/identification/validation.hpp"
 #include "veridyn/aircraft/reconstruction/reconstruct.hpp"
@@ -72,6 +73,7 @@ struct FlightAnalysis : estimation::Analysis {
   UncertaintyReport uncertainty;  ///< of the measured coefficients
   Subject identified;             ///< the subject with the identified values
   Validation validation;
+  OpenLoop open_loop;  ///< where the study asks for it
 };
 
 /// Delays and state estimation only.

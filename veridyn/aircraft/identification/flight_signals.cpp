@@ -456,6 +456,8 @@ FlightSignals prepare_signals(const MappedRecording& mapped, const Recording& sm
   };
   flight.roll = angle_where_known("roll", kNaN);
   flight.pitch = angle_where_known("pitch", kNaN);
+  flight.roll_sigma = typical_sigma(smoothed, "sigma_roll");
+  flight.pitch_sigma = typical_sigma(smoothed, "sigma_pitch");
   // Where nothing shows the heading, any does.
   flight.yaw = angle_where_known("yaw", 0.0);
   const auto where_known = [&](const char* name) {

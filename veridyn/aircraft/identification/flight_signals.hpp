@@ -56,6 +56,7 @@ struct FlightSignals : recording::GridSignals<FlightSignal, kFlightSignals> {
   std::vector<double> thrust_per_airspeed;
   std::vector<double> torque;                            ///< reaction torque of the engine about x [N m]; empty without
   std::vector<double> roll, pitch, yaw;                  ///< smoothed attitude
+  double roll_sigma = 0.0, pitch_sigma = 0.0;            ///< typical error of these [rad]; 0: not known
   std::vector<double> vel_north, vel_east, vel_down;     ///< smoothed ground velocity; without: through the mean air
   bool over_ground = false;                              ///< whether that is the velocity over ground
   std::vector<double> wind_north, wind_east, wind_down;  ///< smoothed slow wind

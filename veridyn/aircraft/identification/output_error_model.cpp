@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "veridyn/core/assert.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/numerics/filters.hpp"
 #include "veridyn/numerics/rotation.hpp"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kFastGrid_Hz = 80.0;
 /// A shorter stretch holds less information than its initial state takes.
 constexpr double kLeastDuration_s = 2.0;
+/// Prior of a constant that is added to a coefficient.
+constexpr double kConstantSigma = 0.05;
 /// Gusts faster than this are noise of the reconstruction.
 constexpr double kGustPass_Hz = 2.0;
 
@@ -24,7 +27,10 @@ constexpr std::array<const char*, 8> kStateNames{"airspeed", "alpha", "beta", "p
 constexpr std::array<const char*, 8> kStateUnits{"m/s", "rad", "rad", "rad/s", "rad/s", "rad/s", "rad", "rad"};
 constexpr std::array<const char*, 3> kForceNames{"accel_x", "accel_y", "accel_z"};
 
-bool is_fast(const FlightSignals& signals) { return signals.grid.rate_Hz() >= kFastGrid_Hz; }
+/// Whether one step goes over two intervals of the grid.
+bool steps_over_two(const FlightSignals& signals, const OutputErrorModel::Simulation& simulation) {
+  return simulation.steps_per_sample == 0 && signals.grid.rate_Hz() >= kFastGrid_Hz;
+}
 
 /// Rate of change of the air's velocity at the aircraft, body axes: from the air that the reconstruction found
 /// (ground velocity less velocity relative to the air), low-passed.
@@ -61,8 +67,13 @@ OutputErrorModel::OutputErrorModel(const FlightSignals& signals, std::span<const
 
 OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
                                    std::span<const CoefficientModel> coefficients)
-    : subject_(subject), coefficients_(coefficients.begin(), coefficients.end()) {
+    : OutputErrorModel(flights, subject, coefficients, Simulation{}) {}
+
+OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
+                                   std::span<const CoefficientModel> coefficients, Simulation simulation)
+    : subject_(subject), coefficients_(coefficients.begin(), coefficients.end()), simulation_(std::move(simulation)) {
   which_.fill(-1);
+  constant_.fill(-1);
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
     const CoefficientModel& model = coefficients_[i];
     const Coefficient c = model.coefficient;
@@ -71,8 +82,14 @@ OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Su
     for (std::size_t j = 0; j < model.size(); ++j) {
       parameters_.push_back({.name = parameter_name(model.coefficient, model.terms[j]),
                              .unit = model.terms[j].parameter_unit(),
-                             .start = std::isfinite(model.values[j]) ? model.values[j] : 0.0});
+                             .start = std::isfinite(model.values[j]) ? model.values[j] : 0.0,
+                             .fixed = simulation_.fixed_parameters});
     }
+  }
+  for (const Coefficient c : simulation_.offsets) {
+    if (modelled(c) == nullptr) continue;
+    constant_[c] = static_cast<int>(constants_.size());
+    constants_.push_back(c);
   }
   const auto has = [&](Coefficient c) { return modelled(c) != nullptr; };
   simulated_ = {has(Coefficient::kCD), has(Coefficient::kCL), has(Coefficient::kCY), has(Coefficient::kCl),
@@ -84,11 +101,11 @@ OutputErrorModel::OutputErrorModel(std::span<const FlownSpans> flights, const Su
     if (forces_[i]) outputs_.push_back({kForceNames[i], "m/s^2"});
 
   const FlightSignals& first = flights.front().signals;
-  step_ = is_fast(first) ? 2.0 * first.grid.step : first.grid.step;
-  for (const FlownSpans& flight : flights) add_flight(flight);
+  step_ = steps_over_two(first, simulation_) ? 2.0 * first.grid.step : first.grid.step;
+  for (std::size_t i = 0; i < flights.size(); ++i) add_flight(flights[i], i);
 }
 
-void OutputErrorModel::add_flight(const FlownSpans& flight) {
+void OutputErrorModel::add_flight(const FlownSpans& flight, std::size_t number) {
   const FlightSignals& signals = flight.signals;
   const AirAcceleration air = flight.gusts ? air_acceleration(signals) : AirAcceleration{};
   for (const TimeSpan& span : flight.spans) {
@@ -96,10 +113,10 @@ void OutputErrorModel::add_flight(const FlownSpans& flight) {
     std::size_t begin = first;
     for (std::size_t k = first; k < last; ++k) {
       if (complete(inputs_at(signals, subject_, air, k))) continue;
-      add_segment(flight, air, begin, k);
+      add_segment(flight, number, air, begin, k);
       begin = k + 1;
     }
-    if (begin < last) add_segment(flight, air, begin, last);
+    if (begin < last) add_segment(flight, number, air, begin, last);
   }
 }
 
@@ -132,9 +149,9 @@ bool OutputErrorModel::complete(const GridInputs& d) {
   return std::isfinite(sum);
 }
 
-OutputErrorModel::GridInputs OutputErrorModel::middle(const GridInputs& a, const GridInputs& b) {
+OutputErrorModel::GridInputs OutputErrorModel::between(const GridInputs& a, const GridInputs& b, double share) {
   GridInputs m = a;
-  const auto mean = [](double x, double y) { return 0.5 * (x + y); };
+  const auto mean = [share](double x, double y) { return x + share * (y - x); };
   for (std::size_t i = 0; i < kStates; ++i) m.state[i] = mean(a.state[i], b.state[i]);
   m.de = mean(a.de, b.de);
   m.da = mean(a.da, b.da);
@@ -152,16 +169,17 @@ OutputErrorModel::GridInputs OutputErrorModel::middle(const GridInputs& a, const
   return m;
 }
 
-void OutputErrorModel::add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin,
-                                   std::size_t end) {
+void OutputErrorModel::add_segment(const FlownSpans& flight, std::size_t number, const AirAcceleration& air,
+                                   std::size_t begin, std::size_t end) {
   const FlightSignals& signals = flight.signals;
   if (static_cast<double>(end - begin) * signals.grid.step < kLeastDuration_s) return;
   const auto at = [&](std::size_t k) { return inputs_at(signals, subject_, air, k); };
   Segment segment;
   segment.begin = inputs_.size();
   segment.from_s = signals.grid.at(begin);
-  segment.flight = flight.name.empty() ? std::string() : " of " + flight.name;
-  if (is_fast(signals)) {
+  segment.flight = number;
+  segment.of_flight = flight.name.empty() ? std::string() : " of " + flight.name;
+  if (steps_over_two(signals, simulation_)) {
     const std::size_t count = (end - begin - 1) / 2 + 1;
     for (std::size_t k = 0; k + 1 < 2 * count; ++k) inputs_.push_back(at(begin + k));
     segment.samples = static_cast<Eigen::Index>(count);
@@ -170,7 +188,7 @@ void OutputErrorModel::add_segment(const FlownSpans& flight, const AirAccelerati
     inputs_.push_back(last);
     for (std::size_t k = begin + 1; k < end; ++k) {
       const GridInputs next = at(k);
-      inputs_.push_back(middle(last, next));
+      inputs_.push_back(between(last, next, 0.5));
       inputs_.push_back(next);
       last = next;
     }
@@ -179,16 +197,42 @@ void OutputErrorModel::add_segment(const FlownSpans& flight, const AirAccelerati
   segment.to_s = segment.from_s + step_ * static_cast<double>(segment.samples - 1);
   for (std::size_t i = 0; i < kStates; ++i) {
     if (!simulated_[i]) continue;
-    segment.initial.push_back({.name = fmt::format("{} at {:.1f} s{}", kStateNames[i], segment.from_s, segment.flight),
-                               .unit = kStateUnits[i],
-                               .start = inputs_[segment.begin].state[i]});
+    segment.initial.push_back(
+        {.name = fmt::format("{} at {:.1f} s{}", kStateNames[i], segment.from_s, segment.of_flight),
+         .unit = kStateUnits[i],
+         .start = inputs_[segment.begin].state[i]});
+  }
+  for (const Coefficient c : constants_) {
+    segment.initial.push_back(
+        {.name = fmt::format("{} added from {:.1f} s on{}", name_of(c), segment.from_s, segment.of_flight),
+         .prior_sigma = kConstantSigma});
   }
   segments_.push_back(std::move(segment));
 }
 
 std::string OutputErrorModel::segment_name(std::size_t segment) const {
   const Segment& s = segments_[segment];
-  return fmt::format("the segment from {:.1f} to {:.1f} s{}", s.from_s, s.to_s, s.flight);
+  return fmt::format("the segment from {:.1f} to {:.1f} s{}", s.from_s, s.to_s, s.of_flight);
+}
+
+TimeSpan OutputErrorModel::segment_span(std::size_t segment) const {
+  const Segment& s = segments_[segment];
+  return {s.from_s, s.to_s};
+}
+
+Eigen::Index OutputErrorModel::samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const {
+  estimation::RowMatrix output = estimation::RowMatrix::Constant(samples(segment), signed_index(outputs_.size()), kNaN);
+  (void)simulate(segment, theta, output);
+  Eigen::Index flown = 0;
+  while (flown < output.rows() && output.row(flown).allFinite()) ++flown;
+  return flown;
+}
+
+void OutputErrorModel::shorten(std::size_t segment, Eigen::Index samples) {
+  Segment& s = segments_[segment];
+  VERIDYN_ASSERT(samples >= 1 && samples <= s.samples);
+  s.samples = samples;
+  s.to_s = s.from_s + step_ * static_cast<double>(samples - 1);
 }
 
 std::vector<estimation::RowMatrix> OutputErrorModel::measured() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -31,6 +32,9 @@ namespace veridyn::aircraft {
 /// of the reconstructed gust. Outputs: the simulated states, and specific forces where their coefficients are modelled.
 /// Fourth-order Runge-Kutta over one or two grid steps (at most 20 ms where the grid allows), inputs at their own
 /// samples. Diverged: Va below 2 m/s or an angle of 80 deg.
+///
+/// For simulations that nothing corrects (see open_loop.hpp) parameters can be fixed, constants added to coefficients,
+/// and the integration made as fine as desired (`Simulation`).
 class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
  public:
   /// View of the parts of a flight that are simulated.
@@ -40,11 +44,24 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
     bool gusts = false;     ///< whether the reconstructed gust drives the simulation
     std::string name = {};  ///< of the flight, where there are several
   };
+  /// What is simulated, and how finely.
+  struct Simulation {
+    bool fixed_parameters = false;  ///< parameters stay at their values: only initial conditions are unknowns
+    bool stall = false;             ///< CL and CD with the subject's stall blend, as a simulator flies them
+    /// Constants of each segment that are added to these coefficients, where they are modelled; they follow its initial
+    /// state among the initial conditions.
+    std::vector<Coefficient> offsets = {};
+    /// Steps of the integration in each interval of the grid, inputs linear in between; 0: one step over one or two
+    /// intervals, inputs at their own samples.
+    int steps_per_sample = 0;
+  };
   /// Several flights with the same parameters; each segment has its own initial state.
   /// @param flights  on grids of one rate, at least one
   /// @param coefficients terms, with starting values; parameters in this order
   OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
                    std::span<const CoefficientModel> coefficients);
+  OutputErrorModel(std::span<const FlownSpans> flights, const Subject& subject,
+                   std::span<const CoefficientModel> coefficients, Simulation simulation);
   /// One flight alone.
   OutputErrorModel(const FlightSignals& signals, std::span<const TimeSpan> spans, const Subject& subject,
                    std::span<const CoefficientModel> coefficients, bool gusts);
@@ -60,6 +77,20 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
 
   /// What was measured of the outputs, per segment.
   [[nodiscard]] std::vector<estimation::RowMatrix> measured() const;
+  /// Where a segment lies in its flight.
+  [[nodiscard]] TimeSpan segment_span(std::size_t segment) const;
+  /// Which of the flights a segment is of.
+  [[nodiscard]] std::size_t flight_of(std::size_t segment) const { return segments_[segment].flight; }
+  /// Between two samples of the outputs [s].
+  [[nodiscard]] double sample_interval_s() const { return step_; }
+  /// The states that are simulated, which are the first outputs.
+  [[nodiscard]] std::size_t simulated_states() const {
+    return static_cast<std::size_t>(std::ranges::count(simulated_, true));
+  }
+  /// The samples of a segment before it diverges, all where it does not.
+  [[nodiscard]] Eigen::Index samples_before_divergence(std::size_t segment, const Eigen::VectorXd& theta) const;
+  /// Leaves the first `samples` of a segment. @param samples  at most those that it has
+  void shorten(std::size_t segment, Eigen::Index samples);
 
   template <typename Scalar>
   bool simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
@@ -82,7 +113,8 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
     std::size_t begin = 0;  // into inputs_
     Eigen::Index samples = 0;
     double from_s = 0.0, to_s = 0.0;
-    std::string flight;
+    std::size_t flight = 0;
+    std::string of_flight;  // for its name
     std::vector<estimation::ModelParameter> initial;
   };
   using AirAcceleration = std::array<std::vector<double>, 3>;  // empty in uniform air
@@ -95,13 +127,19 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   [[nodiscard]] static GridInputs inputs_at(const FlightSignals& signals, const Subject& subject,
                                             const AirAcceleration& air, std::size_t k);
   [[nodiscard]] static bool complete(const GridInputs& inputs);
-  [[nodiscard]] static GridInputs middle(const GridInputs& a, const GridInputs& b);
+  /// On the line from `a` (share 0) to `b` (share 1).
+  [[nodiscard]] static GridInputs between(const GridInputs& a, const GridInputs& b, double share);
   // A stretch of complete samples [begin, end) becomes a segment: its inputs at every half step.
-  void add_segment(const FlownSpans& flight, const AirAcceleration& air, std::size_t begin, std::size_t end);
-  void add_flight(const FlownSpans& flight);
+  void add_segment(const FlownSpans& flight, std::size_t number, const AirAcceleration& air, std::size_t begin,
+                   std::size_t end);
+  void add_flight(const FlownSpans& flight, std::size_t number);
+  /// @param parameters  of all coefficients, then the constants that are added to some
   template <typename Scalar>
   [[nodiscard]] Rates<Scalar> rates(State<Scalar> x, const GridInputs& inputs,
                                     std::span<const Scalar> parameters) const;
+  template <typename Scalar>
+  [[nodiscard]] State<Scalar> step(const State<Scalar>& x, const Rates<Scalar>& first, const GridInputs& middle,
+                                   const GridInputs& end, double step_s, std::span<const Scalar> parameters) const;
   template <typename Scalar>
   void hold_measured(State<Scalar>& x, const GridInputs& inputs) const {
     for (std::size_t i = 0; i < kStates; ++i)
@@ -115,6 +153,9 @@ class OutputErrorModel : public estimation::AutodiffModel<OutputErrorModel> {
   std::vector<CoefficientModel> coefficients_;
   EnumArray<Coefficient, int, kCoefficients> which_{};           // index into coefficients_, or -1
   EnumArray<Coefficient, std::size_t, kCoefficients> offset_{};  // of its first parameter
+  EnumArray<Coefficient, int, kCoefficients> constant_{};        // index of what is added to it, or -1
+  Simulation simulation_;
+  std::vector<Coefficient> constants_;  // coefficients that constants are added to
   std::array<bool, kStates> simulated_{};
   std::array<bool, 3> forces_{};  // specific forces among the outputs
   std::vector<estimation::ModelParameter> parameters_;
@@ -151,9 +192,24 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   const auto value = [&](Coefficient c) -> Scalar {
     const CoefficientModel* model = modelled(c);
     if (model == nullptr) return Scalar(select(inputs.measured, c));
-    return model->linear(v, parameters.subspan(offset_[c], model->size()));
+    const Scalar sum = model->linear(v, parameters.subspan(offset_[c], model->size()));
+    return constant_[c] < 0 ? sum : sum + parameters[parameters_.size() + at(constant_[c])];
   };
-  const Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD), CY = value(Coefficient::kCY);
+  Scalar CL = value(Coefficient::kCL), CD = value(Coefficient::kCD);
+  const Scalar CY = value(Coefficient::kCY);
+  if (simulation_.stall && subject_.model.stall) {
+    const auto own = [&](Coefficient c) {
+      const CoefficientModel* model = modelled(c);
+      return model == nullptr ? Scalar(0.0)
+                              : internal::affine_in_alpha(*model, alpha, parameters.subspan(offset_[c], model->size()));
+    };
+    internal::blend_stall(*subject_.model.stall, alpha,
+                          {.lift = modelled(Coefficient::kCL) != nullptr,
+                           .drag = modelled(Coefficient::kCD) != nullptr,
+                           .affine_lift = own(Coefficient::kCL),
+                           .affine_drag = own(Coefficient::kCD)},
+                          CL, CD);
+  }
   const Scalar ca = cos(alpha), sa = sin(alpha), cb = cos(beta), sb = sin(beta);
   const Scalar cphi = cos(phi), sphi = sin(phi), cth = cos(theta), sth = sin(theta);
   const Scalar T(inputs.thrust);
@@ -195,22 +251,40 @@ OutputErrorModel::Rates<Scalar> OutputErrorModel::rates(State<Scalar> x, const G
   return out;
 }
 
+/// The fourth-order Runge-Kutta method.
+template <typename Scalar>
+OutputErrorModel::State<Scalar> OutputErrorModel::step(const State<Scalar>& x, const Rates<Scalar>& first,
+                                                       const GridInputs& middle, const GridInputs& end, double step_s,
+                                                       std::span<const Scalar> parameters) const {
+  const Scalar h(step_s), half(0.5 * step_s), sixth(step_s / 6.0);
+  const auto moved = [](const State<Scalar>& from, const State<Scalar>& rate, const Scalar& by) {
+    State<Scalar> to;
+    for (std::size_t i = 0; i < kStates; ++i) to[i] = from[i] + by * rate[i];
+    return to;
+  };
+  const Rates<Scalar> k2 = rates(moved(x, first.state, half), middle, parameters);
+  const Rates<Scalar> k3 = rates(moved(x, k2.state, half), middle, parameters);
+  const Rates<Scalar> k4 = rates(moved(x, k3.state, h), end, parameters);
+  State<Scalar> next;
+  for (std::size_t i = 0; i < kStates; ++i)
+    next[i] = x[i] + sixth * (first.state[i] + Scalar(2.0) * k2.state[i] + Scalar(2.0) * k3.state[i] + k4.state[i]);
+  return next;
+}
+
 template <typename Scalar>
 bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar, Eigen::Dynamic, 1>& theta,
                                 Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>& output) const {
   constexpr double kLargest_rad = 80.0 * kDegree;
   constexpr double kSlowest_mps = 2.0;
   const Segment& s = segments_[segment];
-  const std::span<const Scalar> parameters(theta.data(), parameters_.size());
+  const auto shared = signed_index(parameters_.size()), states = signed_index(simulated_states());
+  // The parameters, and behind them the constants, which stand behind the initial state.
+  std::vector<Scalar> values(theta.data(), theta.data() + shared);
+  values.insert(values.end(), theta.data() + shared + states, theta.data() + theta.size());
+  const std::span<const Scalar> parameters(values);
   State<Scalar> x;
-  auto initial = signed_index(parameters_.size());
+  auto initial = shared;
   for (std::size_t i = 0; i < kStates; ++i) x[i] = simulated_[i] ? theta(initial++) : Scalar(0.0);
-  const Scalar h(step_), half(0.5 * step_), sixth(step_ / 6.0);
-  const auto moved = [](const State<Scalar>& from, const State<Scalar>& rate, const Scalar& by) {
-    State<Scalar> to;
-    for (std::size_t i = 0; i < kStates; ++i) to[i] = from[i] + by * rate[i];
-    return to;
-  };
   for (Eigen::Index k = 0; k < s.samples; ++k) {
     const GridInputs& now = inputs_[s.begin + 2 * static_cast<std::size_t>(k)];
     hold_measured(x, now);
@@ -228,11 +302,17 @@ bool OutputErrorModel::simulate(std::size_t segment, const Eigen::Matrix<Scalar,
     if (k + 1 == s.samples) break;
     const GridInputs& mid = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 1];
     const GridInputs& next = inputs_[s.begin + 2 * static_cast<std::size_t>(k) + 2];
-    const Rates<Scalar> k2 = rates(moved(x, k1.state, half), mid, parameters);
-    const Rates<Scalar> k3 = rates(moved(x, k2.state, half), mid, parameters);
-    const Rates<Scalar> k4 = rates(moved(x, k3.state, h), next, parameters);
-    for (std::size_t i = 0; i < kStates; ++i)
-      x[i] += sixth * (k1.state[i] + Scalar(2.0) * k2.state[i] + Scalar(2.0) * k3.state[i] + k4.state[i]);
+    const int steps = std::max(1, simulation_.steps_per_sample);
+    if (steps == 1) {
+      x = step(x, k1, mid, next, step_, parameters);
+      continue;
+    }
+    const auto at_share = [&](double share) { return between(now, next, share); };
+    for (int j = 0; j < steps; ++j) {
+      const GridInputs begin = at_share(static_cast<double>(j) / steps);
+      const Rates<Scalar> first = j == 0 ? k1 : rates(x, begin, parameters);
+      x = step(x, first, at_share((j + 0.5) / steps), at_share((j + 1.0) / steps), step_ / steps, parameters);
+    }
   }
   return true;
 }

@@ -147,6 +147,7 @@ void append(std::vector<PredictedQuantity>& all, const PredictedQuantity& more, 
 ValidationOptions ValidationOptions::read(const StudyTable& table) {
   ValidationOptions options;
   options.period_s = table.positive_or("period", "s", options.period_s);
+  options.open_loop = OpenLoopOptions::read(table);
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "veridyn/aircraft/identification/flight_rows.hpp"
+#include "veridyn/aircraft/identification/open_loop_options.hpp"
 #include "veridyn/aircraft/model/subject.hpp"
 #include "veridyn/core/study.hpp"
 #include "veridyn/numerics/statistics.hpp"
@@ -13,7 +14,8 @@ namespace veridyn::aircraft {
 
 /// Study table `[validate]`.
 struct ValidationOptions {
-  double period_s = 5.0;  ///< `period`: the simulation starts again from the measured state this often
+  double period_s = 5.0;           ///< `period`: the simulation starts again from the measured state this often
+  OpenLoopOptions open_loop = {};  ///< keys `open_loop`...: what is flown from deflections and thrust alone
 
   /// @throws InputError for values that make no sense.
   [[nodiscard]] static ValidationOptions read(const StudyTable& table);

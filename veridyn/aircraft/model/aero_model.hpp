@@ -249,16 +249,48 @@ auto CoefficientModel::linear(const AeroVariables<Scalar>& v, std::span<const Pa
 
 namespace internal {
 
-/// The part of a coefficient in `c0 + c_alpha alpha`.
-template <typename Scalar>
-Scalar affine_in_alpha(const CoefficientModel& m, const Scalar& alpha) {
+/// The part of a coefficient in `c0 + c_alpha alpha`, with the given parameters, one per term.
+template <typename Scalar, typename Parameter>
+Scalar affine_in_alpha(const CoefficientModel& m, const Scalar& alpha, std::span<const Parameter> parameters) {
   Scalar sum(0.0);
   for (std::size_t i = 0; i < m.terms.size(); ++i) {
     const std::vector<Factor>& f = m.terms[i].factors;
-    if (f.empty()) sum += Scalar(m.values[i]);
-    if (f.size() == 1 && f[0] == Factor{}) sum += Scalar(m.values[i]) * alpha;
+    if (f.empty()) sum += Scalar(parameters[i]);
+    if (f.size() == 1 && f[0] == Factor{}) sum += Scalar(parameters[i]) * alpha;
   }
   return sum;
+}
+
+/// What a stall blend needs of lift and drag.
+template <typename Scalar>
+struct StalledCoefficients {
+  bool lift = false, drag = false;  ///< whether they are modelled
+  Scalar affine_lift{0.0}, affine_drag{0.0};
+};
+
+/// Blends CL and CD, which come as if the flow were attached.
+template <typename Scalar>
+void blend_stall(const StallBlend& stall, const Scalar& alpha, const StalledCoefficients<Scalar>& of, Scalar& CL,
+                 Scalar& CD) {
+  using std::sqrt;
+  const Scalar s = separated_share(alpha, stall.M, stall.alpha0);
+  const bool full = stall.form == StallForm::kFull;
+  if (of.lift && stall.form == StallForm::kSeparation) {
+    // The square root has no derivative at zero, which underflow could reach.
+    const Scalar share = attached_share(alpha, stall.M, stall.alpha0);
+    const Scalar attached = share > Scalar(1e-300) ? Scalar(sqrt(share)) : Scalar(0.0);
+    const Scalar k = Scalar(0.25) * (Scalar(1.0) + attached) * (Scalar(1.0) + attached);
+    CL += (k - Scalar(1.0)) * of.affine_lift;
+    return;
+  }
+  if (of.lift) {
+    const Scalar blended = full ? CL : of.affine_lift;
+    CL += s * (flat_plate_lift(alpha) - blended);
+  }
+  if (of.drag && stall.drag) {
+    const Scalar blended = full ? CD : of.affine_drag;
+    CD += s * (flat_plate_drag(alpha) - blended);
+  }
 }
 
 }  // namespace internal
@@ -277,27 +309,14 @@ AeroCoefficients<Scalar> AeroModel::evaluate(const AeroVariables<Scalar>& v) con
   out.Cm = value(Coefficient::kCm);
   out.Cn = value(Coefficient::kCn);
   if (!stall) return out;
-  using std::sqrt;
-  const Scalar s = separated_share(v.alpha, stall->M, stall->alpha0);
+  const auto affine = [&](const std::optional<CoefficientModel>& m) {
+    return m ? internal::affine_in_alpha(*m, v.alpha, std::span<const double>(m->values)) : Scalar(0.0);
+  };
   const auto& lift = coefficients[Coefficient::kCL];
   const auto& drag = coefficients[Coefficient::kCD];
-  const bool full = stall->form == StallForm::kFull;
-  if (lift && stall->form == StallForm::kSeparation) {
-    // The square root has no derivative at zero, which underflow could reach.
-    const Scalar share = attached_share(v.alpha, stall->M, stall->alpha0);
-    const Scalar attached = share > Scalar(1e-300) ? Scalar(sqrt(share)) : Scalar(0.0);
-    const Scalar k = Scalar(0.25) * (Scalar(1.0) + attached) * (Scalar(1.0) + attached);
-    out.CL += (k - Scalar(1.0)) * internal::affine_in_alpha(*lift, v.alpha);
-    return out;
-  }
-  if (lift) {
-    const Scalar blended = full ? out.CL : internal::affine_in_alpha(*lift, v.alpha);
-    out.CL += s * (flat_plate_lift(v.alpha) - blended);
-  }
-  if (drag && stall->drag) {
-    const Scalar blended = full ? out.CD : internal::affine_in_alpha(*drag, v.alpha);
-    out.CD += s * (flat_plate_drag(v.alpha) - blended);
-  }
+  const internal::StalledCoefficients<Scalar> of{
+      .lift = lift.has_value(), .drag = drag.has_value(), .affine_lift = affine(lift), .affine_drag = affine(drag)};
+  internal::blend_stall(*stall, v.alpha, of, out.CL, out.CD);
   return out;
 }
 
