@@ -12,7 +12,7 @@ namespace veridyn::io {
 
 /// What to do with a file of any format.
 struct ReadOptions {
-  CsvOptions csv;
+  TableOptions csv;
   RecordingOptions recording;
   std::optional<PacketLayout> packet;  ///< the file holds such packets, one after the other
 };

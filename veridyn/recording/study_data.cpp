@@ -43,7 +43,7 @@ void merge(Recording& whole, const Recording& part, const std::string& prefix) {
 }
 
 /// Where the stamps of a table are.
-void read_time(const StudyTable& time, io::CsvOptions& options) {
+void read_time(const StudyTable& time, io::TableOptions& options) {
   const bool named = time.has("column") && !time.is_table("column");
   if (named) options.time_column = time.text("column");
   if (time.has("unit") && !time.is_table("unit")) options.time_unit = time.text("unit");
@@ -146,7 +146,7 @@ void check_recording_keys(const StudyTable& data, std::span<const StandardChanne
   for (const char* key : {"from", "to"}) static_cast<void>(data.optional_number(key, "s"));
   static_cast<void>(read_packet(data));
   const StudyTable time = data.table_or_empty("time");
-  io::CsvOptions options;
+  io::TableOptions options;
   read_time(time, options);
   for (const char* key : {"file", "files", "runs", "holdout_runs"}) {
     if (!data.has(key)) continue;

@@ -29,6 +29,41 @@ TEST(CsvCells, KnowsCellsThatAreNoPlainNumber) {
   EXPECT_TRUE(infinite);
 }
 
+TEST(CsvCells, BlanksSeparateWhereNothingElseDoes) {
+  EXPECT_EQ(guess_delimiter("time p q"), ' ');
+  CellReader reader("  1.5   +2\t-3 \n4 word\t5\n6", ' ');
+  double value = 0.0;
+  for (const double expected : {1.5, 2.0, -3.0, 4.0}) {
+    ASSERT_TRUE(reader.number(value)) << expected;
+    EXPECT_EQ(value, expected);
+  }
+  EXPECT_FALSE(reader.last_cell_of_row());
+  EXPECT_FALSE(reader.number(value));
+  EXPECT_EQ(reader.text(), "word");
+  ASSERT_TRUE(reader.number(value));
+  EXPECT_TRUE(reader.last_cell_of_row());
+  ASSERT_TRUE(reader.number(value));
+  EXPECT_TRUE(reader.at_end());
+  EXPECT_EQ(reader.lines(), 3U);
+  // A number that goes on as a word is a word.
+  CellReader glued("12ab 3", ' ');
+  EXPECT_FALSE(glued.number(value));
+  EXPECT_EQ(glued.text(), "12ab");
+}
+
+TEST(CsvCells, ReadsADecimalCommaWhereTheTableHasOne) {
+  EXPECT_TRUE(has_decimal_comma("t;x\n0;1,5\n", ';'));
+  EXPECT_FALSE(has_decimal_comma("t;x\n0;1.5\n1;1,5\n", ';'));
+  EXPECT_FALSE(has_decimal_comma("t,x\n0,1\n", ','));
+  bool infinite = false;
+  EXPECT_EQ(unusual_number("-1,5e2", infinite, true), -150.0);
+  EXPECT_FALSE(unusual_number("1.234,5", infinite, true));
+  EXPECT_FALSE(unusual_number("1,234,567", infinite, true));
+  EXPECT_FALSE(unusual_number("1,5", infinite));
+  CellReader reader("0,25;7\n", CellStyle{';', true});
+  EXPECT_EQ(reader.unusual(infinite), 0.25);
+}
+
 TEST(CsvCells, TakesNumbersCellByCell) {
   CellReader reader("1.5, +2e3 ,x\r\n-4", ',');
   double value = 0.0;

@@ -5,6 +5,7 @@
 namespace veridyn::io::internal {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::message_of;
 
@@ -23,32 +24,36 @@ TEST(CsvHeader, SplitsANameFromItsUnit) {
               HasSubstr("log.csv:1: column 'speed'"));
 }
 
-TEST(CsvHeader, ChoosesWhereTheStampsAre) {
-  const auto choose = [](const std::vector<Header>& headers, const CsvOptions& options, const char* row) {
-    return choose_time(headers, options, row, ',', "log.csv");
+TEST(CsvHeader, TakesUnitsAsPeopleWriteThem) {
+  const auto parts = [](const char* cell) {
+    const Header header = split_header(cell, false, "log.csv:1");
+    return header.name + "|" + header.unit;
   };
-  const TimeChoice named = choose({{"a", ""}, {"T", ""}}, {.time_column = "T", .time_unit = "ms"}, "1,2");
-  EXPECT_EQ(named.column, 1u);
-  EXPECT_DOUBLE_EQ(named.scale, 1e-3);
-  const TimeChoice headed = choose({{"a", ""}, {"time", "us"}}, {}, "1,2");
-  EXPECT_EQ(headed.column, 1u);
-  EXPECT_DOUBLE_EQ(headed.scale, 1e-6);
-  // A `timestamp` without a unit is in microseconds, unless its numbers have a point.
-  EXPECT_DOUBLE_EQ(choose({{"timestamp", ""}}, {}, "1200000").scale, 1e-6);
-  EXPECT_DOUBLE_EQ(choose({{"timestamp", ""}}, {}, "1.2").scale, 1.0);
-  EXPECT_TRUE(choose({{"a", ""}, {"when", ""}}, {}, "1,2024-02-11 23:59:59.9").dates);
-  EXPECT_EQ(choose({{"a", ""}}, {.rate = 10.0}, "1").column, TimeChoice::kNone);
+  EXPECT_EQ(parts("p (deg/s)"), "p|deg/s");
+  EXPECT_EQ(parts("Speed(km/h)"), "Speed|km/h");
+  EXPECT_EQ(parts("Pitch [\xC2\xB0]"), "Pitch|deg");
+  EXPECT_EQ(parts("V(2)"), "V(2)|");
+  EXPECT_EQ(parts("speed (filtered)"), "speed (filtered)|");
+  // In a file of ours parentheses are part of the name.
+  EXPECT_EQ(split_header("q (deg/s)[rad/s]", true, "").name, "q (deg/s)");
 }
 
-TEST(CsvHeader, SaysWhatToDoWithoutATimeColumn) {
-  EXPECT_THAT(message_of([] {
-                static_cast<void>(choose_time({{"a", ""}, {"b", ""}}, {}, "1,2", ',', "log.csv"));
-              }),
-              HasSubstr("log.csv: no time column found among a, b; name it in the study"));
-  EXPECT_THAT(message_of([] {
-                static_cast<void>(choose_time({{"time", "m"}}, {.time_column = "time"}, "1", ',', "log.csv"));
-              }),
-              HasSubstr("column 'time'"));
+TEST(CsvHeader, BlanksSeparateNamesButNotAUnitFromItsName) {
+  EXPECT_THAT(blank_separated("  Time (s)  p [deg / s]\tV"), ElementsAre("Time (s)", "p [deg / s]", "V"));
+}
+
+TEST(CsvHeader, KnowsARowOfUnits) {
+  EXPECT_THAT(row_of_units({"s", "deg/s", "", "-", "[km/h]"}), ElementsAre("s", "deg/s", "", "", "km/h"));
+  EXPECT_TRUE(row_of_units({"0", "1"}).empty());
+  EXPECT_TRUE(row_of_units({"", "-"}).empty());
+  EXPECT_TRUE(row_of_units({"s", "fast"}).empty());
+}
+
+TEST(CsvHeader, NumbersNamesThatAppearAgain) {
+  std::vector<Header> headers{{"V", ""}, {"V(2)", ""}, {"V", ""}, {"V", ""}};
+  EXPECT_THAT(number_repeated(headers), ElementsAre("V(3)", "V(4)"));
+  EXPECT_EQ(headers[0].name, "V");
+  EXPECT_EQ(headers[2].name, "V(3)");
 }
 
 }  // namespace

@@ -15,11 +15,11 @@ using ::testing::HasSubstr;
 using testing::message_of;
 using testing::shared_flight;
 
-Recording read(std::string_view text, const CsvOptions& options = {}) {
+Recording read(std::string_view text, const TableOptions& options = {}) {
   return to_recording(read_csv(text, "a.csv", options));
 }
 
-std::string refusal(std::string_view text, const CsvOptions& options = {}) {
+std::string refusal(std::string_view text, const TableOptions& options = {}) {
   return message_of([&] { (void)read_csv(text, "a.csv", options); });
 }
 
@@ -55,6 +55,81 @@ TEST(Csv, TakesForeignHabits) {
   EXPECT_DOUBLE_EQ(recording.at("control[0]").value[0], 1.5);
   EXPECT_NEAR(recording.at("Roll").value[0], std::numbers::pi, 1e-15);
   EXPECT_DOUBLE_EQ(recording.at("flag").value[0], 1.0);
+}
+
+std::vector<std::string> notes_of(std::string_view text, const TableOptions& options = {}) {
+  return read(text, options).warnings;
+}
+
+TEST(Csv, ReadsBlankSeparatedColumns) {
+  const Recording recording = read("Time (s)   p (deg/s)  V\n 0.0  180   20\n 0.5\t-90   21  \n");
+  EXPECT_THAT(recording.names(), ElementsAre("p", "V"));
+  EXPECT_NEAR(recording.at("p").value[0], std::numbers::pi, 1e-15);
+  EXPECT_THAT(*recording.at("V").time, ElementsAre(0.0, 0.5));
+  EXPECT_THAT(recording.at("V").value, ElementsAre(20.0, 21.0));
+}
+
+TEST(Csv, TakesAHeaderFromTheLastCommentThatFits) {
+  const Recording numpy = read("# flight: 12\n# t p V\n0.0 0.1 20\n0.5 0.2 21\n");
+  EXPECT_THAT(numpy.names(), ElementsAre("p", "V"));
+  EXPECT_EQ(numpy.information.at("flight"), "12");
+  const Recording matlab = read("% time (s), Pitch (deg), V (kt)\n0,180,1\n% a remark\n1,90,1\n");
+  EXPECT_NEAR(matlab.at("Pitch").value[1], std::numbers::pi / 2.0, 1e-15);
+  // A comment of another length is no header.
+  EXPECT_EQ(refusal("# t p\n0,1,2\n").substr(0, 29), "a.csv:2: no time column found");
+}
+
+TEST(Csv, TakesUnitsFromARowOfTheirOwn) {
+  const Recording recording = read("time,Speed,Note,flag\ns,km/h,,-\n0,36,a,1\n1,72,b,0\n");
+  EXPECT_THAT(recording.at("Speed").value, ElementsAre(10.0, 20.0));
+  EXPECT_EQ(recording.at("Speed").unit.name, "m/s");
+  EXPECT_EQ(refusal("time,mode\n0,s\n0,x,1\n"), "a.csv:3: more cells than the 2 of the header");
+}
+
+TEST(Csv, ReadsADecimalCommaAndSaysSo) {
+  const char* text = "Zeit;V\n0,00;20,5\n0,02;21\n";
+  EXPECT_THAT(read(text).at("V").value, ElementsAre(20.5, 21.0));
+  EXPECT_THAT(notes_of(text), Contains(HasSubstr("decimal comma")));
+  EXPECT_THAT(refusal(text, {.decimal = '.'}), HasSubstr("a.csv:2: column 'Zeit': '0,00' is not a number"));
+  EXPECT_THAT(read("time,V\n0,\"20,5\"\n1,\"21,5\"\n").at("V").value, ElementsAre(20.5, 21.5));
+}
+
+TEST(Csv, NumbersColumnsOfOneNameAndSaysSo) {
+  const char* text = "time,V,V\n0,1,2\n";
+  EXPECT_THAT(read(text).at("V(2)").value, ElementsAre(2.0));
+  EXPECT_THAT(notes_of(text), ElementsAre("names of columns appear again, and are numbered: V(2)"));
+}
+
+TEST(Csv, AssumesAUnitOfTimeOnlyWhereNothingSaysItAndNotesIt) {
+  EXPECT_THAT(*read("time,x\n0,1\n20,1\n40,1\n").at("x").time, ElementsAre(0.0, 0.02, 0.04));
+  EXPECT_THAT(notes_of("time,x\n0,1\n20,1\n40,1\n"), ElementsAre(HasSubstr("taken as ms: whole numbers 20 apart")));
+  EXPECT_THAT(*read("time,x\n0,1\n20,1\n40,1\n", {.time_unit = "s"}).at("x").time, ElementsAre(0.0, 20.0, 40.0));
+  EXPECT_TRUE(notes_of("time[s],x[1]\n0,1\n20,1\n40,1\n").empty());
+  const Recording unix = read("timestamp,x\n1700000000000000000,1\n1700000000020000000,1\n");
+  EXPECT_EQ(unix.information.at("date"), "2023-11-14");
+  EXPECT_NEAR(unix.at("x").times()[1] - unix.at("x").times()[0], 0.02, 1e-6);
+}
+
+TEST(Csv, ReadsTimesOfDayZonesAndDurations) {
+  const Recording midnight = read("time,x\n23:59:59.5,1\n00:00:00.5,1\n");
+  EXPECT_THAT(*midnight.at("x").time, ElementsAre(86399.5, 86400.5));
+  const Recording zoned = read("x,when\n1,2024-05-03T12:00:00+02:00\n1,2024-05-03T11:00:01+01:00\n");
+  EXPECT_THAT(*zoned.at("x").time, ElementsAre(36000.0, 36001.0));
+  EXPECT_EQ(zoned.information.at("time zone"), "UTC");
+  EXPECT_THAT(*read("Time,x\n0 sec,1\n0.5 sec,1\n").at("x").time, ElementsAre(0.0, 0.5));
+  EXPECT_EQ(refusal("time,x\n10:00:00,1\n0.5 sec,1\n"), "a.csv:3: column 'time': '0.5 sec' is no date and time");
+}
+
+TEST(Csv, ReadsOnePartWhereTheClockRestartsAndListsAll) {
+  std::string text = "time,x,word\n";
+  for (int i = 0; i < 12; ++i) text += std::to_string(0.1 * i) + ",1,a\n";
+  for (int i = 0; i < 20; ++i) text += std::to_string(0.1 * i) + ",2,b\n";
+  EXPECT_EQ(read(text).at("x").size(), 20U);
+  EXPECT_EQ(read(text).at("x").value[0], 2.0);
+  EXPECT_THAT(notes_of(text), Contains(HasSubstr("part 1 (rows 1 to 12, 0 s to 1.1 s), part 2 (rows 13 to 32, 0 s")));
+  EXPECT_EQ(read(text, {.part = 1}).at("x").size(), 12U);
+  EXPECT_EQ(refusal(text, {.part = 3}), "a.csv: has no part 3: its clock restarts 1 times, which makes 2 parts");
+  EXPECT_EQ(refusal("time,x\n0,1\n1,1\n", {.part = 2}), "a.csv: has no part 2");
 }
 
 TEST(Csv, LeavesOutALastLineThatIsCutAndSaysSo) {

@@ -26,6 +26,12 @@ class TextColumn {
   void resize(std::size_t count) {
     if (count < ends_.size()) ends_.resize(count);
   }
+  /// The texts of rows [begin, end).
+  [[nodiscard]] TextColumn part(std::size_t begin, std::size_t end) const {
+    TextColumn texts;
+    for (std::size_t i = begin; i < end; ++i) texts.push_back((*this)[i]);
+    return texts;
+  }
 
  private:
   std::string characters_;

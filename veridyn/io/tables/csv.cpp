@@ -6,15 +6,16 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <set>
 
 #include "veridyn/core/error.hpp"
 #include "veridyn/core/index.hpp"
 #include "veridyn/core/text.hpp"
 #include "veridyn/io/log/mapped_file.hpp"
+#include "veridyn/io/tables/clock_parts.hpp"
 #include "veridyn/io/tables/csv_cells.hpp"
 #include "veridyn/io/tables/csv_header.hpp"
 #include "veridyn/io/tables/date_stamp.hpp"
+#include "veridyn/io/tables/time_column.hpp"
 
 namespace veridyn::io {
 namespace {
@@ -31,12 +32,23 @@ struct Growing {
   std::vector<double> numbers;
   TextColumn texts;
   std::size_t infinite = 0;
+
+  /// Keeps the rows of a part.
+  void keep(const internal::ClockPart& part) {
+    const auto only = [&](auto& rows) {
+      rows.erase(rows.begin() + signed_index(part.end), rows.end());
+      rows.erase(rows.begin(), rows.begin() + signed_index(part.begin));
+    };
+    if (kind != Kind::kText) only(numbers);
+    if (kind == Kind::kText) texts = texts.part(part.begin, part.end);
+  }
 };
 
 /// View of the text of a table, parsed cell by cell.
 class CsvParser {
  public:
-  CsvParser(std::string_view bytes, std::string source, const CsvOptions& options) : bytes_(bytes), options_(options) {
+  CsvParser(std::string_view bytes, std::string source, const TableOptions& options)
+      : bytes_(bytes), options_(options) {
     log_.source = std::move(source);
     log_.format = "CSV";
   }
@@ -72,12 +84,16 @@ class CsvParser {
   void read_header() {
     std::string_view rest = bytes_;
     std::string_view line;
+    std::vector<std::string_view> comments;
     while (line.empty()) {
       if (rest.empty()) throw InputError(log_.source, "no header: the file has only blank lines and comments");
       const std::size_t stop = std::min(rest.find('\n'), rest.size());
       line = trimmed(rest.substr(0, stop));
-      if (line.empty() || line.front() == '#') {
-        if (!line.empty()) read_comment(line);
+      if (line.empty() || is_comment(line.front())) {
+        if (!line.empty()) {
+          read_comment(line);
+          comments.push_back(line);
+        }
         line = {};
         rest.remove_prefix(std::min(stop + 1, rest.size()));
         ++line_;
@@ -87,71 +103,126 @@ class CsvParser {
       const auto byte = static_cast<unsigned char>(c);
       if (byte < 0x20 && c != '\t') throw InputError(place(line_ + 1), "not a CSV file: the first row is not text");
     }
-    delimiter_ = options_.delimiter != '\0' ? options_.delimiter : internal::guess_delimiter(line);
-    CellReader reader(rest, delimiter_);
-    std::vector<std::string> cells;
-    do {
-      cells.push_back(reader.text());
-    } while (!reader.last_cell_of_row() && !reader.at_end());
-    if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
+    choose_style(line, rest);
+    CellReader reader(rest, style_);
+    std::vector<std::string> cells = first_row(reader);
     header_line_ = line_ + 1;
     const bool named = !options_.columns.empty();
-    const bool headless = named || holds_only_data(cells);
+    const bool headless = named || internal::holds_only_data(cells, style_.decimal_comma);
+    bool numbered = false;
     if (named) {
       cells = options_.columns;
     } else if (headless) {
-      for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = fmt::format("column_{}", i + 1);
-      log_.damage.notes.push_back(
-          fmt::format("there is no header: columns are called column_1 to column_{}", cells.size()));
+      const std::size_t count = cells.size();
+      cells = names_in_comments(comments, count);
+      numbered = cells.empty();
+      for (std::size_t i = 0; numbered && i < count; ++i) cells.push_back(fmt::format("column_{}", i + 1));
+      if (numbered)
+        log_.damage.notes.push_back(fmt::format("there is no header: columns are called column_1 to column_{}", count));
     }
-    const bool our_own = !named && lower(cells.front()).rfind("time[", 0) == 0 && options_.time_column.empty();
-    std::set<std::string> taken;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (cells[i].empty()) {
-        throw InputError(fmt::format("{}: column {}", place(header_line_), i + 1), "has no name");
-      }
-      // Units that a user wrote are not to be guessed at, as ours are not.
-      headers_.push_back(internal::split_header(internal::printable(cells[i]), our_own || named, place(header_line_)));
-      if (!taken.insert(headers_.back().name).second) {
-        throw InputError(place(header_line_), fmt::format("column '{}' appears twice", shown(headers_.back().name)));
-      }
-    }
-    our_own_ = our_own;
+    our_own_ = !named && lower(cells.front()).rfind("time[", 0) == 0 && options_.time_column.empty();
     if (headless) {
       rows_ = rest;
     } else {
       line_ += reader.lines();
       rows_ = std::string_view(reader.position(), at(bytes_.data() + bytes_.size() - reader.position()));
     }
-    time_ =
-        internal::choose_time(headers_, options_, rows_.substr(0, rows_.find('\n')), delimiter_, place(header_line_));
+    name_columns(cells, named);
+    if (!headless && !our_own_) take_row_of_units();
+    time_ = internal::choose_time(headers_, options_, rows_, style_, place(header_line_));
+    if (!time_.note.empty()) log_.damage.notes.push_back(time_.note);
     if (headers_.size() < 2 && time_.column != TimeChoice::kNone)
       throw InputError(place(header_line_), "there is no column but the time");
     columns_.resize(headers_.size());
   }
 
-  /// Whether a first row is no header: numbers and dates, at least one of them no empty cell.
-  static bool holds_only_data(const std::vector<std::string>& cells) {
-    bool any = false;
-    for (const std::string& cell : cells) {
-      bool infinite = false;
-      const bool data = parse_date_stamp(cell).has_value() || internal::unusual_number(cell, infinite).has_value();
-      if (!data) return false;
-      any = any || !cell.empty();
-    }
-    return any;
+  static bool is_comment(char first) { return first == '#' || first == '%'; }
+
+  void choose_style(std::string_view line, std::string_view rest) {
+    style_.delimiter = options_.delimiter != '\0' ? options_.delimiter : internal::guess_delimiter(line);
+    const bool found = options_.decimal == '\0' && internal::has_decimal_comma(rest, style_.delimiter);
+    style_.decimal_comma = found || options_.decimal == ',';
+    if (found)
+      log_.damage.notes.emplace_back("numbers are read with a decimal comma; `decimal = \".\"` in [data] does not");
   }
 
-  /// Seconds since midnight of the first stamp's day; missing in the cell at which the file ends.
-  double read_date(CellReader& reader) {
+  [[nodiscard]] std::vector<std::string> first_row(CellReader& reader) const {
+    if (style_.delimiter == ' ') return internal::blank_separated(reader.line());
+    std::vector<std::string> cells;
+    do {
+      cells.push_back(reader.text());
+    } while (!reader.last_cell_of_row() && !reader.at_end());
+    if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
+    return cells;
+  }
+
+  /// The last comment that has a name for each of `count` columns.
+  [[nodiscard]] std::vector<std::string> names_in_comments(const std::vector<std::string_view>& comments,
+                                                           std::size_t count) const {
+    constexpr std::ptrdiff_t kLinesLookedAt = 20;
+    const auto last = comments.rbegin();
+    for (auto line = last; line != comments.rend() && line - last < kLinesLookedAt; ++line) {
+      const std::size_t begin = std::min(line->find_first_not_of("#% \t"), line->size());
+      for (const char delimiter : {style_.delimiter, ',', ';', '\t', ' '}) {
+        std::vector<std::string> cells = internal::cells_of(line->substr(begin), delimiter);
+        if (cells.size() == count && !internal::holds_only_data(cells, style_.decimal_comma)) return cells;
+      }
+    }
+    return {};
+  }
+
+  void name_columns(const std::vector<std::string>& cells, bool named) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i].empty()) {
+        throw InputError(fmt::format("{}: column {}", place(header_line_), i + 1), "has no name");
+      }
+      // Units that a user wrote are not to be guessed at, as ours are not.
+      headers_.push_back(internal::split_header(cells[i], our_own_ || named, place(header_line_)));
+    }
+    const std::vector<std::string> repeated = internal::number_repeated(headers_);
+    if (repeated.empty()) return;
+    if (our_own_ || named) {
+      const std::string first = repeated.front().substr(0, repeated.front().rfind('('));
+      throw InputError(place(header_line_), fmt::format("column '{}' appears twice", shown(first)));
+    }
+    log_.damage.notes.push_back(
+        fmt::format("names of columns appear again, and are numbered: {}", fmt::join(repeated, ", ")));
+  }
+
+  /// Takes the units of a row below the header, where it holds nothing else.
+  void take_row_of_units() {
+    CellReader reader(rows_, style_);
+    std::vector<std::string> cells = first_row(reader);
+    cells.resize(std::max(cells.size(), headers_.size()));
+    const std::vector<std::string> units = internal::row_of_units(cells);
+    if (units.size() != headers_.size()) return;
+    for (std::size_t i = 0; i < units.size(); ++i)
+      if (headers_[i].unit.empty()) headers_[i].unit = units[i];
+    line_ += reader.lines();
+    rows_.remove_prefix(at(reader.position() - rows_.data()));
+  }
+
+  /// Seconds since midnight of the first stamp's day, or of a duration; missing in the cell at which the file ends.
+  double read_text_stamp(CellReader& reader) {
     const std::string cell = reader.text();
-    if (const auto stamp = parse_date_stamp(cell)) {
+    const auto stamp = internal::parse_text_stamp(cell);
+    if (!stamp || (stamp_kind_ && stamp->kind != *stamp_kind_)) {
+      if (reader.at_end() && !reader.row_has_newline()) return kMissing;
+      throw InputError(fmt::format("{}: column '{}'", place(row_line_), headers_[time_.column].name),
+                       fmt::format("'{}' is no date and time", shown(cell)));
+    }
+    stamp_kind_ = stamp->kind;
+    if (stamp->kind == internal::TextStamp::Kind::kDate) {
       if (!first_day_) set_first_day(stamp->day);
+      if (stamp->utc) log_.information["time zone"] = "UTC";
       return 86400.0 * static_cast<double>(stamp->day - *first_day_) + stamp->second;
     }
-    if (reader.at_end() && !reader.row_has_newline()) return kMissing;
-    throw InputError(fmt::format("{}: column '{}'", place(row_line_), headers_[time_.column].name),
-                     fmt::format("'{}' is no date and time", shown(cell)));
+    if (stamp->kind == internal::TextStamp::Kind::kTimeOfDay) {
+      // Half a day back is midnight.
+      if (stamp->second < last_time_of_day_ - 43200.0) ++midnights_;
+      last_time_of_day_ = stamp->second;
+    }
+    return 86400.0 * midnights_ + stamp->second;
   }
 
   void set_first_day(std::int64_t day) {
@@ -161,9 +232,9 @@ class CsvParser {
 
   void read_cell(CellReader& reader, std::size_t index) {
     Growing& column = columns_[index];
-    if (time_.dates && index == time_.column) {
+    if (time_.texts && index == time_.column) {
       column.kind = Growing::Kind::kNumber;
-      column.numbers.push_back(read_date(reader));
+      column.numbers.push_back(read_text_stamp(reader));
       return;
     }
     double value = 0.0;
@@ -184,7 +255,7 @@ class CsvParser {
       return;
     }
     bool infinite = false;
-    if (const auto number = internal::unusual_number(cell, infinite)) {
+    if (const auto number = internal::unusual_number(cell, infinite, style_.decimal_comma)) {
       column.infinite += infinite ? 1U : 0U;
       if (!cell.empty() && column.kind == Growing::Kind::kOpen) column.kind = Growing::Kind::kNumber;
       column.numbers.push_back(*number);
@@ -201,15 +272,15 @@ class CsvParser {
   }
 
   void read_rows() {
-    CellReader reader(rows_, delimiter_);
+    CellReader reader(rows_, style_);
     double last_time = -INFINITY;
     const std::size_t count = headers_.size();
     while (!reader.at_end()) {
       const char first = *reader.position();
-      if (first == '\n' || first == '\r' || first == '#' || first == ' ') {
+      if (first == '\n' || first == '\r' || first == ' ' || first == '\t' || is_comment(first)) {
         const char* const begin = reader.position();
         const std::string_view line = reader.line();
-        if (line.empty() || line.front() == '#') continue;
+        if (line.empty() || is_comment(line.front())) continue;
         reader.move_to(begin);  // a row that starts with a blank; its line was counted, so is taken back below
         ++recounted_;
       }
@@ -244,7 +315,11 @@ class CsvParser {
       if (!(stamp >= last_time)) {
         const std::string where = fmt::format("{}: column '{}'", place(row_line_), headers_[time_.column].name);
         if (std::isnan(stamp)) throw InputError(where, "the time is missing");
-        throw InputError(where, fmt::format("time goes backwards: {} s after {} s", stamp, last_time));
+        restarts_.push_back(row_count_ - 1);
+        if (backwards_.empty()) {
+          backwards_ = where;
+          backwards_words_ = fmt::format("time goes backwards: {} s after {} s", stamp, last_time);
+        }
       }
       last_time = stamp;
     }
@@ -260,10 +335,23 @@ class CsvParser {
     std::vector<double> stamps = std::move(columns_[time_.column].numbers);
     constexpr double kYear2000 = 946684800.0;
     constexpr double kYear2100 = 4102444800.0;
-    if (our_own_ || time_.dates || !(stamps.front() > kYear2000) || !(stamps.back() < kYear2100)) return stamps;
+    if (our_own_ || time_.texts || !(stamps.front() > kYear2000) || !(stamps.back() < kYear2100)) return stamps;
     set_first_day(static_cast<std::int64_t>(std::floor(stamps.front() / 86400.0)));
     for (double& stamp : stamps) stamp -= 86400.0 * static_cast<double>(*first_day_);
     return stamps;
+  }
+
+  /// Where the clock restarts, keeps one part of the rows.
+  void keep_one_part() {
+    if (row_count_ == 0 || time_.column == TimeChoice::kNone || (restarts_.empty() && options_.part <= 1)) return;
+    const std::vector<double>& stamps = columns_[time_.column].numbers;
+    const std::vector<internal::ClockPart> parts = internal::clock_parts(restarts_, row_count_);
+    if (parts.empty() && !restarts_.empty()) throw InputError(backwards_, backwards_words_);
+    if (parts.empty()) throw InputError(log_.source, fmt::format("has no part {}", options_.part));
+    const std::size_t read = internal::choose_part(parts, stamps, options_.part, log_.source);
+    if (parts.size() > 1) log_.damage.notes.push_back(internal::parts_in_words(parts, stamps, read));
+    for (Growing& column : columns_) column.keep(parts[read]);
+    row_count_ = parts[read].end - parts[read].begin;
   }
 
   void drop_cut_row(std::size_t cells) {
@@ -280,6 +368,7 @@ class CsvParser {
   }
 
   Log finish() {
+    keep_one_part();
     if (row_count_ == 0) throw InputError(log_.source, "there is a header but not one row of data");
     LogTopic topic;
     std::vector<std::string> empty;
@@ -315,14 +404,20 @@ class CsvParser {
   }
 
   std::string_view bytes_;
-  CsvOptions options_;
+  TableOptions options_;
   Log log_;
-  char delimiter_ = ',';
+  internal::CellStyle style_;
   bool our_own_ = false;
   std::vector<Header> headers_;
   std::vector<Growing> columns_;
   TimeChoice time_;
   std::optional<std::int64_t> first_day_;
+  std::optional<internal::TextStamp::Kind> stamp_kind_;
+  double last_time_of_day_ = 0.0;
+  int midnights_ = 0;
+  std::vector<std::size_t> restarts_;  ///< rows whose stamp is before that of the row above
+  std::string backwards_;              ///< where that is for the first time
+  std::string backwards_words_;
   std::string_view rows_;
   std::size_t line_ = 0;  ///< lines before the rows
   std::size_t header_line_ = 1;
@@ -333,11 +428,11 @@ class CsvParser {
 
 }  // namespace
 
-Log read_csv(std::string_view bytes, std::string source, const CsvOptions& options) {
+Log read_csv(std::string_view bytes, std::string source, const TableOptions& options) {
   return CsvParser(bytes, std::move(source), options).run();
 }
 
-Log read_csv_file(const std::filesystem::path& path, const CsvOptions& options) {
+Log read_csv_file(const std::filesystem::path& path, const TableOptions& options) {
   const MappedFile file(path);
   return read_csv(file.bytes(), path.string(), options);
 }

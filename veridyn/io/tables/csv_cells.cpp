@@ -22,11 +22,36 @@ char guess_delimiter(std::string_view line) {
       best = candidate;
     }
   }
-  return best;
+  return most == 0 && trimmed(line).find(' ') != std::string_view::npos ? ' ' : best;
 }
 
-std::optional<double> unusual_number(std::string_view cell, bool& infinite) {
+bool has_decimal_comma(std::string_view rows, char delimiter) {
+  constexpr std::size_t kRows = 100;
+  CellReader reader(rows, delimiter);
+  bool found = false;
+  while (!reader.at_end() && reader.lines() < kRows) {
+    double value = 0.0;
+    bool infinite = false;
+    const char* const begin = reader.position();
+    if (reader.number(value)) {
+      if (std::find(begin, reader.position(), '.') != reader.position()) return false;
+      continue;
+    }
+    const std::string cell = reader.text();
+    found = found || (!unusual_number(cell, infinite) && unusual_number(cell, infinite, true));
+  }
+  return found;
+}
+
+std::optional<double> unusual_number(std::string_view cell, bool& infinite, bool decimal_comma) {
   if (cell.empty()) return kMissing;
+  if (const std::size_t comma = cell.find(','); decimal_comma && comma != std::string_view::npos) {
+    std::string with_point(cell);
+    with_point[comma] = '.';
+    // One comma between digits, and no point: 1.234,5 and 1,234,567 say something else.
+    const bool plain = cell.find('.') == std::string_view::npos && with_point.find(',') == std::string::npos;
+    return plain ? unusual_number(with_point, infinite) : std::nullopt;
+  }
   double value = 0.0;
   const char* const end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(cell.front() == '+' ? cell.data() + 1 : cell.data(), end, value);
@@ -56,9 +81,26 @@ std::string_view CellReader::line() {
   return trimmed(text);
 }
 
+bool CellReader::close_at_blank(const char* from) {
+  while (from != end_ && (*from == ' ' || *from == '\t' || *from == '\r')) ++from;
+  if (from != end_ && *from != '\n') {
+    const char before = from == at_ ? '\0' : from[-1];
+    if (before != ' ' && before != '\t') return false;
+    at_ = from;
+    row_ended_ = false;
+    newline_ = false;
+    return true;
+  }
+  newline_ = from != end_;
+  at_ = newline_ ? from + 1 : from;
+  row_ended_ = true;
+  ++lines_;
+  return true;
+}
+
 std::string CellReader::text() {
   const char* from = at_;
-  while (from != end_ && *from == ' ') ++from;
+  while (from != end_ && (*from == ' ' || (delimiter_ == ' ' && *from == '\t'))) ++from;
   std::string cell;
   if (from != end_ && *from == '"') {
     ++from;
@@ -74,11 +116,11 @@ std::string CellReader::text() {
       cell += *from++;
     }
     if (from != end_) ++from;
-    while (from != end_ && *from != delimiter_ && *from != '\n') cell += *from++;
+    while (from != end_ && !ends_cell(*from)) cell += *from++;
     close(from);
     return std::string(trimmed(cell));
   }
-  while (from != end_ && *from != delimiter_ && *from != '\n') ++from;
+  while (from != end_ && !ends_cell(*from)) ++from;
   cell.assign(at_, from);
   close(from);
   return std::string(trimmed(cell));

@@ -13,17 +13,28 @@ namespace veridyn::io::internal {
 
 inline constexpr double kMissing = kNaN;
 
-/// Comma, semicolon or tabulator, whichever the line holds most of.
+/// How cells are written.
+struct CellStyle {
+  char delimiter = ',';        ///< ' ': any number of blanks and tabulators
+  bool decimal_comma = false;  ///< "0,5" is a half
+};
+
+/// Comma, semicolon or tabulator, whichever the line holds most of; a blank where it holds none of them but blanks.
 [[nodiscard]] char guess_delimiter(std::string_view line);
 /// The number that a cell stands for which is no plain one: empty, NA and the like are missing, true is 1; infinite
 /// ones are missing and set `infinite`. Nothing for other text.
-[[nodiscard]] std::optional<double> unusual_number(std::string_view cell, bool& infinite);
+[[nodiscard]] std::optional<double> unusual_number(std::string_view cell, bool& infinite, bool decimal_comma = false);
+/// Whether numbers among the first rows have a decimal comma, and none a point.
+[[nodiscard]] bool has_decimal_comma(std::string_view rows, char delimiter);
 
 /// A view of rows of which cells are taken one by one; quotes as in RFC 4180.
 class CellReader {
  public:
   CellReader(std::string_view bytes, char delimiter)
       : at_(bytes.data()), end_(bytes.data() + bytes.size()), delimiter_(delimiter) {}
+  CellReader(std::string_view bytes, CellStyle style) : CellReader(bytes, style.delimiter) {
+    decimal_comma_ = style.decimal_comma;
+  }
 
   [[nodiscard]] bool at_end() const { return at_ == end_; }
   [[nodiscard]] const char* position() const { return at_; }
@@ -38,14 +49,21 @@ class CellReader {
   bool number(double& value);
   /// The next cell as text without its quotes.
   std::string text();
+  /// The next cell, where it is a number that `number` does not take, as `unusual_number`.
+  std::optional<double> unusual(bool& infinite) { return unusual_number(text(), infinite, decimal_comma_); }
 
  private:
   bool close(const char* from);
+  bool close_at_blank(const char* from);
+  [[nodiscard]] bool ends_cell(char c) const {
+    return c == delimiter_ || c == '\n' || (delimiter_ == ' ' && c == '\t');
+  }
 
   const char* at_;
   const char* end_;
   char delimiter_;
   std::size_t lines_ = 0;
+  bool decimal_comma_ = false;
   bool row_ended_ = false;
   bool newline_ = false;
 };
@@ -82,7 +100,7 @@ inline bool CellReader::close(const char* from) {
     ++lines_;
     return true;
   }
-  return false;
+  return delimiter_ == ' ' && close_at_blank(from);
 }
 
 }  // namespace veridyn::io::internal

@@ -5,8 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "veridyn/io/tables/csv.hpp"
-
 namespace veridyn::io::internal {
 
 /// The name of a column and its unit.
@@ -15,22 +13,26 @@ struct Header {
   std::string unit;  ///< empty: none given
 };
 
-/// `name[unit]` in its parts. In files by others "control[3]" is an element and brackets that hold no unit are part of
-/// the name; in ours (`our_own`) the last brackets always hold a unit.
+/// `name[unit]` in its parts; in files by others also `name (unit)`, with units as people write them. There
+/// "control[3]" is an element, and brackets that hold no unit are part of the name; in ours (`our_own`) the last
+/// brackets always hold a unit.
 /// @throws InputError for an unknown unit in a file of ours
 [[nodiscard]] Header split_header(const std::string& cell, bool our_own, const std::string& place);
 
-/// Where the stamps of a file are and what they are.
-struct TimeChoice {
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::size_t column = kNone;  ///< none: stamps are made from a rate
-  double scale = 1.0;          ///< to seconds
-  bool dates = false;
-};
+/// The cells of a header between blanks, where a unit in brackets belongs to the name before it: "Time (s) p (deg/s)".
+[[nodiscard]] std::vector<std::string> blank_separated(std::string_view line);
 
-/// Chooses as read_csv describes. @param first_row of the data, which tells dates and the unit of `timestamp`
-/// @throws InputError where there is no time column, the options name one that is not there, or its unit is no time
-[[nodiscard]] TimeChoice choose_time(const std::vector<Header>& headers, const CsvOptions& options,
-                                     std::string_view first_row, char delimiter, const std::string& place);
+/// The cells of a line.
+[[nodiscard]] std::vector<std::string> cells_of(std::string_view line, char delimiter);
+
+/// Whether cells are data: numbers, dates and times, at least one of them not empty.
+[[nodiscard]] bool holds_only_data(const std::vector<std::string>& cells, bool decimal_comma);
+
+/// The units of a row that holds nothing else (below the names, as loggers of cars write them), with "" for none;
+/// empty: it is no such row.
+[[nodiscard]] std::vector<std::string> row_of_units(const std::vector<std::string>& cells);
+
+/// Names that appear again get their number, `V(2)`; which did is returned.
+std::vector<std::string> number_repeated(std::vector<Header>& headers);
 
 }  // namespace veridyn::io::internal

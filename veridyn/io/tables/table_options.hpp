@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace veridyn::io {
+
+/// What the user says of a table: a CSV file, a folder of them, NumPy arrays, arrays of a MATLAB file. What is left out
+/// is found by content, and what was assumed is noted.
+struct TableOptions {
+  std::string time_column{};  ///< name of the column with the stamps; empty: found by its name
+  std::string time_unit{};    ///< unit of the stamps ("ms"); empty: from header or name, else by how far rows are apart
+  /// Names of the columns, `name` or `name[unit]`, of a table that has none; empty: the first row names them.
+  std::vector<std::string> columns{};
+  double rate = 0.0;      ///< [Hz] of the rows of a table that has no stamps: they are made; 0: there is a time column
+  char delimiter = '\0';  ///< ' ' for blanks and tabulators; '\0': comma, semicolon or tabulator, else blanks
+  char decimal = '\0';    ///< '.' or ','; '\0': a comma where cells hold one and it does not separate them
+  std::size_t part = 0;   ///< of a table whose clock restarts: which stretch, from 1; 0: the longest
+};
+
+}  // namespace veridyn::io
