@@ -136,14 +136,14 @@ VehicleParameters<double> racing_car() {
   return p;
 }
 
-/// Tyres whose stiffness is in proportion to their load, far from their limit.
+/// On tyres whose stiffness is in proportion to their load; from 20 on their friction is as good as without limit.
 VehicleTrajectory gripping_drive(std::uint64_t seed, const AerodynamicLift& lift, double steer_rms, double speed,
-                                 double duration, const std::function<double(double)>& torque) {
+                                 double duration, const std::function<double(double)>& torque, double mu = 20.0) {
   const VehicleParameters<double> p = racing_car();
   const PerWheel<double> load = static_loads(p, kGravity);
   const auto tyre = [&](double stiffness, double nominal) {
     return SimpleMagicFormulaTyre<double>{
-        .stiffness = stiffness, .slip_stiffness = 2.0 * stiffness, .mu = 20.0, .C = 1.3, .nominal_load = nominal};
+        .stiffness = stiffness, .slip_stiffness = 2.0 * stiffness, .mu = mu, .C = 1.3, .nominal_load = nominal};
   };
   const auto front = tyre(p.C_f, load[kFrontLeft]), rear = tyre(p.C_r, load[kRearLeft]);
   FourWheelOptions options;
@@ -193,6 +193,39 @@ TEST(DriveEffects, LoadMovedByThePedalsIsFound) {
   const VehicleIdentification without = identified(drive, reference_drive_sensors(), car, kNone);
   EXPECT_LT(largest_error(without, car), 0.1);  // the mean load is right: what it costs is certainty
   EXPECT_LT(id.best()->find("C_f")->sigma, 0.6 * without.best()->find("C_f")->sigma);
+}
+
+// Speed changes with them, and so does downforce: taken for it, pedals made C_r 7 % low beyond its interval.
+TEST(DriveEffects, LightPedalsDoNotPassForDownforce) {
+  const VehicleParameters<double> car = racing_car();
+  const VehicleTrajectory drive = gripping_drive(
+      3, {}, 0.018, 20.0, 80.0, [](double t) { return std::sin(2.0 * kPi * 0.11 * t) > 0.0 ? 360.0 : -340.0; }, 4.0);
+  ASSERT_TRUE(drive.usable()) << drive.message();
+  const VehicleIdentification id = identified(drive, reference_drive_sensors(), car, {});
+  EXPECT_TRUE(id.effects[DriveEffect::kPedals]) << id.structure_reason;
+  EXPECT_LT(largest_error(id, car), 0.03) << id.structure_reason;
+  expect_found(id, "load_sensitivity", 1.0);
+}
+
+// Tyres at half of their limit: the structure is climbed once more with the wings in the model.
+TEST(DriveEffects, WhatTyresDoIsLookedForAgainWithTheWings) {
+  const VehicleParameters<double> car = racing_car();
+  const VehicleTrajectory drive = gripping_drive(
+      2, kWings, 0.014, 15.0, 90.0, [](double t) { return t < 45.0 ? 190.0 : -60.0; }, 1.6);
+  ASSERT_TRUE(drive.usable()) << drive.message();
+  const VehicleIdentification id = identified(drive, reference_drive_sensors(), car, {});
+  EXPECT_TRUE(saturates(id.structure)) << id.structure_reason;
+  EXPECT_TRUE(id.effects[DriveEffect::kDownforce]) << id.structure_reason;
+  EXPECT_LT(largest_error(id, car), 0.03) << id.structure_reason;
+  // The structures are in the order of the choice: all without an effect, then what was tried on the one taken, then
+  // all with what was found.
+  ASSERT_FALSE(id.tried_structures.empty());
+  EXPECT_TRUE(id.tried_structures.front().effects == kNone);
+  EXPECT_TRUE(id.tried_structures.back().effects == id.effects);
+  EXPECT_EQ(std::ranges::count_if(
+                id.tried_structures,
+                [&](const TriedStructure& t) { return t.structure == id.structure && t.effects == id.effects; }),
+            1);
 }
 
 }  // namespace

@@ -48,9 +48,8 @@ TEST(RollingBicycle, HoldsItselfOnABankedRoadByTheForceThatGravityTakes) {
 TEST(RollingBicycle, GripsByTheLoadOfItsAxles) {
   LinearRolling car = rolling_car();
   RollingState<2> x(0.1, 0.05);
-  const DriveConditions<double> braking{.longitudinal_acceleration = -5.0};
   const auto at_rest = car.rates<2>(x, 0.02, kForwardSpeed);
-  car.axle_load = {.acts = true, .downforce_f = 4e-4, .downforce_r = 4e-4, .sensitivity = 1.0};
+  car.axle_load = {.acts = true, .downforce_f = 4e-4, .downforce_r = 4e-4};
   // Pressed down equally, both axles and so the whole car have the same more.
   const auto pressed = car.rates<2>(x, 0.02, kForwardSpeed);
   const double more = 1.0 + 4e-4 * kForwardSpeed * kForwardSpeed;
@@ -59,10 +58,23 @@ TEST(RollingBicycle, GripsByTheLoadOfItsAxles) {
   // What braking takes from the rear axle's static load goes to the front one: m a_x c/L of m g a/L and m g b/L.
   const VehicleParameters<double>& p = car.bicycle.parameters;
   car.axle_load = {.acts = true, .sensitivity = 1.0};
-  const auto forces = car.loaded({100.0, 100.0}, kForwardSpeed, braking);
+  const auto forces = car.loaded({100.0, 100.0}, 0.0, kForwardSpeed, -5.0);
   const double moved = p.mass * 5.0 * p.cg_height / p.wheelbase();
   EXPECT_NEAR(forces[0] / 100.0 - 1.0, moved / (p.mass * kGravity * p.b / p.wheelbase()), 1e-12);
   EXPECT_NEAR(1.0 - forces[1] / 100.0, moved / (p.mass * kGravity * p.a / p.wheelbase()), 1e-12);
+  // Of the braking force a third is in front, half of it on each wheel.
+  car.axle_load = {.acts = true, .front_force_share = 1.0 / 3.0};
+  const auto steered = car.loaded({100.0, 100.0}, 0.1, kForwardSpeed, -5.0);
+  EXPECT_NEAR(steered[0] - 100.0, -p.mass * 5.0 / 6.0 * std::tan(0.1), 1e-9);
+  EXPECT_DOUBLE_EQ(steered[1], 100.0);
+  car.axle_load = {.acts = true, .sensitivity = 1.0};
+  // The load moves by the acceleration along the vehicle, which turning sideways is a part of: a_x = u' - r v.
+  const RollingState<2> sliding(0.5, 0.4);
+  const auto steady_speed = car.rates<2>(sliding, 0.02, kForwardSpeed);
+  const auto no_force_along = car.rates<2>(sliding, 0.02, kForwardSpeed, {.speed_rate = 0.4 * 0.5});
+  car.axle_load = {};
+  EXPECT_DOUBLE_EQ(no_force_along.derivative(1), car.rates<2>(sliding, 0.02, kForwardSpeed).derivative(1));
+  EXPECT_NE(steady_speed.derivative(1), no_force_along.derivative(1));
 }
 
 /// Half a second of straight driving, a sine of steering of one second, and what follows.

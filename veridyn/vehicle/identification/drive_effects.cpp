@@ -56,17 +56,18 @@ bool tells_downforce(const VehicleProblem& problem) {
   return kDownforceSigma * (fast * fast - slow * slow) > kTellingDownforce;
 }
 
-bool tells_pedals(const VehicleProblem& problem) {
+/// rms, of the axle that has more of it.
+double share_moved_by_pedals(const VehicleProblem& problem) {
   const double rate_Hz = problem.signals.grid.rate_Hz();
   const numerics::ModulatingKernel kernel =
       numerics::modulating_kernel(rate_Hz, std::min(kPedalBand_Hz, 0.1 * rate_Hz));
   const std::vector<double> rate =
       there(problem, numerics::filter(problem.signals[DriveSignal::kSpeed].value, kernel.first));
-  if (rate.empty()) return false;
+  if (rate.empty()) return 0.0;
   double power = 0.0;
   for (const double x : rate) power += x * x / static_cast<double>(rate.size());
   const VehicleParameters<double>& p = problem.start;
-  return std::sqrt(power) * p.cg_height / (problem.signal_options.gravity * std::min(p.a, p.b)) > kTellingPedals;
+  return std::sqrt(power) * p.cg_height / (problem.signal_options.gravity * std::min(p.a, p.b));
 }
 
 }  // namespace
@@ -75,7 +76,9 @@ DriveEffects effects_told(const VehicleProblem& problem) {
   DriveEffects effects{};
   effects[DriveEffect::kBank] = tells_bank(problem);
   effects[DriveEffect::kDownforce] = tells_downforce(problem);
-  effects[DriveEffect::kPedals] = tells_pedals(problem);
+  // Changes of speed are what both act through: neither is to pass for the other.
+  effects[DriveEffect::kPedals] =
+      share_moved_by_pedals(problem) > (effects[DriveEffect::kDownforce] ? kPedalsBesideDownforce : kTellingPedals);
   return effects;
 }
 

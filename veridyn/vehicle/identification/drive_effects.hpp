@@ -11,6 +11,8 @@ inline constexpr double kTellingBank_mps2 = 0.2;
 inline constexpr double kTellingDownforce = 0.1;
 /// Share of an axle's load that the pedals have to move, rms.
 inline constexpr double kTellingPedals = 0.05;
+/// The same where downforce is tried.
+inline constexpr double kPedalsBesideDownforce = 0.01;
 
 /// Which effects the identification segments of a drive can tell: what is tried where the study fixes none. A bank
 /// needs an accelerometer and more than one segment: what all have in common is its bias. Downforce needs speeds of

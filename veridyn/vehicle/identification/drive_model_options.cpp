@@ -18,7 +18,8 @@ constexpr std::array kRolls{DriveUnknown::kRollGradient,     DriveUnknown::kRoll
                             DriveUnknown::kRollDamping,      DriveUnknown::kRollArm,
                             DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer,
                             DriveUnknown::kLoadTransferLoss, DriveUnknown::kLoadTransferBalance};
-constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity};
+constexpr std::array kOfEffects{DriveUnknown::kDownforceF, DriveUnknown::kDownforceR, DriveUnknown::kLoadSensitivity,
+                                DriveUnknown::kFrontForceShare};
 constexpr std::array kByGeometry{DriveUnknown::kCf,
                                  DriveUnknown::kCr,
                                  DriveUnknown::kIz,
@@ -111,6 +112,9 @@ DriveModelOptions::DriveModelOptions() {
   // Stiffness grows with load by 0.4 to 1 of what it would in proportion (Pacejka 2006, chapter 1).
   start[DriveUnknown::kLoadSensitivity] = 0.0;
   prior[DriveUnknown::kLoadSensitivity] = 0.7;
+  // Brakes have 0.5 to 0.8 of it in front, engines all or nothing; one share stands for both.
+  start[DriveUnknown::kFrontForceShare] = 0.5;
+  prior[DriveUnknown::kFrontForceShare] = 0.3;
   prior[DriveUnknown::kRollBias] = prior[DriveUnknown::kRollRateBias] = kDegree;
   prior[DriveUnknown::kShape] = 0.2;
   prior[DriveUnknown::kCurvature] = 0.5;
@@ -206,6 +210,8 @@ std::pair<double, double> bounds_of(DriveUnknown unknown, double start, double w
       return {-2e-4, 1e-2};
     case DriveUnknown::kLoadSensitivity:
       return {-1.0, 3.0};
+    case DriveUnknown::kFrontForceShare:
+      return {0.0, 1.0};
     case DriveUnknown::kRelaxationLength:
       return {kShortestRelaxation * wheelbase, wheelbase};
     case DriveUnknown::kSteerScale:
@@ -238,7 +244,8 @@ DriveModelOptions with_structure(DriveModelOptions options, DriveStructure struc
 DriveModelOptions with_effects(DriveModelOptions options, const DriveEffects& effects) {
   options.effects = effects;
   options.free[DriveUnknown::kDownforceF] = options.free[DriveUnknown::kDownforceR] = effects[DriveEffect::kDownforce];
-  options.free[DriveUnknown::kLoadSensitivity] = effects[DriveEffect::kPedals];
+  options.free[DriveUnknown::kLoadSensitivity] = options.free[DriveUnknown::kFrontForceShare] =
+      effects[DriveEffect::kPedals];
   return options;
 }
 

@@ -30,6 +30,7 @@ enum class DriveUnknown : std::size_t {
   kDownforceF,           ///< growth of the front axle's forces per square of the speed [s^2/m^2]
   kDownforceR,           ///< of the rear axle's
   kLoadSensitivity,      ///< growth of an axle's forces over that of its load by braking and driving [-]
+  kFrontForceShare,      ///< what the front axle has of the force along the vehicle [-]
   /// Undamped natural frequency of roll [rad/s] and its damping ratio [-]: effective values of one mode. A drive shows
   /// how late roll is, 2 damping/frequency; springs of the tyres below those of the body make both larger than the body
   /// alone has them.
@@ -47,7 +48,7 @@ enum class DriveUnknown : std::size_t {
   kAccelYDelay
 };
 /// How many unknowns there are.
-inline constexpr std::size_t kDriveUnknowns = 28;
+inline constexpr std::size_t kDriveUnknowns = 29;
 /// All of them, in order.
 inline constexpr auto kAllDriveUnknowns = enumerators<DriveUnknown, kDriveUnknowns>();
 /// A value for each of them.
@@ -70,6 +71,7 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "downforce_f",
                                                                       "downforce_r",
                                                                       "load_sensitivity",
+                                                                      "front_force_share",
                                                                       "roll_frequency",
                                                                       "roll_damping",
                                                                       "steer_bias",
@@ -84,8 +86,9 @@ inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownNames{"C_f",
                                                                       "accel_y_delay"};
 /// Their units, in the same order.
 inline constexpr PerDriveUnknown<std::string_view> kDriveUnknownUnits{
-    "N/rad",   "N/rad", "kg m^2", "m", "1",   "1", "1",     "rad s^2/m", "m", "m",   "1",     "1", "1", "s^2/m^2",
-    "s^2/m^2", "1",     "rad/s",  "1", "rad", "1", "rad/s", "m/s^2",     "1", "rad", "rad/s", "s", "s", "s"};
+    "N/rad", "N/rad", "kg m^2", "m",       "1",       "1",     "1", "rad s^2/m", "m", "m",
+    "1",     "1",     "1",      "s^2/m^2", "s^2/m^2", "1",     "1", "rad/s",     "1", "rad",
+    "1",     "rad/s", "m/s^2",  "1",       "rad",     "rad/s", "s", "s",         "s"};
 static_assert(!kDriveUnknownNames.back().empty() && !kDriveUnknownUnits.back().empty(), "one is missing");
 /// Whether it is the vehicle's, and not of its sensors or the day.
 [[nodiscard]] constexpr bool is_of_the_vehicle(DriveUnknown u) { return u < DriveUnknown::kRollFrequency; }

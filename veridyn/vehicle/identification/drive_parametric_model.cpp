@@ -386,7 +386,8 @@ auto DriveParametricModel::with_model(const Parameters<Scalar>& theta, const Wor
         .axle_load = {.acts = moves_loads(),
                       .downforce_f = unknown(DriveUnknown::kDownforceF),
                       .downforce_r = unknown(DriveUnknown::kDownforceR),
-                      .sensitivity = unknown(DriveUnknown::kLoadSensitivity)}};
+                      .sensitivity = unknown(DriveUnknown::kLoadSensitivity),
+                      .front_force_share = unknown(DriveUnknown::kFrontForceShare)}};
     switch (options_.structure) {
       case DriveStructure::kRoll:
         return work(model, std::integral_constant<int, 4>());

@@ -20,7 +20,7 @@ namespace veridyn::vehicle {
 /// The unknown of a segment that the bank of its road is.
 inline constexpr std::string_view kSegmentBank = "bank";
 /// Below it the derivative of the recorded speed moves loads: bodies pitch as slowly.
-inline constexpr double kPedalBand_Hz = 1.0;
+inline constexpr double kPedalBand_Hz = 2.0;
 
 /// The drive as a parametric model for output error: a `RollingBicycle` (exact geometry) driven by measured steering
 /// and speed, with the states of each segment's beginning as further unknowns: lateral velocity and yaw rate, and of

@@ -45,13 +45,26 @@ EstimatedDriveModel estimated_drive_model(const estimation::Estimate& estimate,
   const double L = p.wheelbase();
   take("a", p.a);
   p.b = L - p.a;
-  for (const DriveUnknown u :
-       {DriveUnknown::kMu, DriveUnknown::kShape, DriveUnknown::kCurvature, DriveUnknown::kRollGradient,
-        DriveUnknown::kRollFrequency, DriveUnknown::kRollDamping, DriveUnknown::kRollArm,
-        DriveUnknown::kRelaxationLength, DriveUnknown::kLoadTransfer, DriveUnknown::kLoadTransferLoss,
-        DriveUnknown::kLoadTransferBalance, DriveUnknown::kDownforceF, DriveUnknown::kDownforceR,
-        DriveUnknown::kLoadSensitivity, DriveUnknown::kSteerScale, DriveUnknown::kAccelYScale,
-        DriveUnknown::kSteerDelay, DriveUnknown::kYawRateDelay, DriveUnknown::kAccelYDelay}) {
+  for (const DriveUnknown u : {DriveUnknown::kMu,
+                               DriveUnknown::kShape,
+                               DriveUnknown::kCurvature,
+                               DriveUnknown::kRollGradient,
+                               DriveUnknown::kRollFrequency,
+                               DriveUnknown::kRollDamping,
+                               DriveUnknown::kRollArm,
+                               DriveUnknown::kRelaxationLength,
+                               DriveUnknown::kLoadTransfer,
+                               DriveUnknown::kLoadTransferLoss,
+                               DriveUnknown::kLoadTransferBalance,
+                               DriveUnknown::kDownforceF,
+                               DriveUnknown::kDownforceR,
+                               DriveUnknown::kLoadSensitivity,
+                               DriveUnknown::kFrontForceShare,
+                               DriveUnknown::kSteerScale,
+                               DriveUnknown::kAccelYScale,
+                               DriveUnknown::kSteerDelay,
+                               DriveUnknown::kYawRateDelay,
+                               DriveUnknown::kAccelYDelay}) {
     take(kDriveUnknownNames[u], given.options.start[u]);
   }
   given.options.effects[DriveEffect::kDownforce] = estimate.find("downforce_f") != nullptr;

@@ -133,7 +133,7 @@ class Climb {
     } else {
       climb_to_roll();
       if (takes_roll()) weigh();
-      if (takes_roll()) climb_beyond_roll();
+      if (takes_roll()) climb_beyond_roll(problem_.options.effects.value_or(DriveEffects{}));
       if (!problem_.options.effects) add_effects();
       if (progress_.interrupted()) leave_out("not all structures were tried");
       doubt();
@@ -206,50 +206,53 @@ class Climb {
   }
 
   /// What tyres do beside rolling.
-  void climb_beyond_roll() {
+  void climb_beyond_roll(const DriveEffects& effects) {
     const std::size_t roll = ladder_.tried.size() - 1;
     bool relaxes = false;
     for (const DriveStructure structure :
          {DriveStructure::kRelaxation, DriveStructure::kSaturation, DriveStructure::kMagicFormula}) {
       if (progress_.interrupted()) return;
       search_start_ = fits_[relaxes ? roll + 1 : roll].raw.theta;
-      fit(structure, relaxes);
+      fit(structure, relaxes, effects);
       relaxes = relaxes || taken().structure == DriveStructure::kRelaxation;
     }
   }
 
-  /// What road, air and pedals add to the structure taken, one after the other; and where they do, whether a simpler
-  /// structure does with them, which without them was not enough.
+  /// What road, air and pedals add to the structure taken; and where they do, the structure once more with them. What
+  /// they explain may have passed for more of a structure than there is, or have hidden some of it.
   void add_effects() {
     if (ladder_.empty() || contradicts() || progress_.interrupted() || is_exact(fits_.back())) return;
     const DriveEffects told = effects_told(problem_);
-    DriveEffects effects{};
-    for (const DriveEffect effect : kAllDriveEffects) {
-      if (!told[effect]) continue;
-      if (progress_.interrupted()) return;
-      const std::size_t before = choose_structure(ladder_.tried);
-      DriveEffects more = effects;
-      more[effect] = true;
-      search_start_ = fits_[before].raw.theta;
-      fit(ladder_.tried[before].structure, relaxes(before), more);
-      if (choose_structure(ladder_.tried) != before) effects = more;
+    const std::size_t without = choose_structure(ladder_.tried);
+    std::size_t chosen = without;
+    for (bool more = true; more && !progress_.interrupted();) {
+      const std::size_t before = chosen;
+      for (const DriveEffect effect : kAllDriveEffects) {
+        DriveEffects effects = ladder_.tried[before].effects;
+        if (!told[effect] || effects[effect] || progress_.interrupted()) continue;
+        effects[effect] = true;
+        search_start_ = fits_[before].raw.theta;
+        fit(ladder_.tried[before].structure, relaxes(before), effects);
+      }
+      chosen = choose_structure(ladder_.tried);
+      more = chosen != before;
     }
-    if (effects == DriveEffects{}) return;
-    const std::size_t chosen = choose_structure(ladder_.tried);
-    const std::size_t without = ladder_.tried.size();
-    for (const DriveStructure simpler : {DriveStructure::kBicycle, DriveStructure::kRoll}) {
-      if (!(simpler < ladder_.tried[chosen].structure)) break;
+    if (chosen != without && !progress_.interrupted()) climb_with_effects(chosen);
+  }
+
+  /// From the simplest upward, which is the order of the choice; the rung taken so far is one of them.
+  void climb_with_effects(std::size_t chosen) {
+    const DriveEffects effects = ladder_.tried[chosen].effects;
+    search_start_ = fits_[chosen].raw.theta;
+    const auto drop = [&](auto& rungs) { rungs.erase(rungs.begin() + signed_index(chosen)); };
+    drop(ladder_.tried);
+    drop(fits_);
+    drop(options_);
+    for (const DriveStructure structure : {DriveStructure::kBicycle, DriveStructure::kRoll}) {
       if (progress_.interrupted()) return;
-      search_start_ = fits_[chosen].raw.theta;
-      fit(simpler, false, effects);
+      fit(structure, false, effects);
     }
-    // They go before what they are simpler than: the choice is made from the simplest upward.
-    const auto place = [&](auto& rungs) {
-      std::rotate(rungs.begin() + signed_index(chosen), rungs.begin() + signed_index(without), rungs.end());
-    };
-    place(ladder_.tried);
-    place(fits_);
-    place(options_);
+    if (has_roll(taken().structure) && !progress_.interrupted()) climb_beyond_roll(effects);
   }
 
   /// Whether the tyres of a rung lag.

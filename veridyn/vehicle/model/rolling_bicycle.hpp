@@ -45,12 +45,15 @@ struct LoadTransfer {
 ///     1 + d_f u^2 - s a_x c/(g b),   1 + d_r u^2 + s a_x c/(g a)
 ///
 /// of their static ones: the air presses the axles down, and braking and driving move load between them (c the height
-/// of the centre of gravity, u' = a_x). A tyre whose stiffness grows in proportion to its load has s = 1.
+/// of the centre of gravity, a_x = u' - r v). A tyre whose stiffness grows in proportion to its load has s = 1. What
+/// the front axle has of the force along the vehicle m a_x, a share f, its steered wheels turn sideways: f m a_x
+/// tan(delta).
 template <typename Scalar>
 struct AxleLoad {
   bool acts = false;
   Scalar downforce_f{0.0}, downforce_r{0.0};  ///< d [s^2/m^2]
   Scalar sensitivity{0.0};                    ///< s [-]
+  Scalar front_force_share{0.0};              ///< f [-]
 
   /// No axle loses more than this.
   static constexpr double kLeast = 0.05;
@@ -59,9 +62,9 @@ struct AxleLoad {
 /// What of road and pedals moves the vehicle besides its steering.
 template <typename Scalar>
 struct DriveConditions {
-  double longitudinal_acceleration = 0.0;  ///< u' [m/s^2]
-  bool banked = false;                     ///< else `bank` is not looked at
-  Scalar bank{0.0};                        ///< of the road, left side up [rad]
+  double speed_rate = 0.0;  ///< u' [m/s^2]
+  bool banked = false;      ///< else `bank` is not looked at
+  Scalar bank{0.0};         ///< of the road, left side up [rad]
 };
 
 /// Rates of a `RollingBicycle` at one moment.
@@ -106,7 +109,8 @@ struct RollingBicycle {
       out.derivative(5) = per_time * (slip[1] - x(5));
       slip = {x(4), x(5)};
     }
-    const std::array<Scalar, 2> Fy = loaded(axle_forces<kStates>(slip, x), u, conditions);
+    const std::array<Scalar, 2> Fy =
+        loaded(axle_forces<kStates>(slip, x), steer, u, conditions.speed_rate - x(0) * x(1));
     const BicycleRates<Scalar> plane = bicycle.rates_of_forces(slip, Fy, x(1), steer, u);
     out.lateral_acceleration = plane.lateral_acceleration;
     out.derivative(0) = plane.dv;
@@ -139,17 +143,19 @@ struct RollingBicycle {
     return bicycle.tyre_forces(slip);
   }
 
-  /// Forces at the static loads as they are at the loads of the moment.
-  [[nodiscard]] std::array<Scalar, 2> loaded(const std::array<Scalar, 2>& Fy, const Scalar& u,
-                                             const DriveConditions<Scalar>& conditions) const {
+  /// Forces at the static loads as they are at the loads of the moment, with a_x along the vehicle.
+  [[nodiscard]] std::array<Scalar, 2> loaded(const std::array<Scalar, 2>& Fy, const Scalar& steer, const Scalar& u,
+                                             const Scalar& a_x) const {
+    using std::tan;
     if (!axle_load.acts) return Fy;
     const VehicleParameters<Scalar>& p = bicycle.parameters;
-    const Scalar moved = axle_load.sensitivity * (conditions.longitudinal_acceleration * p.cg_height / bicycle.gravity);
+    const Scalar moved = axle_load.sensitivity * (a_x * p.cg_height / bicycle.gravity);
     std::array<Scalar, 2> growth{1.0 + axle_load.downforce_f * u * u - moved / p.b,
                                  1.0 + axle_load.downforce_r * u * u + moved / p.a};
     for (Scalar& g : growth)
       if (g < AxleLoad<Scalar>::kLeast) g = Scalar(AxleLoad<Scalar>::kLeast);
-    return {Fy[0] * growth[0], Fy[1] * growth[1]};
+    const Scalar turned = axle_load.front_force_share * (p.mass * a_x) * tan(steer);
+    return {Fy[0] * growth[0] + 0.5 * turned, Fy[1] * growth[1]};
   }
 
   /// Sideways, of the contact points below the centre of gravity [m/s].
@@ -168,8 +174,8 @@ struct RollingBicycle {
     x(0) = v;
     x(1) = r;
     const std::array<Scalar, 2> slip = bicycle.slip_angles(v, r, steer, u);
-    const BicycleRates<Scalar> plane =
-        bicycle.rates_of_forces(slip, loaded(bicycle.tyre_forces(slip), u, conditions), r, steer, u);
+    const BicycleRates<Scalar> plane = bicycle.rates_of_forces(
+        slip, loaded(bicycle.tyre_forces(slip), steer, u, conditions.speed_rate - r * v), r, steer, u);
     if constexpr (kStates > 2) {
       x(2) = roll.gradient * plane.lateral_acceleration;
       x(3) = Scalar(0.0);
